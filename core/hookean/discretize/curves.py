@@ -86,7 +86,8 @@ def explode(polyline: Any) -> Array:
     bent = np.flatnonzero(hull - chord > 1e-12 * hull)
     if len(bent):
         raise InputError(
-            "polyline", f"its piece {bent[0]} is curved; explode takes straight pieces only, use shatter(curve, count)"
+            "polyline",
+            f"its piece {bent[0]} is curved; explode takes straight pieces only, use shatter(curve, count)",
         )
     return np.stack([points[:, 0], points[:, -1]], axis=1)
 

@@ -30,7 +30,8 @@ def bezier_pieces(curve: Any) -> Array:
     """
     pieces = _check(_read(curve))
     points = pieces[..., :3] / pieces[..., 3:]
-    size = float(np.ptp(points.reshape(-1, 3), axis=0).max())
+    with np.errstate(over="ignore"):
+        size = float(np.ptp(points.reshape(-1, 3), axis=0).max())
     if not math.isfinite(size):
         raise InputError("curve", "it is too large for float64 arithmetic; use larger units")
     if size <= 1e-14 * float(np.abs(points).max()):
@@ -40,10 +41,12 @@ def bezier_pieces(curve: Any) -> Array:
     if len(gaps) and gaps.max() > 1e-6 * size:
         where = int(gaps.argmax())
         raise InputError(
-            "curve", f"it has a gap of {gaps[where]:g} after piece {where}; join its parts or divide them one by one"
+            "curve",
+            f"it has a gap of {gaps[where]:g} after piece {where}; join its parts or divide them one by one",
         )
     keep = np.ptp(points, axis=1).max(axis=1) > 0.0
-    return pieces[keep]
+    out: Array = pieces[keep]
+    return out
 
 
 def nurbs_pieces(points: Array, knots: Array, degree: int) -> Array:
@@ -81,6 +84,8 @@ def polyline_pieces(points: Any) -> Array:
     """Degree 1 pieces `(n - 1, 2, 4)` of the polyline through `points` `(n, 3)`."""
     try:
         xyz = np.asarray(points, dtype=np.float64)
+        if xyz.ndim == 0 or points is None:
+            raise TypeError
     except (TypeError, ValueError):
         raise InputError("curve", f"{type(points).__name__} is not a curve; allowed is {_KINDS}") from None
     if xyz.ndim != 2 or xyz.shape[1] != 3 or len(xyz) < 2:
@@ -105,17 +110,20 @@ def arc_pieces(frame: Any, a: float, b: float, start: float, end: float) -> Arra
     xyz = o * w[:, None] + a * np.cos(t)[:, None] * x + b * np.sin(t)[:, None] * y
     four = np.concatenate([xyz, w[:, None]], axis=1)
     # the homogeneous middle point is (cos t, sin t): w times the point at distance 1 / w
-    return four[2 * np.arange(s)[:, None] + np.arange(3)]
+    out: Array = four[2 * np.arange(s)[:, None] + np.arange(3)]
+    return out
 
 
 def _check(pieces: Array) -> Array:
     bad = np.argwhere(~np.isfinite(pieces))
     if len(bad):
         raise InputError(
-            "curve", f"control point {bad[0][1]} of piece {bad[0][0]} is not finite; give finite coordinates and weights"
+            "curve",
+            f"control point {bad[0][1]} of piece {bad[0][0]} is not finite; give finite coordinates and weights",
         )
     if (pieces[..., 3] <= 0).any():
-        raise InputError("curve", f"a weight is {pieces[..., 3].min():g}; weights must be positive, rebuild the curve")
+        least = pieces[..., 3].min()
+        raise InputError("curve", f"a weight is {least:g}; weights must be positive, rebuild the curve")
     if not len(pieces):
         raise InputError("curve", "it has zero length (no span between its knots); give a curve with length")
     return pieces
@@ -146,7 +154,8 @@ def _read_rhino(curve: Any) -> Array:
         return polyline_pieces([[p.X, p.Y, p.Z] for p in curve])
     nurbs = curve.ToNurbsCurve()
     if nurbs is None or len(nurbs.Points) == 0:
-        raise InputError("curve", f"this {type(curve).__name__} has no NURBS form; it is empty or invalid, rebuild it")
+        kind = type(curve).__name__
+        raise InputError("curve", f"this {kind} has no NURBS form; it is empty or invalid, rebuild it")
     points = np.array([[p.X, p.Y, p.Z, p.W] for p in nurbs.Points])
     knots = np.array([float(k) for k in nurbs.Knots])
     # opennurbs leaves out the first and the last knot, which shape nothing
@@ -161,7 +170,7 @@ def _read_rhino_value(curve: Any) -> Array:
     if ellipse is not None and isinstance(curve, ellipse):
         return _read_rhino(rhino3dm.NurbsCurve.CreateFromEllipse(curve))
     if isinstance(curve, rhino3dm.Point3dList):
-        return polyline_pieces([[p.X, p.Y, p.Z] for p in curve])
+        return polyline_pieces([[p.X, p.Y, p.Z] for p in (curve[i] for i in range(len(curve)))])
     raise InputError("curve", f"a rhino3dm {type(curve).__name__} is not a curve; allowed is {_KINDS}")
 
 

@@ -1,0 +1,214 @@
+"""What a mesh is made of: edges, boundary, corners, warp and weft, diagonals, triangles.
+
+Every function takes a `hookean.mesh.Mesh`, a rhino3dm Mesh, a COMPAS Mesh or a pair (vertices, faces).
+Edges are vertex pairs `(m, 2)`, the lower index first, in order of first appearance round the faces;
+`as_mesh(mesh).vertices[edges(mesh)]` are the lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.discretize.duplicates import unique_points
+from hookean.discretize.triangulate import newell, plane_coordinates, triangulate
+from hookean.errors import InputError
+from hookean.mesh import Mesh
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+def as_mesh(obj: Any) -> Mesh:
+    """Any mesh as a `Mesh`; vertices keep their order, nothing is welded.
+
+    Faces of more than four corners (COMPAS) are cut into triangles by ears, in the plane across
+    their vector area. A face that repeats a corner becomes the triangle it is, or is left out where
+    fewer than three corners remain. Raises InputError for an unknown type, a vertex that is not
+    finite, or a face that names no vertex or crosses itself.
+    """
+    if isinstance(obj, Mesh):
+        vertices, faces = obj.vertices, list(obj.faces)
+    elif hasattr(obj, "Vertices") and hasattr(obj, "Faces"):
+        vertices = np.array([[p.X, p.Y, p.Z] for p in (obj.Vertices[i] for i in range(len(obj.Vertices)))])
+        faces = [obj.Faces[i] for i in range(len(obj.Faces))]
+    elif hasattr(obj, "to_vertices_and_faces"):
+        vertices, faces = obj.to_vertices_and_faces()
+    elif isinstance(obj, (tuple, list)) and len(obj) == 2:
+        vertices, faces = obj
+    else:
+        raise InputError(
+            "mesh", f"{type(obj).__name__} is not a mesh; give a rhino3dm or COMPAS Mesh or (vertices, faces)"
+        )
+    points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        raise InputError(f"mesh/vertices/{bad[0]}", "it is not finite; give finite coordinates")
+    return Mesh(points, tidy_faces(_quads(points, faces)))
+
+
+def vertices(mesh: Any) -> Array:
+    """Vertices `(n, 3)` of a mesh, length units."""
+    return as_mesh(mesh).vertices
+
+
+def tidy_faces(faces: Index) -> Index:
+    """Faces `(m, 4)` with each collapsed side turned to the end, `(a, b, c, c)`; those without area go.
+
+    A quad with a collapsed side keeps its direction round: the side c-c is the collapsed one, so a-b
+    is the side across from it.
+    """
+    f = faces.copy()
+    for side in (0, 1, 3):
+        turn = (f[:, side] == f[:, (side + 1) % 4]) & (f[:, 2] != f[:, 3])
+        f[turn] = np.roll(f[turn], 2 - side, axis=1)
+    a, b, c, d = f.T
+    good = (a != b) & (b != c) & (a != c) & (a != d) & (b != d)
+    out: Index = f[good]
+    return out
+
+
+def edges(mesh: Any) -> Index:
+    """All edges `(m, 2)`, each once."""
+    sides, first, _ = _edges(as_mesh(mesh))
+    return sides[first]
+
+
+def naked_edges(mesh: Any) -> Index:
+    """Boundary edges `(m, 2)`: those of one face only."""
+    sides, first, which = _edges(as_mesh(mesh))
+    return sides[first][np.bincount(which[which >= 0], minlength=len(first)) == 1]
+
+
+def naked_vertices(mesh: Any) -> Index:
+    """Indices `(k,)`, ascending, of the vertices on boundary edges."""
+    return np.unique(naked_edges(mesh))
+
+
+def clothed_vertices(mesh: Any) -> Index:
+    """Indices `(k,)`, ascending, of the inner vertices: in a face and on no boundary edge."""
+    m = as_mesh(mesh)
+    return np.setdiff1d(np.unique(m.faces), naked_vertices(m))
+
+
+def corners(mesh: Any, angle: float = 0.75 * np.pi) -> Index:
+    """Indices `(k,)`, ascending, of boundary vertices whose inside angle is below `angle` (radians).
+
+    The inside angle is the sum of the angles of the faces that meet there. The default is 135 degrees.
+    Raises InputError where `angle` is not a positive number.
+    """
+    if not (np.isfinite(angle) and angle > 0):
+        raise InputError("angle", f"it is {angle!r}; give a positive angle in radians")
+    m = as_mesh(mesh)
+    inside = np.zeros(len(m.vertices))
+    for corner, before, after in _corner_triples(m.faces):
+        u, v = m.vertices[before] - m.vertices[corner], m.vertices[after] - m.vertices[corner]
+        across = np.linalg.norm(np.cross(u, v), axis=1)
+        np.add.at(inside, corner, np.arctan2(across, np.einsum("ij,ij->i", u, v)))
+    naked = naked_vertices(m)
+    return naked[inside[naked] < angle]
+
+
+def diagonals(mesh: Any, pattern: str = "both") -> Index:
+    """Diagonals `(k, 2)` of the quads `(a, b, c, d)`, in face order: a-c ("one"), b-d ("other"), or both.
+
+    With "both" each quad gives a-c, then b-d. Triangles have none. Raises InputError for another pattern.
+    """
+    if pattern not in ("both", "one", "other"):
+        raise InputError("pattern", f'{pattern!r} is no pattern; give "both", "one" or "other"')
+    f = as_mesh(mesh).faces
+    quads = f[f[:, 2] != f[:, 3]]
+    pairs = np.stack([quads[:, [0, 2]], quads[:, [1, 3]]], axis=1)
+    take = {"both": slice(0, 2), "one": slice(0, 1), "other": slice(1, 2)}[pattern]
+    return np.sort(pairs[:, take].reshape(-1, 2), axis=1)
+
+
+def triangles(mesh: Any) -> Index:
+    """Triangles `(t, 3)` in face order, each quad `(a, b, c, d)` split along its shorter diagonal.
+
+    Equal diagonals (to 1e-12 relative) split along a-c.
+    """
+    m = as_mesh(mesh)
+    a, b, c, d = m.faces.T
+    one = np.linalg.norm(m.vertices[c] - m.vertices[a], axis=1)
+    other = np.linalg.norm(m.vertices[d] - m.vertices[b], axis=1)
+    first = one <= other * (1 + 1e-12)
+    two = np.stack([np.stack([a, b, np.where(first, c, d)], 1), np.stack([np.where(first, a, b), c, d], 1)], 1)
+    two[c == d, 0] = np.stack([a, b, c], axis=1)[c == d]
+    keep = np.ones((len(m.faces), 2), bool)
+    keep[c == d, 1] = False
+    out: Index = two[keep]
+    return out
+
+
+def weld(mesh: Any, tolerance: float = 1e-6) -> Mesh:
+    """The mesh with vertices nearer than `tolerance` (length units) made one; the first wins.
+
+    Faces that lose their area go. Raises InputError for a negative tolerance.
+    """
+    m = as_mesh(mesh)
+    kept, place = unique_points(m.vertices, tolerance)
+    return Mesh(m.vertices[kept], tidy_faces(place[m.faces]))
+
+
+def join(meshes: Iterable[Any], tolerance: float | None = None) -> Mesh:
+    """Several meshes as one, in order; welded within `tolerance` (length units) if one is given."""
+    parts = [as_mesh(m) for m in meshes]
+    starts = np.cumsum([0] + [len(m.vertices) for m in parts])
+    whole = Mesh(
+        np.concatenate([np.zeros((0, 3))] + [m.vertices for m in parts]),
+        np.concatenate([np.zeros((0, 4), np.int64)] + [m.faces + s for m, s in zip(parts, starts, strict=False)]),
+    )
+    return whole if tolerance is None else weld(whole, tolerance)
+
+
+def face_sides(faces: Index) -> Index:
+    """Sides `(m, 4, 2)` of faces: a-b, b-c, c-d, d-a; the collapsed side of a triangle is c-c."""
+    return np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
+
+
+def _edges(mesh: Mesh) -> tuple[Index, Index, Index]:
+    """All sides in order `(4 m, 2)`; the first place of each edge; the edge of each side, -1 if collapsed."""
+    sides = np.sort(face_sides(mesh.faces).reshape(-1, 2), axis=1)
+    real = np.flatnonzero(sides[:, 0] != sides[:, 1])
+    _, first, inverse = np.unique(
+        sides[real, 0] * len(mesh.vertices) + sides[real, 1], return_index=True, return_inverse=True
+    )
+    rank = np.empty(len(first), np.int64)
+    rank[np.argsort(first)] = np.arange(len(first))
+    which = np.full(len(sides), -1)
+    which[real] = rank[inverse]
+    return sides, real[np.sort(first)], which
+
+
+def _corner_triples(faces: Index) -> Iterable[tuple[Index, Index, Index]]:
+    quad = faces[:, 2] != faces[:, 3]
+    for k in range(4):
+        f = faces[quad]
+        yield f[:, k], f[:, k - 1], f[:, (k + 1) % 4]
+    for k in range(3):
+        t = faces[~quad][:, :3]
+        yield t[:, k], t[:, k - 1], t[:, (k + 1) % 3]
+
+
+def _quads(points: Array, faces: Iterable[Any]) -> Index:
+    rows: list[list[int]] = []
+    for number, face in enumerate(faces):
+        corner = [int(v) for v in face]
+        if len(corner) < 3 or min(corner) < 0 or max(corner) >= len(points):
+            raise InputError(
+                f"mesh/faces/{number}", f"{corner} must name 3 or more of the {len(points)} vertices, counted from 0"
+            )
+        if len(corner) <= 4:
+            rows.append(corner if len(corner) == 4 else [*corner, corner[2]])
+            continue
+        loop = np.array(corner)
+        area = newell(points[loop])
+        if not area.any():
+            raise InputError(f"mesh/faces/{number}", "it has no area; leave it out")
+        cut = triangulate(plane_coordinates(points, area), [loop])
+        rows.extend([a, b, c, c] for a, b, c in cut.tolist())
+    return np.array(rows, dtype=np.int64).reshape(-1, 4)

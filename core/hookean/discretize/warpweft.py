@@ -1,0 +1,101 @@
+"""Warp and weft of a quad mesh: the two families of edges that cross like the threads of a cloth."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.discretize.meshes import _edges, as_mesh
+from hookean.errors import InputError
+
+Index = NDArray[np.int64]
+
+
+def warp_weft(mesh: Any, strict: bool = True) -> tuple[Index, Index]:
+    """Warp edges `(p, 2)` and weft edges `(q, 2)`; together all edges, each in order of first appearance.
+
+    Opposite sides of a quad belong to one family, neighbouring sides to different ones. The first side
+    of the first quad is warp; the rest follows from quad to quad over shared edges, breadth first, and
+    each part of the mesh that no quad connects starts anew. Then triangles `(a, b, c)`, in order: if
+    quads or earlier triangles have given one of the sides a family the others take the opposite one, as
+    meridians at a pole do; the sides of a triangle with no such neighbour: a-b warp, b-c and c-a weft.
+
+    Such families exist only where every inner vertex has an even number of quads, strips that close
+    do so untwisted, and no edge has conflicting neighbours. Elsewhere InputError names two quads that
+    disagree; with `strict=False` the family reached first stands, a deterministic answer.
+    """
+    m = as_mesh(mesh)
+    sides, first, which = _edges(m)
+    of = which.reshape(-1, 4)
+    quad = of[:, 2] >= 0
+    family = np.full(len(first), -1)
+    neighbours = _neighbours(of, len(first))
+    for seed in np.flatnonzero(quad).tolist():
+        if (family[of[seed]] < 0).all():
+            _spread(seed, of, quad, neighbours, family)
+    if strict:
+        _check(of, quad, family)
+    _triangles(of, quad, neighbours, family)
+    every = sides[first]
+    return every[family == 0], every[family == 1]
+
+
+def _spread(seed: int, of: Index, quad: NDArray[np.bool_], neighbours: list[list[int]], family: Index) -> None:
+    family[of[seed, 0]] = 0
+    queue, seen = deque([seed]), {seed}
+    while queue:
+        face = queue.popleft()
+        sides = of[face]
+        known = next(s for s in range(4) if family[sides[s]] >= 0)
+        for s in range(4):
+            if family[sides[s]] < 0:
+                family[sides[s]] = (family[sides[known]] + s - known) % 2
+            for other in neighbours[sides[s]]:
+                if quad[other] and other not in seen:
+                    seen.add(other)
+                    queue.append(other)
+
+
+def _check(of: Index, quad: NDArray[np.bool_], family: Index) -> None:
+    f = family[of]
+    wrong = quad & ((f[:, 0] != f[:, 2]) | (f[:, 1] != f[:, 3]) | (f[:, 0] == f[:, 1]))
+    if wrong.any():
+        face = int(np.flatnonzero(wrong)[0])
+        shared = np.isin(of, of[face]).any(axis=1) & quad
+        shared[face] = False
+        other = int(np.flatnonzero(shared)[0]) if shared.any() else face
+        raise InputError(
+            f"mesh/faces/{face}",
+            f"warp and weft cannot agree between this quad and quad {other}; an inner vertex with an odd number "
+            "of quads or a twisted strip is in the way: remesh there, or pass strict=False",
+        )
+
+
+def _triangles(of: Index, quad: NDArray[np.bool_], neighbours: list[list[int]], family: Index) -> None:
+    queue = deque(np.flatnonzero(~quad & (family[of[:, [0, 1, 3]]] >= 0).any(axis=1)).tolist())
+    for seed in np.flatnonzero(~quad).tolist():
+        queue.append(seed)
+        while queue:
+            sides = of[queue.popleft(), [0, 1, 3]]
+            known = [s for s in range(3) if family[sides[s]] >= 0]
+            if len(known) == 3:
+                continue
+            base = known[0] if known else 0
+            if not known:
+                family[sides[0]] = 0
+            for s in range(3):
+                if family[sides[s]] < 0:
+                    family[sides[s]] = 1 - family[sides[base]]
+                    queue.extend(o for o in neighbours[sides[s]] if not quad[o])
+
+
+def _neighbours(of: Index, count: int) -> list[list[int]]:
+    out: list[list[int]] = [[] for _ in range(count)]
+    for face, sides in enumerate(of.tolist()):
+        for edge in sides:
+            if edge >= 0:
+                out[edge].append(face)
+    return out
