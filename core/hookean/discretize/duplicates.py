@@ -19,6 +19,7 @@ from hookean.errors import InputError
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+_MOST_NEIGHBOURS = 500_000  # looked at in one go, which bounds the memory
 Same = Callable[[Index, Index], NDArray[np.bool_]]
 
 
@@ -99,19 +100,21 @@ def _first_wins(key: Array, radius: float, same: Same, exact: Index, group: Inde
         owner[crowded] = -1
         at, size = 0, 1
         while at < len(crowded):
-            block = crowded[at : at + size]
-            block = block[owner[block] < 0]
-            at += size
-            found = _take(tree.query_ball_point(key[block], reach), block, same, owner)
-            size = min(2 * size, 16384) if found <= 32 * size else max(1, size // 4)
+            open_ = at + np.flatnonzero(owner[crowded[at : at + size]] < 0)
+            counts = tree.query_ball_point(key[crowded[open_]], reach, return_length=True)
+            fit = max(1, int(np.searchsorted(np.cumsum(counts), _MOST_NEIGHBOURS)))
+            block = crowded[open_[:fit]]
+            _take(tree.query_ball_point(key[block], reach), block, same, owner)
+            at = open_[fit] if fit < len(open_) else at + size
+            size = min(2 * size, 2048) if fit >= len(open_) else fit
     kept = np.flatnonzero(owner == np.arange(n))
     return exact[kept], np.searchsorted(kept, owner[group])
 
 
-def _take(near: Sequence[list[int]], block: Index, same: Same, owner: Index) -> int:
-    """Decide a block in order, given the items near each; says how many were near."""
+def _take(near: Sequence[list[int]], block: Index, same: Same, owner: Index) -> None:
+    """Decide a block in order, given the items near each."""
     if not len(block):
-        return 0
+        return
     counts = np.array([len(js) for js in near])
     i, j = np.repeat(block, counts), np.fromiter(chain.from_iterable(near), np.int64, int(counts.sum()))
     equal = (owner[j] < 0) & (j > i)
@@ -123,7 +126,6 @@ def _take(near: Sequence[list[int]], block: Index, same: Same, owner: Index) -> 
             owner[k] = k
             mine = j[stops[place - 1] if place else 0 : stops[place]]
             owner[mine[owner[mine] < 0]] = k
-    return len(i)
 
 
 def _exact(rows: Array) -> tuple[Index, Index]:

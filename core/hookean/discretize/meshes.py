@@ -74,7 +74,8 @@ def tidy_faces(faces: Index) -> Index:
 def edges(mesh: Any) -> Index:
     """All edges `(m, 2)`, each once."""
     sides, first, _ = _edges(as_mesh(mesh))
-    return sides[first]
+    out: Index = sides[first]
+    return out
 
 
 def naked_edges(mesh: Any) -> Index:

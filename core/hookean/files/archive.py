@@ -169,7 +169,7 @@ def _version(data: bytes, name: str) -> int:
         raise InputError(name, "damaged .3dm file: its header is cut or has no version; copy or save it again.")
     version = int(digits)
     if version < 2:
-        raise InputError(name, "a .3dm file of version 1 is too old; open it in Rhino and save it as Rhino 5 or later.")
+        raise InputError(name, "a .3dm file of version 1, older than 2; open it in Rhino and save it anew.")
     return version
 
 

@@ -1,0 +1,80 @@
+"""Balance: how far a shape is from equilibrium, on what scale, and how near float64 lets it come."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.state import State
+from hookean.system import System
+
+Floats = NDArray[np.float64]
+
+ROUNDING = float(np.finfo(np.float64).eps) / 2.0
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Out-of-balance forces of a shape.
+
+    residual = max over free particles of |out of balance| / scale [-]; scale = mean |load| over loaded free
+    particles, or the mean size of the internal element forces where nothing is loaded [force]. `floor`: the residual
+    that rounding of coordinates and sums leaves in the exact answer, u (w |x| + sum |f|) / scale.
+    """
+
+    forces: Floats  # (n, 3) what is left on free particles
+    reactions: Floats  # (n, 3) what anchors put on held ones
+    contact: Floats  # (n, 3) what contacts put on particles
+    scale: float
+    out_of_balance: float
+    residual: float
+    floor: float
+    worst: int
+
+    def met(self, tolerance: float) -> bool:
+        """Converged: residual <= max(tolerance, floor)."""
+        return self.residual <= max(tolerance, self.floor)
+
+
+def balance(system: System, state: State) -> Balance:
+    """Judge a shape at rest."""
+    f, w, _ = system.evaluate(state)
+    reactions = -f * (1.0 - state.free)
+    left = f * state.free
+    contact = system.support(state, left) if system.contacts else np.zeros_like(f)
+    size = np.linalg.norm(left, axis=1)
+    worst = int(np.argmax(size)) if len(size) else 0
+    out = float(size[worst]) if len(size) else 0.0
+    scale = force_scale(system, state)
+    noise = ROUNDING * (w * np.abs(state.x).max(axis=1) + np.abs(f).max(axis=1) + _load_size(system, state))
+    free = state.free.any(axis=1)
+    floor = float(noise[free].max()) if free.any() else 0.0
+    if scale > 0.0:
+        return Balance(left, reactions, contact, scale, out, out / scale, floor / scale, worst)
+    # nothing pushes anywhere: balanced if what is left is rounding
+    return Balance(left, reactions, contact, 1.0, out, out, floor, worst)
+
+
+def force_scale(system: System, state: State) -> float:
+    """The force that residuals are measured by [force]; see `Balance`."""
+    loads = _load_size(system, state)
+    loaded = (loads > 0) & state.free.any(axis=1)
+    if loaded.any():
+        return float(loads[loaded].mean())
+    total, count = 0.0, 0
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        if group.cls.role != "load" and len(group.block.indices):
+            sizes = np.linalg.norm(system.element_forces(group, state, memory), axis=2).max(axis=1)
+            total, count = total + float(sizes.sum()), count + len(sizes)
+    now = total / count if count else 0.0
+    # where stress dies out at equilibrium, the scale must not die with it
+    state.force_scale = max(state.force_scale, now)
+    return max(now, 1e-3 * state.force_scale)
+
+
+def _load_size(system: System, state: State) -> Floats:
+    loads, _, _ = system.evaluate(state, only="load")
+    size: Floats = np.linalg.norm(loads * state.free, axis=1)
+    return size

@@ -1,0 +1,81 @@
+"""A file replaced in one step or not at all, on any system."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from hookean.errors import InputError
+
+StrPath = str | os.PathLike[str]
+
+
+def check_target(target: StrPath, source: StrPath | None = None) -> None:
+    """InputError if `target` cannot be a file to write, or is `source` itself by whatever path or link."""
+    path = Path(target)
+    name = path.name or str(target)
+    try:
+        if source is not None and _same(target, source):
+            raise InputError(name, "is the file read from, which is never written over; give another path.")
+        if path.is_dir():
+            raise InputError(name, "is a folder; give the path of the file to write.")
+        if not path.parent.is_dir():
+            raise InputError(name, "is to be written to a folder that does not exist; make the folder first.")
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(name, "is not a possible path of a file; check it for odd characters.") from None
+
+
+def put(target: StrPath, data: bytes, check: Callable[[bytes], object]) -> None:
+    """Write `data` to a file beside `target`, `check` what is read back, then put it in target's place.
+
+    Whatever fails, `target` stays as it was and nothing is left beside it. Raises InputError if the folder
+    cannot be written to, and what `check` raises.
+    """
+    path = Path(target)
+    beside = path.with_name(f".{secrets.token_hex(8)}.hookean")
+    try:
+        _write(beside, data)
+        back = beside.read_bytes()
+        if back != data:
+            raise InputError(path.name, "reads back other than written; the disk may be failing, use another one.")
+        check(back)
+        if path.exists():
+            shutil.copymode(path, beside)
+        os.replace(beside, path)
+        _sync_folder(path.parent)
+    except OSError as error:
+        raise InputError(
+            path.name, f"cannot be written ({error.strerror}); check free space and permissions, close it elsewhere."
+        ) from error
+    finally:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+
+
+def _same(target: StrPath, source: StrPath) -> bool:
+    if os.path.exists(target) and os.path.exists(source):
+        return os.path.samefile(target, source)
+    return os.path.normcase(os.path.realpath(target)) == os.path.normcase(os.path.realpath(source))
+
+
+def _write(path: Path, data: bytes) -> None:
+    with open(path, "xb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _sync_folder(folder: Path) -> None:
+    # makes the new name itself last; Windows cannot open folders and does not need it
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

@@ -1,0 +1,123 @@
+"""What a force is: columns that a person fills in, a kernel, and a declaration of what laws it obeys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from hookean.columns import Model, fault
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+PLACES = ("particles", "points", "lines", "mesh")
+"""The fields that say where a force acts; a force has some of them and is given exactly one."""
+
+
+@dataclass
+class Block:
+    """One force compiled to arrays: what its kernel reads. All C-contiguous.
+
+    `indices` (m, arity) particles of each element; `parameters` (m, p); `memory` (m, q), what elements remember
+    (plastic rest lengths); `names` says which input each column of `parameters` came from, so that a patch
+    can write it.
+    """
+
+    indices: Ints
+    parameters: Floats
+    memory: Floats
+    names: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, indices: Any, *, memory: int = 0, **columns: Any) -> Block:
+        """Build a block from `indices` (m, arity) and named columns: one value, (m,) values or (m, k) rows."""
+        index = np.ascontiguousarray(indices, dtype=np.int64)
+        count = len(index)
+        parts: list[Floats] = []
+        names: list[str] = []
+        for name, column in columns.items():
+            values = np.asarray(column, dtype=np.float64)
+            values = values.reshape(-1, 1) if values.ndim < 2 else values
+            parts.append(np.broadcast_to(values, (count, values.shape[1])))
+            names += [name] * values.shape[1]
+        table = np.concatenate(parts, axis=1) if parts else np.zeros((count, 0))
+        return cls(index, np.ascontiguousarray(table), np.zeros((count, memory)), tuple(names))
+
+
+class Places(Protocol):
+    """Where a force's elements are, once coordinates have become particles (see `weld.Welded`)."""
+
+    x: Floats
+
+    def elements(self, force: Force) -> Ints:
+        """Particles of every element of `force`, `(m, arity)`; -1 where a load or anchor met none."""
+        ...
+
+    def faces(self, name: str) -> Ints:
+        """Faces `(m, 4)` of the scene's mesh `name`, in particles; a triangle repeats its last corner."""
+        ...
+
+
+class Force(Model):
+    """Base of all forces. A force is one file in this folder: a class with columns, and its kernel.
+
+    The kernel is `(x, v, indices, parameters, memory, f, w) -> energy`: it adds force `f[n, 3]` and lumped
+    stiffness `w[n]` to the particles. `w` is a bound of the stiffness a particle feels: with it on the diagonal,
+    `diag(w) - Hessian` has no negative eigenvalue (a spring adds 2k at both ends).
+    """
+
+    name: str = Field(default="", description="Name under which results list this force")
+
+    # the declaration; the law tests hold every force to it
+    kind_title: ClassVar[str] = ""
+    formula: ClassVar[str] = ""
+    role: ClassVar[Literal["internal", "load", "support"]] = "internal"  # internal: forces and moments sum to zero
+    conservative: ClassVar[bool] = True  # force = -gradient of the energy the kernel returns
+    damped: ClassVar[bool] = False  # the kernel reads the velocities
+    remembers: ClassVar[bool] = False  # memory changes at the end of a step
+    arity: ClassVar[int] = 1
+    everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles
+    creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
+    # columns of a result with their unit: length, force, moment, angle or none
+    outputs: ClassVar[dict[str, str]] = {}
+
+    kernel: ClassVar[Callable[..., float] | None] = None
+    hessian: ClassVar[Callable[..., None] | None] = None
+    end_of_step: ClassVar[Callable[..., None] | None] = None
+    impact: ClassVar[Callable[..., None] | None] = None
+    support: ClassVar[Callable[..., None] | None] = None
+
+    @property
+    def element_arity(self) -> int:
+        """How many particles an element has; a force whose elements differ by its inputs says so here."""
+        return self.arity
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        fields = [f for f in PLACES if f in type(self).model_fields]
+        given = [f for f in fields if getattr(self, f) is not None]
+        if len(given) > 1 or (fields and not given and not self.everywhere):
+            said = f"{' and '.join(given)} given" if given else "nothing says where it acts"
+            raise fault(f"{said}; give exactly one of {', '.join(fields)}")
+        return self
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel; raises InputError where an element makes no sense."""
+        raise TypeError(f"{type(self).__name__} does not say how it compiles")
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """What a result tells of each element, by the names and units of `outputs`.
+
+        `element_forces` (m, arity, 3): the force each element puts on each of its particles.
+        """
+        return {}
+
+    @classmethod
+    def example(cls) -> tuple[Force, Floats]:
+        """A small generic instance on particle indices, and positions, for the law tests and the catalogue."""
+        raise TypeError(f"{cls.__name__} gives no example")

@@ -1,0 +1,175 @@
+"""Springs: Hooke's law along straight connections, with damping, cutoffs and plasticity."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from hookean.columns import IndexRows, Lines, NonNegatives
+from hookean.forces.base import Block, Floats, Force, Places
+
+
+def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    for e in range(indices.shape[0]):
+        a = indices[e, 0]
+        b = indices[e, 1]
+        dx = x[b, 0] - x[a, 0]
+        dy = x[b, 1] - x[a, 1]
+        dz = x[b, 2] - x[a, 2]
+        k = parameters[e, 0]
+        w[a] += 2.0 * k
+        w[b] += 2.0 * k
+        first = parameters[e, 2] * parameters[e, 3]
+        rest = first + memory[e, 0]
+        length = np.sqrt(dx * dx + dy * dy + dz * dz)
+        if parameters[e, 4] > 0.0 or parameters[e, 5] > 0.0 or parameters[e, 6] > 0.0:
+            reach = length
+            if parameters[e, 4] > 0.0 and reach > parameters[e, 4]:
+                reach = parameters[e, 4]
+            if parameters[e, 5] > 0.0 and reach < parameters[e, 5]:
+                reach = parameters[e, 5]
+            stretch = reach - rest
+            limit = parameters[e, 6] * first
+            tension = k * stretch
+            if limit > 0.0 and np.abs(stretch) > limit:
+                tension = k * np.copysign(limit, stretch)
+                energy += k * limit * (np.abs(stretch) - 0.5 * limit)
+            else:
+                energy += 0.5 * k * stretch * stretch
+            if reach != length:
+                continue
+        else:
+            tension = k * (length - rest)
+            energy += 0.5 * tension * (length - rest)
+        if length > 0.0:
+            tension /= length
+            if parameters[e, 1] > 0.0:
+                rate = (v[b, 0] - v[a, 0]) * dx + (v[b, 1] - v[a, 1]) * dy + (v[b, 2] - v[a, 2]) * dz
+                tension += parameters[e, 1] * rate / (length * length)
+            dx *= tension
+            dy *= tension
+            dz *= tension
+            f[a, 0] += dx
+            f[a, 1] += dy
+            f[a, 2] += dz
+            f[b, 0] -= dx
+            f[b, 1] -= dy
+            f[b, 2] -= dz
+    return energy
+
+
+def springs_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    d = np.zeros(3)
+    for e in range(indices.shape[0]):
+        for c in range(3):
+            d[c] = x[indices[e, 1], c] - x[indices[e, 0], c]
+        length = np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+        first = parameters[e, 2] * parameters[e, 3]
+        stretch = length - first - memory[e, 0]
+        limit = parameters[e, 6] * first
+        off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
+        along = 0.0 if off else parameters[e, 0]
+        across = along
+        if length > 0.0:
+            across = along * stretch / length
+            if limit > 0.0 and np.abs(stretch) > limit:
+                across = along * np.copysign(limit, stretch) / length
+                along = 0.0
+        for i in range(3):
+            for j in range(3):
+                entry = across if i == j else 0.0
+                if length > 0.0:
+                    entry += (along - across) * d[i] * d[j] / (length * length)
+                blocks[e, i, j] = entry
+                blocks[e, 3 + i, 3 + j] = entry
+                blocks[e, i, 3 + j] = -entry
+                blocks[e, 3 + i, j] = -entry
+
+
+def springs_yield(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
+    for e in range(indices.shape[0]):
+        if parameters[e, 6] > 0.0:
+            length = 0.0
+            for c in range(3):
+                length += (x[indices[e, 1], c] - x[indices[e, 0], c]) ** 2
+            length = np.sqrt(length)
+            first = parameters[e, 2] * parameters[e, 3]
+            stretch = length - first - memory[e, 0]
+            limit = parameters[e, 6] * first
+            off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
+            if np.abs(stretch) > limit and not off:
+                memory[e, 0] += stretch - np.copysign(limit, stretch)
+
+
+class Springs(Force):
+    """Linear springs (Hooke): tension = k (l - L0), L0 = rest length x rest factor.
+
+    Energy k (l - L0)^2 / 2; damping adds c times the rate of stretching along the spring. A spring works only
+    at lengths up to its upper cutoff and from its lower cutoff on (0: no limit). Plasticity is the largest elastic
+    deformation as a part of the rest length: beyond it the tension stays, and the rest length follows at the end
+    of the step. A rest length of 0 makes a force-density spring. Source: the chapter, 9.4, figures 9.11 to 9.13.
+    """
+
+    kind: Literal["springs"] = "springs"
+    particles: IndexRows | None = Field(default=None, description="Pairs of particles")
+    lines: Lines | None = Field(default=None, description="Straight lines; their ends become particles")
+    mesh: str | None = Field(default=None, description="Name of a mesh whose edges become springs")
+    edges: Literal["all", "warp", "weft", "naked", "diagonals"] = Field(
+        default="all", description="Which edges of the mesh"
+    )
+    stiffness: NonNegatives = Field(default=1000.0, description="k [force/length]")
+    damping: NonNegatives = Field(default=10.0, description="c along the spring [force time/length]")
+    rest_length: NonNegatives | None = Field(default=None, description="L0 [length]; none: the start length")
+    rest_factor: NonNegatives = Field(default=1.0, description="Factor on the rest length [-]")
+    upper_cutoff: NonNegatives = Field(default=0.0, description="Works only up to this length [length]; 0: always")
+    lower_cutoff: NonNegatives = Field(default=0.0, description="Works only from this length on [length]; 0: always")
+    plasticity: NonNegatives = Field(default=0.0, description="Elastic limit as a part of the rest length [-]; 0: none")
+
+    formula: ClassVar[str] = "E = k (l - L0)²/2"
+    arity: ClassVar[int] = 2
+    damped: ClassVar[bool] = True
+    remembers: ClassVar[bool] = True
+    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force", "strain": ""}
+    kernel: ClassVar[Any] = staticmethod(springs_kernel)
+    hessian: ClassVar[Any] = staticmethod(springs_hessian)
+    end_of_step: ClassVar[Any] = staticmethod(springs_yield)
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: k, c, rest length, factor, upper and lower cutoff, plasticity."""
+        index = places.elements(self)
+        start = np.linalg.norm(places.x[index[:, 1]] - places.x[index[:, 0]], axis=1)
+        return Block.of(
+            index,
+            memory=1,
+            stiffness=self.stiffness,
+            damping=self.damping,
+            rest_length=start if self.rest_length is None else self.rest_length,
+            rest_factor=self.rest_factor,
+            upper_cutoff=self.upper_cutoff,
+            lower_cutoff=self.lower_cutoff,
+            plasticity=self.plasticity,
+        )
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Length [length], force [force; tension +] and strain (l - L0)/L0 [-; 0 for rest length 0]."""
+        d = x[block.indices[:, 1]] - x[block.indices[:, 0]]
+        length = np.linalg.norm(d, axis=1)
+        unit = d / np.where(length > 0, length, 1.0)[:, None]
+        rest = block.parameters[:, 2] * block.parameters[:, 3] + block.memory[:, 0]
+        strain = np.where(rest > 0, (length - rest) / np.where(rest > 0, rest, 1.0), 0.0)
+        return {"length": length, "force": (element_forces[:, 0] * unit).sum(axis=1), "strain": strain}
+
+    @classmethod
+    def example(cls) -> tuple[Springs, Floats]:
+        """Four springs on four particles: elastic, pre-tensioned, of rest length 0, plastic."""
+        x = np.array([[0.0, 0.1, 0.0], [1.0, 0.0, 0.2], [0.3, 1.1, -0.1], [0.2, 0.4, 0.9]])
+        springs = cls(
+            particles=[[0, 1], [1, 2], [2, 3], [3, 0]],
+            stiffness=[1000.0, 500.0, 20.0, 300.0],
+            rest_factor=[1.0, 0.8, 0.0, 1.05],
+            plasticity=[0.0, 0.0, 0.0, 0.2],
+        )
+        return springs, x

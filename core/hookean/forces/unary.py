@@ -1,0 +1,49 @@
+"""Unary force: a constant vector on each particle."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from hookean.columns import IndexRows, Points, Vectors
+from hookean.forces.base import Block, Floats, Force, Places
+
+
+def unary_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    for e in range(indices.shape[0]):
+        a = indices[e, 0]
+        for c in range(3):
+            f[a, c] += parameters[e, c]
+            energy -= parameters[e, c] * x[a, c]
+    return energy
+
+
+class Unary(Force):
+    """A load: a constant force vector F on each particle. Energy -F . x. Source: the chapter, 9.3."""
+
+    kind: Literal["unary"] = "unary"
+    particles: IndexRows | None = Field(default=None, description="Loaded particles")
+    points: Points | None = Field(default=None, description="Coordinates of loaded particles")
+    vector: Vectors = Field(description="F [force], one vector or one for each particle")
+
+    formula: ClassVar[str] = "E = -F·x"
+    role: ClassVar[Literal["internal", "load", "support"]] = "load"
+    creates: ClassVar[bool] = False
+    outputs: ClassVar[dict[str, str]] = {"force": "force"}
+    kernel: ClassVar[Any] = staticmethod(unary_kernel)
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: the vector."""
+        return Block.of(places.elements(self), vector=np.atleast_2d(self.vector))
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """The load on each particle [force]."""
+        return {"force": element_forces[:, 0]}
+
+    @classmethod
+    def example(cls) -> tuple[Unary, Floats]:
+        """Two loads, in different directions."""
+        return cls(particles=[0, 1], vector=[[0.0, 0.0, -20.0], [3.0, 1.0, 0.0]]), np.eye(3)[:2]

@@ -1,0 +1,169 @@
+"""How kernels are compiled: on first use, into a cache on disk that an edit can never leave stale.
+
+A kernel is a plain module-level function, marked by where it is used (`Force.kernel`, a contact's hooks) and
+compiled here with a fixed signature. All kernels of one role share that signature, so the solvers' loops call
+them through function pointers: a loop is compiled once and works for every force, present and future.
+Small functions that several kernels share are marked with `@device`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import os
+import sys
+import tempfile
+import types
+import warnings
+from collections.abc import Callable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def device(function: F) -> F:
+    """Mark a function that kernels may call; it is compiled with them."""
+    function.__device__ = True  # type: ignore[attr-defined]
+    return function
+
+
+@cache
+def compiled(function: Callable[..., Any], role: str | None = None) -> Any:
+    """Machine code of `function`, from the cache on disk when its source is unchanged.
+
+    `role` names the signature (`force`, `impact`, `support`, `remember`, `hessian`); without one the types of
+    the first call decide (the solvers' loops). Sums keep their written order: no fast-math.
+    """
+    import numba
+
+    prepared = _with_devices(function)
+    numba.config.CACHE_DIR = str(cache_folder(function))  # type: ignore[attr-defined]
+    options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+    if role is None:
+        return numba.njit(**options)(prepared)
+    return numba.njit(_signature(role), **options)(prepared)
+
+
+def call(loop: Any, *arguments: Any) -> Any:
+    """Call a compiled loop that takes tuples of kernels."""
+    from numba.core.errors import NumbaExperimentalFeatureWarning
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
+        return loop(*arguments)
+
+
+def pointers(functions: Sequence[Callable[..., Any] | None], role: str) -> tuple[Any, ...]:
+    """Compiled functions of one role (none: idle), padded to 2, 4, 8 ... so that loops meet few tuple sizes."""
+    idle = [compiled(function, role) for function in _IDLE[role]]
+    filled = [idle[i % 2] if f is None else compiled(f, role) for i, f in enumerate(functions)]
+    size = 2
+    while size < len(filled) or (size == len(filled) and len(set(filled)) == 1):
+        size *= 2
+    while len(filled) < size:
+        filled.append(idle[len(filled) % 2])
+    return tuple(filled)
+
+
+@cache
+def cache_folder(function: Callable[..., Any]) -> Path:
+    """Folder of compiled code: the user's cache, then a digest of every source a kernel may inline."""
+    digest = hashlib.sha256()
+    home = Path(__file__).parent
+    sources = {Path(__file__), Path(inspect.getfile(function))}
+    sources.update(home.glob("forces/*.py"), home.glob("solvers/*.py"))
+    for source in sorted(sources):
+        digest.update(source.read_bytes())
+    return _writable_root() / digest.hexdigest()[:16]
+
+
+@cache
+def _writable_root() -> Path:
+    import platformdirs
+
+    root = Path(os.environ.get("HOOKEAN_CACHE") or platformdirs.user_cache_dir("hookean", appauthor=False))
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=root):
+            return root
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="hookean-"))
+
+
+def _with_devices(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The same function with the `@device` functions it names replaced by their compiled selves."""
+    module = vars(sys.modules[function.__module__])
+    used = {
+        name: compiled(module[name])
+        for name in function.__code__.co_names
+        if getattr(module.get(name), "__device__", False)
+    }
+    if not used:
+        return function
+    twin = types.FunctionType(function.__code__, {**module, **used}, function.__name__)
+    twin.__module__, twin.__qualname__ = function.__module__, function.__qualname__
+    return twin
+
+
+def _signature(role: str) -> Any:
+    from numba import types as t
+
+    flat = t.Array(t.float64, 1, "C")
+    real = t.Array(t.float64, 2, "C")
+    whole = t.Array(t.int64, 2, "C")
+    cube = t.Array(t.float64, 3, "C")
+    return {
+        # x, v, indices, parameters, memory, f, w -> energy
+        "force": t.float64(real, real, whole, real, real, real, flat),
+        # x, indices, parameters, memory, blocks
+        "hessian": t.void(real, whole, real, real, cube),
+        # x, indices, parameters, memory
+        "remember": t.void(real, whole, real, real),
+        # x_before, v_before, acceleration, x, v, free, dt, parameters
+        "impact": t.void(real, real, real, real, real, real, t.float64, real),
+        # x, v, f, carried, free, mass, dt, parameters
+        "support": t.void(real, real, real, real, real, flat, t.float64, real),
+    }[role]
+
+
+def _no_force(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    return 0.0
+
+
+def _still_no_force(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    return -0.0
+
+
+def _no_impact(x_before, v_before, acceleration, x, v, free, dt, parameters):  # type: ignore[no-untyped-def]
+    pass
+
+
+def _still_no_impact(x_before, v_before, acceleration, x, v, free, dt, parameters):  # type: ignore[no-untyped-def]
+    pass
+
+
+def _no_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore[no-untyped-def]
+    pass
+
+
+def _still_no_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore[no-untyped-def]
+    pass
+
+
+def _no_memory(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
+    pass
+
+
+def _still_no_memory(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
+    pass
+
+
+# two of each: a tuple of one function only would be typed as that function, and every loop compiled anew for it
+_IDLE: dict[str, tuple[Callable[..., Any], Callable[..., Any]]] = {
+    "force": (_no_force, _still_no_force),
+    "impact": (_no_impact, _still_no_impact),
+    "support": (_no_support, _still_no_support),
+    "remember": (_no_memory, _still_no_memory),
+}

@@ -1,0 +1,196 @@
+"""Result: what a person gets back. Every array in the scene's units, failure a value with a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.balance import Balance
+from hookean.state import State
+from hookean.system import System
+from hookean.units import Units
+from hookean.weld import Report
+
+Floats = NDArray[np.float64]
+
+
+class Status(StrEnum):
+    """How a run stands or ended."""
+
+    RUNNING = "running"
+    CONVERGED = "converged"
+    STALLED = "stalled"
+    DIVERGED = "diverged"
+    MAX_ITERATIONS = "max_iterations"
+    TIME_LIMIT = "time_limit"
+    CANCELLED = "cancelled"
+
+
+@dataclass
+class Result:
+    """A shape and what holds it.
+
+    `particles` (n, 3) [length]; `forces` one dict of columns for each force of the scene (springs: length, force,
+    strain), `reactions` the particles of anchors and the force (k, 3) [force] the anchors put on them; `contacts` the
+    same for floors. Reactions + contacts + loads = 0. `energy` by kind and in total [force length].
+    """
+
+    status: Status
+    message: str
+    particles: Floats
+    geometry: list[dict[str, Any]]
+    forces: list[dict[str, Any]]
+    reactions: dict[str, Any]
+    contacts: dict[str, Any]
+    residual: float
+    rounding_floor: float
+    out_of_balance: float
+    energy: dict[str, float]
+    iterations: int
+    time: float
+    solver: str
+    report: Report
+    units: Units = field(default_factory=Units)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the shape is in equilibrium within the tolerance, or as near as float64 can tell."""
+        return self.status is Status.CONVERGED
+
+    def force(self, name: str) -> dict[str, Any]:
+        """The columns of the first force of this name or kind; KeyError if there is none."""
+        for columns in self.forces:
+            if name in (columns["name"], columns["kind"]):
+                return columns
+        raise KeyError(name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain lists and numbers, by the names of the HTTP answer."""
+        report = {
+            "merged": self.report.merged,
+            "unmatched": [
+                {
+                    "pointer": u.pointer,
+                    "name": u.name,
+                    "point": list(u.point),
+                    "nearest": u.nearest if u.nearest >= 0 else None,
+                    "distance": u.distance if u.nearest >= 0 else None,
+                    "message": u.sentence,
+                }
+                for u in self.report.unmatched
+            ],
+            "warnings": list(self.report.warnings),
+        }
+        return {
+            "status": str(self.status),
+            "message": self.message,
+            "particles": self.particles.tolist(),
+            "geometry": plain(self.geometry),
+            "forces": plain(self.forces),
+            "reactions": plain(self.reactions),
+            "contacts": plain(self.contacts),
+            "residual": self.residual,
+            "rounding_floor": self.rounding_floor,
+            "out_of_balance": self.out_of_balance,
+            "energy": self.energy,
+            "iterations": self.iterations,
+            "time": self.time,
+            "solver": self.solver,
+            "report": report,
+            "units": self.units.model_dump(),
+        }
+
+
+def plain(value: Any) -> Any:
+    """Arrays as lists, all the way down."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, dict):
+        return {k: plain(v) for k, v in value.items()}
+    return [plain(v) for v in value] if isinstance(value, list | tuple) else value
+
+
+def gather(system: System, state: State, found: Balance, status: Status, message: str, solver: str) -> Result:
+    """Collect a result from a state and its balance."""
+    _, _, energies = system.evaluate(state)
+    energy = {}
+    for group, value in zip(system.groups, energies, strict=True):
+        kind = str(group.cls.model_fields["kind"].default)
+        energy[kind] = energy.get(kind, 0.0) + float(value)
+    energy["kinetic"] = float(0.5 * (system.mass[:, None] * state.v**2 * state.free).sum()) if state.time > 0 else 0.0
+    energy["total"] = sum(energy.values())
+    return Result(
+        status=status,
+        message=message,
+        particles=state.x.copy(),
+        geometry=carried(system, state),
+        forces=_measures(system, state),
+        reactions=_reactions(system, state, found),
+        contacts=_contacts(found),
+        residual=found.residual,
+        rounding_floor=found.floor,
+        out_of_balance=found.out_of_balance,
+        energy=energy,
+        iterations=state.iteration,
+        time=state.time,
+        solver=solver,
+        report=system.report,
+        units=system.scene.units,
+    )
+
+
+def carried(system: System, state: State) -> list[dict[str, Any]]:
+    """The scene's geometry where its particles are now; points that ride on none stay."""
+    moved = []
+    for item, particles in zip(system.scene.geometry, system.carried, strict=True):
+        if item.mesh is not None:
+            start = system.scene.meshes[item.mesh].vertices
+        elif item.particles is not None:
+            start = system.x[item.particles]
+        else:
+            start = np.asarray(item.points if item.points is not None else item.lines).reshape(-1, 3)
+        points = np.where((particles >= 0)[:, None], state.x[np.maximum(particles, 0)], start)
+        entry: dict[str, Any] = {"name": item.name, "kind": item.kind}
+        if item.kind == "mesh":
+            entry.update(vertices=points, faces=system.scene.meshes[str(item.mesh)].faces)
+        elif item.kind == "lines":
+            entry.update(lines=points.reshape(-1, 2, 3))
+        else:
+            entry.update(points=points)
+            if item.kind == "curve":
+                entry.update(degree=item.degree, knots=item.knots, weights=item.weights)
+        moved.append(entry)
+    return moved
+
+
+def _measures(system: System, state: State) -> list[dict[str, Any]]:
+    """Columns of every force of the scene, in its order; a floor has none."""
+    entries: list[dict[str, Any]] = [
+        {"kind": str(type(f).model_fields["kind"].default), "name": f.name} for f in system.scene.forces
+    ]
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        forces = system.element_forces(group, state, memory)
+        for part in group.parts:
+            block = group.of(part)
+            block.memory = memory[part.rows]
+            columns = part.force.measure(block, state.x, forces[part.rows])
+            entries[part.number].update(particles=block.indices, **columns)
+    return entries
+
+
+def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
+    held = np.flatnonzero((state.free == 0).any(axis=1))
+    names = [""] * len(system.x)
+    for anchor in system.held:
+        for particle in anchor.particles:
+            names[particle] = system.scene.anchors[anchor.number].name
+    return {"particles": held, "force": found.reactions[held], "names": [names[p] for p in held]}
+
+
+def _contacts(found: Balance) -> dict[str, Any]:
+    touching = np.flatnonzero((found.contact != 0).any(axis=1))
+    return {"particles": touching, "force": found.contact[touching]}

@@ -1,0 +1,213 @@
+"""Scene: everything a person describes. Frozen, validated, with a canonical form and a digest."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cached_property
+from typing import Annotated, Any, Literal, Self, Union
+
+import numpy as np
+from pydantic import Field, ValidationError, field_validator, model_validator
+
+from hookean.columns import (
+    Faces,
+    Indices,
+    Lines,
+    Model,
+    NonNegatives,
+    Points,
+    Positives,
+    fault,
+)
+from hookean.errors import InputError
+from hookean.forces import KINDS, Force
+from hookean.forces.floor import Floor
+from hookean.solvers import NAMES
+from hookean.units import Units
+
+AnyForce = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # type: ignore[valid-type]  # noqa: UP007
+
+
+class MeshData(Model):
+    """A mesh of the scene, shared by name: vertices `(n, 3)` [length] and faces of three or four vertices."""
+
+    vertices: Points = Field(description="Coordinates [length]")
+    faces: Faces = Field(description="Three or four vertices each, counted from 0")
+
+    @model_validator(mode="after")
+    def _faces_exist(self) -> Self:
+        beyond = self.faces >= len(self.vertices)
+        if beyond.any():
+            row, column = np.argwhere(beyond)[0]
+            given = self.faces[row, column]
+            raise fault(
+                f"vertex {given} does not exist; the mesh has {len(self.vertices)}, counted from 0",
+                f"/faces/{row}/{column}",
+            )
+        return self
+
+
+class Anchor(Model):
+    """Particles that are held exactly, on all or some axes, where they are or at targets.
+
+    An anchor never moves unless it is moved; its reaction is reported. For a soft one see `anchor_spring`.
+    """
+
+    name: str = Field(default="", description="Name under which reactions list this anchor")
+    particles: Indices | None = Field(default=None, description="Held particles")
+    points: Points | None = Field(default=None, description="Coordinates of held particles")
+    targets: Points | None = Field(default=None, description="Where to hold them [length]; none: where they are")
+    axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = Field(default="xyz", description="Held directions")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        if (self.particles is None) == (self.points is None):
+            raise fault("give exactly one of particles, points")
+        count = len(self.particles if self.particles is not None else self.points)  # type: ignore[arg-type]
+        if self.targets is not None and len(self.targets) != count:
+            raise fault(f"{len(self.targets)} targets for {count} particles; give one for each", "/targets")
+        return self
+
+
+class Geometry(Model):
+    """Geometry that rides along: each of its points that meets a particle moves with it.
+
+    `points`, `polyline` and `curve` (control points of a NURBS curve) take points or particles; `lines` takes lines or
+    pairs; `mesh` the name of one of the scene's meshes.
+    """
+
+    name: str = Field(default="", description="Name under which results list this geometry")
+    kind: Literal["points", "lines", "polyline", "curve", "mesh"] = Field(description="What it is")
+    particles: Indices | None = Field(default=None, description="Particles it goes through (lines: start, end, ...)")
+    points: Points | None = Field(default=None, description="Coordinates [length]")
+    lines: Lines | None = Field(default=None, description="Straight lines [length]")
+    mesh: str | None = Field(default=None, description="Name of one of the scene's meshes")
+    degree: int = Field(default=3, ge=1, le=11, description="Degree of a curve [-]")
+    knots: tuple[float, ...] | None = Field(default=None, description="Knots of a curve, as Rhino counts them; none: uniform")
+    weights: NonNegatives | None = Field(default=None, description="Weights of a curve's control points [-]")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        given = [f for f in ("particles", "points", "lines", "mesh") if getattr(self, f) is not None]
+        allowed = {"lines": ["lines", "particles"], "mesh": ["mesh"]}.get(self.kind, ["points", "particles"])
+        if len(given) != 1 or given[0] not in allowed:
+            raise fault(f"{' and '.join(given) or 'nothing'} given; {self.kind} takes one of {', '.join(allowed)}")
+        if self.kind == "lines" and self.particles is not None and len(self.particles) % 2:
+            raise fault("lines take an even number of particles: start, end, start, end", "/particles")
+        return self
+
+
+class Settings(Model):
+    """How to solve. Defaults of time stepping are classic Kangaroo's."""
+
+    solver: Literal[NAMES] = Field(default="auto", description="Which solver; auto picks one and says which")  # type: ignore[valid-type]
+    tolerance: float = Field(default=1e-6, ge=0, le=1, description="Largest residual of a converged shape [-]")
+    max_iterations: int = Field(default=100_000, ge=0, le=10**9, description="Stop after so many iterations")
+    time_limit: float | None = Field(default=None, ge=0, description="Stop after so many seconds of computing [s]")
+    time_step: float = Field(default=0.01, gt=0, description="Step of physical time [time]")
+    sub_iterations: int = Field(default=20, ge=1, le=100_000, description="Time steps in a frame")
+    drag: float = Field(default=1.0, ge=0, description="Viscous drag on every particle [force time/length]")
+    floor: Floor | None = Field(default=None, description="A floor: {} or true is the XY plane")
+
+    @field_validator("floor", mode="before")
+    @classmethod
+    def _short_floor(cls, value: Any) -> Any:
+        if value is True:
+            return {}
+        return None if value is False else value
+
+
+class Scene(Model):
+    """Particles, forces, anchors, carried geometry and settings; the same in Python and in JSON.
+
+    Forces and anchors refer to particles by index (`particles`), by coordinates (`points`, `lines`) that are welded
+    within `weld_tolerance`, or to a named mesh. Raises pydantic's ValidationError with the place of every fault;
+    `Scene.read` raises InputError with one sentence instead.
+    """
+
+    units: Units = Field(default=Units(), description="Units of all numbers")
+    weld_tolerance: float = Field(default=0.001, ge=0, description="Coordinates this near are one particle [length]")
+    strict: bool = Field(default=False, description="Anchors and loads that meet no particle are errors")
+    particles: Points = Field(default=(), description="Start positions [length]; never merged or renumbered")
+    masses: Positives = Field(default=1.0, description="Mass of each particle [force time^2/length]")
+    velocities: Points | None = Field(default=None, description="Start velocities [length/time], one for each particle")
+    meshes: dict[str, MeshData] = Field(default={}, description="Meshes by name")
+    forces: tuple[AnyForce, ...] = Field(default=(), description="What acts on the particles")
+    anchors: tuple[Anchor, ...] = Field(default=(), description="Particles that are held")
+    geometry: tuple[Geometry, ...] = Field(default=(), description="Geometry that rides along")
+    settings: Settings = Field(default=Settings(), description="How to solve")
+
+    @classmethod
+    def read(cls, value: Any) -> Scene:
+        """A scene from a dict, or from JSON text or bytes; InputError with a pointer and one sentence."""
+        if isinstance(value, str | bytes | bytearray):
+            from hookean.files.scene_json import parse
+
+            value = parse(value)
+        try:
+            return cls.model_validate(value)
+        except ValidationError as error:
+            raise first_fault(error) from None
+
+    @property
+    def canonical(self) -> str:
+        """The scene as JSON with sorted keys and without white space: equal scenes, equal text."""
+        return json.dumps(self.model_dump(mode="json"), sort_keys=True, separators=(",", ":"))
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the canonical form."""
+        return hashlib.sha256(self.canonical.encode()).hexdigest()
+
+    @model_validator(mode="after")
+    def _references_exist(self) -> Self:
+        count = len(self.particles)
+        for group, items in (("forces", self.forces), ("anchors", self.anchors), ("geometry", self.geometry)):
+            for i, item in enumerate(items):
+                _particles_exist(getattr(item, "particles", None), count, f"/{group}/{i}/particles")
+                mesh = getattr(item, "mesh", None)
+                if mesh is not None and mesh not in self.meshes:
+                    known = ", ".join(repr(name) for name in self.meshes) or "none"
+                    raise fault(f"mesh {mesh!r} does not exist; the scene has {known}", f"/{group}/{i}/mesh")
+        if self.velocities is not None and len(self.velocities) != count:
+            raise fault(f"{len(self.velocities)} velocities for {count} particles; give one for each", "/velocities")
+        if isinstance(self.masses, np.ndarray) and len(self.masses) != count:
+            raise fault(f"{len(self.masses)} masses for {count} particles; give one value or one for each", "/masses")
+        return self
+
+
+def _particles_exist(indices: Any, count: int, pointer: str) -> None:
+    if indices is None or not (indices >= count).any():
+        return
+    spot = np.argwhere(indices >= count)[0]
+    given = int(indices[tuple(spot)])
+    raise fault(
+        f"particle {given} does not exist; the scene gives {count}, counted from 0",
+        pointer + "".join(f"/{i}" for i in spot),
+    )
+
+
+def faults(error: ValidationError) -> list[InputError]:
+    """Every fault of a validation error as pointer and sentence."""
+    found = []
+    kinds = set(KINDS)
+    for entry in error.errors(include_url=False, include_input=False):
+        context = entry.get("ctx", {})
+        # pydantic names the chosen class of a union in the location; a pointer has no such step
+        steps = [s for i, s in enumerate(entry["loc"]) if not (s in kinds and i == 2 and entry["loc"][0] == "forces")]
+        pointer = "".join(f"/{str(s).replace('~', '~0').replace('/', '~1')}" for s in steps) + str(context.get("at", ""))
+        sentence = str(context.get("sentence") or entry["msg"])
+        found.append(InputError(pointer or "/", sentence))
+    return found
+
+
+def first_fault(error: ValidationError) -> InputError:
+    """The first fault of a validation error; its sentence says how many more there are."""
+    found = faults(error)
+    if len(found) > 1:
+        return InputError(found[0].pointer, f"{found[0].sentence} (and {len(found) - 1} more faults)")
+    return found[0]
+
+
+__all__ = ["Anchor", "Force", "Geometry", "MeshData", "Scene", "Settings", "Units", "faults", "first_fault"]

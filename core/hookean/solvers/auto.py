@@ -1,0 +1,68 @@
+"""Auto: picks by the scene, and says what it picked.
+
+Linear scenes take one force-density solve. Everything else relaxes; where relaxation is slow or the tolerance tight,
+Newton steps finish, and where those do not help, relaxation goes on.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from hookean.solvers import force_density, newton, relaxation
+from hookean.solvers.base import Solver
+
+if TYPE_CHECKING:
+    from hookean.state import State
+    from hookean.system import System
+
+# a tangent larger than this costs more to factor than the relaxation it saves
+LARGEST_NEWTON = 60_000
+FIRST_NEWTON = 4_000
+
+
+class Method(Solver):
+    """Force density where it is exact, else relaxation with a Newton finish."""
+
+    name: ClassVar[str] = "auto"
+
+    def __init__(self) -> None:
+        self.used: list[str] = []
+        self._linear = force_density.Method()
+        self._relaxation = relaxation.Method()
+        self._newton = newton.Method()
+
+    def start(self, system: System, state: State) -> None:
+        """Look at the system and choose."""
+        self._one_solve = not self._linear.refuse(system)
+        self._relaxation.start(system, state)
+        state.scratch["next_newton"] = np.array([float(state.iteration + FIRST_NEWTON), FIRST_NEWTON])
+        self.used = []
+
+    def advance(self, system: System, state: State, count: int, goal: float) -> int:
+        """Some iterations of whatever is due."""
+        if self._one_solve:
+            self._use("force_density")
+            done = self._linear.advance(system, state, count, goal)
+            self._one_solve = False
+            return done
+        due, pause = state.scratch["next_newton"]
+        if state.iteration < due or 3 * len(state.x) > LARGEST_NEWTON:
+            self._use("relaxation")
+            return self._relaxation.advance(system, state, min(count, max(int(due) - state.iteration, 1)), goal)
+        return self._finish(system, state, min(count, 60), goal, float(pause))
+
+    def _finish(self, system: System, state: State, count: int, goal: float, pause: float) -> int:
+        """Newton steps from here; relaxation afterwards starts afresh, and waits twice as long before the next."""
+        self._newton.start(system, state)
+        done = self._newton.advance(system, state, count, goal)
+        if done:
+            self._use("newton")
+        self._relaxation.start(system, state)
+        state.scratch["next_newton"] = np.array([state.iteration + 2.0 * pause, 2.0 * pause])
+        return max(done, 1)
+
+    def _use(self, name: str) -> None:
+        if name not in self.used:
+            self.used.append(name)

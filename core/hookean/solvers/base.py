@@ -1,0 +1,30 @@
+"""What a solver is: how to prepare a state, and how to advance it. The loop around it is in run.py."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, ClassVar
+
+if TYPE_CHECKING:  # the scene lists the solvers' names, so this file must not import the scene's users
+    from hookean.state import State
+    from hookean.system import System
+
+
+class Solver(ABC):
+    """One way to equilibrium, or through time. Everything it remembers is in `state.scratch`."""
+
+    name: ClassVar[str]
+    physical: ClassVar[bool] = False  # advances physical time with the scene's masses, damping and drag
+
+    def refuse(self, system: System) -> str:
+        """Why this solver cannot take the system, as a sentence; empty if it can."""
+        return ""
+
+    def start(self, system: System, state: State) -> None:
+        """Prepare `state.scratch`; called at the first step and after every patch."""
+        state.scratch.clear()
+
+    @abstractmethod
+    def advance(self, system: System, state: State, count: int, goal: float) -> int:
+        """Advance by at most `count` iterations, in place; stop early when no free particle is out of balance by
+        more than `goal` [force]. Returns the iterations done."""

@@ -1,0 +1,77 @@
+"""Force density: one sparse linear solve, exact where every internal force is linear in the positions.
+
+With rest length 0 a spring's force density is its stiffness k, and (sum of k (x_j - x_i)) + load = 0 is linear.
+Source: Schek, "The force density method for form finding and computation of general networks", 1974.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from hookean.forces.anchor_spring import AnchorSpring
+from hookean.forces.springs import Springs
+from hookean.solvers.base import Solver
+
+if TYPE_CHECKING:
+    from hookean.state import State
+    from hookean.system import System
+
+
+class Method(Solver):
+    """One linear solve; only for springs of rest length 0, soft anchors and loads."""
+
+    name: ClassVar[str] = "force_density"
+
+    def refuse(self, system: System) -> str:
+        """A sentence unless every internal force is linear."""
+        if system.contacts:
+            return "a floor is not linear; force_density needs springs of rest length 0 alone"
+        linear = False
+        for group in system.groups:
+            if group.cls.role == "load" and group.cls.conservative:
+                continue
+            if group.cls is AnchorSpring:
+                linear = True
+                continue
+            if group.cls is not Springs:
+                return f"{group.cls.__name__} is not linear; force_density needs springs of rest length 0 alone"
+            p = group.block.parameters
+            if (p[:, 2] * p[:, 3] != 0).any() or (p[:, 4:] != 0).any():
+                return "a spring has a rest length, a cutoff or plasticity; force_density needs rest length 0 everywhere"
+            linear = linear or bool(len(p))
+        return "" if linear else "there is no spring"
+
+    def advance(self, system: System, state: State, count: int, goal: float) -> int:
+        """Solve K dx = f on the free axes; one iteration, a second only to sweep up rounding."""
+        import scipy.sparse as sparse
+        from scipy.sparse.linalg import splu
+
+        if count < 1:
+            return 0
+        n = len(state.x)
+        rows, columns, values = [], [], []
+        for group in system.groups:
+            k, index = group.block.parameters[:, 0], group.block.indices
+            if group.cls is Springs:
+                a, b = index.T
+                rows += [a, b, a, b]
+                columns += [a, b, b, a]
+                values += [k, k, -k, -k]
+            elif group.cls is AnchorSpring:
+                rows, columns, values = [*rows, index[:, 0]], [*columns, index[:, 0]], [*values, k]
+        whole = sparse.csc_matrix(
+            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(n, n)
+        )
+        f, _, _ = system.evaluate(state)
+        touched = whole.diagonal() > 0
+        patterns = np.unique(state.free, axis=1, return_inverse=True)[1].ravel()
+        for pattern in range(patterns.max() + 1):
+            axes = np.flatnonzero(patterns == pattern)
+            free = np.flatnonzero((state.free[:, axes[0]] > 0) & touched)
+            if len(free):
+                factor = splu(whole[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A")
+                state.x[np.ix_(free, axes)] += factor.solve(np.ascontiguousarray(f[np.ix_(free, axes)]))
+        state.iteration += 1
+        return 1

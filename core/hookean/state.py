@@ -1,0 +1,67 @@
+"""State: what changes while a system runs. Saved and resumed bit for bit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass
+class State:
+    """Positions `x` and velocities `v` (n, 3); `free` (n, 3) is 0 on held axes; `memory` of each group of elements.
+
+    `scratch` is what a solver keeps between steps (kinetic energy, fictitious masses); `revision` counts patches.
+    """
+
+    x: Floats
+    v: Floats
+    free: Floats
+    time: float = 0.0
+    iteration: int = 0
+    revision: int = 0
+    memory: list[Floats] = field(default_factory=list)
+    scratch: dict[str, Floats] = field(default_factory=dict)
+    force_scale: float = 0.0
+
+    def copy(self) -> State:
+        """An independent copy."""
+        return State(
+            self.x.copy(),
+            self.v.copy(),
+            self.free.copy(),
+            self.time,
+            self.iteration,
+            self.revision,
+            [m.copy() for m in self.memory],
+            {k: a.copy() for k, a in self.scratch.items()},
+            self.force_scale,
+        )
+
+    def arrays(self) -> dict[str, Floats]:
+        """Everything as named arrays, for a file."""
+        named = {"x": self.x, "v": self.v, "free": self.free, "force_scale": np.array([self.force_scale])}
+        named["clock"] = np.array([self.time, float(self.iteration), float(self.revision)])
+        named.update({f"memory_{i}": m for i, m in enumerate(self.memory)})
+        named.update({f"scratch_{k}": a for k, a in self.scratch.items()})
+        return named
+
+    @classmethod
+    def of(cls, arrays: dict[str, Floats]) -> State:
+        """The state that `arrays` wrote."""
+        time, iteration, revision = (float(c) for c in arrays["clock"])
+        count = sum(k.startswith("memory_") for k in arrays)
+        return cls(
+            np.ascontiguousarray(arrays["x"]),
+            np.ascontiguousarray(arrays["v"]),
+            np.ascontiguousarray(arrays["free"]),
+            time,
+            int(iteration),
+            int(revision),
+            [np.ascontiguousarray(arrays[f"memory_{i}"]) for i in range(count)],
+            {k.removeprefix("scratch_"): np.array(a) for k, a in arrays.items() if k.startswith("scratch_")},
+            float(arrays["force_scale"][0]),
+        )

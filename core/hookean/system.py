@@ -1,0 +1,326 @@
+"""System: a scene compiled once to contiguous arrays. Nothing validates after this point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean import kernels
+from hookean.errors import InputError
+from hookean.forces import Block, Force
+from hookean.forces.base import PLACES
+from hookean.scene import Scene
+from hookean.state import State
+from hookean.weld import Report, Welded, check_columns
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass
+class Part:
+    """The elements of one force inside a group: `rows` of the group's arrays, and which inputs they came from."""
+
+    number: int  # index in scene.forces, or -1 for the floor of the settings
+    force: Force
+    rows: slice
+    inputs: Ints  # element of the input of every row
+
+
+@dataclass
+class Group:
+    """All elements that share a kernel, in one block."""
+
+    cls: type[Force]
+    block: Block
+    parts: list[Part]
+
+    def of(self, part: Part) -> Block:
+        """The part's own rows, as views."""
+        b = self.block
+        return Block(b.indices[part.rows], b.parameters[part.rows], b.memory[part.rows], b.names)
+
+
+@dataclass
+class Held:
+    """One anchor of the scene, compiled: its particles, targets and axes."""
+
+    number: int
+    particles: Ints
+    targets: Floats
+    free: Floats  # (3,) 0 where held
+
+
+@dataclass
+class System:
+    """Arrays of one scene: start positions `x` (n, 3), masses (n,), groups of elements, anchors."""
+
+    scene: Scene
+    x: Floats
+    v: Floats
+    mass: Floats
+    groups: list[Group]
+    contacts: list[Group]
+    held: list[Held]
+    carried: list[Ints]
+    report: Report
+    load_count: Floats
+    drag: float = 0.0
+
+    @property
+    def size(self) -> float:
+        """Length scale of the model [length]: the diagonal of its start positions."""
+        return float(np.linalg.norm(np.ptp(self.x, axis=0))) if len(self.x) else 0.0
+
+    @property
+    def damped(self) -> bool:
+        """Whether any force reads the velocities."""
+        for group in self.groups:
+            if group.cls.damped:
+                columns = [i for i, name in enumerate(group.block.names) if name == "damping"]
+                if not columns or (group.block.parameters[:, columns] != 0).any():
+                    return True
+        return False
+
+    def start(self) -> State:
+        """The state before the first iteration: anchors at their targets, memories empty."""
+        free = np.ones_like(self.x)
+        state = State(x=self.x.copy(), v=self.v.copy(), free=free)
+        for anchor in self.held:
+            hold(state, anchor)
+        state.memory = [np.zeros_like(g.block.memory) for g in self.groups]
+        return state
+
+    def evaluate(self, state: State, *, only: str = "", still: bool = True) -> tuple[Floats, Floats, Floats]:
+        """Forces (n, 3) on the particles, lumped stiffness (n,) and the energy of each group.
+
+        `only` restricts to groups of one role; `still` leaves damping out.
+        """
+        f, w = np.zeros_like(self.x), np.zeros(len(self.x))
+        v = np.zeros_like(self.x) if still else state.v
+        energies = np.zeros(len(self.groups))
+        for i, (group, memory) in enumerate(zip(self.groups, state.memory, strict=True)):
+            if only and group.cls.role != only:
+                continue
+            kernel = kernels.compiled(group.cls.kernel, "force")  # type: ignore[arg-type]
+            b = group.block
+            energies[i] = kernel(state.x, v, b.indices, b.parameters, memory, f, w)
+        return f, w, energies
+
+    def tuples(self, state: State) -> tuple[Any, ...]:
+        """Kernels, indices, parameters and memories as equally long tuples, for the compiled loops."""
+        groups = self.groups
+        functions = kernels.pointers([g.cls.kernel for g in groups], "force")  # type: ignore[misc]
+        idle = len(functions) - len(groups)
+        none = np.zeros((0, 1))
+        return (
+            functions,
+            (*(g.block.indices for g in groups), *[np.zeros((0, 1), np.int64)] * idle),
+            (*(g.block.parameters for g in groups), *[none] * idle),
+            (*state.memory, *[none] * idle),
+        )
+
+    def hooks(self) -> tuple[Any, ...]:
+        """Impact and support functions of the contacts, and their parameters."""
+        impacts = kernels.pointers([g.cls.impact for g in self.contacts], "impact")  # type: ignore[misc]
+        supports = kernels.pointers([g.cls.support for g in self.contacts], "support")  # type: ignore[misc]
+        idle = len(impacts) - len(self.contacts)
+        return impacts, supports, (*(g.block.parameters for g in self.contacts), *[np.zeros((0, 9))] * idle)
+
+    def support(self, state: State, f: Floats) -> Floats:
+        """Take from `f` what contacts carry at rest; returns their force on the particles (n, 3)."""
+        carried = np.zeros_like(f)
+        still = np.zeros_like(f)
+        for group in self.contacts:
+            hook = kernels.compiled(group.cls.support, "support")  # type: ignore[arg-type]
+            hook(state.x, still, f, carried, state.free, self.mass, 0.0, group.block.parameters)
+        return carried
+
+    def remember(self, state: State) -> None:
+        """Let the elements that remember take note of the shape (plastic rest lengths)."""
+        for group, memory in zip(self.groups, state.memory, strict=True):
+            if group.cls.end_of_step is not None:
+                note = kernels.compiled(group.cls.end_of_step, "remember")
+                note(state.x, group.block.indices, group.block.parameters, memory)
+
+    def element_forces(self, group: Group, state: State, memory: Floats) -> Floats:
+        """Force of each element on each of its particles `(m, arity, 3)`: the kernel run on private copies."""
+        b = group.block
+        count, arity = b.indices.shape
+        private = np.ascontiguousarray(state.x[b.indices].reshape(-1, 3))
+        index = np.arange(count * arity, dtype=np.int64).reshape(count, arity)
+        f, w = np.zeros_like(private), np.zeros(len(private))
+        kernel = kernels.compiled(group.cls.kernel, "force")  # type: ignore[arg-type]
+        kernel(private, np.zeros_like(private), index, b.parameters, memory, f, w)
+        return f.reshape(count, arity, 3)
+
+    def stiffness_blocks(self, group: Group, state: State, memory: Floats) -> Floats:
+        """Hessian of the energy of each element `(m, 3 arity, 3 arity)`, exact or by differences of its forces."""
+        b = group.block
+        count, arity = b.indices.shape
+        blocks = np.zeros((count, 3 * arity, 3 * arity))
+        if group.cls.hessian is not None:
+            kernels.compiled(group.cls.hessian, "hessian")(state.x, b.indices, b.parameters, memory, blocks)
+            return blocks
+        private = np.ascontiguousarray(state.x[b.indices].reshape(-1, 3))
+        index = np.arange(count * arity, dtype=np.int64).reshape(count, arity)
+        kernel = kernels.compiled(group.cls.kernel, "force")  # type: ignore[arg-type]
+        still, w = np.zeros_like(private), np.zeros(len(private))
+        reach = np.ptp(private.reshape(count, arity, 3), axis=1).max(axis=1) if count else np.zeros(0)
+        step = 1e-6 * np.where(reach > 0, reach, 1.0)
+        for i in range(arity):
+            for c in range(3):
+                sides = []
+                for sign in (1.0, -1.0):
+                    moved = private.copy()
+                    moved[i::arity, c] += sign * step
+                    f = np.zeros_like(private)
+                    kernel(moved, still, index, b.parameters, memory, f, w)
+                    sides.append(f.reshape(count, -1))
+                blocks[:, :, 3 * i + c] = (sides[1] - sides[0]) / (2.0 * step)[:, None]
+        return 0.5 * (blocks + blocks.transpose(0, 2, 1))
+
+
+def hold(state: State, anchor: Held) -> None:
+    """Hold an anchor's particles at its targets, on its axes."""
+    held = anchor.free == 0
+    state.free[np.ix_(anchor.particles, held)] = 0.0
+    state.x[np.ix_(anchor.particles, held)] = anchor.targets[:, held]
+    state.v[np.ix_(anchor.particles, held)] = 0.0
+
+
+def compile(scene: Scene) -> System:
+    """Compile a scene; InputError where parts of it do not fit together."""
+    welded = Welded(scene)
+    x = welded.x
+    if not len(x):
+        raise InputError("/particles", "the scene has no particles; give particles, or a force with lines or a mesh")
+    given = list(enumerate(scene.forces))
+    if scene.settings.floor is not None:
+        given.append((-1, scene.settings.floor))
+    groups, contacts = _groups(given, welded)
+    load_count = np.zeros(len(x))
+    for group in groups:
+        if group.cls.role == "load":
+            load_count += np.bincount(group.block.indices.ravel(), minlength=len(x))
+    v = np.zeros_like(x)
+    if scene.velocities is not None:
+        v[: len(scene.velocities)] = scene.velocities
+    mass = np.ones(len(x))
+    if isinstance(scene.masses, np.ndarray):
+        mass[: len(scene.masses)] = scene.masses
+    else:
+        mass[:] = scene.masses
+    held = _anchors(welded)
+    carried = [_carried(welded, i) for i in range(len(scene.geometry))]
+    system = System(
+        scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded.report, load_count
+    )
+    system.drag = scene.settings.drag
+    _warn(system)
+    return system
+
+
+def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group], list[Group]]:
+    """Blocks of all forces, joined where they share a kernel."""
+    joined: dict[type[Force], list[tuple[int, Force, Block, Ints]]] = {}
+    for number, force in given:
+        pointer = f"/forces/{number}" if number >= 0 else "/settings/floor"
+        block = force.compile(welded) if _fits(force, pointer, welded) else None
+        if block is None:
+            continue
+        met = (block.indices >= 0).all(axis=1)
+        inputs = np.flatnonzero(met)
+        block = Block(
+            np.ascontiguousarray(block.indices[met]),
+            np.ascontiguousarray(block.parameters[met]),
+            np.ascontiguousarray(block.memory[met]),
+            block.names,
+        )
+        joined.setdefault(type(force), []).append((number, force, block, inputs))
+    groups, contacts = [], []
+    for cls, members in joined.items():
+        parts, start = [], 0
+        for number, force, block, inputs in members:
+            parts.append(Part(number, force, slice(start, start + len(block.indices)), inputs))
+            start += len(block.indices)
+        whole = Block(
+            *(
+                np.ascontiguousarray(np.concatenate([getattr(m[2], name) for m in members]))
+                for name in ("indices", "parameters", "memory")
+            ),
+            members[0][2].names,
+        )
+        (groups if cls.kernel is not None else contacts).append(Group(cls, whole, parts))
+    return groups, contacts
+
+
+def _fits(force: Force, pointer: str, welded: Welded) -> bool:
+    """Check that every column has one value or one for each element."""
+    if any(name in type(force).model_fields for name in PLACES):
+        count = len(welded.elements(force)) if getattr(force, "mesh", None) is None or force.element_arity < 3 else None
+        if count is not None:
+            check_columns(force, pointer, count, PLACES)
+    return True
+
+
+def _anchors(welded: Welded) -> list[Held]:
+    held = []
+    for i, anchor in enumerate(welded.scene.anchors):
+        if anchor.particles is not None:
+            particles = np.asarray(anchor.particles)
+        else:
+            particles = welded.meet(np.asarray(anchor.points), f"/anchors/{i}/points", anchor.name)
+        met = particles >= 0
+        targets = welded.x[particles] if anchor.targets is None else np.asarray(anchor.targets)
+        free = np.array([0.0 if axis in anchor.axes else 1.0 for axis in "xyz"])
+        held.append(Held(i, particles[met], np.ascontiguousarray(targets[met]), free))
+    return held
+
+
+def _carried(welded: Welded, number: int) -> Ints:
+    """Particles that carry a geometry's points; -1 where a point rides on none and stays."""
+    item = welded.scene.geometry[number]
+    if item.particles is not None:
+        return np.asarray(item.particles)
+    if item.mesh is not None:
+        return welded.vertices(item.mesh)
+    points = np.asarray(item.points if item.points is not None else item.lines)
+    name = "points" if item.points is not None else "lines"
+    found = welded.meet(points.reshape(-1, 3), f"/geometry/{number}/{name}", item.name, silent=True)
+    if (found < 0).any():
+        welded.report.warnings.append(
+            f"/geometry/{number}: {int((found < 0).sum())} of {len(found)} points meet no particle and stay where they are"
+        )
+    return found
+
+
+def _warn(system: System) -> None:
+    """Say what will surprise: springs without length, loads on particles nothing holds."""
+    warnings = system.report.warnings
+    touched = np.zeros(len(system.x), dtype=bool)
+    for group in system.groups:
+        if group.cls.role == "load":
+            continue
+        index = group.block.indices
+        touched[index.ravel()] = True
+        if group.cls.arity == 2:
+            for part in group.parts:
+                same = index[part.rows, 0] == index[part.rows, 1]
+                if same.any():
+                    warnings.append(
+                        f"/forces/{part.number}: {int(same.sum())} of {len(same)} elements start and end at one particle "
+                        f"(first: element {int(np.argmax(same))}) and do nothing; lengthen them or lower weld_tolerance"
+                    )
+    for anchor in system.held:
+        if (anchor.free == 0).all():
+            touched[anchor.particles] = True
+    alone = np.flatnonzero((system.load_count > 0) & ~touched)
+    if len(alone) and not system.contacts:
+        warnings.append(
+            f"particle {alone[0]} carries a load but no spring, other force or anchor holds it"
+            + (f" (and {len(alone) - 1} more)" if len(alone) > 1 else "")
+        )

@@ -1,0 +1,222 @@
+"""Welding: coordinates become particles. Deterministic; the first point at a place wins."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from hookean.errors import InputError
+from hookean.forces import Force
+from hookean.mesh import Mesh
+from hookean.scene import Scene
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Unmatched:
+    """An anchor or load that met no particle: where it stands, and the nearest particle with its distance."""
+
+    pointer: str
+    name: str
+    point: tuple[float, float, float]
+    nearest: int
+    distance: float
+
+    @property
+    def sentence(self) -> str:
+        """One line for a person."""
+        if self.nearest < 0:
+            return f"{self.pointer}: no particle here, nor anywhere else in the scene"
+        spot = ", ".join(f"{c:.6g}" for c in self.point)
+        return (
+            f"{self.pointer}: no particle at ({spot}); the nearest is particle {self.nearest}, {self.distance:.6g} away. "
+            "Move the point onto it, or raise weld_tolerance"
+        )
+
+
+@dataclass
+class Report:
+    """What was done to the description on the way to particles, and what a person should know before solving."""
+
+    merged: int = 0
+    unmatched: list[Unmatched] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+class Welded:
+    """All particles of a scene and, for each force, anchor and geometry, which of them it means.
+
+    Given particles come first, unmerged; then the coordinates of internal forces in order of first appearance.
+    Loads, anchors and geometry create none: their coordinates must meet a particle within the tolerance.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.report = Report()
+        self.tolerance = scene.weld_tolerance
+        self._rows: dict[int, Ints] = {}
+        self._meshes: dict[str, Ints] = {}
+        self._pointer: dict[int, str] = {id(f): f"/forces/{i}" for i, f in enumerate(scene.forces)}
+        self._weld()
+        self._tree = cKDTree(self.x) if len(self.x) else None
+
+    def _weld(self) -> None:
+        """Create particles: one list of candidates in order of appearance, then one pass of welding."""
+        given = self.scene.particles
+        candidates: list[Floats] = []
+        owners: list[tuple[str, Any, tuple[int, ...]]] = []
+
+        def add(kind: str, key: Any, points: Floats) -> None:
+            candidates.append(points.reshape(-1, 3))
+            owners.append((kind, key, points.shape[:-1]))
+
+        for force in self.scene.forces:
+            if not force.creates:
+                continue
+            for name in ("points", "lines"):
+                points = getattr(force, name, None)
+                if points is not None:
+                    add("force", id(force), points)
+            mesh = getattr(force, "mesh", None)
+            if mesh is not None and not any(o[:2] == ("mesh", mesh) for o in owners):
+                add("mesh", mesh, self.scene.meshes[mesh].vertices)
+        points = np.concatenate(candidates) if candidates else np.zeros((0, 3))
+        self.x, which = weld(given, points, self.tolerance)
+        self.report.merged = len(given) + len(points) - len(self.x)
+        start = 0
+        for kind, key, shape in owners:
+            stop = start + int(np.prod(shape))
+            (self._rows if kind == "force" else self._meshes)[key] = which[start:stop].reshape(shape)
+            start = stop
+
+    def elements(self, force: Force) -> Ints:
+        """Particles of every element of `force`, `(m, arity)`; -1 where a load or anchor met none."""
+        arity = force.element_arity
+        pointer = self._pointer.get(id(force), "/settings/floor")
+        particles = getattr(force, "particles", None)
+        if particles is not None:
+            rows = particles.reshape(-1, 1) if arity == 1 and particles.ndim == 1 else particles
+            if rows.ndim != 2 or rows.shape[1] != arity:
+                raise InputError(
+                    f"{pointer}/particles",
+                    f"shape {list(particles.shape)} given; each element needs {arity} particle{'s' * (arity > 1)}",
+                )
+            return rows
+        for name in ("points", "lines"):
+            points = getattr(force, name, None)
+            if points is not None:
+                rows = self._rows.get(id(force))
+                if rows is None:
+                    rows = self.meet(points, f"{pointer}/{name}", force.name)
+                return self._checked(rows.reshape(len(points), -1), arity, f"{pointer}/{name}")
+        mesh = getattr(force, "mesh", None)
+        if mesh is not None:
+            return self._of_mesh(force, mesh, arity)
+        return np.arange(len(self.x)).reshape(-1, 1)
+
+    def _checked(self, rows: Ints, arity: int, pointer: str) -> Ints:
+        if rows.shape[1] != arity and len(rows):
+            raise InputError(pointer, f"{rows.shape[1]} points in an element given; each needs {arity}")
+        return np.ascontiguousarray(rows.reshape(-1, arity))
+
+    def _of_mesh(self, force: Force, mesh: str, arity: int) -> Ints:
+        """Vertices of a mesh, or the edges that `force.edges` names."""
+        from hookean.discretize import meshes
+
+        vertices = self.vertices(mesh)
+        if arity == 1:
+            return vertices.reshape(-1, 1)
+        data = self.scene.meshes[mesh]
+        # edges of the welded mesh: vertices that became one particle share their edges
+        first = {int(p): i for i, p in reversed(list(enumerate(vertices)))}
+        own = np.array([first[int(p)] for p in vertices], dtype=np.int64)
+        plain = Mesh(data.vertices, own[data.faces] if len(data.faces) else data.faces)
+        choice = getattr(force, "edges", "all")
+        if choice in ("warp", "weft"):
+            pairs = meshes.warp_weft(plain)[choice == "weft"]
+        else:
+            pairs = {"all": meshes.edges, "naked": meshes.naked_edges, "diagonals": meshes.diagonals}[choice](plain)
+        return np.ascontiguousarray(vertices[np.asarray(pairs, dtype=np.int64).reshape(-1, 2)])
+
+    def vertices(self, mesh: str) -> Ints:
+        """Particles of a mesh's vertices `(n,)`; -1 where one met none."""
+        if mesh not in self._meshes:
+            self._meshes[mesh] = self.meet(self.scene.meshes[mesh].vertices, f"/meshes/{mesh}/vertices", mesh)
+        return self._meshes[mesh]
+
+    def faces(self, name: str) -> Ints:
+        """Faces `(m, 4)` of the scene's mesh `name`, in particles; a triangle repeats its last corner."""
+        return np.ascontiguousarray(self.vertices(name)[self.scene.meshes[name].faces])
+
+    def meet(self, points: Floats, pointer: str, name: str = "", *, silent: bool = False) -> Ints:
+        """The nearest particle of each point within the tolerance, else -1 and a line in the report."""
+        flat = points.reshape(-1, 3)
+        if self._tree is None or not len(flat):
+            distance, nearest = np.full(len(flat), np.inf), np.full(len(flat), -1)
+        else:
+            distance, nearest = self._tree.query(flat)
+        missed = distance > self.tolerance
+        if not silent:
+            for i in np.flatnonzero(missed):
+                spot = tuple(float(c) for c in flat[i])
+                self._miss(Unmatched(f"{pointer}/{i}", name, spot, int(nearest[i]), float(distance[i])))  # type: ignore[arg-type]
+        found = np.where(missed, -1, nearest).astype(np.int64)
+        return np.ascontiguousarray(found.reshape(points.shape[:-1]))
+
+    def _miss(self, unmatched: Unmatched) -> None:
+        if self.scene.strict:
+            pointer, sentence = unmatched.sentence.split(": ", 1)
+            raise InputError(pointer, sentence)
+        self.report.unmatched.append(unmatched)
+
+
+def weld(given: Floats, points: Floats, tolerance: float) -> tuple[Floats, Ints]:
+    """Merge `points` `(m, 3)` into `given` `(n, 3)` and each other within `tolerance`; the first wins.
+
+    Returns the particles (`given` first and unmerged) and, for each point, its particle.
+    """
+    count = len(given)
+    if not len(points):
+        return np.array(given, dtype=np.float64).reshape(-1, 3), np.zeros(0, np.int64)
+    # equal coordinates first, in one sort; then only true near misses are looked at one by one
+    unique, first, inverse = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first, kind="stable")
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    merged = np.concatenate([given.reshape(-1, 3), unique[order]])
+    keeper = _keepers(merged, count, tolerance)
+    kept = keeper == np.arange(len(merged))
+    number = np.cumsum(kept) - 1
+    return np.ascontiguousarray(merged[kept]), number[keeper][count + rank[inverse.ravel()]]
+
+
+def _keepers(points: Floats, given: int, tolerance: float) -> Ints:
+    """For each point the one it becomes: itself, or the first kept point within the tolerance."""
+    keeper = np.arange(len(points))
+    pairs = cKDTree(points).query_pairs(max(tolerance, 0.0), output_type="ndarray")
+    pairs = np.sort(pairs, axis=1)
+    pairs = pairs[pairs[:, 1] >= given]
+    for a, b in pairs[np.lexsort((pairs[:, 0], pairs[:, 1]))]:
+        if keeper[b] == b and keeper[a] == a:
+            keeper[b] = a
+    return keeper
+
+
+def check_columns(force: Force, pointer: str, count: int, skip: Sequence[str]) -> None:
+    """InputError where a column of `force` has neither one value nor one for each of its `count` elements."""
+    for name in type(force).model_fields:
+        value = getattr(force, name)
+        if name in skip or not isinstance(value, np.ndarray):
+            continue
+        single = value.ndim == 1 and value.shape == (3,) and name in ("vector", "direction", "point", "normal")
+        if not single and len(value) != count:
+            raise InputError(
+                f"{pointer}/{name}", f"{len(value)} values for {count} elements; give one value or one for each"
+            )
