@@ -6,14 +6,14 @@ Everything hookean adds lives below one layer named `hookean`; what was there st
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 from uuid import UUID
 
 from hookean.errors import InputError
-from hookean.files.archive import Archive, scan
+from hookean.files.archive import scan
 from hookean.files.splice import OLDEST_SPLICED, splice, without_history
 from hookean.files.threedm_atomic import check_target, put
 from hookean.files.threedm_build import (
@@ -30,7 +30,6 @@ from hookean.files.threedm_build import (
 from hookean.files.threedm_geometry import Points
 from hookean.files.threedm_model import (
     METRES,
-    TOP_LAYER,
     Block,
     Colour,
     Layer,
@@ -165,12 +164,12 @@ def _cut(loaded: Loaded) -> _Cut:
     Layers go by their number, so one in the middle cannot leave; it stays and is used again.
     """
     model, archive = loaded.model, loaded.archive
-    ids = [record.id for record in archive.objects]
-    places = {item.index for item in model.objects if item.own and item.marked and ids.count(item.id) == 1}
-    places = {place for place in places if place >= 0}
+    ids = Counter(record.id for record in archive.objects)
+    places = {item.index for item in model.objects if item.own and item.marked and ids[item.id] == 1}
+    places.discard(-1)
     left = [record for place, record in enumerate(archive.objects) if place not in places]
     used = {record.layer_index for record in left} | {archive.current_layer}
-    used |= {item.Attributes.LayerIndex for item in loaded.file.Objects if item.Attributes.Id not in set(ids)}
+    used |= {item.Attributes.LayerIndex for item in loaded.file.Objects if item.Attributes.Id not in ids}
     count = 0
     if None not in {record.layer_index for record in left}:
         while count < len(model.layers):
