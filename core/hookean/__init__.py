@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from hookean.errors import InputError as InputError
 
 if TYPE_CHECKING:
+    from hookean.patch import Patch as Patch
     from hookean.result import Result as Result
     from hookean.result import Status as Status
     from hookean.run import Frame as Frame
@@ -24,6 +25,7 @@ _HOMES = {
     "Status": "result",
     "Frame": "run",
     "Simulation": "run",
+    "Patch": "patch",
     "relax": "run",
     "simulate": "run",
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +13,12 @@ from numpy.typing import NDArray
 from hookean import stability
 from hookean.balance import Balance, balance
 from hookean.errors import InputError
+from hookean.patch import Patch, apply
 from hookean.result import Result, Status, carried, gather
 from hookean.scene import Scene
 from hookean.solvers import Solver, solver
 from hookean.state import State
-from hookean.system import System, compile
+from hookean.system import Held, System, compile
 
 Floats = NDArray[np.float64]
 
@@ -95,7 +97,7 @@ class _Watch:
         self.best, self.best_at = np.inf, state.iteration
         self.good = state.copy()
         self.found: Balance = balance(system, state)
-        self.size = max(system.size, 1e-9)
+        self.size = system.size
         self.moving = np.inf
         self.fault = ""
 
@@ -205,14 +207,14 @@ class Simulation:
         self.state = self.system.start()
         self._begin()
 
-    def _begin(self) -> None:
+    def _begin(self, *, fresh: bool = False) -> None:
         name = self.scene.settings.solver
         self.solver = solver("verlet" if name == "auto" else name)
         refusal = self.solver.refuse(self.system)
         if refusal:
             raise InputError("/settings/solver", refusal)
         self._warn()
-        if not self.state.scratch:
+        if fresh and not self.solver.physical or not self.state.scratch:
             self.solver.start(self.system, self.state)
         self._watch = _Watch(self.system, self.state)
         self.status = Status.RUNNING
@@ -276,6 +278,47 @@ class Simulation:
         self._watch = _Watch(self.system, self.state)
         self.status = result.status
         return result
+
+    def patch(self, edit: Patch | dict[str, object]) -> int:
+        """Change anchors, loads, stiffness, rest lengths or settings while it runs; returns the new revision.
+
+        InputError says what does not fit, and nothing has changed then.
+        """
+        apply(self.system, self.state, Patch.read(edit))
+        self.scene = self.system.scene
+        self._begin(fresh=True)
+        return self.state.revision
+
+    def save(self, path: str | Path) -> None:
+        """Everything about this simulation in one .npz file: the scene, the state and the anchors as they are now."""
+        arrays = self.state.arrays()
+        for i, anchor in enumerate(self.system.held):
+            arrays[f"held_{i}"] = np.column_stack([anchor.particles, anchor.targets])
+            arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free])
+        with open(path, "wb") as file:
+            np.savez(file, scene=np.array(self.scene.canonical), status=np.array(str(self.status)), **arrays)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Simulation:
+        """The simulation that `save` wrote; it goes on bit for bit. InputError where the file is not one."""
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            loaded = cls(Scene.read(str(arrays.pop("scene"))))
+            status = Status(str(arrays.pop("status")))
+            count = sum(name.startswith("held_") for name in arrays)
+            held = [(arrays.pop(f"held_{i}"), arrays.pop(f"axes_{i}")) for i in range(count)]
+            loaded.state = State.of(arrays)
+        except (OSError, KeyError, ValueError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(str(path), "not a saved simulation; give a file that Simulation.save wrote") from None
+        loaded.system.held = [
+            Held(int(a[0]), h[:, 0].astype(np.int64), np.ascontiguousarray(h[:, 1:]), a[1:].copy()) for h, a in held
+        ]
+        loaded._begin()
+        loaded.status = status
+        return loaded
 
     def reset(self) -> None:
         """Back to the start positions; anchors keep the particles they were given, and their present targets."""

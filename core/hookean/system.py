@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from hookean import kernels
 from hookean.errors import InputError
 from hookean.forces import Block, Force
-from hookean.forces.base import PLACES
 from hookean.scene import Scene
 from hookean.state import State
-from hookean.weld import Report, Welded, check_columns
+from hookean.weld import Report, Welded, fits
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -66,14 +65,20 @@ class System:
     contacts: list[Group]
     held: list[Held]
     carried: list[Ints]
-    report: Report
+    places: Welded
     load_count: Floats
     drag: float = 0.0
 
     @property
+    def report(self) -> Report:
+        """What welding did, and what a person should know."""
+        return self.places.report
+
+    @property
     def size(self) -> float:
-        """Length scale of the model [length]: the diagonal of its start positions."""
-        return float(np.linalg.norm(np.ptp(self.x, axis=0))) if len(self.x) else 0.0
+        """Length scale of the model [length]: the diagonal of its start, or how far from the origin it is."""
+        diagonal = float(np.linalg.norm(np.ptp(self.x, axis=0)))
+        return diagonal or float(np.abs(self.x).max()) or 1.0
 
     @property
     def damped(self) -> bool:
@@ -217,7 +222,7 @@ def compile(scene: Scene) -> System:
     held = _anchors(welded)
     carried = [_carried(welded, i) for i in range(len(scene.geometry))]
     system = System(
-        scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded.report, load_count
+        scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded, load_count
     )
     system.drag = scene.settings.drag
     _warn(system)
@@ -229,9 +234,8 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
     joined: dict[type[Force], list[tuple[int, Force, Block, Ints]]] = {}
     for number, force in given:
         pointer = f"/forces/{number}" if number >= 0 else "/settings/floor"
-        block = force.compile(welded) if _fits(force, pointer, welded) else None
-        if block is None:
-            continue
+        fits(force, pointer, welded)
+        block = force.compile(welded)
         met = (block.indices >= 0).all(axis=1)
         inputs = np.flatnonzero(met)
         block = Block(
@@ -256,15 +260,6 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
         )
         (groups if cls.kernel is not None else contacts).append(Group(cls, whole, parts))
     return groups, contacts
-
-
-def _fits(force: Force, pointer: str, welded: Welded) -> bool:
-    """Check that every column has one value or one for each element."""
-    if any(name in type(force).model_fields for name in PLACES):
-        count = len(welded.elements(force)) if getattr(force, "mesh", None) is None or force.element_arity < 3 else None
-        if count is not None:
-            check_columns(force, pointer, count, PLACES)
-    return True
 
 
 def _anchors(welded: Welded) -> list[Held]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from hookean.errors import InputError
-from hookean.forces import Force
+from hookean.forces import Block, Force
+from hookean.forces.base import PLACES
 from hookean.mesh import Mesh
 from hookean.scene import Scene
 
@@ -61,6 +61,7 @@ class Welded:
         self.scene = scene
         self.report = Report()
         self.tolerance = scene.weld_tolerance
+        self._keep: list[Force] = []
         self._rows: dict[int, Ints] = {}
         self._meshes: dict[str, Ints] = {}
         self._pointer: dict[int, str] = {id(f): f"/forces/{i}" for i, f in enumerate(scene.forces)}
@@ -120,6 +121,16 @@ class Welded:
         if mesh is not None:
             return self._of_mesh(force, mesh, arity)
         return np.arange(len(self.x)).reshape(-1, 1)
+
+    def recompile(self, number: int, force: Force) -> Block:
+        """The block of a changed force that stays where force `number` of the scene was."""
+        old = self.scene.forces[number]
+        self._keep.append(force)  # rows are found by identity, so it must live as long as they do
+        self._pointer[id(force)] = f"/forces/{number}"
+        if id(old) in self._rows:
+            self._rows[id(force)] = self._rows[id(old)]
+        fits(force, f"/forces/{number}", self)
+        return force.compile(self)
 
     def _checked(self, rows: Ints, arity: int, pointer: str) -> Ints:
         if rows.shape[1] != arity and len(rows):
@@ -209,13 +220,17 @@ def _keepers(points: Floats, given: int, tolerance: float) -> Ints:
     return keeper
 
 
-def check_columns(force: Force, pointer: str, count: int, skip: Sequence[str]) -> None:
-    """InputError where a column of `force` has neither one value nor one for each of its `count` elements."""
+def fits(force: Force, pointer: str, welded: Welded) -> None:
+    """InputError where a column of `force` has neither one value nor one for each of its elements."""
+    placed = any(name in type(force).model_fields for name in PLACES)
+    if not placed or (force.element_arity > 2 and getattr(force, "mesh", None) is not None):
+        return
+    count = len(welded.elements(force))
     for name in type(force).model_fields:
         value = getattr(force, name)
-        if name in skip or not isinstance(value, np.ndarray):
+        if name in PLACES or not isinstance(value, np.ndarray):
             continue
-        single = value.ndim == 1 and value.shape == (3,) and name in ("vector", "direction", "point", "normal")
+        single = value.shape == (3,) and name in ("vector", "direction", "point", "normal")
         if not single and len(value) != count:
             raise InputError(
                 f"{pointer}/{name}", f"{len(value)} values for {count} elements; give one value or one for each"

@@ -39,6 +39,7 @@ from hookean.files.threedm_model import (
     expand,
     rhino,
 )
+from hookean.files.threedm_old import warnings
 from hookean.files.threedm_read import Loaded, load, parse
 
 __all__ = [
@@ -201,6 +202,7 @@ def _round_trip(loaded: Loaded, target: StrPath, additions: Additions) -> Writte
             f"holds {sum(group.count for group in model.lost)} objects that would be lost in a copy of version "
             f"{model.version}; open it in Rhino and save it as Rhino 5 or later.",
         )
+    notes = warnings(model.version, additions)
     dropped = [item for item in model.objects if item.own and item.marked]
     for item in dropped:
         file.Objects.Delete(item.id)
@@ -210,11 +212,7 @@ def _round_trip(loaded: Loaded, target: StrPath, additions: Additions) -> Writte
     add_objects(file, planned)
     data = written(file, model.version)
     put(target, data, lambda back: _check_counts(back, loaded, len(dropped), planned))
-    warning = (
-        f"a .3dm file of version {model.version} is written anew as a whole: details of old objects may change "
-        "and mesh coordinates are rounded to single precision; save it as Rhino 5 or later to keep them as they are."
-    )
-    return Written(planned.ids, len(dropped), (*model.warnings, warning, *planned.notes))
+    return Written(planned.ids, len(dropped), (*model.warnings, *notes, *planned.notes))
 
 
 def _check_spliced(back: bytes, loaded: Loaded, cut: _Cut, planned: Plan) -> None:

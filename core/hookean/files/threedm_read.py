@@ -13,6 +13,7 @@ from uuid import UUID
 
 from hookean.errors import InputError
 from hookean.files.archive import Archive, ObjectRecord, scan
+from hookean.files.splice import OLDEST_SPLICED
 from hookean.files.threedm_model import (
     METRES,
     OWN_KEY,
@@ -27,6 +28,7 @@ from hookean.files.threedm_model import (
     is_own,
     rhino,
 )
+from hookean.files.threedm_old import FIRST_WITH_TEXT, clean_layer_names
 
 _NO_ID = UUID(int=0)
 
@@ -59,6 +61,8 @@ def parse(data: bytes, name: str, oldest: int = 2) -> Loaded:
         )
     try:
         file = rhino.File3dm.FromByteArray(data)
+        if file is not None and archive.version < OLDEST_SPLICED:
+            clean_layer_names(file)
         model = None if file is None else _Reader(archive, file, name).model()
     except (ValueError, RuntimeError, IndexError, AttributeError, TypeError, MemoryError) as error:
         raise _unreadable(archive, name) from error
@@ -168,7 +172,7 @@ class _Reader:
             by_parent=source == rhino.ObjectColorSource.ColorFromParent,
             is_instance=isinstance(geometry, rhino.InstanceReference),
             own=layer is not None and layer.own,
-            marked=OWN_KEY in text,
+            marked=OWN_KEY in text or (self.archive.version < FIRST_WITH_TEXT and layer is not None and layer.own),
             page=attributes.ActiveSpace == rhino.ActiveSpace.PageSpace,
         )
         return item, bool(attributes.IsInstanceDefinitionObject)
