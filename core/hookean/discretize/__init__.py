@@ -1,0 +1,56 @@
+"""Curves to lines, surfaces to meshes, meshes to edges, corners, warp and weft; duplicates removed.
+
+`import hookean.discretize` loads neither rhino3dm nor COMPAS nor scipy; names load on first use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hookean.discretize.breps import is_trimmed as is_trimmed
+    from hookean.discretize.breps import mesh_faces as mesh_faces
+    from hookean.discretize.curves import divide as divide
+    from hookean.discretize.curves import end_points as end_points
+    from hookean.discretize.curves import explode as explode
+    from hookean.discretize.curves import length as length
+    from hookean.discretize.curves import shatter as shatter
+    from hookean.discretize.duplicates import remove_duplicate_lines as remove_duplicate_lines
+    from hookean.discretize.duplicates import remove_duplicate_points as remove_duplicate_points
+    from hookean.discretize.duplicates import unique_lines as unique_lines
+    from hookean.discretize.duplicates import unique_points as unique_points
+    from hookean.discretize.meshes import as_mesh as as_mesh
+    from hookean.discretize.meshes import clothed_vertices as clothed_vertices
+    from hookean.discretize.meshes import corners as corners
+    from hookean.discretize.meshes import diagonals as diagonals
+    from hookean.discretize.meshes import edges as edges
+    from hookean.discretize.meshes import join as join
+    from hookean.discretize.meshes import naked_edges as naked_edges
+    from hookean.discretize.meshes import naked_vertices as naked_vertices
+    from hookean.discretize.meshes import triangles as triangles
+    from hookean.discretize.meshes import vertices as vertices
+    from hookean.discretize.meshes import weld as weld
+    from hookean.discretize.surfaces import mesh_surface as mesh_surface
+    from hookean.discretize.warpweft import warp_weft as warp_weft
+
+_NAMES = {
+    "breps": "is_trimmed mesh_faces",
+    "curves": "divide end_points explode length shatter",
+    "duplicates": "remove_duplicate_lines remove_duplicate_points unique_lines unique_points",
+    "meshes": "as_mesh clothed_vertices corners diagonals edges join naked_edges naked_vertices triangles vertices weld",
+    "surfaces": "mesh_surface",
+    "warpweft": "warp_weft",
+}
+_HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
+
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value

@@ -81,7 +81,8 @@ def edges(mesh: Any) -> Index:
 def naked_edges(mesh: Any) -> Index:
     """Boundary edges `(m, 2)`: those of one face only."""
     sides, first, which = _edges(as_mesh(mesh))
-    return sides[first][np.bincount(which[which >= 0], minlength=len(first)) == 1]
+    out: Index = sides[first][np.bincount(which[which >= 0], minlength=len(first)) == 1]
+    return out
 
 
 def naked_vertices(mesh: Any) -> Index:
