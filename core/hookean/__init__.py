@@ -30,7 +30,7 @@ _HOMES = {
     "simulate": "run",
 }
 
-__all__ = ["InputError", *_HOMES]  # noqa: PLE0604
+__all__ = ["InputError", *_HOMES]
 
 
 def __getattr__(name: str) -> Any:

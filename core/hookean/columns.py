@@ -103,9 +103,7 @@ def _shaped(value: Any, *shape: int | None, what: str) -> NDArray[np.float64]:
     array = _real(value)
     if array.size == 0:
         array = np.zeros([0 if s is None else s for s in shape])
-    if array.ndim != len(shape) or any(
-        s is not None and s != a for s, a in zip(shape, array.shape, strict=True)
-    ):
+    if array.ndim != len(shape) or any(s is not None and s != a for s, a in zip(shape, array.shape, strict=True)):
         raise fault(f"shape {list(array.shape)} given; {what} expected")
     return array
 
@@ -238,7 +236,9 @@ _out = PlainSerializer(_plain)
 
 Points = Annotated[NDArray[np.float64], PlainValidator(_points), _out, _json(_TRIPLE)]
 """Coordinates `(n, 3)`."""
-PointRows = Annotated[NDArray[np.float64], PlainValidator(_point_rows), _out, _json({"type": "array", "items": _TRIPLE})]
+PointRows = Annotated[
+    NDArray[np.float64], PlainValidator(_point_rows), _out, _json({"type": "array", "items": _TRIPLE})
+]
 """Coordinates of each element's particles `(m, arity, 3)`."""
 Lines = Annotated[
     NDArray[np.float64],

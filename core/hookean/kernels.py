@@ -39,7 +39,7 @@ def compiled(function: Callable[..., Any], role: str | None = None) -> Any:
     import numba
 
     prepared = _with_devices(function)
-    numba.config.CACHE_DIR = str(cache_folder(function))  # type: ignore[attr-defined]
+    numba.config.CACHE_DIR = str(cache_folder(function))
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
     if role is None:
         return numba.njit(**options)(prepared)

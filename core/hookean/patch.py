@@ -30,7 +30,7 @@ class Patch(Model):
     """
 
     pin: tuple[Anchor, ...] = Field(default=(), description="Particles to hold from now on")
-    release: Indices = Field(default=(), description="Particles to free")
+    release: Indices = Field(default=np.zeros(0, np.int64), description="Particles to free")
     move: tuple[Move, ...] = Field(default=(), description="Anchors to move")
     forces: dict[str, dict[str, Any]] = Field(default={}, description="New values by force and column")
     settings: dict[str, Any] = Field(default={}, description="New values of settings")

@@ -117,7 +117,7 @@ def plain(value: Any) -> Any:
 def gather(system: System, state: State, found: Balance, status: Status, message: str, solver: str) -> Result:
     """Collect a result from a state and its balance."""
     _, _, energies = system.evaluate(state)
-    energy = {}
+    energy: dict[str, float] = {}
     for group, value in zip(system.groups, energies, strict=True):
         kind = str(group.cls.model_fields["kind"].default)
         energy[kind] = energy.get(kind, 0.0) + float(value)

@@ -1,4 +1,4 @@
-"""Running: the one loop around every solver. `relax` goes to equilibrium, `simulate` yields frames, `Simulation` is live."""
+"""Running: the one loop around every solver. `relax` to equilibrium, `simulate` for frames, `Simulation` live."""
 
 from __future__ import annotations
 
@@ -43,9 +43,7 @@ class Frame:
     message: str
 
 
-def relax(
-    scene: Scene, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None
-) -> Result:
+def relax(scene: Scene, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Result:
     """Bring a scene to equilibrium with its solver; always returns, failure is the result's status and message.
 
     `cancelled` is asked between bursts of iterations. Raises InputError where the scene does not fit together.
@@ -296,7 +294,13 @@ class Simulation:
             arrays[f"held_{i}"] = np.column_stack([anchor.particles, anchor.targets])
             arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free])
         with open(path, "wb") as file:
-            np.savez(file, scene=np.array(self.scene.canonical), status=np.array(str(self.status)), **arrays)
+            np.savez(
+                file,
+                allow_pickle=False,
+                scene=np.array(self.scene.canonical),
+                status=np.array(str(self.status)),
+                **arrays,
+            )
 
     @classmethod
     def load(cls, path: str | Path) -> Simulation:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from functools import cached_property
-from typing import Annotated, Any, Literal, Self, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
 import numpy as np
 from pydantic import Field, ValidationError, field_validator, model_validator
@@ -26,7 +26,10 @@ from hookean.forces.floor import Floor
 from hookean.solvers import NAMES
 from hookean.units import Units
 
-AnyForce = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # type: ignore[valid-type]  # noqa: UP007
+if TYPE_CHECKING:
+    AnyForce = Force
+else:
+    AnyForce = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
 
 
 class MeshData(Model):
@@ -84,7 +87,7 @@ class Geometry(Model):
     lines: Lines | None = Field(default=None, description="Straight lines [length]")
     mesh: str | None = Field(default=None, description="Name of one of the scene's meshes")
     degree: int = Field(default=3, ge=1, le=11, description="Degree of a curve [-]")
-    knots: tuple[float, ...] | None = Field(default=None, description="Knots of a curve, as Rhino counts them; none: uniform")
+    knots: tuple[float, ...] | None = Field(default=None, description="Knots, as Rhino counts them; none: uniform")
     weights: NonNegatives | None = Field(default=None, description="Weights of a curve's control points [-]")
 
     @model_validator(mode="after")
@@ -129,7 +132,9 @@ class Scene(Model):
     units: Units = Field(default=Units(), description="Units of all numbers")
     weld_tolerance: float = Field(default=0.001, ge=0, description="Coordinates this near are one particle [length]")
     strict: bool = Field(default=False, description="Anchors and loads that meet no particle are errors")
-    particles: Points = Field(default=(), description="Start positions [length]; never merged or renumbered")
+    particles: Points = Field(
+        default=np.zeros((0, 3)), description="Start positions [length]; never merged or renumbered"
+    )
     masses: Positives = Field(default=1.0, description="Mass of each particle [force time^2/length]")
     velocities: Points | None = Field(default=None, description="Start velocities [length/time], one for each particle")
     meshes: dict[str, MeshData] = Field(default={}, description="Meshes by name")
@@ -195,8 +200,10 @@ def faults(error: ValidationError) -> list[InputError]:
     for entry in error.errors(include_url=False, include_input=False):
         context = entry.get("ctx", {})
         # pydantic names the chosen class of a union in the location; a pointer has no such step
-        steps = [s for i, s in enumerate(entry["loc"]) if not (s in kinds and i == 2 and entry["loc"][0] == "forces")]
-        pointer = "".join(f"/{str(s).replace('~', '~0').replace('/', '~1')}" for s in steps) + str(context.get("at", ""))
+        place = entry["loc"]
+        steps = [str(s) for i, s in enumerate(place) if not (s in kinds and i == 2 and place[0] == "forces")]
+        pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
+        pointer += str(context.get("at", ""))
         sentence = str(context.get("sentence") or entry["msg"])
         found.append(InputError(pointer or "/", sentence))
     return found

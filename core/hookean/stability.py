@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -79,7 +81,7 @@ def _down(value: float) -> float:
     return float(np.floor(value / digits * (1 + 1e-12)) * digits)
 
 
-def _scaled_stiffness(system: System, state: State) -> tuple[object, NDArray[np.int64], Floats]:
+def _scaled_stiffness(system: System, state: State) -> tuple[Any, NDArray[np.int64], Floats]:
     import scipy.sparse as sparse
 
     free = np.flatnonzero(state.free.ravel() > 0)

@@ -110,7 +110,7 @@ class System:
         for i, (group, memory) in enumerate(zip(self.groups, state.memory, strict=True)):
             if only and group.cls.role != only:
                 continue
-            kernel = kernels.compiled(group.cls.kernel, "force")  # type: ignore[arg-type]
+            kernel = kernels.compiled(group.cls.kernel, "force")
             b = group.block
             energies[i] = kernel(state.x, v, b.indices, b.parameters, memory, f, w)
         return f, w, energies
@@ -118,7 +118,7 @@ class System:
     def tuples(self, state: State) -> tuple[Any, ...]:
         """Kernels, indices, parameters and memories as equally long tuples, for the compiled loops."""
         groups = self.groups
-        functions = kernels.pointers([g.cls.kernel for g in groups], "force")  # type: ignore[misc]
+        functions = kernels.pointers([g.cls.kernel for g in groups], "force")
         idle = len(functions) - len(groups)
         none = np.zeros((0, 1))
         return (
@@ -130,8 +130,8 @@ class System:
 
     def hooks(self) -> tuple[Any, ...]:
         """Impact and support functions of the contacts, and their parameters."""
-        impacts = kernels.pointers([g.cls.impact for g in self.contacts], "impact")  # type: ignore[misc]
-        supports = kernels.pointers([g.cls.support for g in self.contacts], "support")  # type: ignore[misc]
+        impacts = kernels.pointers([g.cls.impact for g in self.contacts], "impact")
+        supports = kernels.pointers([g.cls.support for g in self.contacts], "support")
         idle = len(impacts) - len(self.contacts)
         return impacts, supports, (*(g.block.parameters for g in self.contacts), *[np.zeros((0, 9))] * idle)
 
@@ -140,7 +140,7 @@ class System:
         carried = np.zeros_like(f)
         still = np.zeros_like(f)
         for group in self.contacts:
-            hook = kernels.compiled(group.cls.support, "support")  # type: ignore[arg-type]
+            hook = kernels.compiled(group.cls.support, "support")
             hook(state.x, still, f, carried, state.free, self.mass, 0.0, group.block.parameters)
         return carried
 
@@ -158,7 +158,7 @@ class System:
         private = np.ascontiguousarray(state.x[b.indices].reshape(-1, 3))
         index = np.arange(count * arity, dtype=np.int64).reshape(count, arity)
         f, w = np.zeros_like(private), np.zeros(len(private))
-        kernel = kernels.compiled(group.cls.kernel, "force")  # type: ignore[arg-type]
+        kernel = kernels.compiled(group.cls.kernel, "force")
         kernel(private, np.zeros_like(private), index, b.parameters, memory, f, w)
         return f.reshape(count, arity, 3)
 
@@ -172,7 +172,7 @@ class System:
             return blocks
         private = np.ascontiguousarray(state.x[b.indices].reshape(-1, 3))
         index = np.arange(count * arity, dtype=np.int64).reshape(count, arity)
-        kernel = kernels.compiled(group.cls.kernel, "force")  # type: ignore[arg-type]
+        kernel = kernels.compiled(group.cls.kernel, "force")
         still, w = np.zeros_like(private), np.zeros(len(private))
         reach = np.ptp(private.reshape(count, arity, 3), axis=1).max(axis=1) if count else np.zeros(0)
         step = 1e-6 * np.where(reach > 0, reach, 1.0)
@@ -221,9 +221,7 @@ def compile(scene: Scene) -> System:
         mass[:] = scene.masses
     held = _anchors(welded)
     carried = [_carried(welded, i) for i in range(len(scene.geometry))]
-    system = System(
-        scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded, load_count
-    )
+    system = System(scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded, load_count)
     system.drag = scene.settings.drag
     _warn(system)
     return system
@@ -245,18 +243,20 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
             block.names,
         )
         joined.setdefault(type(force), []).append((number, force, block, inputs))
-    groups, contacts = [], []
+    groups: list[Group] = []
+    contacts: list[Group] = []
     for cls, members in joined.items():
-        parts, start = [], 0
+        parts: list[Part] = []
+        start = 0
         for number, force, block, inputs in members:
             parts.append(Part(number, force, slice(start, start + len(block.indices)), inputs))
             start += len(block.indices)
+        blocks = [block for _, _, block, _ in members]
         whole = Block(
-            *(
-                np.ascontiguousarray(np.concatenate([getattr(m[2], name) for m in members]))
-                for name in ("indices", "parameters", "memory")
-            ),
-            members[0][2].names,
+            np.ascontiguousarray(np.concatenate([b.indices for b in blocks])),
+            np.ascontiguousarray(np.concatenate([b.parameters for b in blocks])),
+            np.ascontiguousarray(np.concatenate([b.memory for b in blocks])),
+            blocks[0].names,
         )
         (groups if cls.kernel is not None else contacts).append(Group(cls, whole, parts))
     return groups, contacts
@@ -288,7 +288,7 @@ def _carried(welded: Welded, number: int) -> Ints:
     found = welded.meet(points.reshape(-1, 3), f"/geometry/{number}/{name}", item.name, silent=True)
     if (found < 0).any():
         welded.report.warnings.append(
-            f"/geometry/{number}: {int((found < 0).sum())} of {len(found)} points meet no particle and stay where they are"
+            f"/geometry/{number}: {int((found < 0).sum())} of {len(found)} points meet no particle and stay in place"
         )
     return found
 
@@ -307,8 +307,9 @@ def _warn(system: System) -> None:
                 same = index[part.rows, 0] == index[part.rows, 1]
                 if same.any():
                     warnings.append(
-                        f"/forces/{part.number}: {int(same.sum())} of {len(same)} elements start and end at one particle "
-                        f"(first: element {int(np.argmax(same))}) and do nothing; lengthen them or lower weld_tolerance"
+                        f"/forces/{part.number}: {int(same.sum())} of {len(same)} elements start and end at one "
+                        f"particle (first: element {int(np.argmax(same))}) and do nothing; lengthen them or lower "
+                        "weld_tolerance"
                     )
     for anchor in system.held:
         if (anchor.free == 0).all():

@@ -36,8 +36,8 @@ class Unmatched:
             return f"{self.pointer}: no particle here, nor anywhere else in the scene"
         spot = ", ".join(f"{c:.6g}" for c in self.point)
         return (
-            f"{self.pointer}: no particle at ({spot}); the nearest is particle {self.nearest}, {self.distance:.6g} away. "
-            "Move the point onto it, or raise weld_tolerance"
+            f"{self.pointer}: no particle at ({spot}); the nearest is particle {self.nearest}, {self.distance:.6g} "
+            "away. Move the point onto it, or raise weld_tolerance"
         )
 
 
@@ -103,7 +103,7 @@ class Welded:
         pointer = self._pointer.get(id(force), "/settings/floor")
         particles = getattr(force, "particles", None)
         if particles is not None:
-            rows = particles.reshape(-1, 1) if arity == 1 and particles.ndim == 1 else particles
+            rows: Ints = particles.reshape(-1, 1) if arity == 1 and particles.ndim == 1 else particles
             if rows.ndim != 2 or rows.shape[1] != arity:
                 raise InputError(
                     f"{pointer}/particles",
@@ -113,9 +113,8 @@ class Welded:
         for name in ("points", "lines"):
             points = getattr(force, name, None)
             if points is not None:
-                rows = self._rows.get(id(force))
-                if rows is None:
-                    rows = self.meet(points, f"{pointer}/{name}", force.name)
+                known = self._rows.get(id(force))
+                rows = self.meet(points, f"{pointer}/{name}", force.name) if known is None else known
                 return self._checked(rows.reshape(len(points), -1), arity, f"{pointer}/{name}")
         mesh = getattr(force, "mesh", None)
         if mesh is not None:
@@ -139,7 +138,7 @@ class Welded:
 
     def _of_mesh(self, force: Force, mesh: str, arity: int) -> Ints:
         """Vertices of a mesh, or the edges that `force.edges` names."""
-        from hookean.discretize import meshes
+        from hookean.discretize import meshes, warpweft
 
         vertices = self.vertices(mesh)
         if arity == 1:
@@ -151,7 +150,7 @@ class Welded:
         plain = Mesh(data.vertices, own[data.faces] if len(data.faces) else data.faces)
         choice = getattr(force, "edges", "all")
         if choice in ("warp", "weft"):
-            pairs = meshes.warp_weft(plain)[choice == "weft"]
+            pairs = warpweft.warp_weft(plain)[choice == "weft"]
         else:
             pairs = {"all": meshes.edges, "naked": meshes.naked_edges, "diagonals": meshes.diagonals}[choice](plain)
         return np.ascontiguousarray(vertices[np.asarray(pairs, dtype=np.int64).reshape(-1, 2)])

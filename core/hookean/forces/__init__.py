@@ -17,4 +17,4 @@ for _found in pkgutil.iter_modules(__path__):
             KINDS[get_args(_value.model_fields["kind"].annotation)[0]] = _value
 
 globals().update({cls.__name__: cls for cls in KINDS.values()})
-__all__ = ["KINDS", "Block", "Force", "Places", *sorted(cls.__name__ for cls in KINDS.values())]  # noqa: PLE0604
+__all__ = ["KINDS", "Block", "Force", "Places", *sorted(cls.__name__ for cls in KINDS.values())]

@@ -139,8 +139,10 @@ class Floor(Force):
     """
 
     kind: Literal["floor"] = "floor"
-    point: Vector = Field(default=(0.0, 0.0, 0.0), description="A point of the plane [length]")
-    normal: Vector = Field(default=(0.0, 0.0, 1.0), description="Direction to the free side; its size does not count")
+    point: Vector = Field(default=np.zeros(3), description="A point of the plane [length]")
+    normal: Vector = Field(
+        default=np.array([0.0, 0.0, 1.0]), description="Direction to the free side; only its direction counts"
+    )
     restitution: float = Field(default=0.7, ge=0, le=1, description="Part of the speed kept in a rebound [-]")
     static_friction: NonNegatives = Field(default=0.6, description="mu_s [-]: holds up to mu_s N")
     kinetic_friction: NonNegatives = Field(default=0.5, description="mu_k [-]: slides against mu_k N")

@@ -21,13 +21,15 @@ class SelfWeight(Force):
     """
 
     kind: Literal["self_weight"] = "self_weight"
-    particles: IndexRows | None = Field(default=None, description="Particles, or pairs of them with a weight per length")
+    particles: IndexRows | None = Field(default=None, description="Particles, or pairs with a weight per length")
     points: Points | None = Field(default=None, description="Coordinates of particles")
     lines: Lines | None = Field(default=None, description="Straight lines, for a weight per length")
     mesh: str | None = Field(default=None, description="Name of a mesh: its vertices, or its edges")
     total: float | None = Field(default=None, description="Total weight [force], shared equally")
     per_length: Reals | None = Field(default=None, description="Weight per length [force/length]")
-    direction: Vector = Field(default=(0.0, 0.0, -1.0), description="Direction of gravity; its size does not count")
+    direction: Vector = Field(
+        default=np.array([0.0, 0.0, -1.0]), description="Direction of gravity; its size does not count"
+    )
 
     formula: ClassVar[str] = "E = -W d·x"
     role: ClassVar[Literal["internal", "load", "support"]] = "load"

@@ -39,7 +39,7 @@ class Method(Solver):
                 return f"{group.cls.__name__} is not linear; force_density needs springs of rest length 0 alone"
             p = group.block.parameters
             if (p[:, 2] * p[:, 3] != 0).any() or (p[:, 4:] != 0).any():
-                return "a spring has a rest length, a cutoff or plasticity; force_density needs rest length 0 everywhere"
+                return "a spring has a rest length, a cutoff or plasticity; force_density needs rest length 0 alone"
             linear = linear or bool(len(p))
         return "" if linear else "there is no spring"
 

@@ -66,9 +66,7 @@ def _energy_and_left(system: System, state: State) -> tuple[float, Floats]:
     return float(energies.sum()), left
 
 
-def _search(
-    system: System, state: State, step: Floats, energy: float, left: Floats
-) -> tuple[float, float, Floats]:
+def _search(system: System, state: State, step: Floats, energy: float, left: Floats) -> tuple[float, float, Floats]:
     """Shorten the step until energy falls enough, or the largest force halves; zero length if nothing helps."""
     start = state.x.copy()
     slope = float((left * step).sum())
@@ -122,7 +120,8 @@ class Pattern:
             if len(take):
                 values.append(system.stiffness_blocks(group, state, memory).ravel()[take])
         values.append(np.zeros(len(self.dofs)))
-        return np.bincount(self.place, np.concatenate(values), self.count)
+        summed: Floats = np.bincount(self.place, np.concatenate(values), self.count).astype(np.float64)
+        return summed
 
     def step(
         self, system: System, state: State, left: Floats, shift: float, unit: float

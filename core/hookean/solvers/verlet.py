@@ -93,4 +93,3 @@ class Method(Solver):
         state.iteration += count
         state.time += count * step
         return count
-
