@@ -61,6 +61,7 @@ __all__ = [
 ]
 
 StrPath = str | os.PathLike[str]
+NEWEST_WRITTEN = 80  # Rhino 8, the newest archive version rhino3dm writes
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,8 +143,12 @@ class _Cut:
 
 
 def _splice(loaded: Loaded, target: StrPath, additions: Additions) -> Written:
-    cut = _cut(loaded)
     model, archive = loaded.model, loaded.archive
+    if archive.version > NEWEST_WRITTEN:
+        raise InputError(
+            model.name, f"a .3dm file of version {archive.version}, newer than Rhino 8; save it as Rhino 8."
+        )
+    cut = _cut(loaded)
     kept = model.layers[: len(model.layers) - cut.layers]
     planned = plan(additions, kept, _taken(loaded, cut))
     data = splice(
@@ -210,6 +215,10 @@ def _round_trip(loaded: Loaded, target: StrPath, additions: Additions) -> Writte
     planned = plan(additions, model.layers, taken)
     add_layers(file, planned, [layer.id for layer in model.layers])
     add_objects(file, planned)
+    # every writing adds a line on the program to the comments at the start of the file
+    file.StartSectionComments = "".join(
+        f"{line}\n" for line in dict.fromkeys(file.StartSectionComments.splitlines())
+    )
     data = written(file, model.version)
     put(target, data, lambda back: _check_counts(back, loaded, len(dropped), planned))
     return Written(planned.ids, len(dropped), (*model.warnings, *notes, *planned.notes))
