@@ -1,0 +1,147 @@
+"""Cases for the laws: every force class by its own example, and some variants with cutoffs and yielding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from hookean import kernels
+from hookean.forces import KINDS, Force
+from hookean.forces.base import PLACES, Block
+from hookean.forces.springs import Springs
+from hookean.scene import Scene
+from hookean.system import System, compile
+
+
+@dataclass(frozen=True)
+class Case:
+    """One force compiled alone: what it declares, its functions and arrays, and the positions it was made at.
+
+    `plain` runs the kernels as the Python functions they are; toys of the negative controls do.
+    """
+
+    name: str
+    block: Block
+    x: np.ndarray
+    kernel: Any
+    hessian: Any
+    end_of_step: Any
+    role: str
+    conservative: bool
+    damped: bool
+    remembers: bool
+    plain: bool = False
+
+    def run(self, function: Any, role: str) -> Any:
+        """The function as compiled machine code, or as Python."""
+        return function if self.plain else kernels.compiled(function, role)
+
+    def force(
+        self, x: np.ndarray, v: np.ndarray | None = None, memory: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, float]:
+        """Forces (n, 3), lumped stiffness (n,), energy."""
+        f, w = np.zeros_like(x), np.zeros(len(x))
+        v = np.zeros_like(x) if v is None else v
+        memory = self.block.memory if memory is None else memory
+        energy = self.run(self.kernel, "force")(x, v, self.block.indices, self.block.parameters, memory, f, w)
+        return f, w, float(energy)
+
+    def noted(self, x: np.ndarray, memory: np.ndarray | None = None) -> np.ndarray:
+        """The memory after a step that ended at `x`."""
+        memory = (self.block.memory if memory is None else memory).copy()
+        if self.end_of_step is not None:
+            self.run(self.end_of_step, "remember")(x, self.block.indices, self.block.parameters, memory)
+        return memory
+
+    def moved(self, rng: np.random.Generator, amount: float = 0.15) -> np.ndarray:
+        """Positions up to `amount` x the shortest distance within an element away, on every axis.
+
+        With amount <= 0.15 no distance changes by more than 0.52 of itself: cutoffs below 0.4 or above 1.6 of a
+        start length are never crossed.
+        """
+        return self.x + amount * self.spacing * rng.uniform(-1.0, 1.0, self.x.shape)
+
+    def past(self, rng: np.random.Generator) -> np.ndarray:
+        """A memory that some earlier motion left."""
+        return self.noted(self.moved(rng), self.noted(self.moved(rng)))
+
+    @property
+    def spacing(self) -> float:
+        """Shortest distance between two particles of one element; 1 where elements have one."""
+        corners = self.x[self.block.indices]
+        apart = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=3)
+        apart = apart[apart > 0]
+        return float(apart.min()) if len(apart) else 1.0
+
+    def scales(self, x: np.ndarray, f: np.ndarray, w: np.ndarray) -> tuple[float, float]:
+        """What rounding is measured by: a force and a length."""
+        reach = float(np.ptp(x, axis=0).max()) or 1.0
+        return float(np.abs(f).max() + w.max() * reach) or 1.0, reach
+
+
+def scene_of(force: Force, x: np.ndarray, **more: Any) -> Scene:
+    """A scene of one force: on given particles, or on a mesh named as the force names it."""
+    mesh = getattr(force, "mesh", None)
+    if mesh is not None:
+        vertices = {"vertices": x, "faces": type(force).example_faces}  # type: ignore[attr-defined]
+        return Scene(particles=x, meshes={mesh: vertices}, forces=(force,), **more)
+    return Scene(particles=x, forces=(force,), **more)
+
+
+def case_of(name: str, force: Force, x: np.ndarray) -> Case:
+    """A force compiled alone."""
+    cls, system = type(force), compile(scene_of(force, x))
+    (group,) = system.groups or system.contacts
+    return Case(
+        name, group.block, system.x, cls.kernel, cls.hessian, cls.end_of_step,
+        cls.role, cls.conservative, cls.damped, cls.remembers,
+    )  # fmt: skip
+
+
+def _variants() -> list[Case]:
+    """Springs on their cutoffs, yielding, slack, and of all kinds in one block."""
+    _, x = Springs.example()
+    pairs = np.array([[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]])
+    start = np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1)
+    off = Springs(
+        particles=pairs, stiffness=[1.0, 10.0, 100.0, 1e3, 1e4, 50.0], rest_factor=[0.9, 1.0, 1.1, 0.5, 1.3, 1.0],
+        upper_cutoff=start * [0.3, 2.0, 0.0, 0.3, 2.0, 0.0], lower_cutoff=start * [0.0, 0.3, 2.0, 0.2, 0.3, 0.0],
+    )  # fmt: skip
+    yielding = Springs(particles=pairs, stiffness=[1.0, 10.0, 100.0, 300.0, 7.0, 50.0], plasticity=[0.05] * 5 + [0.0])
+    far = Springs(particles=pairs, plasticity=0.03, rest_factor=0.7, upper_cutoff=start * 0.35, damping=3.0)
+    linear = Springs(particles=pairs, rest_length=0.0, damping=0.0)
+    named = {"cut off": off, "yielding": yielding, "cut off and yielded": far, "rest length 0": linear}
+    return [case_of(f"springs, {name}", force, x) for name, force in named.items()]
+
+
+KERNELS = [case_of(kind, *cls.example()) for kind, cls in KINDS.items() if cls.kernel is not None] + _variants()
+"""All cases with a kernel."""
+
+
+def resting() -> list[Case]:
+    """Internal forces with a rest value, at rest where they start: given a place and nothing else."""
+    found = []
+    for kind, cls in KINDS.items():
+        rests = [n for n, f in cls.model_fields.items() if n.startswith("rest") and f.default is None]
+        if cls.kernel is not None and cls.role == "internal" and rests:
+            force, x = cls.example()
+            place = {n: getattr(force, n) for n in PLACES if getattr(force, n, None) is not None}
+            found.append(case_of(kind, cls(**place), x))
+    return found
+
+
+def replaced(case: Case, **changes: Any) -> Case:
+    """A case with other functions or another declaration."""
+    return replace(case, **changes)
+
+
+def example_system(kind: str, **more: Any) -> System:
+    """The example of a kind as a system."""
+    force, x = KINDS[kind].example()
+    return compile(scene_of(force, x, **more))
+
+
+def identity(value: Any) -> str:
+    """For the names of parametrized tests."""
+    return value.name if isinstance(value, Case) else str(value)

@@ -1,0 +1,306 @@
+"""The laws every force is held to, as functions of a case; the tests run them on forces, and on wrong ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .cases import Case
+
+EPS = float(np.finfo(float).eps)
+
+
+def force_is_the_gradient(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
+    """f = -dE/dx by central differences, to 1e-6 of the largest force.
+
+    Step h = 1e-5 of the spacing: truncation h^2 E'''/6 ~ 1e-10 relative, rounding eps E / h ~ 1e-11 k spacing.
+    """
+    memory, x = case.past(rng), case.moved(rng, amount)
+    f, _, _ = case.force(x, None, memory)
+    h = 1e-5 * case.spacing
+    slope = np.zeros_like(x)
+    for spot in np.ndindex(*x.shape):
+        sides = []
+        for sign in (1.0, -1.0):
+            shifted = x.copy()
+            shifted[spot] += sign * h
+            sides.append(case.force(shifted, None, memory)[2])
+        slope[spot] = (sides[0] - sides[1]) / (2.0 * h)
+    assert np.abs(f + slope).max() <= 1e-6 * np.abs(f).max()
+
+
+def nothing_from_outside(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
+    """Internal: sum f = 0 and sum x cross f = 0, to 1e-12 of the sizes summed, damping and memory included."""
+    memory, x = case.past(rng), case.moved(rng, amount)
+    f, w, _ = case.force(x, rng.normal(size=x.shape), memory)
+    force, reach = case.scales(x, f, w)
+    assert np.abs(f.sum(axis=0)).max() <= 1e-12 * force
+    moment = np.cross(x - x.mean(axis=0), f).sum(axis=0)
+    assert np.abs(moment).max() <= 1e-12 * force * reach
+
+
+def something_from_outside(case: Case, rng: np.random.Generator) -> None:
+    """Loads and supports: a resultant that is not zero somewhere (else the force is internal and must say so)."""
+    x = case.moved(rng)
+    f, w, _ = case.force(x)
+    force, reach = case.scales(x, f, w)
+    moment = np.cross(x, f).sum(axis=0)
+    assert np.abs(f.sum(axis=0)).max() > 1e-9 * force or np.abs(moment).max() > 1e-9 * force * reach
+
+
+def rigid_motion_changes_nothing(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
+    """E(R x + t) = E(x) and f(R x + t) = R f(x), to 1e-10; a rigid velocity field is not damped."""
+    memory, x = case.past(rng), case.moved(rng, amount)
+    v = rng.normal(size=x.shape)
+    rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    rotation *= np.sign(np.linalg.det(rotation))
+    turned = np.ascontiguousarray(x @ rotation.T + rng.normal(size=3) * case.spacing)
+    f, w, energy = case.force(x, v, memory)
+    g, u, same = case.force(turned, np.ascontiguousarray(v @ rotation.T), memory)
+    force, reach = case.scales(x, f, w)
+    assert np.abs(g - f @ rotation.T).max() <= 1e-10 * force
+    assert abs(energy - same) <= 1e-10 * force * reach
+    assert np.abs(u - w).max() <= 1e-10 * w.max()
+    rigid = rng.normal(size=3) + np.cross(rng.normal(size=3), x)
+    still, _, _ = case.force(x, None, memory)
+    assert np.abs(case.force(x, rigid, memory)[0] - still).max() <= 1e-10 * force
+
+
+def zero_at_rest(case: Case) -> None:
+    """Started at its rest values a force is zero and so is its energy, to 1e-12 of stiffness x size."""
+    f, w, energy = case.force(case.x)
+    force, reach = case.scales(case.x, f, w)
+    assert np.abs(f).max() <= 1e-12 * w.max() * reach
+    assert abs(energy) <= 1e-12 * force * reach
+    shaken = case.moved(np.random.default_rng(0), 0.05)
+    assert np.abs(case.force(shaken)[0]).max() > 1e-6 * w.max() * case.spacing * 0.05
+
+
+def degenerate_stays_finite(case: Case, x: np.ndarray, rng: np.random.Generator) -> None:
+    """Whatever the positions: forces, stiffness, energy, tangent and memory are finite."""
+    v = rng.normal(size=x.shape)
+    memory = case.past(rng)
+    f, w, energy = case.force(x, v, memory)
+    assert np.isfinite(f).all() and np.isfinite(w).all() and np.isfinite(energy)
+    assert (w >= 0).all()
+    assert np.isfinite(case.noted(x, memory)).all()
+    if case.hessian is not None:
+        assert np.isfinite(_blocks(case, x, memory)).all()
+
+
+def order_of_elements_does_not_matter(case: Case, rng: np.random.Generator) -> None:
+    """Elements in another order: the same sums, to rounding (4 eps x the sizes summed)."""
+    memory, x = case.past(rng), case.moved(rng)
+    v = rng.normal(size=x.shape)
+    order = rng.permutation(len(case.block.indices))
+    b = case.block
+    other = type(b)(*(np.ascontiguousarray(a[order]) for a in (b.indices, b.parameters, b.memory)), b.names)
+    f, w, energy = case.force(x, v, memory)
+    g, u, same = type(case)(**{**vars(case), "block": other}).force(x, v, np.ascontiguousarray(memory[order]))
+    force, reach = case.scales(x, f, w)
+    tolerance = 4.0 * EPS * (1 + len(order))
+    assert np.abs(f - g).max() <= tolerance * force
+    assert np.abs(w - u).max() <= tolerance * w.max()
+    assert abs(energy - same) <= tolerance * (force * reach + abs(energy))
+
+
+def names_of_particles_do_not_matter(case: Case, rng: np.random.Generator) -> None:
+    """Particles renumbered: the same forces, to the bit."""
+    memory, x = case.past(rng), case.moved(rng)
+    v = rng.normal(size=x.shape)
+    number = rng.permutation(len(x))
+    b = case.block
+    other = type(b)(np.ascontiguousarray(number[b.indices]), b.parameters, b.memory, b.names)
+    f, w, energy = case.force(x, v, memory)
+    back = np.argsort(number)
+    g, u, same = type(case)(**{**vars(case), "block": other}).force(
+        np.ascontiguousarray(x[back]), np.ascontiguousarray(v[back]), memory
+    )
+    assert (g[number] == f).all() and (u[number] == w).all() and same == energy
+
+
+def lumped_stiffness_bounds_the_tangent(case: Case, rng: np.random.Generator, amount: float) -> None:
+    """Largest eigenvalue of W^-1/2 K W^-1/2 <= 1 + 1e-9 (1e-7 where K comes from differences of the force).
+
+    Gershgorin's argument, on which relaxation's unit step stands: diag(w) - K >= 0. Barnes 1999, section 3.
+    """
+    x = case.moved(rng, amount)
+    _, w, _ = case.force(x)
+    stiff = w > 0
+    tangent = _assembled(case, _blocks(case, x, case.block.memory))
+    weightless = np.repeat(~stiff, 3)
+    # a particle without stiffness feels none
+    assert np.abs(tangent[weightless]).max(initial=0.0) <= 1e-9
+    scale = np.where(weightless, 0.0, 1.0 / np.sqrt(np.repeat(np.where(stiff, w, 1.0), 3)))
+    top = np.linalg.eigvalsh(scale[:, None] * tangent * scale).max()
+    assert top <= 1.0 + (1e-9 if case.hessian is not None else 1e-7)
+
+
+def tangent_is_the_gradient_of_the_force(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
+    """The exact Hessian equals central differences of the force, element by element to 1e-6, and is symmetric.
+
+    Where a yield limit lies within the step of the differences the tangent jumps; such positions say nothing.
+    """
+    memory, x = case.past(rng), case.moved(rng, amount)
+    exact, close = _blocks(case, x, memory), _differences(case, x, memory)
+    for block, difference, jumps in zip(exact, close, _kinked(case, x, memory), strict=True):
+        assert np.abs(block - block.T).max() <= 4 * EPS * np.abs(block).max()
+        assert jumps or np.abs(block - difference).max() <= 1e-6 * np.abs(difference).max()
+
+
+def damping_is_as_declared(case: Case, rng: np.random.Generator) -> None:
+    """A damped force changes with v, linearly, and takes energy: v . (f(x, v) - f(x, 0)) <= 0; others do not change."""
+    memory, x = case.past(rng), case.moved(rng)
+    v = rng.normal(size=x.shape)
+    still, w, energy = case.force(x, None, memory)
+    moving, w_moving, energy_moving = case.force(x, v, memory)
+    assert energy == energy_moving and (w == w_moving).all()
+    if not case.damped:
+        assert (still == moving).all()
+        return
+    scale, _ = case.scales(x, still, w)
+    drag = moving - still
+    assert float((v * drag).sum()) <= 1e-12 * scale * np.abs(v).max()
+    double = case.force(x, 2.0 * v, memory)[0] - still
+    assert np.abs(double - 2.0 * drag).max() <= 1e-12 * scale
+
+
+def memory_is_as_declared(case: Case, rng: np.random.Generator) -> None:
+    """Kernels never write memory; the end of a step does, where declared, and noting the same shape twice is idle."""
+    x = case.moved(rng)
+    if not case.remembers:
+        assert case.end_of_step is None and case.block.memory.shape[1] == 0
+        return
+    memory = case.noted(x)
+    assert memory.shape[1] > 0
+    again = case.noted(x, memory)
+    assert np.abs(again - memory).max() <= 8 * EPS * max(np.abs(memory).max(), case.spacing)
+
+
+def kernels_only_add(case: Case, rng: np.random.Generator) -> None:
+    """A kernel adds to f and w and writes nothing else."""
+    x, memory = case.moved(rng), case.past(rng)
+    v, f, w = rng.normal(size=x.shape), rng.normal(size=x.shape), rng.uniform(1.0, 2.0, len(x))
+    inputs = [x, v, case.block.indices, case.block.parameters, memory]
+    before = [a.copy() for a in (*inputs, f, w)]
+    energy = case.run(case.kernel, "force")(*inputs, f, w)
+    for array, copy in zip(inputs, before, strict=False):
+        assert (array == copy).all()
+    alone, stiffness, same = case.force(x, v, memory)
+    scale, _ = case.scales(x, alone, stiffness)
+    assert np.abs(f - before[5] - alone).max() <= 1e-13 * (scale + 10.0)
+    assert np.abs(w - before[6] - stiffness).max() <= 1e-13 * (stiffness.max() + 10.0)
+    assert energy == same
+
+
+class Guarded(np.ndarray):
+    """An array that also refuses negative indices."""
+
+    def __getitem__(self, key: Any) -> Any:
+        self._check(key)
+        return super().__getitem__(key)
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        self._check(key)
+        super().__setitem__(key, value)
+
+    @staticmethod
+    def _check(key: Any) -> None:
+        for part in key if isinstance(key, tuple) else (key,):
+            if isinstance(part, int | np.integer) and part < 0:
+                raise IndexError(f"index {part}")
+
+
+def guarded(array: np.ndarray) -> np.ndarray:
+    """A copy whose every index is checked."""
+    return array.copy().view(Guarded)
+
+
+def stays_inside_its_arrays(case: Case, x: np.ndarray, rng: np.random.Generator) -> None:
+    """Run as plain Python, where every index is checked, a kernel gives what machine code gives (4 ulp of the sums)."""
+    memory = case.past(rng)
+    v = rng.normal(size=x.shape)
+    f, w = guarded(np.zeros_like(x)), guarded(np.zeros(len(x)))
+    inputs = [guarded(a) for a in (x, v, case.block.indices, case.block.parameters, memory)]
+    with np.errstate(all="ignore"):
+        energy = float(case.kernel(*inputs, f, w))
+    g, u, same = case.force(x, v, memory)
+    force, reach = case.scales(x, g, u)
+    assert np.abs(np.asarray(f) - g).max() <= 4 * EPS * force
+    assert np.abs(np.asarray(w) - u).max() <= 4 * EPS * u.max()
+    assert abs(energy - same) <= 4 * EPS * (force * reach + abs(same))
+    if case.hessian is not None:
+        blocks = guarded(np.zeros_like(_blocks(case, x, memory)))
+        with np.errstate(all="ignore"):
+            case.hessian(inputs[0], *inputs[2:], blocks)
+        exact = _blocks(case, x, memory)
+        assert np.abs(np.asarray(blocks) - exact).max() <= 16 * EPS * np.abs(exact).max()
+    if case.end_of_step is not None:
+        with np.errstate(all="ignore"):
+            case.end_of_step(inputs[0], *inputs[2:])
+        assert np.abs(np.asarray(inputs[4]) - case.noted(x, memory)).max() <= 4 * EPS * reach
+
+
+def _blocks(case: Case, x: np.ndarray, memory: np.ndarray) -> np.ndarray:
+    """Element tangents: from the force's Hessian, or by differences of its forces."""
+    if case.hessian is None:
+        return _differences(case, x, memory)
+    count, arity = case.block.indices.shape
+    blocks = np.zeros((count, 3 * arity, 3 * arity))
+    case.run(case.hessian, "hessian")(x, case.block.indices, case.block.parameters, memory, blocks)
+    return blocks
+
+
+def _differences(case: Case, x: np.ndarray, memory: np.ndarray) -> np.ndarray:
+    """Element tangents by fourth-order central differences: every element on particles of its own."""
+    count, arity = case.block.indices.shape
+    alone, private = _apart(case, x)
+    h = 1e-5 * case.spacing
+    blocks = np.zeros((count, 3 * arity, 3 * arity))
+    for i in range(arity):
+        for c in range(3):
+            for factor, weight in ((1.0, -2.0 / 3.0), (2.0, 1.0 / 12.0)):
+                for sign in (1.0, -1.0):
+                    shifted = private.copy()
+                    shifted[i::arity, c] += sign * factor * h
+                    f = alone.force(shifted, None, memory)[0]
+                    blocks[:, :, 3 * i + c] += sign * weight / h * f.reshape(count, -1)
+    return blocks
+
+
+def _kinked(case: Case, x: np.ndarray, memory: np.ndarray) -> np.ndarray:
+    """Elements whose force changes slope within the step of `_differences`: by more than 1e-3, not by h/l = 1e-5."""
+    count, arity = case.block.indices.shape
+    alone, private = _apart(case, x)
+    h, middle = 2e-5 * case.spacing, alone.force(private, None, memory)[0]
+    bend, slope = np.zeros(count), np.zeros(count)
+    for i in range(arity):
+        for c in range(3):
+            sides = []
+            for sign in (1.0, -1.0):
+                shifted = private.copy()
+                shifted[i::arity, c] += sign * h
+                sides.append(alone.force(shifted, None, memory)[0])
+            second, first = sides[0] + sides[1] - 2.0 * middle, sides[0] - sides[1]
+            bend = np.maximum(bend, np.abs(second.reshape(count, -1)).max(axis=1))
+            slope = np.maximum(slope, np.abs(first.reshape(count, -1)).max(axis=1))
+    return bend > 1e-3 * slope
+
+
+def _apart(case: Case, x: np.ndarray) -> tuple[Case, np.ndarray]:
+    """The same elements, each on particles of its own, and their positions."""
+    count, arity = case.block.indices.shape
+    b = case.block
+    own = type(b)(np.arange(count * arity).reshape(count, arity), b.parameters, b.memory, b.names)
+    return type(case)(**{**vars(case), "block": own}), np.ascontiguousarray(x[b.indices].reshape(-1, 3))
+
+
+def _assembled(case: Case, blocks: np.ndarray) -> np.ndarray:
+    """The tangent of the whole case, dense."""
+    whole = np.zeros((case.x.size, case.x.size))
+    for index, block in zip(case.block.indices, blocks, strict=True):
+        degrees = (3 * index[:, None] + np.arange(3)).ravel()
+        # an element may name a particle twice
+        np.add.at(whole, np.ix_(degrees, degrees), block)
+    return whole
