@@ -18,10 +18,10 @@ from hookean.mesh import Mesh
 
 rhino: Any = _rhino3dm
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "rhino"
-FILES = sorted(DATA.glob("*.3dm"))
+FILES: list[Path | None] = [*sorted(DATA.glob("*.3dm"))] or [None]
 
 
-@pytest.fixture(params=[*FILES] or [None], ids=lambda path: path.stem if path else "none")
+@pytest.fixture(params=FILES, ids=lambda path: path.stem if path else "none")
 def real(request: pytest.FixtureRequest) -> Path:
     """Each of the real files."""
     if request.param is None:
@@ -78,9 +78,7 @@ def sample() -> Any:
 @pytest.fixture
 def additions() -> Additions:
     """One object of every kind, on layers given and not given."""
-    square = Mesh(
-        np.array([[0, 0, 0], [1 / 3, 0, 0], [1, 1, 0], [0, 1, 0.1]]), np.array([[0, 1, 2, 2], [0, 2, 3, 3]])
-    )
+    square = Mesh(np.array([[0, 0, 0], [1 / 3, 0, 0], [1, 1, 0], [0, 1, 0.1]]), np.array([[0, 1, 2, 2], [0, 2, 3, 3]]))
     return Additions(
         layers=(NewLayer("net", colour=(200, 0, 0, 255)), NewLayer("warp", "net", (0, 200, 0, 255))),
         objects=(
@@ -97,6 +95,7 @@ def additions() -> Additions:
 @pytest.fixture
 def unknown() -> Callable[[bytes], tuple[bytes, uuid.UUID]]:
     """Gives the first object of some .3dm bytes a class nobody knows, checksum and all."""
+
     def change(data: bytes) -> tuple[bytes, uuid.UUID]:
         record = scan(data).objects[0]
         odd = uuid.UUID("0dd0dd0d-1234-4abc-8def-0123456789ab")

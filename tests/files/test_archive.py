@@ -70,7 +70,7 @@ def test_cuts_at_table_borders_are_refused(real: Path) -> None:
 
 def test_flipped_bytes_give_an_archive_or_a_sentence(real: Path) -> None:
     data, chance = real.read_bytes(), random.Random(7)
-    outcomes = set()
+    outcomes: set[type] = set()
     heads = [t.start + k for t in scan(data).tables for k in range(12)]
     for _ in range(120):
         damaged = bytearray(data)

@@ -11,6 +11,7 @@ import struct
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 from uuid import UUID
 
 from hookean.errors import InputError
@@ -40,8 +41,7 @@ _RECORD_END = 0x8200007F
 _MAX_TOP_LEVEL = 4096  # a file has about 20: one per table and one per plug-in
 
 
-@dataclass(frozen=True, slots=True)
-class Chunk:
+class Chunk(NamedTuple):
     """One chunk: bytes `start:end` in the file, its body `body:end`; `value` is a short chunk's number."""
 
     typecode: int

@@ -216,9 +216,7 @@ def _round_trip(loaded: Loaded, target: StrPath, additions: Additions) -> Writte
     add_layers(file, planned, [layer.id for layer in model.layers])
     add_objects(file, planned)
     # every writing adds a line on the program to the comments at the start of the file
-    file.StartSectionComments = "".join(
-        f"{line}\n" for line in dict.fromkeys(file.StartSectionComments.splitlines())
-    )
+    file.StartSectionComments = "".join(f"{line}\n" for line in dict.fromkeys(file.StartSectionComments.splitlines()))
     data = written(file, model.version)
     put(target, data, lambda back: _check_counts(back, loaded, len(dropped), planned))
     return Written(planned.ids, len(dropped), (*model.warnings, *notes, *planned.notes))
