@@ -76,8 +76,8 @@ def warning(system: System, state: State) -> str:
 
 
 def _down(value: float) -> float:
-    """Rounded down to three digits, so that the number told is itself safe."""
-    digits = 10.0 ** (np.floor(np.log10(value)) - 2)
+    """Rounded down to four digits, so that the number told is itself safe."""
+    digits = 10.0 ** (np.floor(np.log10(value)) - 3)
     return float(np.floor(value / digits * (1 + 1e-12)) * digits)
 
 

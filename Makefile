@@ -1,0 +1,39 @@
+# Thin on purpose: each line is a command a person could type. Windows: the same lines are in the README.
+PYTHON ?= python3
+PORT ?= 8765
+BIN = .venv/bin
+EXAMPLE = gh_examples/9.24-membrane
+
+.PHONY: run test soak bench lint clean
+
+run: .venv/run
+	@mkdir -p out
+	$(BIN)/hookean relax $(EXAMPLE)/model.3dm --recipe $(EXAMPLE)/recipe.toml -o out/membrane.3dm \
+		--picture out/membrane.png --csv out/membrane.csv
+	@$(BIN)/hookean serve --port $(PORT)
+
+test: .venv/test lint
+	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+soak: .venv/test
+	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+
+bench: .venv/test
+	$(BIN)/python benchmarks/run.py
+
+lint: .venv/test
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+
+.venv/run: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	@touch $@
+
+.venv/test: .venv/run
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@touch $@
+
+clean:
+	rm -rf .venv out build dist

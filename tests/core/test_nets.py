@@ -1,0 +1,83 @@
+"""Nets against closed forms: force-density nets, and the linear membrane."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hookean import Scene, relax
+
+
+def net(count: int, side: float, height, *, loads=None, stiffness: float = 1.0, solver: str = "auto") -> Scene:
+    """A square net of `count` x `count` cells of rest length 0, rim held at z = height(x, y)."""
+    line = np.linspace(-side / 2, side / 2, count + 1)
+    x, y = np.meshgrid(line, line, indexing="ij")
+    number = np.arange((count + 1) ** 2).reshape(count + 1, count + 1)
+    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    points[rim, 2] = height(points[rim, 0], points[rim, 1])
+    edges = np.concatenate(
+        [
+            np.stack([number[:-1].ravel(), number[1:].ravel()], axis=1),
+            np.stack([number[:, :-1].ravel(), number[:, 1:].ravel()], axis=1),
+        ]
+    )
+    forces = [{"kind": "springs", "particles": edges, "stiffness": stiffness, "rest_length": 0}]
+    if loads is not None:
+        forces.append({"kind": "unary", "particles": np.arange(len(points)), "vector": loads})
+    settings = {"tolerance": 1e-12, "solver": solver}
+    return Scene(particles=points, forces=forces, anchors=[{"particles": rim}], settings=settings)
+
+
+def surface_area(points: np.ndarray, count: int, refine: int = 1) -> float:
+    """Area of the net's surface, each quad as the mean of its two triangulations."""
+    grid = points.reshape(count + 1, count + 1, 3)
+    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
+
+    def triangle(p, q, r):
+        return 0.5 * np.linalg.norm(np.cross(q - p, r - p), axis=-1)
+
+    return 0.5 * float((triangle(a, b, c) + triangle(a, c, d) + triangle(a, b, d) + triangle(b, c, d)).sum())
+
+
+@pytest.mark.parametrize("solver", ["auto", "relaxation"])
+def test_force_density_net_on_a_hypar_frame_is_the_hypar(solver: str):
+    """Equal q, rim z = x y on 2 x 2: x y is discretely harmonic, so z = x y to round-off; its area is 5.1232,
+    0.12 % above the minimal surface's 5.117046."""
+    result = relax(net(16, 2.0, lambda x, y: x * y, solver=solver))
+    x, y, z = result.particles.T
+    assert result.converged
+    assert z == pytest.approx(x * y, abs=1e-10)
+    coarse, fine = (surface_area(relax(net(n, 2.0, lambda x, y: x * y)).particles, n) for n in (32, 64))
+    assert fine + (fine - coarse) / 3.0 == pytest.approx(5.1232, abs=5e-5)
+    assert fine > 5.117046
+
+
+def test_force_density_net_on_scherks_frame_differs_from_the_film():
+    """Rim z = ln(cos y / cos x) on [-1, 1]^2: z(.5, 0) tends to 0.1560, not to the film's 0.1306."""
+    heights = []
+    for count in (16, 32, 64):
+        points = relax(net(count, 2.0, lambda x, y: np.log(np.cos(y) / np.cos(x)))).particles
+        heights.append(points.reshape(count + 1, count + 1, 3)[3 * count // 4, count // 2, 2])
+    limit = heights[2] + (heights[2] - heights[1]) / 3.0
+    assert limit == pytest.approx(0.1560, abs=5e-5)
+
+
+@pytest.mark.parametrize(("count", "coefficient"), [(4, 0.0703125), (16, 0.07344577)])
+def test_tensioned_net_under_uniform_pressure(count: int, coefficient: float):
+    """w = c p a^2 / T in the middle; n 4: c = 0.0703125 exactly, n 16: 0.07344577, continuum 0.07367135."""
+    side, pressure, tension = 3.0, 2.0, 50.0
+    load = [0.0, 0.0, pressure * (side / count) ** 2]
+    result = relax(net(count, side, lambda x, y: 0 * x, loads=load, stiffness=tension))
+    middle = result.particles[((count + 1) ** 2) // 2, 2]
+    assert middle == pytest.approx(coefficient * pressure * side**2 / tension, rel=1e-7)
+
+
+def test_pressed_net_approaches_the_continuum_with_order_two():
+    """c tends to 0.07367135 with slope 2."""
+    errors = []
+    for count in (8, 16, 32, 64):
+        result = relax(net(count, 1.0, lambda x, y: 0 * x, loads=[0, 0, 1.0 / count**2]))
+        errors.append(abs(result.particles[((count + 1) ** 2) // 2, 2] - 0.07367135))
+    slopes = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert slopes == pytest.approx(np.full(3, 2.0), abs=0.15)

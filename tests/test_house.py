@@ -1,0 +1,64 @@
+"""The house: who may import whom, how large files may grow, what the project must carry."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCES = sorted(p for top in ("core", "server", "components") for p in (ROOT / top).rglob("*.py"))
+
+
+def imports(path: Path) -> set[str]:
+    """Top-level names of everything a file imports, at any depth."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names.update(alias.name.split(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names.add(node.module.split(".")[0])
+    return names
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_imports_point_one_way(path: Path):
+    """The core knows no HTTP and no server; the server is transport; components know only their client."""
+    found, top = imports(path), path.relative_to(ROOT).parts[0]
+    if top == "core":
+        serving = {"hookean_server"} if path.name == "serve.py" or path.name == "cli.py" else set()
+        assert not found & ({"fastapi", "starlette", "uvicorn", "hookean_server", "hookean_client"} - serving)
+        if "files" not in path.parts and "discretize" not in path.parts:
+            assert not found & {"rhino3dm", "compas"}
+    if top == "server":
+        assert "hookean_client" not in found
+    if top == "components":
+        assert not found & {"hookean", "hookean_server", "numpy"}
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_file_is_one_idea(path: Path):
+    """No source file above 20 kB."""
+    assert path.stat().st_size <= 20_000
+
+
+def test_solvers_and_forces_import_without_numba():
+    """`import hookean`, a scene and the catalogue of forces must not pay for the compiler."""
+    import subprocess
+    import sys
+
+    code = (
+        "import sys, hookean; from hookean import Scene; Scene(particles=[[0, 0, 0]]);"
+        "assert not {'numba', 'matplotlib', 'fastapi', 'rhino3dm', 'compas'} & set(sys.modules), sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_the_project_carries_what_it_needs():
+    """Licence, changelog, the two commands of the README, and no plain skips or leftovers in the sources."""
+    for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "Makefile", ".ci/run"):
+        assert (ROOT / name).stat().st_size > 0
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "make run" in readme
+    assert "make test" in readme
