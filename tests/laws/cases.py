@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+
 from hookean import kernels
 from hookean.forces import KINDS, Force
 from hookean.forces.base import PLACES, Block

@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hookean.forces import KINDS
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from hookean.forces import KINDS
 
 from . import laws
 from .cases import KERNELS, Case, case_of, identity, resting

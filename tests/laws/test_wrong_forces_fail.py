@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from hookean.forces import KINDS
 from hookean.forces.springs import springs_hessian, springs_kernel, springs_yield
 
