@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 import math
+from itertools import chain
 from typing import Annotated, Any
 
 import numpy as np
@@ -42,10 +43,33 @@ def _decoded(value: Any) -> NDArray[Any]:
         return _from_buffer(value["dtype"], value["shape"], value["base64"])
     if isinstance(value, str | bytes) or value is None:
         raise fault(f"{type(value).__name__} given where numbers are expected")
+    if isinstance(value, list | tuple) and _mixes_truth(value):
+        raise fault("whole or decimal numbers are expected, without true or false between them", _truth(value))
     try:
         return np.asarray(value)
     except (ValueError, TypeError, OverflowError):
         raise fault("rows have different lengths; every row needs the same number of values") from None
+
+
+def _mixes_truth(value: Any) -> bool:
+    """Whether true or false stand among numbers: numpy would take them for 1 and 0."""
+    while value:
+        kinds = set(map(type, value))
+        if bool in kinds:
+            return True
+        if not kinds <= {list, tuple}:
+            return False
+        value = list(chain.from_iterable(value))
+    return False
+
+
+def _truth(value: Any, at: str = "") -> str:
+    for i, item in enumerate(value):
+        if isinstance(item, bool):
+            return f"{at}/{i}"
+        if isinstance(item, list | tuple) and (found := _truth(item, f"{at}/{i}")):
+            return found
+    return ""
 
 
 def _from_buffer(dtype: Any, shape: Any, text: Any) -> NDArray[Any]:

@@ -113,8 +113,9 @@ class Welded:
         for name in ("points", "lines"):
             points = getattr(force, name, None)
             if points is not None:
-                known = self._rows.get(id(force))
-                rows = self.meet(points, f"{pointer}/{name}", force.name) if known is None else known
+                if id(force) not in self._rows:
+                    self._rows[id(force)] = self.meet(points, f"{pointer}/{name}", force.name)
+                rows = self._rows[id(force)]
                 return self._checked(rows.reshape(len(points), -1), arity, f"{pointer}/{name}")
         mesh = getattr(force, "mesh", None)
         if mesh is not None:

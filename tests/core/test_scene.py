@@ -1,0 +1,169 @@
+"""The scene: one description in Python and in JSON, strict, with a canonical form."""
+
+from __future__ import annotations
+
+import base64
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hookean import InputError, Scene
+from hookean.units import Units
+
+EXAMPLE = {
+    "units": {"length": "m", "force": "N", "time": "s"},
+    "weld_tolerance": 0.001,
+    "particles": [[0, 0, 0], [2, 0, 0]],
+    "masses": 1.0,
+    "velocities": None,
+    "meshes": {"skin": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "faces": [[0, 1, 2, 3]]}},
+    "forces": [
+        {
+            "kind": "springs",
+            "name": "cable",
+            "particles": [[0, 1]],
+            "stiffness": 1000,
+            "damping": 10,
+            "rest_length": None,
+            "rest_factor": 1.0,
+            "upper_cutoff": 0,
+            "lower_cutoff": 0,
+            "plasticity": 0,
+        },
+        {"kind": "unary", "points": [[2, 0, 0]], "vector": [0, 0, -20]},
+        {"kind": "shell", "mesh": "skin", "strength": 500, "angle_factor": 1},
+    ],
+    "anchors": [
+        {"name": "left", "particles": [0]},
+        {"name": "mast", "points": [[10, 0, 0]], "targets": [[10, 0, 1]], "axes": "xyz"},
+    ],
+    "geometry": [{"name": "skin", "kind": "mesh", "mesh": "skin"}],
+    "settings": {
+        "solver": "auto",
+        "tolerance": 1e-6,
+        "max_iterations": 100000,
+        "time_limit": None,
+        "time_step": 0.01,
+        "sub_iterations": 20,
+        "drag": 1.0,
+        "floor": None,
+    },
+}
+
+
+def changed(path: str, value: object) -> dict[str, object]:
+    """The example with one value replaced; `path` is a JSON pointer."""
+    scene = json.loads(json.dumps(EXAMPLE))
+    *steps, last = path.strip("/").split("/")
+    spot = scene
+    for step in steps:
+        spot = spot[int(step)] if isinstance(spot, list) else spot[step]
+    if isinstance(spot, list):
+        spot[int(last)] = value
+    else:
+        spot[last] = value
+    return scene
+
+
+def test_the_documented_scene_is_a_scene_and_json_brings_it_back():
+    """Python -> canonical JSON -> Python is the identity, and so is the digest."""
+    scene = Scene.read(EXAMPLE)
+    again = Scene.read(scene.canonical)
+    assert again == scene
+    assert again.digest == scene.digest
+    assert Scene.read(changed("/forces/0/stiffness", 1001)).digest != scene.digest
+
+
+def test_order_of_keys_and_spelling_of_numbers_do_not_change_the_digest():
+    """The canonical form has sorted keys; 2 and 2.0 are one number."""
+    shuffled = dict(reversed(list(EXAMPLE.items())))
+    assert Scene.read(json.dumps(shuffled)).digest == Scene.read(EXAMPLE).digest
+    assert Scene.read(changed("/particles/1/0", 2.0)).digest == Scene.read(EXAMPLE).digest
+
+
+@settings(derandomize=True, deadline=None)
+@given(st.lists(st.tuples(*[st.floats(-1e6, 1e6)] * 3), min_size=1, max_size=20))
+def test_arrays_may_come_as_buffers(points: list[tuple[float, float, float]]):
+    """{"dtype", "shape", "base64"}: the same array, to the bit."""
+    array = np.array(points)
+    buffer = {
+        "dtype": "<f8",
+        "shape": list(array.shape),
+        "base64": base64.b64encode(array.astype("<f8").tobytes()).decode(),
+    }
+    from_buffer, from_list = Scene.read({"particles": buffer}), Scene.read({"particles": points})
+    assert from_buffer.particles.tobytes() == from_list.particles.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "pointer", "says"),
+    [
+        ("/forces/0/stiffness", -1, "/forces/0/stiffness", "at least 0"),
+        ("/forces/0/stiffness", float("nan"), "/forces/0/stiffness", "finite"),
+        ("/particles/1/2", float("inf"), "/particles/1/2", "finite"),
+        ("/particles/1/2", 1e308, "/particles/1/2", "limit"),
+        ("/particles/1", [1, 2], "/particles", "same number"),
+        ("/forces/0/particles", [[0, 2]], "/forces/0/particles/0/1", "particle 2 does not exist; the scene gives 2"),
+        ("/forces/0/particles", [[0, -1]], "/forces/0/particles/0/1", "counted from 0"),
+        ("/forces/0/particles", [[0, 1.5]], "/forces/0/particles/0/1", "whole"),
+        ("/forces/0/particles", [[0, True]], "/forces/0/particles/0/1", "whole"),
+        ("/forces/0/kind", "sprngs", "/forces/0", "springs"),
+        ("/forces/0/stifness", 10, "/forces/0/stifness", "not permitted"),
+        ("/forces/2/mesh", "skn", "/forces/2/mesh", "'skin'"),
+        ("/forces/0/particles", None, "/forces/0", "exactly one of particles, lines, mesh"),
+        ("/meshes/skin/faces/0/3", 4, "/meshes/skin/faces/0/3", "vertex 4 does not exist"),
+        ("/anchors/1/targets", [[0, 0, 0], [1, 1, 1]], "/anchors/1/targets", "2 targets for 1"),
+        ("/anchors/0/axes", "w", "/anchors/0/axes", "xyz"),
+        ("/settings/solver", "magic", "/settings/solver", "relaxation"),
+        ("/settings/time_step", 0, "/settings/time_step", "greater than 0"),
+        ("/masses", 0, "/masses", "more than 0"),
+        ("/masses", [1, 2, 3], "/masses", "3 masses for 2 particles"),
+        ("/units/length", "parsec", "/units/length", "'mm'"),
+    ],
+)
+def test_a_fault_is_one_sentence_with_its_place(path: str, value: object, pointer: str, says: str):
+    """Where, what was given, what is allowed."""
+    with pytest.raises(InputError) as caught:
+        Scene.read(changed(path, value))
+    assert caught.value.pointer == pointer
+    assert says in caught.value.sentence
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('{"particles": [[0, 0, NaN]]}', "NaN"),
+        ('{"particles": [], "particles": []}', "twice"),
+        ('{"particles": [', "not valid JSON"),
+        ("[" * 100_000, "nested"),
+        ("[" + "9" * 5000 + "]", "digits"),
+        (b"\xff\xfe{}", "UTF-8"),
+    ],
+)
+def test_json_is_read_strictly(text: str | bytes, says: str):
+    """No NaN, no repeated keys, no endless nesting, no other encoding."""
+    with pytest.raises(InputError, match=says):
+        Scene.read(text)
+
+
+def test_a_scene_does_not_change():
+    """Frozen: neither fields nor arrays can be written."""
+    scene = Scene.read(EXAMPLE)
+    with pytest.raises(ValueError, match="frozen"):
+        scene.weld_tolerance = 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        scene.particles[0, 0] = 5.0
+
+
+def test_units_are_one_consistent_system():
+    """The mass unit follows: force x time^2 / length. N, cm, s: 100 kg."""
+    assert Units().mass == "kg"
+    assert Units(length="cm").mass == "100 kg"
+    assert Units(length="mm", force="kN").of("stiffness") == "kN/mm"
+    metres, millimetres = Units(), Units(length="mm", force="kN")
+    assert metres.factor("stiffness", millimetres) == pytest.approx(1e-6)
+    assert millimetres.factor("force length^2", metres) == pytest.approx(1e-3)

@@ -1,0 +1,160 @@
+"""Running systems: frames, patches, saving and resuming, carried geometry, ways to end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hookean import InputError, Scene, Simulation, relax, simulate
+from hookean.result import Status
+from samples import cable
+
+
+def test_a_saved_simulation_goes_on_bit_for_bit(tmp_path):
+    """x and v after 10 + 7 frames equal those of 10 frames, save, load, 7 frames; plastic memory included."""
+    base = cable(sub_iterations=11).model_dump()
+    base["forces"][0]["plasticity"] = 0.01
+    straight = Simulation(Scene(**base))
+    straight.step(10)
+    straight.patch({"forces": {"cable": {"stiffness": 900}}})
+    straight.save(tmp_path / "half.npz")
+    resumed = Simulation.load(tmp_path / "half.npz")
+    for simulation in (straight, resumed):
+        simulation.step(7)
+    assert resumed.state.x.tobytes() == straight.state.x.tobytes()
+    assert resumed.state.v.tobytes() == straight.state.v.tobytes()
+    assert resumed.state.memory[0].tobytes() == straight.state.memory[0].tobytes()
+    assert np.abs(straight.state.memory[0]).max() > 0
+    assert (resumed.state.revision, resumed.state.time) == (straight.state.revision, straight.state.time)
+
+
+def test_a_file_that_is_no_simulation_is_refused(tmp_path):
+    """One sentence, not a traceback of the archive reader."""
+    (tmp_path / "x.npz").write_bytes(b"not an archive")
+    with pytest.raises(InputError, match="not a saved simulation"):
+        Simulation.load(tmp_path / "x.npz")
+
+
+def test_patches_change_loads_stiffness_rest_length_and_settings_while_it_runs():
+    """After a patch the running system relaxes to what a fresh scene with the new values gives."""
+    simulation = Simulation(cable(tolerance=1e-10))
+    simulation.step(3)
+    revision = simulation.patch(
+        {"forces": {"cable": {"stiffness": 500, "rest_factor": 0.9}, "1": {"vector": [0, 3, -10]}},
+         "settings": {"tolerance": 1e-11}}
+    )  # fmt: skip
+    fresh = cable(tolerance=1e-11).model_dump()
+    fresh["forces"][0].update(stiffness=500, rest_factor=0.9)
+    fresh["forces"][1].update(vector=[0, 3, -10])
+    assert revision == 1
+    assert simulation.relax().particles == pytest.approx(relax(Scene(**fresh)).particles, abs=1e-8)
+
+
+def test_particles_are_pinned_released_and_retargeted_while_it_runs():
+    """Held exactly where told; a released particle moves again."""
+    simulation = Simulation(cable())
+    simulation.patch({"pin": [{"particles": [2], "targets": [[4, 0, 1]]}]})
+    result = simulation.relax()
+    assert result.particles[2].tolist() == [4, 0, 1]
+    assert result.reactions["particles"].tolist() == [0, 2, 5]
+    simulation.patch({"release": [2, 0], "pin": [{"particles": [0], "axes": "z"}]})
+    assert simulation.state.free[0].tolist() == [1, 1, 0]
+    assert simulation.state.free[2].tolist() == [1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("patch", "pointer"),
+    [
+        ({"forces": {"cable": {"stiffness": -1}}}, "/forces/cable/stiffness"),
+        ({"forces": {"cabel": {"stiffness": 1}}}, "/forces/cabel"),
+        ({"forces": {"cable": {"particles": [[0, 1]]}}}, "/forces/cable/particles"),
+        ({"move": [{"anchor": "ends", "targets": [[0, 0, 0]]}]}, "/move/0/targets"),
+        ({"move": [{"anchor": "nobody", "targets": []}]}, "/move/0/anchor"),
+        ({"release": [99]}, "/release/0"),
+        ({"settings": {"time_step": -1}}, "/settings/time_step"),
+        ({"geometry": []}, "/geometry"),
+    ],
+)
+def test_a_patch_that_does_not_fit_changes_nothing(patch: dict, pointer: str):
+    """The pointer of the fault, and the same state as before."""
+    simulation = Simulation(cable())
+    simulation.step(2)
+    before, revision = simulation.state.x.copy(), simulation.state.revision
+    with pytest.raises(InputError) as caught:
+        simulation.patch(patch)
+    assert caught.value.pointer == pointer
+    assert simulation.state.revision == revision
+    assert (simulation.state.x == before).all()
+    assert simulation.system.groups[0].block.parameters[0, 0] == 1000
+
+
+def test_geometry_rides_along_with_its_particles():
+    """Points, lines, a polyline, a curve and a mesh move with the particles they meet; a stray point stays."""
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    scene = Scene(
+        meshes={"net": {"vertices": corners, "faces": [[0, 1, 2, 3]]}},
+        forces=[
+            {"kind": "springs", "mesh": "net"},
+            {"kind": "unary", "points": corners, "vector": [0, 0, -1]},
+        ],
+        anchors=[{"points": [corners[0], corners[2]]}],
+        geometry=[
+            {"name": "p", "kind": "points", "points": [corners[1], [7, 7, 7]]},
+            {"name": "l", "kind": "lines", "lines": [[corners[0], corners[1]]]},
+            {"name": "o", "kind": "polyline", "points": corners},
+            {"name": "c", "kind": "curve", "points": corners, "degree": 2},
+            {"name": "m", "kind": "mesh", "mesh": "net"},
+        ],
+    )
+    result = relax(scene)
+    points, line, polyline, curve, mesh = result.geometry
+    assert result.particles[1, 2] < 0
+    assert points["points"].tolist() == [result.particles[1].tolist(), [7, 7, 7]]
+    assert line["lines"][0, 1].tolist() == result.particles[1].tolist()
+    for carried in (polyline["points"], curve["points"], mesh["vertices"]):
+        assert carried.tolist() == result.particles.tolist()
+    assert curve["degree"] == 2
+    assert any("/geometry/0: 1 of 2 points" in w for w in result.report.warnings)
+
+
+def test_every_way_to_end_has_a_status_and_a_sentence():
+    """Out of iterations, out of time, cancelled, diverged (a load nothing holds): a value, never an exception."""
+    flying = Scene(particles=[[0, 0, 0]], forces=[{"kind": "unary", "particles": [0], "vector": [0, 0, 1]}])
+    ended = {
+        Status.MAX_ITERATIONS: relax(cable(max_iterations=3)),
+        Status.TIME_LIMIT: relax(cable(time_limit=0.0, tolerance=0.0)),
+        Status.CANCELLED: relax(cable(), cancelled=lambda: True),
+        Status.DIVERGED: relax(flying),
+    }
+    for status, result in ended.items():
+        assert result.status is status
+        assert result.message.endswith(".")
+        assert np.isfinite(result.particles).all()
+    assert ended[Status.MAX_ITERATIONS].iterations == 3
+    assert any("nothing" in w or "no spring" in w for w in ended[Status.DIVERGED].report.warnings)
+
+
+def test_a_simulation_bounces_before_it_settles():
+    """Figure 9.6: the sag passes its equilibrium and comes back; the last frame is at rest on it."""
+    frames = list(simulate(cable(tolerance=1e-5), 400))
+    sag = np.array([-f.particles[:, 2].min() for f in frames])
+    assert sag.max() > 1.3149604882 * 1.05
+    assert frames[-1].status is Status.CONVERGED
+    assert sag[-1] == pytest.approx(1.3149604882, rel=1e-4)
+    assert [f.iteration for f in frames[:3]] == [0, 20, 40]
+    assert frames[2].time == pytest.approx(0.4)
+
+
+def test_held_axes_slide_on_the_others():
+    """A particle held in z alone slides along a loaded spring's direction and reacts in z only."""
+    scene = Scene(
+        particles=[[0, 0, 0], [1, 0, 0]],
+        forces=[
+            {"kind": "springs", "particles": [[0, 1]], "stiffness": 10},
+            {"kind": "unary", "particles": [1], "vector": [5, 0, -3]},
+        ],
+        anchors=[{"particles": [0]}, {"particles": [1], "axes": "yz"}],
+    )
+    result = relax(scene)
+    assert result.particles[1] == pytest.approx([1.5, 0, 0], abs=1e-6)
+    assert result.reactions["force"][1] == pytest.approx([0, 0, 3], abs=1e-12)
