@@ -4,6 +4,7 @@ scipy's adaptive quadrature of rhino3dm's own derivative, in the curve's own par
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -56,7 +57,7 @@ def test_pieces_are_equal_by_an_independent_integration(file: str, rhino_objects
     assert len(curves) == COUNTS[file]
     for curve in curves:
         at = breaks(curve)
-        upto = np.concatenate([[0.0], np.cumsum([arc(curve, a, b) for a, b in zip(at, at[1:], strict=False)])])
+        upto = np.concatenate([[0.0], np.cumsum([arc(curve, a, b) for a, b in pairwise(at)])])
         whole = float(upto[-1])
         assert length(curve) == pytest.approx(whole, rel=1e-10)
         points = divide(curve, PIECES)

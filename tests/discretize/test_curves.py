@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.interpolate import BSpline
+from scipy.optimize import brentq
 from scipy.special import ellipe
 
 from hookean.discretize import divide, end_points, explode, length, shatter
@@ -19,6 +21,11 @@ from hookean.errors import InputError
 
 EPS = np.finfo(float).eps
 few = settings(derandomize=True, deadline=None, max_examples=40)
+
+# a knot of degree + 1 fold multiplicity inside tears the curve
+BROKEN = SimpleNamespace(
+    points=[[0, 0, 0], [1, 0, 0], [5, 0, 0], [6, 0, 0]], knots=(), knotvector=[0, 0, 1, 1, 2, 2], degree=1
+)
 
 
 def xyz(p: Any) -> np.ndarray:
@@ -29,7 +36,9 @@ def xyz(p: Any) -> np.ndarray:
 @given(st.floats(1e-3, 1e3), st.floats(0.01, 6.28), st.integers(1, 60), st.floats(0, 3))
 def test_arc_is_cut_at_equal_angles(radius: float, angle: float, count: int, turn: float) -> None:
     plane = r.Plane(r.Point3d(1, -2, 3), r.Vector3d(math.sin(turn), 0.3, math.cos(turn)))
-    arc = r.Arc(r.Circle(plane, radius), angle)
+    circle = r.Circle(radius)
+    circle.Plane = plane
+    arc = r.Arc(circle, angle)
     frame = cg.Frame(*[[p.X, p.Y, p.Z] for p in (plane.Origin, plane.XAxis, plane.YAxis)])
     t = angle * np.arange(count + 1) / count
     want = xyz(plane.Origin) + radius * (
@@ -92,7 +101,7 @@ def test_polyline_is_cut_where_interpolation_says(corners: list[tuple[int, int, 
     assert np.array_equal(lines, np.stack([points[:-1], points[1:]], 1)[np.diff(upto) > 0])
 
 
-@few
+@settings(few, max_examples=25)
 @given(st.integers(0, 10**6), st.integers(1, 5), st.integers(0, 6), st.booleans())
 def test_nurbs_pieces_are_equal_by_quadrature(seed: int, degree: int, more: int, kink: bool) -> None:
     rng = np.random.default_rng(seed)
@@ -113,28 +122,17 @@ def test_nurbs_pieces_are_equal_by_quadrature(seed: int, degree: int, more: int,
         a, d = spline(t), slope(t)
         return float(np.linalg.norm((d[:3] - a[:3] / a[3] * d[3]) / a[3]))
 
-    breaks = np.unique(knots)
-    # split once more: a rule that sees every span in halves
-    breaks = np.sort(np.concatenate([breaks, (breaks[1:] + breaks[:-1]) / 2]))
-    gauss, weight = np.polynomial.legendre.leggauss(60)
-
     def integral(a: float, b: float) -> float:
-        t = (a + b) / 2 + (b - a) / 2 * gauss
-        return (b - a) / 2 * sum(w * speed(x) for w, x in zip(weight, t, strict=True))
+        inside = [k for k in np.unique(knots) if a < k < b]
+        stops = [a, *inside, b]
+        return sum(quad(speed, x, y, epsabs=1e-12, epsrel=1e-11, limit=500)[0] for x, y in pairwise(stops))
 
-    whole = sum(integral(a, b) for a, b in zip(breaks, breaks[1:], strict=False))
-    assert length(curve) == pytest.approx(whole, rel=1e-9)
+    whole = integral(0.0, 2.0)
+    assert length(curve) == pytest.approx(whole, rel=1e-10)
     cut = divide(curve, 2)
-    assert cut[0] == pytest.approx(at(0.0), abs=1e-14) and cut[2] == pytest.approx(points[-1], abs=1e-14)
-    half, low, high = whole / 2, 0.0, 2.0
-    for _ in range(40):
-        t = (low + high) / 2
-        parts = [b for b in breaks if b < t] + [t]
-        reached = sum(integral(a, b) for a, b in zip(parts, parts[1:], strict=False))
-        low, high = (t, high) if reached < half else (low, t)
-        if high - low < 1e-11:
-            break
-    assert np.abs(at(low) - cut[1]).max() <= 1e-9 * whole + 1e-10 * speed(low)
+    assert cut[0] == pytest.approx(points[0], abs=1e-14) and cut[2] == pytest.approx(points[-1], abs=1e-14)
+    t = brentq(lambda t: integral(0.0, t) - whole / 2, 0.0, 2.0, xtol=1e-12)
+    assert np.abs(at(t) - cut[1]).max() <= 1e-10 * whole + 2e-12 * speed(t)
 
 
 def test_periodic_curve() -> None:
@@ -149,24 +147,18 @@ def test_periodic_curve() -> None:
         return float(np.linalg.norm(xyz(curve.DerivativeAt(t, 1)[1])))
 
     knots = sorted({k for k in curve.Knots if curve.Domain.T0 <= k <= curve.Domain.T1})
-    want = sum(quad(speed, a, b, epsrel=1e-12)[0] for a, b in zip(knots, knots[1:], strict=False))
+    want = sum(quad(speed, a, b, epsrel=1e-12)[0] for a, b in pairwise(knots))
     assert length(curve) == pytest.approx(want, rel=1e-11)
 
 
 def test_polycurve_with_a_kink() -> None:
     poly = r.PolyCurve()
     poly.AppendSegment(r.LineCurve(r.Point3d(0, 0, 0), r.Point3d(2, 0, 0)))
-    poly.AppendSegment(r.Arc(r.Circle(r.Plane(r.Point3d(2, 1, 0), r.Vector3d(0, 0, 1)), 1.0), 0.0).ToNurbsCurve()) if (
-        False
-    ) else poly.AppendSegment(r.LineCurve(r.Point3d(2, 0, 0), r.Point3d(2, 1, 0)))
-    poly.AppendSegment(
-        r.Arc(r.Point3d(2, 1, 0), r.Point3d(1, 2, 0), r.Point3d(0, 1, 0)).ToNurbsCurve()
-    )
+    poly.AppendSegment(r.LineCurve(r.Point3d(2, 0, 0), r.Point3d(2, 1, 0)))
+    poly.AppendSegment(r.Arc(r.Point3d(2, 1, 0), r.Point3d(1, 2, 0), r.Point3d(0, 1, 0)).ToNurbsCurve())
     assert length(poly) == pytest.approx(3 + math.pi, rel=1e-12)
-    points = divide(shapes := poly, 2)
-    assert length(shapes) / 2 > 3.0  # the middle lies on the arc, this far round it
-    angle = (3 + math.pi) / 2 - 3
-    assert points[1] == pytest.approx([1 + math.cos(angle), 1 + math.sin(angle), 0], abs=1e-12)
+    angle = (3 + math.pi) / 2 - 3  # the middle lies on the arc, this far round it
+    assert divide(poly, 2)[1] == pytest.approx([1 + math.cos(angle), 1 + math.sin(angle), 0], abs=1e-12)
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3])
@@ -225,10 +217,7 @@ def test_shatter_joins_the_points() -> None:
         (r.Plane(r.Point3d(0, 0, 0), r.Vector3d(0, 0, 1)), 2, "not a curve"),
         (SimpleNamespace(points=[[0, 0, 0], [1, 0, 0]], weights=[1, -1], degree=1), 2, "weights must be positive"),
         (SimpleNamespace(points=[[0, 0, 0], [1, 0, 0]], knots=(), knotvector=[0, 1], degree=1), 2, "knots"),
-        (
-            SimpleNamespace(points=[[0, 0, 0], [1, 0, 0], [5, 0, 0], [6, 0, 0]], knots=(),
-                            knotvector=[0, 0, 1, 1, 2, 2], degree=1), 2, "gap",
-        ),
+        (BROKEN, 2, "gap"),
     ],
 )
 def test_bad_input_gets_a_sentence(curve: Any, count: Any, says: str) -> None:

@@ -37,7 +37,8 @@ _NAMES = {
     "breps": "is_trimmed mesh_faces",
     "curves": "divide end_points explode length shatter",
     "duplicates": "remove_duplicate_lines remove_duplicate_points unique_lines unique_points",
-    "meshes": "as_mesh clothed_vertices corners diagonals edges join naked_edges naked_vertices triangles vertices weld",
+    "meshes": "as_mesh clothed_vertices corners diagonals edges join naked_edges naked_vertices triangles vertices "
+    "weld",
     "surfaces": "mesh_surface",
     "warpweft": "warp_weft",
 }

@@ -46,7 +46,7 @@ def mesh_faces(geometry: Any, u: int, v: int, name: str = "") -> Mesh:
         return _mesh_brep([geometry], None, u, v, pointer)
     if hasattr(geometry, "Faces") and hasattr(geometry, "Edges"):
         return _mesh_brep([geometry.Faces[i] for i in range(len(geometry.Faces))], geometry.Edges, u, v, pointer)
-    if hasattr(geometry, "PointAt") or hasattr(geometry, "point_at"):
+    if hasattr(geometry, "IsoCurve") or hasattr(geometry, "domain_u"):
         return mesh_surface(geometry, u, v)
     raise InputError(pointer, f"{type(geometry).__name__} has no faces; give a Brep, BrepFace, Extrusion or surface")
 

@@ -110,10 +110,11 @@ def _normalised(pieces: Array) -> tuple[Array, float]:
     """The pieces moved to the origin and scaled to size 1, so that squares neither overflow nor cancel."""
     points = (pieces[..., :3] / pieces[..., 3:]).reshape(-1, 3)
     low, high = points.min(axis=0), points.max(axis=0)
-    centre, scale = 0.5 * low + 0.5 * high, float((high - low).max())
+    centre = 0.5 * low + 0.5 * high
+    scale = 2.0 ** np.floor(np.log2((high - low).max()))  # a power of two keeps round numbers round
     unit = pieces.copy()
     unit[..., :3] = (points.reshape(*pieces.shape[:2], 3) - centre) / scale * pieces[..., 3:]
-    return unit, scale
+    return unit, float(scale)
 
 
 def _evaluate(pieces: Array, t: Array) -> tuple[Array, Array]:

@@ -49,7 +49,7 @@ def counts(u: Any, v: Any) -> tuple[int, int]:
 
 def sample(surface: Any, u: int, v: int) -> Array:
     """Points `(u + 1, v + 1, 3)` of a surface at even parameters, its own evaluation."""
-    if hasattr(surface, "Domain") and hasattr(surface, "PointAt"):
+    if hasattr(surface, "IsoCurve"):
         (u0, u1), (v0, v1) = ((d.T0, d.T1) for d in (surface.Domain(0), surface.Domain(1)))
         at = surface.PointAt
     elif hasattr(surface, "domain_u") and hasattr(surface, "point_at"):

@@ -71,28 +71,37 @@ def _bridged(xy: Array, outer: Index, hole: Index) -> Index:
 
 def _ears(xy: Array, loop: Index) -> Index:
     rest, out, start = loop.tolist(), [], 0
+    tiny = 1e-12 * float(np.ptp(xy[loop], axis=0).max()) ** 2  # points in a row are no ear
     while len(rest) > 3:
-        n = len(rest)
-        for step in range(n):
-            k = (start + step) % n
-            i, j, l = rest[k - 1], rest[k], rest[(k + 1) % n]
-            if _is_ear(xy, i, j, l, np.array(rest)):
-                break
-        else:
-            raise InputError("face", "its outline crosses itself; repair the profile")
-        out.append((i, j, l))
+        found = _next_ear(xy, rest, start, tiny)
+        k = found if found >= 0 else _next_ear(xy, rest, start, 0.0)
+        if k < 0:
+            raise InputError("face", "its outline crosses itself; repair it")
+        out.append((rest[k - 1], rest[k], rest[(k + 1) % len(rest)]))
         del rest[k]
         start = k  # go on round the loop, which gives better triangles than a fan
+    if _cross(xy[rest[0]], xy[rest[1]], xy[rest[2]]) < -tiny:
+        raise InputError("face", "its outline crosses itself; repair it")
     out.append((rest[0], rest[1], rest[2]))
     return np.array(out, dtype=np.int64)
 
 
-def _is_ear(xy: Array, i: int, j: int, l: int, rest: Index) -> bool:
+def _next_ear(xy: Array, rest: list[int], start: int, tiny: float) -> int:
+    n = len(rest)
+    every = np.array(rest)
+    for step in range(n):
+        k = (start + step) % n
+        if _is_ear(xy, rest[k - 1], rest[k], rest[(k + 1) % n], every, tiny):
+            return k
+    return -1
+
+
+def _is_ear(xy: Array, i: int, j: int, l: int, rest: Index, tiny: float) -> bool:
     a, b, c = xy[i], xy[j], xy[l]
-    if _cross(a, b, c) <= 0:
+    if _cross(a, b, c) <= tiny:
         return False
     others = xy[rest[(rest != i) & (rest != j) & (rest != l)]]
-    inside = (_cross(a, b, others) >= 0) & (_cross(b, c, others) >= 0) & (_cross(c, a, others) >= 0)
+    inside = np.minimum(np.minimum(_cross(a, b, others), _cross(b, c, others)), _cross(c, a, others)) >= -tiny
     # a bridge passes twice through one place: its other vertex there is no obstacle
     inside &= ~((others == a).all(axis=1) | (others == c).all(axis=1))
     return not inside.any()

@@ -19,9 +19,9 @@ def warp_weft(mesh: Any, strict: bool = True) -> tuple[Index, Index]:
 
     Opposite sides of a quad belong to one family, neighbouring sides to different ones. The first side
     of the first quad is warp; the rest follows from quad to quad over shared edges, breadth first, and
-    each part of the mesh that no quad connects starts anew. Then triangles `(a, b, c)`, in order: if
-    quads or earlier triangles have given one of the sides a family the others take the opposite one, as
-    meridians at a pole do; the sides of a triangle with no such neighbour: a-b warp, b-c and c-a weft.
+    each part of the mesh that no quad connects starts anew. Then triangles: where a side borders a quad
+    the other two take the opposite family, as meridians at a pole do. Triangles among themselves count
+    as quads `(a, b, c, c)` with the side c-c collapsed: b-c and c-a are one family, a-b is the other.
 
     Such families exist only where every inner vertex has an even number of quads, strips that close
     do so untwisted, and no edge has conflicting neighbours. Elsewhere InputError names two quads that
@@ -75,21 +75,25 @@ def _check(of: Index, quad: NDArray[np.bool_], family: Index) -> None:
 
 
 def _triangles(of: Index, quad: NDArray[np.bool_], neighbours: list[list[int]], family: Index) -> None:
-    queue = deque(np.flatnonzero(~quad & (family[of[:, [0, 1, 3]]] >= 0).any(axis=1)).tolist())
-    for seed in np.flatnonzero(~quad).tolist():
+    triangles = np.flatnonzero(~quad).tolist()
+    given = family >= 0
+    for face in triangles:
+        base = [e for e in of[face, [0, 1, 3]].tolist() if given[e]]
+        for edge in of[face, [0, 1, 3]].tolist() if base else ():
+            if family[edge] < 0:
+                family[edge] = 1 - family[base[0]]
+    queue = deque(f for f in triangles if (family[of[f, [0, 1, 3]]] >= 0).any())
+    for seed in triangles:
         queue.append(seed)
         while queue:
-            sides = of[queue.popleft(), [0, 1, 3]]
-            known = [s for s in range(3) if family[sides[s]] >= 0]
-            if len(known) == 3:
-                continue
-            base = known[0] if known else 0
-            if not known:
-                family[sides[0]] = 0
-            for s in range(3):
-                if family[sides[s]] < 0:
-                    family[sides[s]] = 1 - family[sides[base]]
-                    queue.extend(o for o in neighbours[sides[s]] if not quad[o])
+            ab, bc, ca = of[queue.popleft(), [0, 1, 3]].tolist()
+            across = next((int(family[e]) for e in (bc, ca) if family[e] >= 0), -1)
+            if across < 0:
+                across = 1 - max(0, int(family[ab]))
+            for edge, value in ((ab, 1 - across), (bc, across), (ca, across)):
+                if family[edge] < 0:
+                    family[edge] = value
+                    queue.extend(f for f in neighbours[edge] if not quad[f])
 
 
 def _neighbours(of: Index, count: int) -> list[list[int]]:
