@@ -1,0 +1,99 @@
+"""Fold angles across an edge a-b between the triangles a-b-c and b-a-d, shared by hinges and shells.
+
+With e = b - a, N1 = e x (c - a), N2 = (d - a) x e the fold angle is atan2(|e| N2 . (c - a), N1 . N2): 0 where flat,
+positive where the tips c and d rise to the side N1 points to. Its gradient is N1 |e| / |N1|^2 at c and
+N2 |e| / |N2|^2 at d; a and b share the opposite of both by the foot of each tip on the edge, so forces and moments
+sum to zero for triangles of any size. Source: Grinspun et al., "Discrete shells", 2003; Bridson et al., "Simulation of
+clothing with folds and wrinkles", 2003.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.kernels import device
+
+Floats = NDArray[np.float64]
+
+SLIVER = 1e-8
+"""Triangles lower than this part of their size have no normal to speak of, and fold without force."""
+
+
+@device
+def fold(x, a, b, c, d, g):  # type: ignore[no-untyped-def]
+    # g (4, 5): for a, b, c, d the gradient of the angle, then two bounds of what a spring of unit stiffness
+    # (g g^T) and a unit moment (second derivatives of the angle) take from the stiffness of a particle.
+    # A sliver gives angle nan.
+    ex = x[b, 0] - x[a, 0]
+    ey = x[b, 1] - x[a, 1]
+    ez = x[b, 2] - x[a, 2]
+    px = x[c, 0] - x[a, 0]
+    py = x[c, 1] - x[a, 1]
+    pz = x[c, 2] - x[a, 2]
+    qx = x[d, 0] - x[a, 0]
+    qy = x[d, 1] - x[a, 1]
+    qz = x[d, 2] - x[a, 2]
+    mx = ey * pz - ez * py
+    my = ez * px - ex * pz
+    mz = ex * py - ey * px
+    nx = qy * ez - qz * ey
+    ny = qz * ex - qx * ez
+    nz = qx * ey - qy * ex
+    ee = ex * ex + ey * ey + ez * ez
+    mm = mx * mx + my * my + mz * mz
+    nn = nx * nx + ny * ny + nz * nz
+    size = ee + px * px + py * py + pz * pz
+    if not mm > SLIVER * SLIVER * size * size:
+        return np.nan
+    size = ee + qx * qx + qy * qy + qz * qz
+    if not nn > SLIVER * SLIVER * size * size or not ee * ee > 1e-280:
+        return np.nan
+    length = np.sqrt(ee)
+    at_c = length / mm
+    at_d = length / nn
+    foot_c = (px * ex + py * ey + pz * ez) / ee
+    foot_d = (qx * ex + qy * ey + qz * ez) / ee
+    g[2, 0] = mx * at_c
+    g[2, 1] = my * at_c
+    g[2, 2] = mz * at_c
+    g[3, 0] = nx * at_d
+    g[3, 1] = ny * at_d
+    g[3, 2] = nz * at_d
+    for i in range(3):
+        g[0, i] = -(1.0 - foot_c) * g[2, i] - (1.0 - foot_d) * g[3, i]
+        g[1, i] = -foot_c * g[2, i] - foot_d * g[3, i]
+    up = length / np.sqrt(mm)
+    down = length / np.sqrt(nn)
+    g[2, 3] = up
+    g[3, 3] = down
+    g[0, 3] = np.sqrt(g[0, 0] * g[0, 0] + g[0, 1] * g[0, 1] + g[0, 2] * g[0, 2])
+    g[1, 3] = np.sqrt(g[1, 0] * g[1, 0] + g[1, 1] * g[1, 1] + g[1, 2] * g[1, 2])
+    g[2, 4] = up
+    g[3, 4] = down
+    g[0, 4] = np.abs(1.0 - foot_c) * up + np.abs(1.0 - foot_d) * down + 1.0 / length
+    g[1, 4] = np.abs(foot_c) * up + np.abs(foot_d) * down + 1.0 / length
+    first = g[0, 3] + g[1, 3] + g[2, 3] + g[3, 3]
+    second = g[0, 4] + g[1, 4] + g[2, 4] + g[3, 4]
+    for i in range(4):
+        g[i, 3] *= first
+        g[i, 4] *= second
+    return np.arctan2(length * (nx * px + ny * py + nz * pz), mx * nx + my * ny + mz * nz)
+
+
+@device
+def wrapped(angle):  # type: ignore[no-untyped-def]
+    # the same angle in (-pi, pi]
+    return angle - 2.0 * np.pi * np.ceil((angle - np.pi) / (2.0 * np.pi))
+
+
+def fold_angles(x: Floats, corners: NDArray[np.int64]) -> Floats:
+    """Fold angles [rad] of rows of `corners` (..., 4) = a, b, c, d; 0 where a triangle is a sliver."""
+    a, b, c, d = (x[corners[..., i]] for i in range(4))
+    e, p, q = b - a, c - a, d - a
+    m, n = np.cross(e, p), np.cross(q, e)
+    ee = (e * e).sum(axis=-1)
+    flat_c = (m * m).sum(axis=-1) > (SLIVER * (ee + (p * p).sum(axis=-1))) ** 2
+    flat_d = (n * n).sum(axis=-1) > (SLIVER * (ee + (q * q).sum(axis=-1))) ** 2
+    angle = np.arctan2(np.sqrt(ee) * (n * p).sum(axis=-1), (m * n).sum(axis=-1))
+    return np.where(flat_c & flat_d, angle, 0.0)

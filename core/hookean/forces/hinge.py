@@ -1,0 +1,82 @@
+"""Hinge: a moment between two triangles that share an edge."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from hookean.columns import IndexRows, NonNegatives, PointRows, Reals
+from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.dihedral import fold, fold_angles, wrapped
+
+
+def hinge_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    g = np.zeros((4, 5))
+    for e in range(indices.shape[0]):
+        angle = fold(x, indices[e, 0], indices[e, 1], indices[e, 2], indices[e, 3], g)
+        if np.isnan(angle):
+            continue
+        turn = wrapped(angle - parameters[e, 1] * parameters[e, 2])
+        moment = parameters[e, 0] * turn
+        energy += 0.5 * moment * turn
+        for i in range(4):
+            p = indices[e, i]
+            w[p] += parameters[e, 0] * g[i, 3] + np.abs(moment) * g[i, 4]
+            for c in range(3):
+                f[p, c] -= moment * g[i, c]
+    return energy
+
+
+class Hinge(Force):
+    """Hinges between the triangles start-end-tip 1 and end-start-tip 2: moment M = S (theta - theta0).
+
+    theta [rad] is the fold angle, 0 where flat, positive where the tips rise to the side of
+    (end - start) x (tip 1 - start). Energy per hinge S (theta - theta0)^2 / 2, with theta - theta0 taken in
+    (-pi, pi] and theta0 = rest angle x angle factor; a triangle without height has no fold and no force. S is the
+    moment about the edge per radian, whatever the size of the triangles: a plate of bending stiffness D [force length]
+    cut into parallel strips of width h has S = D l / h along folds of length l; `shell` finds what a plate needs on
+    any mesh. Forces and moments of every hinge sum to zero. Source: Grinspun et al., "Discrete shells", 2003.
+    """
+
+    kind: Literal["hinge"] = "hinge"
+    particles: IndexRows | None = Field(default=None, description="Edge start, edge end, tip 1, tip 2 of each hinge")
+    points: PointRows | None = Field(default=None, description="Coordinates of edge start, edge end, tip 1, tip 2")
+    strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
+    rest_angle: Reals | None = Field(default=None, description="theta0 [rad], 0 flat; none: the start angle")
+    angle_factor: Reals = Field(default=1.0, description="Factor on the rest angle [-]; 0: flat")
+
+    formula: ClassVar[str] = "E = S (θ - θ0)²/2"
+    arity: ClassVar[int] = 4
+    outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
+    kernel: ClassVar[Any] = staticmethod(hinge_kernel)
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: S, rest angle, factor."""
+        index = places.elements(self)
+        return Block.of(
+            index,
+            strength=self.strength,
+            rest_angle=fold_angles(places.x, index) if self.rest_angle is None else self.rest_angle,
+            angle_factor=self.angle_factor,
+        )
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Fold angle [rad] and the moment that straightens it to the rest angle [force length]."""
+        angle = fold_angles(x, block.indices)
+        turn: Floats = wrapped(angle - block.parameters[:, 1] * block.parameters[:, 2])
+        return {"angle": angle, "moment": block.parameters[:, 0] * turn}
+
+    @classmethod
+    def example(cls) -> tuple[Hinge, Floats]:
+        """Three hinges on five particles: bent to a rest angle, flattened, at rest."""
+        x = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.2], [0.4, 0.9, 0.3], [0.6, -0.8, 0.25], [1.4, 0.8, -0.1]])
+        hinges = cls(
+            particles=[[0, 1, 2, 3], [1, 2, 4, 0], [0, 1, 4, 3]],
+            strength=[20.0, 5.0, 50.0],
+            rest_angle=[-0.4, 0.0, 0.3],
+            angle_factor=[1.0, 1.0, 0.5],
+        )
+        return hinges, x

@@ -1,0 +1,292 @@
+"""Shell: bending stiffness of a mesh, the same whatever its triangles."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from hookean.errors import InputError
+from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.dihedral import SLIVER, fold, fold_angles, wrapped
+
+Complex = NDArray[np.complex128]
+
+# An element is a triangle 0 1 2 with edges (0 1), (1 2), (2 0), the tips 3 4 5 of the triangles across these edges, and
+# the tips 6 7, 8 9, 10 11 of the next triangles beyond. HINGES: edge start, edge end, near tip, far tip; first the
+# triangle's own edges, then those of its neighbours.
+HINGES = np.array(
+    [[0, 1, 2, 3], [1, 2, 0, 4], [2, 0, 1, 5]]
+    + [[[i, 3 + i, (i + 1) % 3, 6 + 2 * i], [3 + i, (i + 1) % 3, i, 7 + 2 * i]][j] for i in range(3) for j in range(2)]
+)
+STRENGTH, FACTOR, AREA, REST, BOUND, ROWS = 0, 1, 2, 3, 12, 21  # columns of the parameters
+
+
+def shell_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    g = np.zeros((9, 4, 5))
+    active = np.zeros(9, np.bool_)
+    for e in range(indices.shape[0]):
+        bent_x = 0.0
+        bent_y = 0.0
+        twist = 0.0
+        for h in range(9):
+            active[h] = False
+            if parameters[e, BOUND + h] == 0.0:
+                continue
+            angle = fold(
+                x, indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]],
+                indices[e, HINGES[h, 3]], g[h],
+            )  # fmt: skip
+            if np.isnan(angle):
+                continue
+            active[h] = True
+            turn = wrapped(angle - parameters[e, FACTOR] * parameters[e, REST + h])
+            bent_x += parameters[e, ROWS + h] * turn
+            bent_y += parameters[e, ROWS + 9 + h] * turn
+            twist += parameters[e, ROWS + 18 + h] * turn
+        strength = parameters[e, STRENGTH]
+        energy += 0.5 * strength * (bent_x * bent_x + bent_y * bent_y + twist * twist)
+        for h in range(9):
+            if not active[h]:
+                continue
+            moment = strength * (
+                parameters[e, ROWS + h] * bent_x
+                + parameters[e, ROWS + 9 + h] * bent_y
+                + parameters[e, ROWS + 18 + h] * twist
+            )
+            for i in range(4):
+                p = indices[e, HINGES[h, i]]
+                w[p] += strength * parameters[e, BOUND + h] * g[h, i, 3] + np.abs(moment) * g[h, i, 4]
+                for c in range(3):
+                    f[p, c] -= moment * g[h, i, c]
+    return energy
+
+
+class Shell(Force):
+    """Bending of a mesh as a thin plate or shell of bending stiffness D, from the fold angles of its edges.
+
+    Energy per triangle A D |K|^2 / 2, A its start area and K [1/length] its change of curvature; a sheet of thickness
+    t and modulus E has D = E t^3 / 12 (Poisson's ratio 0), so bending to the curvature k costs D k^2 / 2 per area in
+    every direction. K = sum over the three edges of (2 / h) phi n n^T, h the height on the edge, n its normal in the
+    plane of the triangle, phi the part of the edge's change of fold angle theta - theta0 that lies on this side of the
+    edge (the other triangle has the rest; Morley's plate element). phi is h / (h + h') (theta - theta0), corrected by
+    the folds of the neighbouring edges as constant curvature of the start mesh requires. So constant curvature has
+    its exact energy and its moments balance on any mesh, sheared or irregular. Naked edges turn freely (K has the
+    least energy). theta0 = angle factor x start angle. Quads are split along their shorter diagonal (a draw: first to
+    third corner), which folds as any edge. Forces and moments of every triangle sum to zero, whatever its size.
+
+    The mesh may not have three faces at one edge; faces without area are left out. Sources: Morley, "The constant-
+    moment plate-bending element", 1971; Grinspun et al., "Discrete shells", 2003; Grinspun et al., "Computing discrete
+    shape operators on general meshes", 2006.
+    """
+
+    kind: Literal["shell"] = "shell"
+    mesh: str = Field(description="Name of the mesh that bends")
+    strength: float = Field(default=500.0, ge=0, le=1e12, description="D, plate bending stiffness [force length]")
+    angle_factor: float = Field(
+        default=1.0, ge=-1e12, le=1e12, description="Factor on the start angles [-]; 0: flat, 1: as drawn"
+    )
+
+    formula: ClassVar[str] = "E = A D |K - K0|²/2"
+    arity: ClassVar[int] = 12
+    outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "force"}
+    kernel: ClassVar[Any] = staticmethod(shell_kernel)
+    example_faces: ClassVar[list[list[int]]] = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: D, factor, area, start angles, bounds, and sqrt(A) K by the nine fold angles."""
+        corners = triangles(places.x, places.faces(self.mesh))
+        index, there = _elements(corners, f"/meshes/{self.mesh}/faces")
+        rows, area = _curvature_rows(places.x, index, there)
+        bends = (rows != 0).any(axis=(1, 2))
+        index, rows, area = index[bends], rows[bends], area[bends]
+        angles = fold_angles(places.x, index[:, HINGES])
+        bound = np.abs(np.einsum("mkh,mkl->mhl", rows, rows)).sum(axis=2)
+        return Block.of(
+            index,
+            strength=self.strength,
+            angle_factor=self.angle_factor,
+            area=area,
+            start_angles=np.where(bound > 0, angles, 0.0),
+            bounds=bound,
+            rows=rows.reshape(-1, 27),
+        )
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Largest fold of each triangle's edges away from rest [rad], bending moment D |K| per width [force]."""
+        parameters = block.parameters
+        rest = parameters[:, FACTOR, None] * parameters[:, REST:BOUND]
+        turn = wrapped(fold_angles(x, block.indices[:, HINGES]) - rest)
+        turn = np.where(parameters[:, BOUND:ROWS] > 0, turn, 0.0)
+        bent = np.einsum("mkh,mh->mk", parameters[:, ROWS:].reshape(-1, 3, 9), turn)
+        moment = parameters[:, STRENGTH] * np.linalg.norm(bent, axis=1) / np.sqrt(parameters[:, AREA])
+        return {"angle": np.abs(turn[:, :3]).max(axis=1, initial=0.0), "moment": moment}
+
+    @classmethod
+    def example(cls) -> tuple[Shell, Floats]:
+        """An irregular dome of quads and triangles (`example_faces`) that wants to be half as deep."""
+        x = [[0.0, 0.1, 0.0], [1.1, 0.0, 0.3], [2.0, -0.1, 0.1], [0.1, 1.0, 0.35], [0.9, 1.1, 0.7], [2.1, 0.9, 0.3]]
+        x += [[-0.1, 2.0, 0.05], [1.0, 2.2, 0.4], [1.9, 2.1, -0.1]]
+        return cls(mesh="skin", strength=20.0, angle_factor=0.5), np.array(x)
+
+
+def triangles(x: Floats, faces: Ints) -> Ints:
+    """Triangles (m, 3) of faces (k, 4): quads cut along the shorter diagonal; those without area left out.
+
+    A quad whose shorter diagonal lies outside it is cut along the other one.
+    """
+    a, b, c, d = (x[faces[:, i]] for i in range(4))
+    first, second = np.linalg.norm(c - a, axis=1), np.linalg.norm(d - b, axis=1)
+
+    def inside(p: Floats, q: Floats, r: Floats, s: Floats) -> NDArray[np.bool_]:
+        one, other = np.cross(q - p, r - p), np.cross(r - p, s - p)
+        return np.asarray((one * other).sum(axis=1) > 0)
+
+    fits, other_fits = inside(a, b, c, d), inside(b, c, d, a)
+    # equal but for rounding is a draw, so that a regular grid is cut in a regular way
+    along_first = np.where(fits == other_fits, first <= second * (1.0 + 1e-9), fits)
+    quad = faces[:, 2] != faces[:, 3]
+    one = np.where((along_first | ~quad)[:, None], faces[:, [0, 1, 2]], faces[:, [0, 1, 3]])
+    two = np.where(along_first[:, None], faces[:, [0, 2, 3]], faces[:, [1, 2, 3]])
+    both = np.stack([one, two], axis=1).reshape(-1, 3)[np.stack([np.ones_like(quad), quad], axis=1).ravel()]
+    p, q, r = (x[both[:, i]] for i in range(3))
+    height = np.linalg.norm(np.cross(q - p, r - p), axis=1)
+    size = ((q - p) ** 2).sum(axis=1) + ((r - p) ** 2).sum(axis=1)
+    return np.ascontiguousarray(both[height > 10.0 * SLIVER * size])
+
+
+def _neighbours(corners: Ints, pointer: str) -> Ints:
+    """For each edge (i, i + 1) of each triangle the same edge of its neighbour, as 3 t + i; -1 at naked edges."""
+    pairs = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    order = np.lexsort((pairs[:, 1], pairs[:, 0]))
+    same = (pairs[order[1:]] == pairs[order[:-1]]).all(axis=1)
+    crowded = np.flatnonzero(same[1:] & same[:-1])
+    if len(crowded):
+        a, b = pairs[order[crowded[0]]]
+        raise InputError(
+            pointer,
+            f"three faces meet at the edge from particle {a} to {b}; a shell bends across edges of one or two faces. "
+            "Split the mesh there, or remove doubled faces",
+        )
+    across = np.full(len(pairs), -1)
+    first, second = order[:-1][same], order[1:][same]
+    across[first], across[second] = second, first
+    return across.reshape(-1, 3)
+
+
+def _elements(corners: Ints, pointer: str) -> tuple[Ints, NDArray[np.bool_]]:
+    """Particles (m, 12) of each triangle's element, and which are there; the others repeat the first corner."""
+    across = _neighbours(corners, pointer)
+    index = np.repeat(corners[:, :1], 12, axis=1)
+    there = np.zeros(index.shape, dtype=bool)
+    index[:, :3], there[:, :3] = corners, True
+    tips = np.roll(corners, -2, axis=1).ravel()
+    for i in range(3):
+        met = across[:, i] >= 0
+        other, edge = across[met, i] // 3, across[met, i] % 3
+        index[met, 3 + i], there[met, 3 + i] = tips[across[met, i]], True
+        # the neighbour runs along the common edge the other way, unless its orientation is opposite
+        turned = corners[other, edge] == corners[met, i]
+        for j in range(2):
+            beyond = across[other, (edge + 1 + np.where(turned, 1 - j, j)) % 3]
+            index[met, 6 + 2 * i + j] = np.where(beyond >= 0, tips[beyond], index[met, 0])
+            there[met, 6 + 2 * i + j] = beyond >= 0
+    return index, there
+
+
+def _place(x: Floats, a: Ints, b: Ints, c: Ints, za: Complex, zb: Complex, side: float) -> Complex:
+    """Where c comes to lie when triangle a b c is laid into the plane with a at za and b at zb."""
+    e, p = x[b] - x[a], x[c] - x[a]
+    ee = (e * e).sum(axis=1)
+    safe = np.where(ee > 0, ee, 1.0)
+    foot, height = (p * e).sum(axis=1) / safe, np.linalg.norm(np.cross(e, p), axis=1) / safe
+    return za + (zb - za) * (foot + side * 1j * height)
+
+
+def _tensor(z: Complex) -> Floats:
+    """z z^T / 2 as (xx, yy, sqrt 2 xy): the height at z of a sheet, for each of three unit curvatures."""
+    return 0.5 * np.stack([z.real**2, z.imag**2, np.sqrt(2.0) * z.real * z.imag], axis=-1)
+
+
+def _fold_of_curvature(a: Complex, b: Complex, c: Complex, d: Complex, there: NDArray[np.bool_]) -> Floats:
+    """Fold angle of edge a-b with tips c, d in a sheet of constant curvature, by curvature (m, 3); 0 if not there."""
+    total = np.zeros((len(a), 3))
+    for tip in (c, d):
+        local = np.where(there, (tip - a) / np.where(there, b - a, 1.0), 1j)
+        foot, height = local.real, np.abs(local.imag * (b - a))
+        rise = _tensor(tip - a) - foot[:, None] * _tensor(b - a)
+        total += rise / np.where(there, height, 1.0)[:, None]
+    return np.where(there[:, None], total, 0.0)
+
+
+def _own_part(a: Complex, b: Complex, c: Complex) -> Floats:
+    """The part of that fold on the side of c: slope across the middle of the edge over the slope of the triangle."""
+    e, middle = b - a, 0.5 * (b - a)
+    outward = -1j * e / np.abs(e)
+    local = (c - a) / e
+    rise = _tensor(c - a) - local.real[:, None] * _tensor(e)
+    mixed = np.sqrt(0.5) * (middle.real * outward.imag + middle.imag * outward.real)
+    slope = np.stack([middle.real * outward.real, middle.imag * outward.imag, mixed], axis=-1)
+    return slope + rise / (local.imag * np.abs(e))[:, None]
+
+
+def _split(x: Floats, index: Ints, there: NDArray[np.bool_], i: int) -> Floats:
+    """The angle at edge i on the side of the triangle, by the element's nine fold angles (m, 9)."""
+    j, k = (i + 1) % 3, (i + 2) % 3
+    node = [index[:, n] for n in (i, j, k, 3 + i, 3 + j, 3 + k, 6 + 2 * i, 7 + 2 * i)]
+    has = [there[:, n] for n in (3 + i, 3 + j, 3 + k, 6 + 2 * i, 7 + 2 * i)]
+    za = np.zeros(len(index), complex)
+    zb = za + np.linalg.norm(x[node[1]] - x[node[0]], axis=1)
+    zc, zd = _place(x, *node[:3], za, zb, 1.0), _place(x, node[0], node[1], node[3], za, zb, -1.0)
+    folds = np.stack(
+        [
+            _fold_of_curvature(za, zb, zc, zd, has[0]),
+            _fold_of_curvature(zb, zc, za, _place(x, node[1], node[2], node[4], zb, zc, -1.0), has[1]),
+            _fold_of_curvature(zc, za, zb, _place(x, node[2], node[0], node[5], zc, za, -1.0), has[2]),
+            _fold_of_curvature(za, zd, zb, _place(x, node[0], node[3], node[6], za, zd, -1.0), has[3]),
+            _fold_of_curvature(zd, zb, za, _place(x, node[3], node[1], node[7], zd, zb, -1.0), has[4]),
+        ],
+        axis=1,
+    )
+    share = zc.imag / (zc.imag - zd.imag)
+    missing = np.where(has[0][:, None], _own_part(za, zb, zc) - share[:, None] * folds[:, 0], 0.0)
+    part = np.zeros((len(index), 9))
+    part[:, [i, j, k, 3 + 2 * i, 4 + 2 * i]] = _least(folds, missing)
+    part[:, i] += np.where(has[0], share, 0.0)
+    return part
+
+
+def _least(folds: Floats, wanted: Floats) -> Floats:
+    """The smallest r (m, 5) with folds^T r = wanted; directions that the folds hardly tell apart are left out."""
+    found = np.zeros(folds.shape[:2])
+    todo = np.abs(wanted).max(axis=1, initial=0.0) > 1e-9 * np.abs(folds[:, 0]).max(axis=1, initial=0.0)
+    folds, wanted = folds[todo], wanted[todo]
+    size, axes = np.linalg.eigh(np.einsum("mhk,mhl->mkl", folds, folds))
+    keep = size > 0.01 * size[:, -1:]
+    inverse = np.where(keep, 1.0 / np.where(keep, size, 1.0), 0.0)
+    found[todo] = np.einsum("mhk,mkl,ml,mnl,mn->mh", folds, axes, inverse, axes, wanted, optimize=True)
+    return found
+
+
+def _curvature_rows(x: Floats, index: Ints, there: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """sqrt(A) K (m, 3, 9) by fold angles, K as (xx, yy, sqrt 2 xy) in the triangle's plane, and the areas (m,)."""
+    za = np.zeros(len(index), complex)
+    zb = za + np.linalg.norm(x[index[:, 1]] - x[index[:, 0]], axis=1)
+    z = np.stack([za, zb, _place(x, index[:, 0], index[:, 1], index[:, 2], za, zb, 1.0)], axis=1)
+    edges = np.roll(z, -1, axis=1) - z
+    area = 0.5 * zb.real * z[:, 2].imag
+    outward = -1j * edges / np.abs(edges)
+    # (2 / h) n n^T = l / A n n^T for each edge
+    axes = 2.0 * _tensor(outward) * (np.abs(edges) / area[:, None])[:, :, None]
+    parts = np.stack([_split(x, index, there, i) for i in range(3)], axis=1)
+    rows = np.einsum("mik,mih->mkh", axes, parts)
+    naked = np.where(there[:, 3:6, None], 0.0, axes)
+    some = ~there[:, 3:6].all(axis=1)
+    # the curvature that turning naked edges cannot take away
+    left = np.eye(3) - np.linalg.pinv(naked[some], rcond=1e-6) @ naked[some]
+    rows[some] = np.einsum("mkl,mlh->mkh", left, rows[some])
+    rows[~there[:, 3:6].any(axis=1)] = 0.0
+    return np.sqrt(area)[:, None, None] * rows, area
