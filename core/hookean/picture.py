@@ -47,9 +47,9 @@ def render(
     """Draw `result` to a PNG file of `size` pixels.
 
     Springs by force (tension +, slack ones grey), carried meshes, held particles, loads and reactions; with its
-    `scene` also the floor and the meshes that forces act on. `view` is front, right, top, isometric or azimuth and elevation
-    eye [degrees]; without one, plane shapes are seen face on and all others at a slant. Raises InputError where the
-    view or size makes no sense, or the file cannot be written.
+    `scene` also the floor and the meshes that forces act on. `view` is front, right, top, isometric or the two angles
+    (azimuth, elevation) of the eye [degrees]; without one, plane shapes are seen face on and all others at a slant.
+    Raises InputError where the view or size makes no sense, or the file cannot be written.
     """
     check_target(path)
     if "\0" in os.fspath(path):
