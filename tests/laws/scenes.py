@@ -218,8 +218,8 @@ def _floor(rng: Numbers) -> Spec:
     """A net, cable or web that sags onto a floor close below."""
     spec = [_net, _cable, _web][int(rng.integers(3))](rng)
     x = spec["particles"]
-    spec["settings"] = {"floor": _ground(rng, x, x[:, 2].min() - 0.01 * np.ptp(x[:, 0]))}
-    spec["forces"][-1]["vector"][:, 2] *= 3.0
+    spec["settings"] = {"floor": _ground(rng, x, x[:, 2].min() - 0.003 * np.ptp(x[:, 0]))}
+    spec["forces"][-1]["vector"][:, 2] *= 5.0
     return spec
 
 
