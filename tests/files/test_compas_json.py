@@ -16,7 +16,6 @@ from hookean.errors import InputError
 from hookean.files import compas_json
 from hookean.scene import Scene
 
-
 MESH = "compas.datastructures/Mesh"
 
 
