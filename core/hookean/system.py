@@ -83,12 +83,12 @@ class System:
     @property
     def damped(self) -> bool:
         """Whether any force reads the velocities."""
-        for group in self.groups:
-            if group.cls.damped:
-                columns = [i for i, name in enumerate(group.block.names) if name == "damping"]
-                if not columns or (group.block.parameters[:, columns] != 0).any():
-                    return True
-        return False
+        return any(g.cls.damped and _uses(g, "damping") for g in self.groups)
+
+    @property
+    def yields(self) -> bool:
+        """Whether any force may change at the end of a step because of what it remembers."""
+        return any(g.cls.remembers and _uses(g, "plasticity") for g in self.groups)
 
     def start(self) -> State:
         """The state before the first iteration: anchors at their targets, memories empty."""
@@ -187,6 +187,12 @@ class System:
                     sides.append(f.reshape(count, -1))
                 blocks[:, :, 3 * i + c] = (sides[1] - sides[0]) / (2.0 * step)[:, None]
         return 0.5 * (blocks + blocks.transpose(0, 2, 1))
+
+
+def _uses(group: Group, column: str) -> bool:
+    """Whether a group's parameters of this name are not all zero; yes where it has none of this name."""
+    columns = [i for i, name in enumerate(group.block.names) if name == column]
+    return not columns or bool((group.block.parameters[:, columns] != 0).any())
 
 
 def hold(state: State, anchor: Held) -> None:

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 def verlet_loop(  # type: ignore[no-untyped-def]
     functions, indices, parameters, memory, impacts, supports, planes, notes, x, v, free, mass, f, raw, w, carried,
-    x_before, v_before, acceleration, predicted, drag, steps, damped, fresh, count,
+    x_before, v_before, acceleration, predicted, drag, steps, changing, fresh, count,
 ):  # fmt: skip
     n = x.shape[0]
     for _ in range(count):
         for s in range(steps.shape[0]):
             dt = steps[s]
-            if damped or fresh:
+            if changing or fresh:
                 for i in range(n):
                     for c in range(3):
                         raw[i, c] = 0.0
@@ -88,8 +88,10 @@ class Method(Solver):
             functions, indices, parameters, memory, *system.hooks(), notes,
             state.x, state.v, state.free, system.mass, f, raw, np.zeros(n), carried,
             x_before, v_before, acceleration, predicted, system.drag,
-            step * np.array(self.weights), system.damped, True, count,
+            step * np.array(self.weights), system.damped or system.yields, True, count,
         )  # fmt: skip
         state.iteration += count
-        state.time += count * step
+        for _ in range(count):
+            # one by one: the same bits however the steps are divided into calls
+            state.time += step
         return count
