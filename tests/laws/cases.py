@@ -121,10 +121,10 @@ KERNELS = [case_of(kind, *cls.example()) for kind, cls in KINDS.items() if cls.k
 
 
 def resting() -> list[Case]:
-    """Internal forces with a rest value, at rest where they start: given a place and nothing else."""
+    """Internal forces with rest values from the start shape (and a factor on them), given a place and nothing else."""
     found = []
     for kind, cls in KINDS.items():
-        rests = [n for n, f in cls.model_fields.items() if n.startswith("rest") and f.default is None]
+        rests = [n for n in cls.model_fields if n.endswith("_factor")]
         if cls.kernel is not None and cls.role == "internal" and rests:
             force, x = cls.example()
             place = {n: getattr(force, n) for n in PLACES if getattr(force, n, None) is not None}
