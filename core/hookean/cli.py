@@ -1,0 +1,111 @@
+"""The command line: relax, serve, forces. Starts light: what a command needs is imported when it runs."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+from hookean import InputError, __version__
+
+app = typer.Typer(
+    name="hookean",
+    help="Particle-spring form finding: cables, nets, membranes and shells relax to equilibrium.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"hookean {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Say the version and stop.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def relax(
+    files: Annotated[list[Path], typer.Argument(help=".3dm files, scenes or COMPAS documents in .json")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help=".3dm or .json file to write; for many files a folder")
+    ] = None,
+    recipe: Annotated[
+        Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
+    ] = None,
+    explain: Annotated[bool, typer.Option("--explain", help="Tell how the files are read; solve nothing")] = False,
+    report: Annotated[
+        Path | None, typer.Option(help="Everything as JSON; for many files a folder, as for the next two")
+    ] = None,
+    csv: Annotated[Path | None, typer.Option(help="A row for each element and reaction")] = None,
+    picture: Annotated[Path | None, typer.Option(help="A picture (PNG) of the result")] = None,
+    check: Annotated[
+        Path | None, typer.Option(help="Limits (TOML, JSON) of force, strain, displacement, reaction")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say only what is wrong")] = False,
+) -> None:
+    """Relax files: cables, nets and membranes go to equilibrium. The input is never changed.
+
+    Exits with 0 if all converged, 1 if a limit is exceeded, 2 for bad input, 3 where there is no equilibrium.
+
+    Without a recipe, layers named springs, cables, membrane, anchors, loads, floor and geometry and the objects' user
+    text (stiffness, rest_factor, divide, load, axes ...) say what is what; without such layers curves become springs
+    and meshes membranes, held at loose ends and naked vertices. --explain tells.
+    """
+    from hookean.commands.relax import Options, run
+
+    raise typer.Exit(run(Options(files, output, recipe, explain, report, csv, picture, check, quiet)))
+
+
+@app.command()
+def serve(
+    host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port to listen on; 0: any free one", min=0, max=65535)] = 8017,
+) -> None:
+    """Start the local service: HTTP, and a page to watch shapes relax."""
+    import importlib
+
+    try:
+        service = importlib.import_module("hookean_server.main")
+    except ModuleNotFoundError as error:
+        if not (error.name or "").startswith("hookean_server"):
+            raise
+        fail(InputError("serve", "the service (hookean_server) is not installed; install hookean with it"))
+    service.serve(host, port)
+
+
+@app.command()
+def forces() -> None:
+    """List all forces with their formulas, columns, defaults and units."""
+    from hookean.commands.forces import catalogue
+
+    typer.echo(catalogue())
+
+
+def fail(error: InputError) -> NoReturn:
+    """Say what is wrong in one line and stop with 2."""
+    typer.echo(f"hookean: {' '.join(str(error).split())}", err=True)
+    raise typer.Exit(2)
+
+
+def main() -> None:
+    """Run the command line; exit codes as `hookean relax --help` tells. Ctrl-C stops cleanly with 130."""
+    try:
+        app()
+    except KeyboardInterrupt:
+        typer.echo("hookean: stopped", err=True)
+        sys.exit(130)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,202 @@
+"""`hookean relax`: files in, files out, and an exit code."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from hookean.errors import InputError
+
+CONVERGED, EXCEEDED, BAD_INPUT, NOT_CONVERGED, STOPPED = 0, 1, 2, 3, 130
+SHOW_AFTER = 0.5  # seconds of solving before a progress line appears
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the command was given."""
+
+    files: list[Path]
+    output: Path | None
+    recipe: Path | None
+    explain: bool
+    report: Path | None
+    csv: Path | None
+    picture: Path | None
+    check: Path | None
+    quiet: bool
+
+
+@dataclass(frozen=True)
+class _Job:
+    source: Path
+    output: Path | None
+    report: Path | None
+    csv: Path | None
+    picture: Path | None
+
+
+def run(options: Options) -> int:
+    """Relax every file; the exit code is the gravest: bad input, then not converged, then a limit exceeded."""
+    codes: list[int] = []
+    try:
+        recipe = None if options.recipe is None else _text(options.recipe)
+        name = options.recipe.name if options.recipe is not None else "recipe"
+        if options.explain:
+            return max(_explained(file, recipe, name) for file in options.files)
+        limits = _limits(options.check)
+        jobs = _jobs(options)
+    except InputError as error:
+        return _bad(error)
+    for job in jobs:
+        try:
+            codes.append(_one(job, recipe, name, limits, options.quiet))
+        except InputError as error:
+            codes.append(_bad(error))
+        except KeyboardInterrupt:
+            typer.echo(f"hookean: {job.source.name}: stopped, nothing written", err=True)
+            return STOPPED
+    return next((code for code in (BAD_INPUT, NOT_CONVERGED, EXCEEDED) if code in codes), CONVERGED)
+
+
+def _one(job: _Job, recipe: str | None, name: str, limits: dict[str, Any] | None, quiet: bool) -> int:
+    from hookean.files.relax_file import relax_file, report_json
+    from hookean.files.threedm_atomic import put
+
+    with _progress(job.source.name, quiet) as progress:
+        found = relax_file(job.source, job.output, recipe, recipe_name=name, limits=limits, progress=progress)
+    if job.report is not None:
+        put(job.report, report_json(found), lambda back: None)
+    if job.csv is not None:
+        put(job.csv, found.csv.encode(), lambda back: None)
+    if job.picture is not None:
+        from hookean.picture import render
+
+        render(found.result, job.picture, scene=found.scene, title=job.source.stem)
+    for sentence in found.warnings:
+        typer.echo(f"hookean: {job.source.name}: note: {sentence}", err=True)
+    for sentence in found.exceeded:
+        typer.echo(f"hookean: {job.source.name}: limit exceeded: {sentence}", err=True)
+    if not found.result.converged:
+        typer.echo(f"hookean: {job.source.name}: {found.result.message}", err=True)
+        return NOT_CONVERGED
+    if not quiet:
+        where = f" -> {job.output}" if job.output is not None else " (nothing written: give -o)"
+        typer.echo(f"{job.source.name}: {found.result.message}{where}")
+    return EXCEEDED if found.exceeded else CONVERGED
+
+
+def _explained(file: Path, recipe: str | None, name: str) -> int:
+    from hookean.files.relax_file import explain_file
+
+    try:
+        typer.echo("\n".join(explain_file(file, recipe, recipe_name=name)))
+    except InputError as error:
+        return _bad(error)
+    return CONVERGED
+
+
+def _bad(error: InputError) -> int:
+    typer.echo(f"hookean: {' '.join(str(error).split())}", err=True)
+    return BAD_INPUT
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError:
+        raise InputError(path.name, "is not text in UTF-8; save it so") from None
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or "no possible path"
+        raise InputError(path.name, f"cannot be read ({why}); check the path") from None
+
+
+def _limits(path: Path | None) -> dict[str, Any] | None:
+    if path is None:
+        return None
+    text = _text(path)
+    from hookean.files.tables import read_limits
+
+    return read_limits(text, path.name)
+
+
+def _jobs(options: Options) -> list[_Job]:
+    """Where each file goes; InputError before anything is solved where two would meet or one would be its input."""
+    many = len(options.files) > 1
+    jobs = [
+        _Job(
+            file,
+            _place(options.output, file, file.suffix or ".3dm", many),
+            _place(options.report, file, ".report.json", many),
+            _place(options.csv, file, ".csv", many),
+            _place(options.picture, file, ".png", many),
+        )
+        for file in options.files
+    ]
+    seen: set[Path] = set()
+    for job in jobs:
+        for path in (job.output, job.report, job.csv, job.picture):
+            if path is None:
+                continue
+            _check(path, options)
+            if path.resolve() in seen:
+                raise InputError(str(path), "would be written twice; give files of different names")
+            seen.add(path.resolve())
+    return jobs
+
+
+def _place(given: Path | None, file: Path, ending: str, many: bool) -> Path | None:
+    """A file to write: what was given, or in a folder that was given the input's name with its ending."""
+    if given is None:
+        return None
+    if many and not given.is_dir():
+        if given.exists() or given.suffix:
+            raise InputError(str(given), "is no folder; for many files give one")
+        try:
+            given.mkdir(parents=True)
+        except OSError as error:
+            raise InputError(str(given), f"the folder cannot be made ({error.strerror})") from None
+    return given / f"{file.stem}{ending}" if given.is_dir() else given
+
+
+def _check(path: Path, options: Options) -> None:
+    from hookean.files.threedm_atomic import check_target
+
+    for read in (*options.files, options.recipe, options.check):
+        if read is not None:
+            check_target(path, read)
+
+
+@contextlib.contextmanager
+def _progress(name: str, quiet: bool) -> Iterator[Callable[[int, float], None] | None]:
+    """A line that follows a long relaxation, on a terminal only."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    line = Progress(*columns, console=Console(stderr=True), transient=True)
+    task = line.add_task(name, total=None)
+    began, shown = time.monotonic(), False
+
+    def advance(iteration: int, residual: float) -> None:
+        nonlocal shown
+        if not shown and time.monotonic() - began > SHOW_AFTER:
+            line.start()
+            shown = True
+        if shown:
+            line.update(task, description=f"{name}: iteration {iteration}, residual {residual:.2g}")
+
+    try:
+        yield advance
+    finally:
+        if shown:
+            line.stop()

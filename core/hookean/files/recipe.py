@@ -1,0 +1,171 @@
+"""Recipes: how to relax what a .3dm file holds. A recipe is a scene in TOML or JSON with selectors for coordinates.
+
+    units = {length = "m", force = "kN"}        # of every number here; without it the file's length, N, s
+
+    [[forces]]
+    kind = "springs"
+    name = "cables"
+    lines = "layer:cables"                      # lines, polylines; curves with divide
+    divide = 20                                 # 20 equal arcs of each curve
+    stiffness = 1000
+
+    [[forces]]
+    kind = "unary"
+    points = "vertices:layer:cables"            # the points of that division
+    vector = [0, 0, -1.5]
+
+    [[anchors]]
+    points = "ends:layer:cables, layer:masts"
+
+    [settings]
+    tolerance = 1e-8
+
+Everything a scene has may be given (forces, anchors, geometry, settings, weld_tolerance, strict ...), coordinates too.
+
+Selectors: `layer:NAME` (full path or name, sublayers included), `name:NAME`, `id:UUID`, `text:KEY=VALUE` (object
+user text) and `*` (all that fits; the only one that leaves out what cannot be used instead of refusing it). `*` also
+stands for anything inside a name. Several are joined by commas or in a list.
+
+* `lines`: lines and polylines give their segments, any curve with `divide = N` N equal arcs.
+* `mesh`: meshes; surfaces, Breps, extrusions with `divide = [u, v]` or `divide_u`, `divide_v`. Several objects
+  are one mesh, welded where they meet.
+* `points`, of forces and anchors: points and point clouds; `start:`, `ends:` of curves; `vertices:`, `inner:` of
+  curves and meshes; `naked:`, `corners:` of meshes and surfaces. How one table divides an object holds for all tables
+  that do not say otherwise, and so does the user text `divide` of the object.
+* `[[geometry]]` rides along: kind `points`, `lines`, `mesh`, or `polyline` and `curve` with points = a curve.
+
+`tension_only = true` on springs along lines makes them slack below their rest length. `hidden = true` takes hidden
+objects too. Where a file is read without a recipe, see `hookean.files.recipe_convention`.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from hookean.errors import InputError
+from hookean.files.recipe_build import Built, build
+from hookean.files.recipe_drawing import NO_LAYER, Drawing, Item, drawing
+from hookean.files.recipe_select import listed
+from hookean.files.threedm_model import Model
+
+if TYPE_CHECKING:
+    from hookean.files.relax_file import FileResult as FileResult
+    from hookean.files.relax_file import relax_file as relax_file
+
+__all__ = ["Built", "FileResult", "Understood", "parse_recipe", "relax_file", "understand"]
+
+
+def __getattr__(name: str) -> Any:
+    # relax_file needs this module
+    if name in ("relax_file", "FileResult"):
+        from hookean.files import relax_file as home
+
+        return getattr(home, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+@dataclass(frozen=True, eq=False)
+class Understood:
+    """How a file was read: the scene with where it came from, and lines that tell a person."""
+
+    built: Built
+    lines: list[str]
+
+
+def parse_recipe(text: str, name: str = "recipe") -> dict[str, Any]:
+    """A recipe from TOML, or from JSON where the text starts with a brace; InputError naming line and column."""
+    if text.lstrip("\ufeff \t\r\n").startswith("{"):
+        from hookean.files.scene_json import parse
+
+        return dict(parse(text.lstrip("\ufeff"), name))
+    try:
+        return tomllib.loads(text.lstrip("\ufeff").replace("\r\n", "\n"))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(name, f"not valid TOML: {error}") from None
+
+
+def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Understood:
+    """The scene in a .3dm model, by a recipe or, with None, by the convention of layer names and user text.
+
+    Raises InputError: a selector that finds nothing, an object that does not fit, a fault of the scene.
+    """
+    if recipe is None:
+        from hookean.files.recipe_convention import by_convention
+
+        seen = drawing(model)
+        built, said = by_convention(seen)
+    else:
+        hidden = recipe.get("hidden", False)
+        if not isinstance(hidden, bool):
+            raise InputError("/hidden", f"{hidden!r} given; give true or false")
+        seen = drawing(model, recipe.get("units"), hidden=hidden)
+        built, said = build(seen, recipe), "a recipe"
+    return Understood(built, _told(seen, built, said))
+
+
+def _told(seen: Drawing, built: Built, said: str) -> list[str]:
+    units, model = built.scene.units, seen.model
+    version = model.version // 10 if model.version >= 50 else model.version
+    lines = [
+        f"{model.name}: Rhino {version} file, read by {said}",
+        f"units: {units.length}, {units.force}, {units.time}; {seen.said}",
+        f"points within {built.scene.weld_tolerance:.6g} {units.length} become one particle",
+        _counts(seen),
+    ]
+    lines += built.notes
+    floor = built.scene.settings.floor
+    if floor is not None:
+        lines.append(f"floor through {', '.join(f'{c:.6g}' for c in floor.point)}")
+    by_layer: dict[str, list[Item]] = {}
+    for item in seen.items:
+        by_layer.setdefault(item.layer or NO_LAYER, []).append(item)
+    for layer, items in by_layer.items():
+        lines += _layer(layer, items, built)
+    if seen.hidden:
+        where = listed(item.layer or NO_LAYER for item in seen.hidden)
+        lines.append(f"hidden, left out: {_kinds(list(seen.hidden))} on layer {where}")
+    return lines + list(model.warnings)
+
+
+def _counts(seen: Drawing) -> str:
+    parts = [f"{len(seen.items)} visible objects"]
+    locked = sum(item.locked for item in seen.items)
+    if locked:
+        parts.append(f"{locked} of them locked (used like the others)")
+    if seen.instances:
+        parts.append(f"{seen.instances} block instances (expanded)")
+    if seen.hidden:
+        parts.append(f"{len(seen.hidden)} hidden (left out)")
+    if seen.paper:
+        parts.append(f"{seen.paper} in layouts (left out)")
+    if seen.own:
+        parts.append(f"{seen.own} of an earlier run (left out)")
+    if seen.model.lights:
+        parts.append(f"{seen.model.lights} lights")
+    return ", ".join(parts)
+
+
+def _layer(layer: str, items: list[Item], built: Built) -> list[str]:
+    """What became of the objects of a layer, those of one fate in one line."""
+    fates: dict[str, list[Item]] = {}
+    for item in items:
+        if item in built.uses:
+            fate = " and ".join(built.uses[item])
+        else:
+            fate = "left out: " + built.left.get(item, "not selected")
+        fates.setdefault(fate, []).append(item)
+    lines = []
+    for fate, same in fates.items():
+        names = [item.name for item in same if item.name]
+        called = f" {listed(names, 3)}" if names and fate.startswith("left out") else ""
+        lines.append(f"layer {layer}: {_kinds(same)}{called} -> {fate}")
+    return lines
+
+
+def _kinds(items: list[Item]) -> str:
+    from hookean.files.recipe_shapes import counted
+
+    return counted(items)

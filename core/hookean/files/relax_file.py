@@ -1,0 +1,266 @@
+"""Relax a file into a file: what the command line and the service share.
+
+`.3dm` files by a recipe or by convention (see `hookean.files.recipe`), scenes in JSON, and COMPAS meshes and graphs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hookean.errors import InputError
+from hookean.files import tables, threedm
+from hookean.files.recipe import parse_recipe, understand
+from hookean.files.recipe_build import Built
+from hookean.files.recipe_drawing import UNIT_NAMES
+from hookean.files.recipe_output import additions
+from hookean.files.threedm_atomic import check_target, put
+from hookean.scene import Scene
+
+if TYPE_CHECKING:
+    from hookean.result import Result
+    from hookean.system import System
+
+Progress = Callable[[int, float], None]
+
+
+@dataclass(eq=False)
+class FileResult:
+    """A relaxed file. `result` in the scene's units; `understood` lines on how the file was read; `rows` one for each
+    element and reaction (see `tables.rows`); `objects` sums for each object; `ids` of the objects written to a .3dm
+    file; `warnings` for a person; `exceeded` a sentence for each limit that does not hold."""
+
+    result: Result
+    scene: Scene
+    understood: list[str]
+    rows: list[dict[str, Any]]
+    objects: list[dict[str, Any]]
+    ids: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    exceeded: list[str] = field(default_factory=list)
+
+    @property
+    def csv(self) -> str:
+        """The rows as CSV text."""
+        return tables.csv_text(self.rows)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain lists and numbers: the report."""
+        plain: dict[str, Any] = {
+            "result": self.result.to_dict(),
+            "digest": self.scene.digest,
+            "understood": self.understood,
+            "objects": self.objects,
+            "rows": self.rows,
+            "ids": self.ids,
+            "warnings": self.warnings,
+            "exceeded": self.exceeded,
+        }
+        return {key: _finite(value) for key, value in plain.items()}
+
+
+@dataclass(eq=False)
+class _Source:
+    """A file read: its scene, where that came from, lengths of the file in the scene's unit and the file's unit."""
+
+    scene: Scene
+    lines: list[str]
+    built: Built | None = None
+    factor: float = 1.0
+    unit: str = ""
+    warnings: tuple[str, ...] = ()
+    compas: Any = None
+
+
+def explain_file(source: Path, recipe_text: str | None = None, *, recipe_name: str = "recipe") -> list[str]:
+    """How a file would be read, in lines for a person; nothing is solved. Raises InputError as `relax_file`."""
+    return _read(source, recipe_text, recipe_name).lines
+
+
+def relax_file(
+    source: Path,
+    target: Path | None = None,
+    recipe_text: str | None = None,
+    *,
+    recipe_name: str = "recipe",
+    limits: Mapping[str, Any] | None = None,
+    progress: Progress | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> FileResult:
+    """Relax what `source` holds and write it to `target` (None: nowhere), replaced in one step or not at all.
+
+    A .3dm target is a copy of a .3dm source with results below the layer `hookean`, or a new file; a .json target is
+    the result (of a COMPAS document the document with its new shape). A shape short of equilibrium is written too, a
+    cancelled one is not. `limits` as `tables.read_limits` gives them. The source is never written.
+
+    Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written.
+    """
+    from hookean.result import Status
+    from hookean.run import relax_state
+    from hookean.solvers import solver
+    from hookean.system import compile
+
+    if target is not None:
+        check_target(target, source)
+        if target.suffix.lower() not in (".3dm", ".json"):
+            raise InputError(target.name, "ends neither in .3dm nor in .json; name the output so.")
+    read = _read(Path(source), recipe_text, recipe_name)
+    with _about(recipe_name if recipe_text is not None else ""):
+        system = compile(read.scene)
+        result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)
+    parts = tables.sections(system, result, read.built)
+    found = FileResult(
+        result, read.scene, read.lines, tables.rows(parts, result), tables.per_object(parts, result.units)
+    )
+    report = result.report
+    found.warnings = [*read.warnings, *report.warnings, *(u.sentence for u in report.unmatched), *_doubled(parts)]
+    if limits is not None:
+        found.exceeded = tables.exceeded(limits, parts, system, result)
+    if target is not None and result.status is not Status.CANCELLED:
+        _write(found, system, parts, read, Path(source), target)
+    return found
+
+
+def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
+    if source.suffix.lower() == ".json":
+        if recipe_text is not None:
+            raise InputError(source.name, "is a JSON file, which says everything itself; recipes go with .3dm files.")
+        return _read_json(source)
+    recipe = None if recipe_text is None else parse_recipe(recipe_text, recipe_name)
+    model = threedm.read(source)
+    with _about(recipe_name if recipe is not None else ""):
+        understood = understand(model, recipe)
+    seen = understood.built.drawing
+    return _Source(
+        understood.built.scene, understood.lines, understood.built, seen.factor, seen.unit, tuple(model.warnings)
+    )
+
+
+@contextlib.contextmanager
+def _about(name: str) -> Iterator[None]:
+    """Pointers into a recipe, told with its name."""
+    try:
+        yield
+    except InputError as error:
+        if not name or not error.pointer.startswith("/"):
+            raise
+        raise InputError(f"{name} {error.pointer}", error.sentence) from None
+
+
+def _read_json(source: Path) -> _Source:
+    from hookean.files import compas_json
+    from hookean.files.scene_json import parse
+    from hookean.files.threedm_read import read_bytes
+
+    try:
+        data = read_bytes(source, source.name)
+    except InputError as error:
+        raise InputError(error.pointer, error.sentence.replace(".3dm", ".json")) from None
+    value = parse(data, source.name)
+    document = None
+    with _about(source.name):
+        if compas_json.is_document(value):
+            document = compas_json.read(value)
+            scene = Scene.read(_of_document(document, value))
+        else:
+            scene = Scene.read(compas_json.plain_scene(value)[0])
+    forces = ", ".join(str(type(f).model_fields["kind"].default) for f in scene.forces) or "no force"
+    kind = "a scene" if document is None else f"a COMPAS {document.kind}"
+    units = scene.units
+    lines = [
+        f"{source.name}: {kind} with {forces}; {len(scene.anchors)} anchors, {len(scene.geometry)} carried geometries",
+        f"units: {units.length}, {units.force}, {units.time}",
+    ]
+    if document is not None:
+        what = "naked vertices" if document.kind == "mesh" else "nodes of one edge"
+        lines.append(f"a document without a scene: its edges are springs of rest factor 0, its {what} are held")
+    return _Source(scene, lines, unit=units.length, compas=document)
+
+
+def _of_document(document: Any, value: Any) -> dict[str, Any]:
+    """A mesh or graph alone, as the convention would read it: a film with its boundary held."""
+    if document.kind == "mesh":
+        from hookean.discretize.meshes import edges, naked_vertices
+        from hookean.files.compas_json import plain_mesh
+        from hookean.mesh import Mesh
+
+        plain = plain_mesh(value)[1]
+        faces = [[*f, f[2]] if len(f) == 3 else list(f) for f in plain["faces"]]
+        mesh = Mesh(document.points, np.array(faces, dtype=np.int64).reshape(-1, 4))
+        pairs, held = edges(mesh), naked_vertices(mesh)
+        if not len(held):
+            raise InputError("/", "a closed mesh has no naked vertices to hold; give a scene with anchors")
+    elif document.kind == "graph":
+        pairs = np.asarray(document.edges)
+        held = np.flatnonzero(np.bincount(pairs.ravel(), minlength=len(document.points)) == 1)
+    else:
+        raise InputError("/dtype", f"a {document.kind} alone cannot be relaxed; give a Mesh, a Graph or a scene")
+    return {
+        "particles": document.points,
+        "forces": [{"kind": "springs", "particles": pairs, "rest_factor": 0.0}],
+        "anchors": [{"particles": held, "name": "held"}],
+    }
+
+
+def _doubled(parts: list[tables.Section]) -> list[str]:
+    """A warning for each force with elements on the same two particles: a line drawn twice pulls twice."""
+    said = []
+    for part in parts:
+        if part.internal and part.particles.shape[1] == 2:
+            twice = len(part.particles) - len(np.unique(np.sort(part.particles, axis=1), axis=0))
+            if twice:
+                said.append(f"{part.name}: {twice} elements join the same particles as another and pull twice")
+    return said
+
+
+def _write(
+    found: FileResult, system: System, parts: list[tables.Section], read: _Source, source: Path, target: Path
+) -> None:
+    if target.suffix.lower() == ".json":
+        put(target, _json(_answer(found, read)), lambda back: None)
+        return
+    added = additions(system, found.result, parts, read.built, read.unit, read.factor)
+    if read.built is not None:
+        written = threedm.write(source, target, added)
+    else:
+        names = {short: name for name, short in UNIT_NAMES.items()}
+        written = threedm.write_new(target, added, unit=names[read.scene.units.length])
+    found.ids = [str(id) for id in written.ids]
+    found.warnings += [w for w in written.warnings if w not in found.warnings]
+
+
+def _answer(found: FileResult, read: _Source) -> Any:
+    """The result, or a COMPAS document with its points moved."""
+    document = read.compas
+    if document is None:
+        return found.result.to_dict()
+    from hookean.files import compas_json
+
+    if document.kind == "mesh":
+        return compas_json.mesh(found.result.particles, document.faces, document.keys)
+    return compas_json.graph(found.result.particles, document.edges)
+
+
+def report_json(found: FileResult) -> bytes:
+    """The report as JSON text in UTF-8."""
+    return _json(found.to_dict())
+
+
+def _json(value: Any) -> bytes:
+    return (json.dumps(_finite(value), ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode()
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no infinity and no NaN: null stands for both."""
+    if isinstance(value, dict):
+        return {str(k): _finite(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(v) for v in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

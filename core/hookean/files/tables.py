@@ -1,0 +1,336 @@
+"""Results as tables: rows keyed by the object they came from, CSV text, sums for each object, and limits.
+
+A limits file is TOML (or JSON). At the top stand limits of the whole model; `[force.NAME]`, `[layer.NAME]` and
+`[anchor.NAME]` hold for a force (its name or kind), a layer (path or name, sublayers included) or an anchor:
+
+    max_force = 250          # tension of any element
+    min_force = -5           # compression
+    max_strain = 0.02        # of either sign
+    max_displacement = 0.1   # of any particle from its start
+    max_reaction = 500
+    units = {length = "m", force = "kN"}   # without it those of the scene
+
+    [layer.cables]
+    max_force = 120
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from hookean.errors import InputError
+from hookean.files.recipe_build import Built
+from hookean.files.recipe_drawing import Item
+from hookean.files.recipe_select import listed, on_layer
+from hookean.files.recipe_shapes import Shape
+from hookean.result import Result
+from hookean.system import System
+from hookean.units import Units
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Row = dict[str, Any]
+
+LIMITS = {
+    "max_force": "force",
+    "min_force": "force",
+    "max_strain": "",
+    "max_displacement": "length",
+    "max_reaction": "force",
+}
+_SCOPES = ("force", "layer", "anchor")
+
+
+@dataclass(eq=False)
+class Section:
+    """The elements of force `number` of the scene, or the reactions (-1): `particles` (m, arity), `columns` (m,) or
+    (m, 3) each with the dimension in `outputs`, and the item each element came from (`owner` -1: none)."""
+
+    number: int
+    name: str
+    kind: str
+    particles: Ints
+    columns: dict[str, Floats]
+    outputs: Mapping[str, str]
+    items: tuple[Item, ...]
+    owner: Ints
+    names: list[str]
+
+    def item(self, row: int) -> Item | None:
+        """Where an element came from."""
+        return self.items[self.owner[row]] if self.owner[row] >= 0 else None
+
+    @property
+    def internal(self) -> bool:
+        """Whether its forces are those inside elements, with a sign."""
+        force = self.columns.get("force")
+        return self.kind != "reaction" and force is not None and force.ndim == 1
+
+
+def sections(system: System, result: Result, built: Built | None = None) -> list[Section]:
+    """One section for each force of the scene that has elements, and one of reactions."""
+    found: list[Section] = []
+    for number, (force, entry) in enumerate(zip(system.scene.forces, result.forces, strict=True)):
+        if "particles" not in entry:
+            continue
+        particles = np.asarray(entry["particles"]).reshape(len(entry["particles"]), -1)
+        columns = {k: np.asarray(v) for k, v in entry.items() if k not in ("kind", "name", "particles")}
+        shape = built.forces[number] if built is not None else None
+        owner = np.full(len(particles), -1) if shape is None else _owners(system, number, particles, shape)
+        items = () if shape is None else shape.items
+        name = str(entry["name"] or entry["kind"])
+        kind = str(entry["kind"])
+        found.append(Section(number, name, kind, particles, columns, type(force).outputs, items, owner, []))
+    found.append(_reactions(system, result, built))
+    return found
+
+
+def _owners(system: System, number: int, particles: Ints, shape: Shape) -> Ints:
+    """The item of each element: by its place in the input where that is kept, else by the particles it has."""
+    force, places = system.scene.forces[number], system.places
+    if shape.faces is None:
+        elements = places.elements(force)
+        met = (elements >= 0).all(axis=1)
+        if len(elements) == len(shape.owner) and np.array_equal(elements[met], particles):
+            return shape.owner[met]
+        at = places.meet(shape.array, "", silent=True).reshape(len(shape.owner), -1)
+        return _looked_up(at[:, 0], shape.owner, particles[:, 0])
+    at = places.vertices(str(getattr(force, "mesh", "")))
+    if particles.shape[1] < 2:
+        return _looked_up(at, shape.owner, particles[:, 0])
+    corner = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3)]
+    pairs = np.concatenate([shape.faces[:, list(pair)] for pair in corner])
+    count = len(system.x)
+    sides = np.sort(at[pairs], axis=1)
+    keys, first = np.unique(sides[:, 0] * count + sides[:, 1], return_index=True)
+    mine = np.sort(particles[:, :2], axis=1)
+    return _looked_up(keys, shape.owner[pairs[first, 0]], mine[:, 0] * count + mine[:, 1])
+
+
+def _looked_up(keys: Ints, owner: Ints, wanted: Ints) -> Ints:
+    """The owner at the first of `keys` that equals each wanted one; -1 for none."""
+    unique, first = np.unique(keys, return_index=True)
+    if not len(unique):
+        return np.full(len(wanted), -1)
+    place = np.minimum(np.searchsorted(unique, wanted), len(unique) - 1)
+    return np.where(unique[place] == wanted, owner[first[place]], -1)
+
+
+def _reactions(system: System, result: Result, built: Built | None) -> Section:
+    particles = np.asarray(result.reactions["particles"], dtype=np.int64)
+    items: list[Item] = []
+    keys: list[Ints] = []
+    owners: list[Ints] = []
+    for shape in built.anchors if built is not None else ():
+        if shape is not None:
+            keys.append(system.places.meet(shape.array, "", silent=True))
+            owners.append(shape.owner + len(items))
+            items.extend(shape.items)
+    owner = np.full(len(particles), -1)
+    if keys:
+        owner = _looked_up(np.concatenate(keys), np.concatenate(owners), particles)
+    force = np.asarray(result.reactions["force"], dtype=np.float64).reshape(-1, 3)
+    names = [str(name) for name in result.reactions["names"]]
+    return Section(
+        -1,
+        "reactions",
+        "reaction",
+        particles[:, None],
+        {"force": force},
+        {"force": "force"},
+        tuple(items),
+        owner,
+        names,
+    )
+
+
+def rows(parts: Sequence[Section], result: Result) -> list[Row]:
+    """A row for each element and each reaction; keys are the CSV's header, with units. Lengths and forces are in the
+    scene's units, x y z the middle of the relaxed element."""
+    return [row for part in parts for row in _rows(part, result)]
+
+
+def _rows(part: Section, result: Result) -> Iterator[Row]:
+    units = result.units
+    middle = result.particles[part.particles].mean(axis=1) if len(part.particles) else np.zeros((0, 3))
+    heads = {name: _unit(units, part.outputs.get(name, "")) for name in part.columns}
+    for i in range(len(part.particles)):
+        item = part.item(i)
+        row: Row = {
+            "id": "" if item is None else str(item.id),
+            "name": "" if item is None else item.name,
+            "layer": "" if item is None else item.layer,
+            "force": part.names[i] if part.names else part.name,
+            "kind": part.kind,
+            "element": i,
+        }
+        row.update({f"{axis} [{units.length}]": float(c) for axis, c in zip("xyz", middle[i], strict=True)})
+        for name, values in part.columns.items():
+            value = values[i]
+            if np.ndim(value) == 0:
+                row[f"{name}{heads[name]}"] = float(value)
+                continue
+            row[f"{name}{heads[name]}"] = float(np.linalg.norm(value))
+            row.update({f"{name} {a}{heads[name]}": float(c) for a, c in zip("xyz", value, strict=False)})
+        yield row
+
+
+def _unit(units: Units, dimension: str) -> str:
+    return f" [{units.of(dimension) or '-'}]"
+
+
+def csv_text(table: Sequence[Row]) -> str:
+    """The rows as CSV with a header; numbers to the last digit, lines end in CR LF as RFC 4180 says."""
+    header = list(dict.fromkeys(key for row in table for key in row))
+    out = io.StringIO()
+    writer = csv.DictWriter(out, header, restval="")
+    writer.writeheader()
+    writer.writerows(table)
+    return out.getvalue()
+
+
+def per_object(parts: Sequence[Section], units: Units) -> list[Row]:
+    """For each object and force: its elements, smallest and largest force, largest strain, total length."""
+    found: list[Row] = []
+    for part in parts:
+        if not part.internal:
+            continue
+        for number in np.unique(part.owner[part.owner >= 0]):
+            mine, item = part.owner == number, part.items[number]
+            entry: Row = {"id": str(item.id), "name": item.name, "layer": item.layer, "force": part.name}
+            entry["elements"] = int(mine.sum())
+            force = part.columns["force"][mine]
+            entry[f"min force [{units.force}]"] = float(force.min())
+            entry[f"max force [{units.force}]"] = float(force.max())
+            if "strain" in part.columns:
+                entry["max strain [-]"] = float(np.abs(part.columns["strain"][mine]).max())
+            if "length" in part.columns:
+                entry[f"length [{units.length}]"] = float(part.columns["length"][mine].sum())
+            found.append(entry)
+    return found
+
+
+def read_limits(text: str, name: str = "limits") -> dict[str, Any]:
+    """Limits from TOML or JSON text; InputError where it is neither or names an unknown limit."""
+    from hookean.files.recipe import parse_recipe
+
+    limits = parse_recipe(text, name)
+    _known(limits, name, (*LIMITS, "units", *_SCOPES))
+    for scope in _SCOPES:
+        tables = limits.get(scope, {})
+        if not isinstance(tables, dict):
+            raise InputError(f"{name}/{scope}", f"give tables such as [{scope}.NAME]")
+        for key, table in tables.items():
+            _known(table, f"{name}/{scope}/{key}", tuple(LIMITS))
+    return limits
+
+
+def _known(table: Any, pointer: str, allowed: tuple[str, ...]) -> None:
+    if not isinstance(table, dict):
+        raise InputError(pointer, "give a table of limits")
+    for key, value in table.items():
+        if key not in allowed:
+            raise InputError(f"{pointer}/{key}", f"no such limit; there are {', '.join(allowed)}")
+        if key in LIMITS and (
+            isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value)
+        ):
+            raise InputError(f"{pointer}/{key}", f"{value!r} given; give a number")
+
+
+def exceeded(
+    limits: Mapping[str, Any], parts: Sequence[Section], system: System, result: Result, name: str = "limits"
+) -> list[str]:
+    """A sentence for each limit that is exceeded; InputError where one names a force, layer or anchor that is not
+    there, for it could never be exceeded."""
+    try:
+        units = Units.model_validate({**result.units.model_dump(), **limits.get("units", {})})
+    except (ValidationError, TypeError):
+        raise InputError(f"{name}/units", 'give a table such as {length = "m", force = "kN"}') from None
+    found = _check("model", limits, [(p, np.ones(len(p.particles), bool)) for p in parts], system, result, units)
+    for scope in _SCOPES:
+        for key, table in limits.get(scope, {}).items():
+            chosen = [(p, _mask(p, scope, key)) for p in parts]
+            if not any(mask.any() for _, mask in chosen):
+                raise InputError(f"{name}/{scope}/{key}", f"there is none; there are {_there(parts, scope)}")
+            found += _check(f"{scope} {key}", table, chosen, system, result, units)
+    return found
+
+
+def _mask(part: Section, scope: str, key: str) -> NDArray[np.bool_]:
+    count = len(part.particles)
+    if scope == "layer":
+        good = [on_layer(item.layer, key) for item in part.items]
+        return np.array([o >= 0 and good[o] for o in part.owner.tolist()], dtype=bool).reshape(count)
+    if scope == "anchor":
+        return np.array([n == key for n in part.names] or [False] * count, dtype=bool).reshape(count)
+    return np.full(count, part.kind != "reaction" and key in (part.name, part.kind))
+
+
+def _there(parts: Sequence[Section], scope: str) -> str:
+    if scope == "layer":
+        return listed(part.items[o].layer for part in parts for o in np.unique(part.owner) if o >= 0)
+    if scope == "anchor":
+        return listed(name for part in parts for name in part.names if name)
+    return listed(name for part in parts if part.kind != "reaction" for name in (part.name, part.kind))
+
+
+def _check(
+    where: str,
+    limits: Mapping[str, Any],
+    chosen: Sequence[tuple[Section, NDArray[np.bool_]]],
+    system: System,
+    result: Result,
+    units: Units,
+) -> list[str]:
+    moved = np.linalg.norm(result.particles - system.x, axis=1)
+    found = []
+    for limit, dimension in LIMITS.items():
+        if limit not in limits:
+            continue
+        scale = result.units.factor(dimension, units)
+        worst, place = -math.inf, ""
+        for part, mask in chosen:
+            values = _values(part, limit, moved)
+            if values is None or not mask.any():
+                continue
+            at = int(np.flatnonzero(mask)[np.argmax(values[mask])])
+            if float(values[at]) > worst:
+                worst, place = float(values[at]), _spot(part, at)
+        sign = -1.0 if limit == "min_force" else 1.0
+        if worst * scale > sign * limits[limit]:
+            unit = units.of(dimension)
+            what = limit.replace("_", " ")
+            below = "is below" if sign < 0 else "exceeds"
+            value = f"{sign * worst * scale:.6g} {unit}".strip()
+            found.append(f"{where}: {what} {value} at {place} {below} the limit {limits[limit]:g} {unit}".strip())
+    return found
+
+
+def _values(part: Section, limit: str, moved: Floats) -> Floats | None:
+    """What a limit looks at, the larger the worse; None where the section has no such thing."""
+    if limit == "max_displacement":
+        far: Floats = moved[part.particles].max(axis=1, initial=0.0)
+        return far
+    if limit == "max_reaction":
+        return np.linalg.norm(part.columns["force"], axis=1) if part.kind == "reaction" else None
+    if limit == "max_strain":
+        return np.abs(part.columns["strain"]) if "strain" in part.columns else None
+    if not part.internal:
+        return None
+    return part.columns["force"] if limit == "max_force" else -part.columns["force"]
+
+
+def _spot(part: Section, row: int) -> str:
+    item = part.item(row)
+    called = f" of {item.label}" if item is not None else ""
+    thing = f"particle {part.particles[row, 0]}" if part.kind == "reaction" else f"element {row} of {part.name}"
+    return thing + called
