@@ -33,13 +33,13 @@ class Method(Solver):
         state.scratch = {"shift": np.array([1e-4, float(w.mean()) if len(w) else 1.0])}
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
-        """At most `count` Newton steps; fewer when no step helps any more."""
+        """At most `count` Newton steps; fewer when no step helps any more, none when none helped."""
         shift, unit = state.scratch["shift"]
         pattern = Pattern(system, state)
         if not len(pattern.dofs) or unit <= 0.0:
             return 0
         energy, left = _energy_and_left(system, state)
-        done = 0
+        done, helped = 0, False
         while done < count and np.sqrt((left**2).sum(axis=1).max()) > goal:
             step, shift = pattern.step(system, state, left, shift, unit)
             if step is None:
@@ -52,11 +52,12 @@ class Method(Solver):
                 if shift > 1e4:
                     break
                 continue
+            helped = True
             shift = shift * 0.1 if length == 1.0 else shift if length > 0.2 else shift * 10.0
             if shift < 1e-12:
                 shift = 0.0
         state.scratch["shift"] = np.array([min(shift, 1.0), unit])
-        return done
+        return done if helped else 0
 
 
 def _energy_and_left(system: System, state: State) -> tuple[float, Floats]:
