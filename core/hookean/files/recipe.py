@@ -69,10 +69,12 @@ def __getattr__(name: str) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Understood:
-    """How a file was read: the scene with where it came from, and lines that tell a person."""
+    """How a file was read: the scene with where it came from, lines that tell a person, and a sentence where the
+    file holds nothing to relax."""
 
     built: Built
     lines: list[str]
+    nothing: str = ""
 
 
 def parse_recipe(text: str, name: str = "recipe") -> dict[str, Any]:
@@ -96,14 +98,16 @@ def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Underst
         from hookean.files.recipe_convention import by_convention
 
         seen = drawing(model)
-        built, said = by_convention(seen)
+        built, said, nothing = by_convention(seen)
     else:
+        nothing = ""
         hidden = recipe.get("hidden", False)
         if not isinstance(hidden, bool):
             raise InputError("/hidden", f"{hidden!r} given; give true or false")
         seen = drawing(model, recipe.get("units"), hidden=hidden)
         built, said = build(seen, recipe), "a recipe"
-    return Understood(built, _told(seen, built, said))
+    lines = _told(seen, built, said)
+    return Understood(built, [*lines, f"{model.name} {nothing}"] if nothing else lines, nothing)
 
 
 def _told(seen: Drawing, built: Built, said: str) -> list[str]:

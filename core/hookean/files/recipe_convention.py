@@ -82,8 +82,11 @@ def role_of(item: Item) -> str:
     return ""
 
 
-def by_convention(drawing: Drawing) -> tuple[Built, str]:
-    """The scene of a file without a recipe, and a sentence on how it was read; InputError if nothing is to relax."""
+def by_convention(drawing: Drawing) -> tuple[Built, str, str]:
+    """The scene of a file without a recipe, how it was read, and a sentence where it holds nothing to relax.
+
+    Raises InputError where a user text is not what its key asks for.
+    """
     roles = {item: role_of(item) for item in drawing.items}
     named = any(roles.values())
     said = "layer names and user text"
@@ -96,17 +99,20 @@ def by_convention(drawing: Drawing) -> tuple[Built, str]:
     if not reading.anchors:
         _hold_loose(drawing, reading)
         said += "; nothing is marked as an anchor: loose ends and naked vertices are held"
+    nothing = ""
     if not reading.elastic:
         why = next((f"; {item.label}: {why}" for item, why in reading.left.items()), "")
-        raise InputError(
-            drawing.model.name,
+        nothing = (
             f"holds nothing to relax ({len(drawing.items)} visible objects on layers "
             f"{listed(layers_of(drawing.items))}{why}); put curves or meshes on a layer named springs, cables or "
-            "membrane, or give a recipe",
+            "membrane, or give a recipe"
         )
+        reading.left.update({i: f"no use as {roles[i]} without springs" for i in roles if i not in reading.left})
+        reading.forces.clear()
+        reading.anchors.clear()
     built = build(drawing, _recipe(drawing, reading), lenient=True)
     built.left = {i: why for i, why in {**reading.left, **built.left}.items() if i not in built.uses}
-    return built, said
+    return built, said, nothing
 
 
 def _as_drawn(item: Item) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 from uuid import UUID
 
@@ -44,6 +44,7 @@ class Item:
     ids: tuple[UUID, ...]
     names: tuple[str, ...]
     layers: tuple[str, ...]
+    made: dict[Any, Any] = field(default_factory=dict)  # what was made of it already, for it is asked for often
 
     @property
     def label(self) -> str:

@@ -97,6 +97,13 @@ def lines_of(item: Item, split: Split | None, pointer: str) -> Floats:
 
 def mesh_of(item: Item, split: Split | None, pointer: str) -> Mesh:
     """The mesh of a mesh, surface, Brep or extrusion in file units, without unused vertices."""
+    if split not in item.made:
+        item.made[split] = _mesh_of(item, split, pointer)
+    mesh: Mesh = item.made[split]
+    return mesh
+
+
+def _mesh_of(item: Item, split: Split | None, pointer: str) -> Mesh:
     try:
         if isinstance(item.geometry, rhino.SubD):
             mesh = as_mesh(rhino.Mesh.CreateFromSubDControlNet(item.geometry, False))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import json
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -77,6 +78,7 @@ class _Source:
     unit: str = ""
     warnings: tuple[str, ...] = ()
     compas: Any = None
+    nothing: str = ""
 
 
 def explain_file(source: Path, recipe_text: str | None = None, *, recipe_name: str = "recipe") -> list[str]:
@@ -112,6 +114,8 @@ def relax_file(
         if target.suffix.lower() not in (".3dm", ".json"):
             raise InputError(target.name, "ends neither in .3dm nor in .json; name the output so.")
     read = _read(Path(source), recipe_text, recipe_name)
+    if read.nothing:
+        raise InputError(Path(source).name, read.nothing)
     with _about(recipe_name if recipe_text is not None else ""):
         system = compile(read.scene)
         result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)
@@ -139,7 +143,13 @@ def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
         understood = understand(model, recipe)
     seen = understood.built.drawing
     return _Source(
-        understood.built.scene, understood.lines, understood.built, seen.factor, seen.unit, tuple(model.warnings)
+        understood.built.scene,
+        understood.lines,
+        understood.built,
+        seen.factor,
+        seen.unit,
+        tuple(model.warnings),
+        nothing=understood.nothing,
     )
 
 
@@ -224,7 +234,7 @@ def _write(
     found: FileResult, system: System, parts: list[tables.Section], read: _Source, source: Path, target: Path
 ) -> None:
     if target.suffix.lower() == ".json":
-        put(target, _json(_answer(found, read)), lambda back: None)
+        put(target, _json(_finite(_answer(found, read))), lambda back: None)
         return
     added = additions(system, found.result, parts, read.built, read.unit, read.factor)
     if read.built is not None:
@@ -233,7 +243,11 @@ def _write(
         names = {short: name for name, short in UNIT_NAMES.items()}
         written = threedm.write_new(target, added, unit=names[read.scene.units.length])
     found.ids = [str(id) for id in written.ids]
-    found.warnings += [w for w in written.warnings if w not in found.warnings]
+    where = [f"{item.layer} {item.name}".strip() for item in added.objects]
+    for warning in written.warnings:
+        said = re.sub(r"^/objects/(\d+): ", lambda m: f"result on layer {where[int(m[1])]}: ", warning)
+        if said not in found.warnings:
+            found.warnings.append(said)
 
 
 def _answer(found: FileResult, read: _Source) -> Any:
@@ -254,7 +268,7 @@ def report_json(found: FileResult) -> bytes:
 
 
 def _json(value: Any) -> bytes:
-    return (json.dumps(_finite(value), ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode()
+    return (json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode()
 
 
 def _finite(value: Any) -> Any:

@@ -1,0 +1,293 @@
+"""Recipes: selectors, divisions, units, and what is said where they do not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rhino3dm as _rhino3dm
+
+from hookean.errors import InputError
+from hookean.files import threedm
+from hookean.files.recipe import parse_recipe, understand
+from hookean.files.recipe_select import terms
+from hookean.files.threedm import Additions, NewLayer, NewObject, Points
+from hookean.mesh import Mesh
+
+rhino: Any = _rhino3dm
+SQUARE = Mesh(
+    np.array([[i, j, 0.0] for i in range(3) for j in range(3)]),
+    np.array([[0, 3, 4, 1], [1, 4, 5, 2], [3, 6, 7, 4], [4, 7, 8, 5]]),
+)
+LINE = np.array([[0.0, 0, 0], [10, 0, 0]])
+
+
+@pytest.fixture
+def draw(tmp_path: Path) -> Callable[..., Any]:
+    """Writes objects to a file as a person would draw them, and reads it."""
+
+    def build(*objects: NewObject, unit: str = "Meters", layers: Sequence[NewLayer] = ()) -> Any:
+        path = tmp_path / "drawn.3dm"
+        threedm.write_new(path, Additions(layers, objects), unit=unit, own=False)
+        return threedm.read(path)
+
+    return build
+
+
+def springs(**table: Any) -> dict[str, Any]:
+    return {"forces": [{"kind": "springs", **table}]}
+
+
+def scene_of(model: Any, recipe: dict[str, Any]) -> Any:
+    return understand(model, recipe).built.scene
+
+
+def refused(model: Any, recipe: dict[str, Any]) -> InputError:
+    with pytest.raises(InputError) as caught:
+        understand(model, recipe)
+    return caught.value
+
+
+@pytest.mark.parametrize(
+    ("selector", "count"),
+    [
+        ("layer:cables", 3),  # a name in any case, its sublayer too
+        ("layer:CABLES::upper", 1),
+        ("layer:upper", 1),
+        ("layer:cab*", 3),
+        ("layer:cables, layer:struts", 4),
+        (["layer:upper", "name:tie"], 2),
+        ("name:tie", 1),
+        ("name:t*", 2),
+        ("text:EA=1200 kN", 1),
+        ("text:ea", 2),
+        ("text:EA=*9*", 1),
+        ("*", 4),
+    ],
+)
+def test_selectors_find_by_layer_name_text_and_wildcards(draw: Callable[..., Any], selector: Any, count: int) -> None:
+    model = draw(
+        NewObject(LINE, "cables", "tie", user_text={"EA": "1200 kN"}),
+        NewObject(LINE + [0, 1, 0], "cables", "t2", user_text={"EA": "900 kN"}),
+        NewObject(LINE + [0, 2, 0], "cables::upper"),
+        NewObject(LINE + [0, 3, 0], "struts", "a, b"),
+    )
+    assert len(scene_of(model, springs(lines=selector)).forces[0].lines) == count
+
+
+def test_ids_and_names_with_commas(draw: Callable[..., Any]) -> None:
+    model = draw(NewObject(LINE, "a", "left, lower"), NewObject(LINE + [0, 1, 0], "a", "right"))
+    wanted = model.objects[1].id
+    assert scene_of(model, springs(lines=f"id:{wanted}")).forces[0].lines.tolist() == (LINE + [0, 1, 0])[None].tolist()
+    assert len(scene_of(model, springs(lines="name:left, lower")).forces[0].lines) == 1
+    assert len(scene_of(model, springs(lines="name:left, lower, name:right")).forces[0].lines) == 2
+    assert [str(t) for t in terms("ends:name:a, b, naked:*, layer:c", "")] == ["ends:name:a, b", "naked:*", "layer:c"]
+
+
+@pytest.mark.parametrize(
+    ("selector", "said"),
+    [
+        ("layer:ropes", '"cables"'),
+        ("name:rope", '"tie"'),
+        ("text:colour", '"EA"'),
+        ("id:nonsense", "no object id"),
+        ("cables", "no selector"),
+        ("colour:red", "no selector"),
+        ("ends:layer:cables", "belongs to points"),
+        ("layer:shade", "hidden"),
+        ("layer:dots", "lines and curves"),
+    ],
+)
+def test_what_is_not_found_is_told_with_what_the_file_has(draw: Callable[..., Any], selector: Any, said: str) -> None:
+    model = draw(
+        NewObject(LINE, "cables", "tie", user_text={"EA": "1"}),
+        NewObject(LINE, "shade"),
+        NewObject(np.zeros(3), "dots"),
+        layers=[NewLayer("shade", visible=False)],
+    )
+    error = refused(model, springs(lines=selector))
+    assert said in error.sentence
+    assert error.pointer == "/forces/0/lines"
+
+
+def test_hidden_objects_take_part_when_asked(draw: Callable[..., Any]) -> None:
+    model = draw(
+        NewObject(LINE, "cables"), NewObject(LINE + [0, 1, 0], "shade"), layers=[NewLayer("shade", visible=False)]
+    )
+    shown = understand(model, springs(lines="*"))
+    assert len(shown.built.scene.forces[0].lines) == 1
+    assert any('hidden, left out: 1 LineCurve on layer "shade"' in line for line in shown.lines)
+    assert len(scene_of(model, {"hidden": True, **springs(lines="*")}).forces[0].lines) == 2
+    assert refused(model, {"hidden": "yes", **springs(lines="*")}).pointer == "/hidden"
+
+
+def test_lines_are_segments_or_equal_arcs(draw: Callable[..., Any]) -> None:
+    polyline = np.array([[0.0, 0, 0], [4, 0, 0], [4, 3, 0]])
+    arc = rhino.Arc(rhino.Point3d(0, 0, 0), rhino.Point3d(1, 1, 0), rhino.Point3d(2, 0, 0)).ToNurbsCurve()
+    model = draw(NewObject(polyline, "poly"), NewObject(arc, "arc"))
+    assert scene_of(model, springs(lines="layer:poly")).forces[0].lines.tolist() == [
+        [[0, 0, 0], [4, 0, 0]],
+        [[4, 0, 0], [4, 3, 0]],
+    ]
+    cut = scene_of(model, springs(lines="layer:arc", divide=6)).forces[0].lines
+    lengths = np.linalg.norm(cut[:, 1] - cut[:, 0], axis=1)
+    assert np.allclose(lengths, 2 * np.sin(np.pi / 12), atol=1e-12)
+    error = refused(model, springs(lines="layer:arc"))
+    assert "divide = N" in error.sentence and "curved" in error.sentence
+    for wrong in (0, -1, 2.5, "many", [1, 2, 3], True):
+        assert "whole number" in refused(model, springs(lines="layer:arc", divide=wrong)).sentence
+
+
+def test_a_division_holds_for_the_tables_that_do_not_divide(draw: Callable[..., Any]) -> None:
+    model = draw(NewObject(LINE, "cable"))
+    recipe = {
+        "forces": [
+            {"kind": "unary", "points": "inner:layer:cable", "vector": [0, 0, -1]},
+            {"kind": "springs", "lines": "layer:cable", "divide": 5},
+        ],
+        "anchors": [{"points": "ends:layer:cable"}, {"points": "layer:cable", "divide": 2}],
+    }
+    scene = scene_of(model, recipe)
+    assert scene.forces[0].points[:, 0].tolist() == [2, 4, 6, 8]
+    assert scene.anchors[0].points[:, 0].tolist() == [0, 10]
+    assert scene.anchors[1].points[:, 0].tolist() == [0, 5, 10]
+    own = draw(NewObject(LINE, "cable", user_text={"divide": "4"}))
+    assert len(scene_of(own, springs(lines="*")).forces[0].lines) == 4
+
+
+def test_points_of_meshes_and_surfaces(draw: Callable[..., Any]) -> None:
+    model = draw(NewObject(SQUARE, "net"), NewObject(Points(np.eye(3)), "dots"), NewObject(np.ones(3), "dots"))
+
+    def points(selector: str, **more: Any) -> int:
+        recipe = {**springs(mesh="layer:net"), "anchors": [{"points": selector, **more}]}
+        return len(scene_of(model, recipe).anchors[0].points)
+
+    assert points("naked:layer:net") == 8
+    assert points("corners:layer:net") == 4
+    assert points("inner:layer:net") == 1
+    assert points("vertices:layer:net") == 9
+    assert points("layer:dots") == 4
+    assert points("corners:layer:net, layer:dots, corners:layer:net") == 8  # one and the same point counts once
+    error = refused(model, {"anchors": [{"points": "layer:net"}]})
+    assert "naked:" in error.sentence
+
+
+def test_meshes_that_meet_are_one(draw: Callable[..., Any]) -> None:
+    beside = Mesh(SQUARE.vertices + [2, 0, 0], SQUARE.faces)
+    model = draw(NewObject(SQUARE, "net", "a"), NewObject(beside, "net", "b"))
+    recipe = {
+        "forces": [
+            {"kind": "springs", "mesh": "layer:net", "edges": "warp"},
+            {"kind": "springs", "mesh": "layer:net", "edges": "weft"},
+        ],
+        "anchors": [{"points": "naked:layer:net"}],
+    }
+    scene = scene_of(model, recipe)
+    assert len(scene.meshes) == 1
+    assert len(scene.anchors[0].points) == 12  # of 15 vertices; the seam is inside
+
+
+def test_a_surface_needs_a_division(draw: Callable[..., Any]) -> None:
+    sphere = rhino.Sphere(rhino.Point3d(0, 0, 0), 2.0).ToBrep()
+    model = draw(NewObject(sphere, "skin", "ball"))
+    assert "divide = [u, v]" in refused(model, springs(mesh="layer:skin")).sentence
+    scene = scene_of(model, springs(mesh="layer:skin", divide_u=8, divide_v=4))
+    (mesh,) = scene.meshes.values()
+    assert len(mesh.vertices) == 8 * 3 + 2
+    assert np.allclose(np.linalg.norm(mesh.vertices, axis=1), 2.0)
+    assert refused(model, springs(mesh="layer:skin", divide_u=8)).pointer == "/forces/0"
+    error = refused(model, {**springs(mesh="layer:skin", divide=[8, 4]), "anchors": [{"points": "naked:*"}]})
+    assert "closed" in error.sentence
+
+
+def test_geometry_rides_along(draw: Callable[..., Any]) -> None:
+    arc = rhino.Arc(rhino.Point3d(0, 0, 0), rhino.Point3d(1, 1, 0), rhino.Point3d(2, 0, 0)).ToNurbsCurve()
+    model = draw(NewObject(LINE, "cable"), NewObject(LINE, "deck", "edge"), NewObject(arc, "bow"))
+    recipe = {
+        **springs(lines="layer:cable"),
+        "geometry": [
+            {"kind": "polyline", "points": "layer:deck"},
+            {"kind": "curve", "points": "layer:bow"},
+            {"kind": "lines", "lines": "layer:deck"},
+        ],
+    }
+    deck, bow, lines = scene_of(model, recipe).geometry
+    assert (deck.name, deck.points.tolist()) == ("edge", LINE.tolist())
+    assert (bow.degree, len(bow.points), len(bow.knots)) == (arc.Degree, len(arc.Points), len(arc.Knots))
+    assert lines.lines.tolist() == LINE[None].tolist()
+
+
+def test_tension_only_is_slack_below_the_rest_length(draw: Callable[..., Any]) -> None:
+    model = draw(NewObject(LINE, "cable"), NewObject(SQUARE, "net"))
+    force = scene_of(model, springs(lines="*", divide=4, rest_factor=0.9, tension_only=True)).forces[0]
+    assert np.allclose(force.rest_length, 2.5) and np.allclose(force.lower_cutoff, 2.25)
+    assert "tension_only" in refused(model, springs(mesh="*", tension_only=True)).sentence
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("Millimeters", 1e-3), ("Inches", 0.0254), ("Miles", 1609.344)])
+def test_lengths_of_the_file_become_those_of_the_recipe(draw: Callable[..., Any], unit: str, factor: float) -> None:
+    model = draw(NewObject(LINE, "cable"), unit=unit)
+    understood = understand(model, {"units": {"length": "m", "force": "kN"}, **springs(lines="*")})
+    scene = understood.built.scene
+    assert scene.forces[0].lines[0, 1, 0] == pytest.approx(10 * factor, rel=1e-15)
+    assert (scene.units.length, scene.units.force) == ("m", "kN")
+    assert scene.weld_tolerance == pytest.approx(0.001 * factor)
+    assert any("solved in m" in line for line in understood.lines)
+
+
+def test_files_without_known_units_are_solved_with_a_sentence(draw: Callable[..., Any]) -> None:
+    miles = understand(draw(NewObject(LINE, "cable"), unit="Miles"), springs(lines="*"))
+    assert miles.built.scene.units.length == "m" and any("miles" in line for line in miles.lines)
+    own = understand(draw(NewObject(LINE, "cable"), unit="Feet"), springs(lines="*"))
+    assert own.built.scene.units.length == "ft"
+    assert own.built.scene.forces[0].lines.tolist() == LINE[None].tolist()
+    error = refused(draw(NewObject(LINE, "cable")), {"units": {"length": "cubit"}, **springs(lines="*")})
+    assert error.pointer == "/units/length"
+
+
+def test_a_file_without_units_takes_those_of_the_recipe(tmp_path: Path) -> None:
+    file = rhino.File3dm()
+    file.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, "None")
+    file.Objects.AddLine(rhino.Point3d(0, 0, 0), rhino.Point3d(10, 0, 0))
+    assert file.Write(str(tmp_path / "none.3dm"), 8)
+    understood = understand(threedm.read(tmp_path / "none.3dm"), {"units": {"length": "cm"}, **springs(lines="*")})
+    assert understood.built.scene.forces[0].lines[0, 1, 0] == 10.0
+    assert any("taken as cm" in line for line in understood.lines)
+
+
+def test_recipes_are_toml_or_json() -> None:
+    toml = parse_recipe('[[forces]]\nkind = "springs"\nlines = "*"\n')
+    assert parse_recipe('{"forces": [{"kind": "springs", "lines": "*"}]}') == toml
+    with pytest.raises(InputError, match=r"bridge.toml: not valid TOML"):
+        parse_recipe("[[forces", "bridge.toml")
+    with pytest.raises(InputError, match="not valid JSON"):
+        parse_recipe("{,}")
+
+
+def test_faults_of_the_scene_keep_their_place(draw: Callable[..., Any]) -> None:
+    model = draw(NewObject(LINE, "cable"))
+    assert refused(model, {**springs(lines="*"), "colour": "red"}).pointer == "/colour"
+    assert refused(model, springs(lines="*", stiffness=-1)).pointer == "/forces/0/stiffness"
+    assert refused(model, {"forces": "springs"}).pointer == "/forces"
+    assert refused(model, {"forces": [{"kind": "rope", "lines": "*"}]}).pointer.startswith("/forces/0")
+
+
+def test_blocks_are_expanded_and_go_by_the_id_of_their_instance(tmp_path: Path) -> None:
+    file = rhino.File3dm()
+    file.Settings.ModelUnitSystem = rhino.UnitSystem.Meters
+    line = rhino.LineCurve(rhino.Point3d(0, 0, 0), rhino.Point3d(1, 0, 0))
+    file.InstanceDefinitions.Add("bay", "", "", "", rhino.Point3d(0, 0, 0), (line,), (rhino.ObjectAttributes(),))
+    for x in (0, 1):
+        file.Objects.AddInstanceObject(
+            rhino.InstanceReference(file.InstanceDefinitions[0].Id, rhino.Transform.Translation(x, 0, 0))
+        )
+    assert file.Write(str(tmp_path / "blocks.3dm"), 8)
+    model = threedm.read(tmp_path / "blocks.3dm")
+    understood = understand(model, springs(lines="*"))
+    assert understood.built.scene.forces[0].lines[:, 0, 0].tolist() == [0, 1]
+    assert [i.id for i in understood.built.forces[0].items] == [o.id for o in model.objects]
+    assert any("2 block instances (expanded)" in line for line in understood.lines)
+    assert len(scene_of(model, springs(lines=f"id:{model.objects[1].id}")).forces[0].lines) == 1
