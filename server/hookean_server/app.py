@@ -1,0 +1,74 @@
+"""The application: routes, guards and the pool put together. Transport only, no physics."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from fastapi import FastAPI
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+
+import hookean
+from hookean_server import openapi, routes_about, routes_discretize, routes_relax
+from hookean_server.limits import BodyLimit, Guard, Problems
+from hookean_server.pool import Pool
+from hookean_server.problems import Problem
+from hookean_server.settings import Settings
+
+_SLUGS = {404: "not-found", 405: "method-not-allowed", 413: "too-large", 415: "unsupported-media"}
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """The service as an ASGI application; its workers start with its lifespan, or with the first request."""
+    settings = settings or Settings()
+    pool = Pool(settings)
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        pool.start()
+        try:
+            yield
+        finally:
+            pool.close()
+
+    app = FastAPI(
+        title="hookean",
+        version=hookean.__version__,
+        openapi_url="/v1/openapi.json",
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+        lifespan=lifespan,
+        exception_handlers={HTTPException: _refused, RequestValidationError: _faulty},
+    )
+    app.state.settings, app.state.pool, app.state.instance = settings, pool, secrets.token_hex(16)
+    for part in (routes_about, routes_relax, routes_discretize):
+        app.include_router(part.router)
+    # the last one added is the outermost
+    app.add_middleware(BodyLimit, settings=settings)
+    app.add_middleware(Guard, settings=settings)
+    app.add_middleware(Problems)
+    openapi.install(app)
+    return app
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    """What the framework refuses: unknown addresses and methods."""
+    assert isinstance(error, HTTPException)
+    slug = _SLUGS.get(error.status_code, "bad-request" if error.status_code < 500 else "internal")
+    detail = {
+        404: "There is nothing at this address; GET /v1/openapi.json lists every one.",
+        405: f"{request.method} is not taken here.",
+    }.get(error.status_code, "The request cannot be understood.")
+    raise Problem(slug, detail, headers=dict(error.headers or {}))
+
+
+async def _faulty(request: Request, error: Exception) -> Response:
+    """Faulty parameters of the address; what was given is not repeated."""
+    assert isinstance(error, RequestValidationError)
+    faults = [("/" + "/".join(str(s) for s in e["loc"]), str(e["msg"])) for e in error.errors()]
+    raise Problem("invalid-input", f"{faults[0][0]}: {faults[0][1]}", faults)

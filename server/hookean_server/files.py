@@ -1,0 +1,83 @@
+"""Relaxing an uploaded .3dm file: the form is taken apart, read and solved in a worker that is then replaced."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from hookean.errors import InputError
+from hookean_server.problems import Problem
+from hookean_server.tasks import Cancelled, Clock, Done
+
+MODEL = "model/vnd.3dm"
+RECIPE_LIMIT = 2**20
+
+
+def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
+    """The relaxed file, or with `options["answer"] == "report"` the report of its results as JSON.
+
+    Options: `path` of the multipart body, `content_type` with its boundary, `answer` (`file` or `report`). The form
+    has a part `file`, and may have a part `recipe` (JSON text). Raises InputError naming the part.
+    """
+    clock = Clock()
+    data, recipe = parts(Path(options["path"]), options["content_type"])
+    clock.lap("decode")
+    with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
+        source, target = Path(folder) / "upload.3dm", Path(folder) / "relaxed.3dm"
+        source.write_bytes(data)
+        try:
+            done = _relax_file()(source, target, recipe)
+        except InputError as error:
+            pointer = error.pointer if error.pointer.startswith("/") else "/file"
+            raise InputError(pointer, error.sentence.replace(str(folder), "")) from None
+        clock.lap("solve")
+        if options["answer"] == "report":
+            return Done(json.dumps(done.to_dict()).encode(), timing=clock.parts)
+        named = {"content-disposition": 'attachment; filename="relaxed.3dm"'}
+        return Done(target.read_bytes(), MODEL, named, clock.parts)
+
+
+def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:
+    """The bytes of the part `file` and the text of the part `recipe` of a multipart form on disk."""
+    from python_multipart import exceptions, parse_form
+
+    found: dict[str, bytes] = {}
+
+    def put(name: bytes | None, value: bytes) -> None:
+        key = (name or b"").decode("utf-8", "replace")
+        if key not in ("file", "recipe") or key in found:
+            why = "this part is given twice" if key in found else "the form has the parts file and recipe only"
+            raise InputError(f"/{key[:80]}", why)
+        found[key] = value
+
+    def on_file(file: Any) -> None:
+        file.file_object.seek(0)
+        put(file.field_name, file.file_object.read())
+
+    headers = {"Content-Type": content_type.encode("latin-1", "replace")}
+    try:
+        with path.open("rb") as stream:
+            parse_form(headers, stream, lambda field: put(field.field_name, field.value or b""), on_file)
+    except (exceptions.FormParserError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("/", "the body is no multipart form; send it as multipart/form-data with a boundary") from None
+    if not found.get("file"):
+        raise InputError("/file", "the form needs a part named file with a .3dm file")
+    recipe = found.get("recipe")
+    if recipe is not None and len(recipe) > RECIPE_LIMIT:
+        raise InputError("/recipe", f"longer than {RECIPE_LIMIT} bytes")
+    try:
+        return found["file"], recipe.decode("utf-8") if recipe else None
+    except UnicodeDecodeError:
+        raise InputError("/recipe", "the text is not UTF-8") from None
+
+
+def _relax_file() -> Any:
+    try:
+        return importlib.import_module("hookean.files.recipe").relax_file
+    except (ImportError, AttributeError):
+        raise Problem("not-found", "Relaxing files is not part of this installation.") from None

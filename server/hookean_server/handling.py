@@ -1,0 +1,84 @@
+"""What every computing route does: take a place, read the body, hand it to a worker, watch the client, answer."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import Response
+
+from hookean_server.limits import media_type
+from hookean_server.pool import Job, Pool
+from hookean_server.problems import Problem
+from hookean_server.settings import Settings
+
+
+async def read_json(request: Request) -> bytes:
+    """The body of a JSON request; it is parsed in a worker. Raises the problem `unsupported-media`."""
+    kind = media_type(request.headers)
+    if kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
+        raise Problem("unsupported-media", "Send JSON with the header Content-Type: application/json.")
+    return b"".join([chunk async for chunk in request.stream()])
+
+
+async def compute(request: Request, task: str, options: dict[str, Any], *, once: Any = False) -> Response:
+    """Run a task on the JSON body of a request. `once`: whether to replace the worker afterwards, or a function of
+    the body that says so."""
+    pool, settings = _service(request)
+    with pool.place():
+        body = await read_json(request)
+        single = once(body) if callable(once) else bool(once)
+        job = Job(task, options, body, settings.solve_seconds + settings.grace_seconds, single)
+        return await _answered(request, pool, job)
+
+
+async def compute_upload(request: Request, task: str, options: dict[str, Any]) -> Response:
+    """Run a task on the multipart body of a request, which is streamed to disk; the worker is replaced afterwards."""
+    pool, settings = _service(request)
+    if media_type(request.headers) != "multipart/form-data":
+        raise Problem("unsupported-media", "Send the file as a form: Content-Type: multipart/form-data.")
+    with pool.place():
+        folder = tempfile.mkdtemp(prefix="hookean-")
+        try:
+            path = Path(folder) / "body"
+            with path.open("wb") as file:
+                async for chunk in request.stream():
+                    file.write(chunk)
+            given = {**options, "path": str(path), "content_type": request.headers["content-type"]}
+            job = Job(task, given, b"", settings.file_seconds + settings.grace_seconds, once=True)
+            return await _answered(request, pool, job)
+        finally:
+            await asyncio.to_thread(shutil.rmtree, folder, ignore_errors=True)
+
+
+def _service(request: Request) -> tuple[Pool, Settings]:
+    return request.app.state.pool, request.app.state.settings
+
+
+async def _answered(request: Request, pool: Pool, job: Job) -> Response:
+    """The worker's answer as a response; a client that leaves stops the worker."""
+    work = asyncio.ensure_future(pool.run(job))
+    gone = asyncio.ensure_future(_left(request))
+    try:
+        await asyncio.wait({work, gone}, return_when=asyncio.FIRST_COMPLETED)
+        if not work.done():
+            raise ClientDisconnect
+        reply = work.result()
+    finally:
+        for task in (work, gone):
+            task.cancel()
+            with suppress(asyncio.CancelledError, Problem):
+                await task
+    timing = ", ".join(f"{name};dur={1000 * seconds:.3f}" for name, seconds in reply.head["timing"].items())
+    headers = {**reply.head["headers"], "cache-control": "no-store", "server-timing": timing}
+    return Response(reply.body, media_type=reply.head["type"], headers=headers)
+
+
+async def _left(request: Request) -> None:
+    while (await request.receive())["type"] != "http.disconnect":
+        pass

@@ -1,0 +1,119 @@
+"""The description of the API: schemas from the scene's models, problems for every operation, examples that run."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+
+import hookean
+from hookean_server.problems import CATALOGUE, MEDIA_TYPE
+from hookean_server.schemas import EXAMPLES, SCHEMAS, operation_schema
+
+HEALTH = {"application/json": {"schema": {"$ref": "#/components/schemas/Health"}}}
+FORCES = {"application/json": {"schema": {"$ref": "#/components/schemas/Catalogue"}}}
+_ALWAYS = (403, 404, 405, 431, 500)
+_COMPUTED = (*_ALWAYS, 408, 413, 415, 422, 503, 504)
+
+
+def problems(
+    success: dict[str, Any] | None = None, *codes: int, computed: bool = False
+) -> dict[int | str, dict[str, Any]]:
+    """`responses` of an operation: its success and every problem it can give."""
+    found: dict[int | str, dict[str, Any]] = {}
+    if success is not None:
+        found[200] = {"description": "Done", "content": success}
+    for code in codes:
+        found[code] = {"description": "As before"}
+    content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    for status in _COMPUTED if computed else _ALWAYS:
+        titles = [f"{title} (`{slug}`)" for slug, (code, title, _) in CATALOGUE.items() if code == status]
+        found[status] = {"description": "; ".join(titles), "content": content}
+    return found
+
+
+def _takes(schema: dict[str, Any], examples: dict[str, Any], kind: str = "application/json") -> dict[str, Any]:
+    named = {name: {"value": value} for name, value in examples.items()}
+    content = {"schema": schema, **({"examples": named} if named else {})}
+    return {"requestBody": {"required": True, "content": {kind: content}}}
+
+
+def relax() -> dict[str, Any]:
+    """What the route of `/v1/relax` says of itself."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Result"}}}
+    scene = {"$ref": "#/components/schemas/Scene"}
+    return {"responses": problems(success, computed=True), "openapi_extra": _takes(scene, EXAMPLES["relax"])}
+
+
+def relax_file() -> dict[str, Any]:
+    """What the route of `/v1/relax/3dm` says of itself."""
+    success = {
+        "model/vnd.3dm": {"schema": {"type": "string", "format": "binary"}},
+        "application/json": {"schema": {"type": "object"}},
+    }
+    form = {
+        "type": "object",
+        "properties": {
+            "file": {"type": "string", "format": "binary", "description": "The .3dm file"},
+            "recipe": {"type": "string", "description": "What to make of it, as JSON text; none: as drawn"},
+        },
+        "required": ["file"],
+    }
+    return {"responses": problems(success, computed=True), "openapi_extra": _takes(form, {}, "multipart/form-data")}
+
+
+def discretize(name: str) -> dict[str, Any]:
+    """What the route of one operation says of itself."""
+    takes, gives = operation_schema(name)
+    success = {"application/json": {"schema": gives}}
+    return {
+        "responses": problems(success, computed=True),
+        "openapi_extra": _takes(
+            takes, {"small": EXAMPLES["discretize"][name]} if name in EXAMPLES["discretize"] else {}
+        ),
+        "operation_id": f"discretize_{name}",
+    }
+
+
+def install(app: FastAPI) -> None:
+    """Give the app its description, made when first asked for."""
+
+    def build() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = _build(app)
+        return app.openapi_schema
+
+    app.openapi = build  # type: ignore[method-assign]
+
+
+def _build(app: FastAPI) -> dict[str, Any]:
+    from hookean.catalogue import schema
+
+    document = get_openapi(
+        title="hookean",
+        version=hookean.__version__,
+        summary="Particle-spring form finding on this machine",
+        description="Bodies are JSON unless said otherwise; every failure is a problem document (RFC 9457).",
+        routes=app.routes,
+    )
+    scene = json.loads(json.dumps(schema()).replace("#/$defs/", "#/components/schemas/"))
+    schemas = scene.pop("$defs")
+    schemas["Scene"] = scene
+    _accept_documents(schemas)
+    found = document.setdefault("components", {}).setdefault("schemas", {})
+    found.clear()  # the framework's own forms of validation errors are not ours
+    found.update(sorted({**schemas, **SCHEMAS}.items()))
+    return document
+
+
+def _accept_documents(schemas: dict[str, Any]) -> None:
+    """Where a scene takes COMPAS documents: meshes, lines and coordinates."""
+    document = {"$ref": "#/components/schemas/CompasDocument"}
+    meshes = schemas["Scene"]["properties"]["meshes"]
+    meshes["additionalProperties"] = {"anyOf": [meshes["additionalProperties"], document]}
+    for schema in schemas.values():
+        for name, field in schema.get("properties", {}).items():
+            if name in ("lines", "points", "targets", "velocities", "vector") and "anyOf" in field:
+                field["anyOf"] = [*field["anyOf"], document, {"type": "array", "items": document, "minItems": 1}]

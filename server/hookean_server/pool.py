@@ -1,0 +1,240 @@
+"""The pool: a few worker processes, each driven by one thread. Solves never touch the event loop.
+
+A worker that dies, hangs or has read foreign files is replaced; whoever waited for it gets a problem.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import multiprocessing
+import queue
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import BaseContext
+from multiprocessing.process import BaseProcess
+from typing import Any
+
+from hookean_server.problems import Problem
+from hookean_server.settings import Settings
+from hookean_server.workers import STOP, work
+
+FORKED = sys.platform != "win32" and "forkserver" in multiprocessing.get_all_start_methods()
+LOOK = 0.05  # seconds between looks at whether a client has left
+
+
+@dataclass
+class Reply:
+    """What a worker answered: a head (media type, headers, timing) and a body."""
+
+    head: dict[str, Any]
+    body: bytes
+
+
+@dataclass
+class Job:
+    """One request to a worker. `seconds`: when it is stopped by force; `once`: the worker is not used again."""
+
+    task: str
+    options: dict[str, Any]
+    body: bytes
+    seconds: float
+    once: bool = False
+    left: threading.Event = field(default_factory=threading.Event)
+    future: Future[Reply] = field(default_factory=Future)
+
+
+class Pool:
+    """Worker processes for one server. Made idle; `start` or the first job starts the workers."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.stopping = threading.Event()
+        self.restarts = 0
+        self.taken = 0
+        self.jobs: queue.SimpleQueue[Job | None] = queue.SimpleQueue()
+        self.lanes: list[Lane] = []
+        self._lock = threading.Lock()
+
+    def start(self) -> None:
+        """Start the workers, each in its thread; returns at once."""
+        with self._lock:
+            if not self.lanes and not self.stopping.is_set():
+                self.lanes = [Lane(self, _context()) for _ in range(self.settings.lanes)]
+                for lane in self.lanes:
+                    lane.start()
+
+    @contextmanager
+    def place(self) -> Iterator[None]:
+        """A place for one request, held from before its body is read; raises the problem `busy` where there is none."""
+        with self._lock:
+            if self.stopping.is_set():
+                raise Problem("shutting-down", "The service is shutting down; start it again and repeat the request.")
+            if self.taken >= self.settings.lanes + self.settings.queue:
+                said = f"{self.taken} requests are being worked on or waiting; come back in a second."
+                raise Problem("busy", said, headers={"retry-after": "1"})
+            self.taken += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                self.taken -= 1
+
+    async def run(self, job: Job) -> Reply:
+        """What a worker answers to `job`; cancelling this stops the worker. Raises Problem."""
+        self.start()
+        self.jobs.put(job)
+        try:
+            reply = await asyncio.wrap_future(job.future)
+        except asyncio.CancelledError:
+            job.left.set()
+            raise
+        if "problem" in reply.head:
+            errors = [(p, d) for p, d in reply.head["errors"]]
+            raise Problem(reply.head["problem"], reply.head["detail"], errors)
+        return reply
+
+    def stop(self) -> None:
+        """Ask everything to end now: solves are killed, their requests get `shutting-down`. Returns at once."""
+        self.stopping.set()
+        for _ in self.lanes:
+            self.jobs.put(None)
+
+    def close(self, seconds: float = 2.0) -> None:
+        """`stop`, and wait until no worker is left; after `seconds` they are killed from here."""
+        self.stop()
+        until = time.monotonic() + seconds
+        for lane in self.lanes:
+            lane.join(max(0.0, until - time.monotonic()))
+        for lane in self.lanes:
+            lane.kill()
+
+    def states(self) -> dict[str, int]:
+        """How many workers are in each state: starting, idle, busy."""
+        found = dict.fromkeys(("starting", "idle", "busy"), 0)
+        for lane in self.lanes:
+            found[lane.state] += 1
+        return found
+
+
+class Lane(threading.Thread):
+    """One thread and its worker process. Only this thread speaks with the worker; anyone may kill it."""
+
+    def __init__(self, pool: Pool, context: BaseContext) -> None:
+        super().__init__(name="hookean-lane", daemon=True)
+        self.pool, self.context = pool, context
+        self.state = "starting"
+        self.process: BaseProcess | None = None
+        self.connection: Connection | None = None
+
+    def run(self) -> None:
+        """Take jobs until the pool stops."""
+        self._begin()
+        while not self.pool.stopping.is_set():
+            self.state = "idle"
+            job = self.pool.jobs.get()
+            if job is None or not job.future.set_running_or_notify_cancel():
+                continue
+            self.state = "busy"
+            self._serve(job)
+            if self.process is None and not self.pool.stopping.is_set():
+                self.pool.restarts += 1
+                self._begin()
+        self.kill()
+        self._refuse_the_rest()
+
+    def _begin(self) -> None:
+        """A fresh worker; waits until it is ready."""
+        self.state = "starting"
+        with suppress(OSError, EOFError, RuntimeError):
+            ours, theirs = multiprocessing.Pipe()
+            process = self.context.Process(  # type: ignore[attr-defined]
+                target=work, args=(theirs, self.pool.settings.worker_memory, FORKED), daemon=True, name="hookean-worker"
+            )
+            process.start()
+            theirs.close()
+            self.process, self.connection = process, ours
+            while not self.pool.stopping.is_set():
+                if wait([ours, process.sentinel], LOOK):
+                    ours.recv_bytes()
+                    return
+        self.kill()
+
+    def _serve(self, job: Job) -> None:
+        if self.process is None or not self.process.is_alive():
+            self.kill()
+            self._begin()
+        try:
+            reply = self._exchange(job)
+        except Problem as problem:
+            self.kill()
+            job.future.set_exception(problem)
+        except Exception:
+            self.kill()
+            job.future.set_exception(
+                Problem("worker-lost", "The process that worked on this request ended; try again.")
+            )
+        else:
+            if job.once:
+                self.kill()
+            job.future.set_result(reply)
+
+    def _exchange(self, job: Job) -> Reply:
+        connection, process, settings = self.connection, self.process, self.pool.settings
+        if connection is None or process is None:
+            raise EOFError
+        connection.send_bytes(json.dumps({"task": job.task, "options": job.options}).encode())
+        connection.send_bytes(job.body)
+        until, asked = time.monotonic() + job.seconds, False
+        while not (ready := wait([connection, process.sentinel], LOOK)):
+            if self.pool.stopping.is_set():
+                raise Problem("shutting-down", "The service stopped before this was done.")
+            if job.left.is_set() and not asked:
+                connection.send_bytes(STOP)
+                asked, until = True, time.monotonic() + settings.cancel_seconds
+            if time.monotonic() > until:
+                raise Problem("out-of-time", f"This was not done in {job.seconds:g} s and has been stopped.")
+        if connection not in ready and not connection.poll(0):
+            raise EOFError
+        return Reply(json.loads(connection.recv_bytes()), connection.recv_bytes())
+
+    def kill(self) -> None:
+        """End the worker now."""
+        process, self.process = self.process, None
+        connection, self.connection = self.connection, None
+        if process is not None:
+            with suppress(OSError, ValueError, AttributeError):
+                process.kill()
+                process.join(1.0)
+        if connection is not None:
+            connection.close()
+
+    def _refuse_the_rest(self) -> None:
+        with suppress(queue.Empty):
+            while True:
+                job = self.pool.jobs.get_nowait()
+                if job is not None and job.future.set_running_or_notify_cancel():
+                    job.future.set_exception(Problem("shutting-down", "The service stopped before this was done."))
+
+
+def _context() -> BaseContext:
+    """`forkserver` with warmed kernels where there is one (never `fork`: the server has threads), else `spawn`."""
+    context = multiprocessing.get_context("forkserver" if FORKED else "spawn")
+    if FORKED:
+        context.set_forkserver_preload(["hookean_server.preload"])
+    return context
+
+
+def end_fork_server() -> None:
+    """End the process that workers are forked from; for the last moment of a server's own process."""
+    if FORKED:
+        from multiprocessing import forkserver
+
+        with suppress(Exception):
+            forkserver._forkserver._stop()  # type: ignore[attr-defined]

@@ -1,0 +1,80 @@
+"""Taking a port, and saying who has it where it is taken."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+
+class Taken(OSError):
+    """The port cannot be had; the sentence says why."""
+
+
+def take(host: str, port: int) -> socket.socket:
+    """A listening socket's address, bound; port 0 takes any. Raises Taken with one sentence."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    sock = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        if sys.platform == "win32":
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)
+        else:
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        sock.bind((host, port))
+        sock.listen(128)
+    except (OSError, OverflowError) as error:
+        sock.close()
+        raise Taken(_why(host, port, error)) from None
+    return sock
+
+
+def _why(host: str, port: int, error: Exception) -> str:
+    import errno
+
+    if getattr(error, "errno", None) in (errno.EADDRINUSE, getattr(errno, "WSAEADDRINUSE", errno.EADDRINUSE)):
+        holder = owner(port)
+        return f"Port {port} is taken by {holder or 'another program'}; stop it, or choose another with --port."
+    if getattr(error, "errno", None) == errno.EACCES:
+        return f"Port {port} may not be used by this user; choose one above 1023 with --port."
+    return f"{host}:{port} cannot be listened on ({getattr(error, 'strerror', None) or error}); choose another address."
+
+
+def owner(port: int) -> str:
+    """Who listens on a TCP port, as `name (process 123)`; empty where that cannot be found out."""
+    for ask in (_by_psutil, _by_proc):
+        with suppress(Exception):
+            if found := ask(port):
+                return found
+    return ""
+
+
+def _by_psutil(port: int) -> str:
+    import psutil  # type: ignore[import-untyped,unused-ignore]
+
+    for connection in psutil.net_connections("tcp"):
+        if connection.status == psutil.CONN_LISTEN and connection.laddr.port == port and connection.pid:
+            process = psutil.Process(connection.pid)
+            return f"{_called(process.name(), process.cmdline())} (process {connection.pid})"
+    return ""
+
+
+def _by_proc(port: int) -> str:
+    inodes = set()
+    for table in ("tcp", "tcp6"):
+        with suppress(OSError):
+            for line in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
+                cells = line.split()
+                if cells[3] == "0A" and int(cells[1].rsplit(":", 1)[1], 16) == port:
+                    inodes.add(f"socket:[{cells[9]}]")
+    for folder in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            if any(str(fd.readlink()) in inodes for fd in (folder / "fd").iterdir()):
+                command = (folder / "cmdline").read_bytes().decode("utf-8", "replace").split("\0")
+                return f"{_called((folder / 'comm').read_text().strip(), command)} (process {folder.name})"
+    return ""
+
+
+def _called(name: str, command: list[str]) -> str:
+    """`hookean` where a Python program is that."""
+    return "hookean" if any("hookean" in Path(part).name for part in command[:4]) else name

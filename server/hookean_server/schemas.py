@@ -1,0 +1,167 @@
+"""Schemas of what is no pydantic model, and examples; the tests run every example."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hookean.files.compas_json import ACCEPTED
+from hookean_server.operations import OPERATIONS
+
+_NUMBER = {"type": "number"}
+_POINT = {"type": "array", "items": _NUMBER, "minItems": 3, "maxItems": 3}
+_BUFFER = {"$ref": "#/components/schemas/Buffer"}
+_ARRAY: dict[str, Any] = {"anyOf": [{"type": "array"}, _BUFFER]}
+_POINTS: dict[str, Any] = {"anyOf": [{"type": "array", "items": _POINT}, _BUFFER]}
+_LINES: dict[str, Any] = {
+    "anyOf": [{"type": "array", "items": {"type": "array", "items": _POINT, "minItems": 2, "maxItems": 2}}, _BUFFER]
+}
+_DOCUMENT = {"$ref": "#/components/schemas/CompasDocument"}
+_RHINO = {"$ref": "#/components/schemas/RhinoObject"}
+_MESH: dict[str, Any] = {"anyOf": [{"$ref": "#/components/schemas/MeshData"}, _DOCUMENT, _RHINO]}
+
+
+def _object(**properties: Any) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": list(properties)}
+
+
+_AT = _object(particles=_ARRAY, force=_ARRAY)
+
+SCHEMAS: dict[str, dict[str, Any]] = {
+    "Buffer": {
+        **_object(dtype={"enum": ["<f8", "<i8"]}, shape={"type": "array", "items": {"type": "integer"}}),
+        "description": "An array as base64 of its little-endian bytes, C order",
+    },
+    "CompasDocument": {
+        **_object(dtype={"type": "string"}, data={}),
+        "description": f"A document as COMPAS 2 writes it; read are {', '.join(ACCEPTED)}",
+    },
+    "RhinoObject": {
+        **_object(version={"type": "integer"}, archive3dm={"type": "integer"}, opennurbs={"type": "integer"}),
+        "description": "Geometry as rhino3dm's CommonObject.Encode writes it",
+    },
+    "Problem": {
+        "type": "object",
+        "description": "RFC 9457",
+        "properties": {
+            "type": {"type": "string", "format": "uri-reference"},
+            "title": {"type": "string"},
+            "status": {"type": "integer"},
+            "detail": {"type": "string"},
+            "instance": {"type": "string", "format": "uri"},
+            "errors": {
+                "type": "array",
+                "maxItems": 20,
+                "items": _object(pointer={"type": "string"}, detail={"type": "string"}),
+            },
+        },
+        "required": ["type", "title", "status", "detail", "instance"],
+    },
+    "Health": _object(
+        service={"const": "hookean"},
+        version={"type": "string"},
+        api={"const": "v1"},
+        status={"enum": ["starting", "ok", "full", "stopping"]},
+        instance={"type": "string"},
+        workers={"type": "object"},
+        requests={"type": "object"},
+    ),
+    "Catalogue": _object(forces={"type": "array", "items": {"type": "object"}}),
+    "Result": _object(
+        status={"enum": ["converged", "stalled", "diverged", "max_iterations", "time_limit", "cancelled"]},
+        message={"type": "string", "description": "One sentence about how the run ended"},
+        particles=_POINTS,
+        geometry={"type": "array", "items": _object(name={"type": "string"}, kind={"type": "string"})},
+        forces={
+            "type": "array",
+            "description": "For each force of the scene its columns, see GET /v1/forces",
+            "items": _object(kind={"type": "string"}, name={"type": "string"}),
+        },
+        reactions={**_AT, "description": "Forces of the anchors on their particles"},
+        contacts={**_AT, "description": "Forces of floors on particles"},
+        residual={"type": ["number", "null"]},
+        rounding_floor={"type": ["number", "null"]},
+        out_of_balance={"type": ["number", "null"]},
+        energy={"type": "object", "additionalProperties": {"type": ["number", "null"]}},
+        iterations={"type": "integer"},
+        time=_NUMBER,
+        solver={"type": "string"},
+        report=_object(merged={"type": "integer"}, unmatched={"type": "array"}, warnings={"type": "array"}),
+        units={"$ref": "#/components/schemas/Units"},
+    ),
+}
+SCHEMAS["Buffer"]["properties"]["base64"] = {"type": "string"}
+SCHEMAS["Buffer"]["required"].append("base64")
+SCHEMAS["RhinoObject"]["properties"]["data"] = {"type": "string"}
+SCHEMAS["RhinoObject"]["required"].append("data")
+
+_TAKES: dict[str, dict[str, Any]] = {
+    "curve": {"anyOf": [_POINTS["anyOf"][0], _BUFFER, _DOCUMENT, _RHINO]},
+    "surface": _RHINO,
+    "mesh": _MESH,
+    "points": {"anyOf": [*_POINTS["anyOf"], _DOCUMENT, {"type": "array", "items": _DOCUMENT, "minItems": 1}]},
+    "lines": {"anyOf": [*_LINES["anyOf"], _DOCUMENT, {"type": "array", "items": _DOCUMENT, "minItems": 1}]},
+}
+_GIVES: dict[str, dict[str, Any]] = {
+    "points": _POINTS,
+    "lines": _LINES,
+    "mesh": {"anyOf": _MESH["anyOf"][:2]},
+    "length": _NUMBER,
+}
+_OPTIONS: dict[str, dict[str, Any]] = {
+    "count": {"type": "integer", "minimum": 1},
+    "number": _NUMBER,
+    "flag": {"type": "boolean"},
+}
+
+
+def operation_schema(name: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Schemas of the body and the answer of an operation."""
+    operation = OPERATIONS[name]
+    properties: dict[str, Any] = {operation.takes: _TAKES[operation.takes]}
+    for option, (kind, default) in operation.options.items():
+        schema = _OPTIONS.get(kind) or {"enum": kind.split()}
+        properties[option] = schema if default is None else {**schema, "default": default}
+    required = [operation.takes, *(n for n, (_, default) in operation.options.items() if default is None)]
+    takes = {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
+    return takes, _object(**{given: _GIVES.get(given, _ARRAY) for given in operation.gives})
+
+
+_CURVE = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]]
+_GRID = {
+    "vertices": [[float(i), float(j), 0.0] for i in range(3) for j in range(3)],
+    "faces": [[3 * i + j, 3 * i + j + 3, 3 * i + j + 4, 3 * i + j + 1] for i in range(2) for j in range(2)],
+}
+_SMALL = {
+    "curve": _CURVE,
+    "mesh": _GRID,
+    "points": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+    "lines": [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]],
+}
+_CABLE = {
+    "particles": [[2.0 * i, 0.0, 0.0] for i in range(6)],
+    "forces": [
+        {"kind": "springs", "particles": [[i, i + 1] for i in range(5)], "stiffness": 1000.0},
+        {"kind": "unary", "particles": list(range(6)), "vector": [0.0, 0.0, -20.0]},
+    ],
+    "anchors": [{"particles": [0, 5]}],
+}
+_NET = {
+    "meshes": {"net": _GRID},
+    "forces": [
+        {"kind": "springs", "mesh": "net", "stiffness": 50.0, "rest_factor": 0.8},
+        {"kind": "unary", "points": [[1.0, 1.0, 0.0]], "vector": [0.0, 0.0, 5.0]},
+    ],
+    "anchors": [{"points": [[0.0, 0.0, 0.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0]]}],
+    "geometry": [{"kind": "mesh", "mesh": "net"}],
+}
+EXAMPLES: dict[str, dict[str, Any]] = {
+    "relax": {"hanging cable": _CABLE, "pulled net": _NET},
+    "discretize": {
+        name: {
+            o.takes: _SMALL[o.takes],
+            **{option: 4 for option, (kind, default) in o.options.items() if default is None and kind == "count"},
+        }
+        for name, o in OPERATIONS.items()
+        if o.takes in _SMALL
+    },
+}

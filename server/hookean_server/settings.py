@@ -1,0 +1,44 @@
+"""What the service allows: sizes, times and places. Every limit has a default that suits one person's machine."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+MIB = 2**20
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Limits of one server. Sizes in bytes, times in seconds."""
+
+    host: str = "127.0.0.1"
+    port: int = 8765
+    workers: int = 0
+    """Processes that solve; 0: one for each core, at most four."""
+    queue: int = 16
+    """Requests that may wait or be read while all workers are busy; the next one is told to come back."""
+    json_limit: int = 16 * MIB
+    file_limit: int = 64 * MIB
+    header_limit: int = 16 * 1024
+    body_seconds: float = 30.0
+    """Time a client has to send its body."""
+    solve_seconds: float = 300.0
+    """Longest solve; a scene with a longer or no `time_limit` ends here with the status `time_limit`."""
+    file_seconds: float = 180.0
+    """Longest time for reading, solving and writing one file."""
+    grace_seconds: float = 10.0
+    """What a worker may take beyond these before it is stopped by force."""
+    cancel_seconds: float = 2.0
+    """What a worker may take to notice that its client has left before it is stopped by force."""
+    worker_memory: int = 4096 * MIB
+    """Memory one worker may allocate, where the system can limit it."""
+    largest_count: int = 1_000_000
+    """Most points, pieces or faces an operation may be asked to make."""
+    hosts: tuple[str, ...] = ()
+    """Further names the service answers to, besides 127.0.0.1, localhost and [::1]."""
+
+    @property
+    def lanes(self) -> int:
+        """How many workers there are."""
+        return self.workers or max(1, min(os.cpu_count() or 1, 4))

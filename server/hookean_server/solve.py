@@ -1,0 +1,42 @@
+"""Relaxing one scene: JSON in, JSON out. Runs in a worker; no physics here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hookean.files import compas_json
+from hookean.files.scene_json import parse
+from hookean.scene import Scene
+from hookean_server import answers
+from hookean_server.tasks import Cancelled, Clock, Done
+
+
+def relax_scene(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
+    """The result of the scene in `body`.
+
+    Options: `arrays` (`list`, `buffer` or none: as in the request), `meshes` (`plain`, `compas` or none: as in the
+    request), `seconds`, the longest solve [s]. Raises InputError and pydantic's ValidationError for a faulty scene.
+    """
+    from hookean.run import relax
+
+    clock = Clock()
+    value = parse(body)
+    plain, documents, _ = compas_json.plain_scene(value)
+    scene = bounded(Scene.model_validate(plain), options["seconds"])
+    clock.lap("decode")
+    result = relax(scene, cancelled=cancelled)
+    clock.lap("solve")
+    arrays = options.get("arrays") or ("buffer" if answers.has_buffers(value) else "list")
+    meshes = options.get("meshes") or ("compas" if documents else "plain")
+    text = answers.encode(result, scene, arrays, documents if meshes == "compas" else None)
+    clock.lap("encode")
+    return Done(text, timing=clock.parts)
+
+
+def bounded(scene: Scene, seconds: float) -> Scene:
+    """The scene with a time limit of at most `seconds`."""
+    given = scene.settings.time_limit
+    if given is not None and given <= seconds:
+        return scene
+    settings = scene.settings.model_copy(update={"time_limit": seconds})
+    return scene.model_copy(update={"settings": settings})

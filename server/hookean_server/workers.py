@@ -1,0 +1,105 @@
+"""The other side of the pool: what a worker process does. It reads foreign bytes and solves; it may be killed any time.
+
+Messages are raw bytes, never pickles: a JSON head, then a body, each way. An empty message asks to stop.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import threading
+from contextlib import suppress
+from multiprocessing import parent_process
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+STOP = b""
+
+
+def warm() -> None:
+    """Load and compile what every solve needs, once: later workers inherit it or find it in the cache."""
+    from hookean.run import relax
+    from hookean.scene import Scene
+
+    relax(
+        Scene.model_validate(
+            {
+                "particles": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [2.0, 0.0, 0.0]],
+                "forces": [
+                    {"kind": "springs", "particles": [[0, 1], [1, 2]]},
+                    {"kind": "unary", "particles": [1], "vector": [0.0, 0.0, -1.0]},
+                ],
+                "anchors": [{"particles": [0, 2]}],
+            }
+        )
+    )
+    for name in ("hookean_server.solve", "hookean_server.operations", "hookean.files.compas_json"):
+        __import__(name)
+
+
+def work(connection: Connection, memory: int, forked: bool) -> None:
+    """Serve requests until the parent closes its end, dies or kills us. `memory` [bytes] is ours to allocate."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides
+    _die_with_parent(forked)
+    if not forked:
+        with suppress(Exception):
+            warm()
+    _limit_memory(memory)
+    with suppress(EOFError, OSError):
+        connection.send_bytes(b"ready")
+        while True:
+            head = connection.recv_bytes()
+            if head == STOP:
+                continue  # meant for a request that was done before it came
+            _answer(connection, json.loads(head), connection.recv_bytes())
+
+
+def _answer(connection: Connection, request: dict[str, Any], body: bytes) -> None:
+    from hookean_server.tasks import perform
+
+    stopped = False
+
+    def cancelled() -> bool:
+        nonlocal stopped
+        try:
+            stopped = stopped or (connection.poll(0) and connection.recv_bytes() == STOP)
+        except (EOFError, OSError):
+            os._exit(1)  # the parent is gone
+        return stopped
+
+    head, answer = perform(request, body, cancelled)
+    connection.send_bytes(json.dumps(head).encode())
+    connection.send_bytes(answer)
+
+
+def _die_with_parent(forked: bool) -> None:
+    """End when the server does, even in the middle of a kernel that never returns."""
+    parent = parent_process()
+
+    def watch() -> None:
+        if parent is not None:
+            wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+    if forked and sys.platform == "linux":
+        # libraries that hold the interpreter's lock stall the thread above; the kernel waits for nobody.
+        # Our parent is the fork server, which ends with the server.
+        with suppress(Exception):
+            import ctypes
+
+            ctypes.CDLL(None).prctl(1, signal.SIGKILL)
+
+
+def _limit_memory(memory: int) -> None:
+    """At most `memory` bytes more than now, where the system can hold us to it."""
+    if sys.platform != "linux":
+        return
+    with suppress(Exception):
+        import resource
+
+        with open("/proc/self/statm", encoding="ascii") as file:
+            now = int(file.read().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (now + memory, now + memory))
