@@ -44,6 +44,7 @@ class Method(Solver):
             step, shift = pattern.step(system, state, left, shift, unit)
             if step is None:
                 break
+            before, size = energy, np.abs(left).max()
             length, energy, left = _search(system, state, step, energy, left)
             done += 1
             state.iteration += 1
@@ -52,7 +53,7 @@ class Method(Solver):
                 if shift > 1e4:
                     break
                 continue
-            helped = True
+            helped = helped or energy < before or np.abs(left).max() < 0.99 * size
             shift = shift * 0.1 if length == 1.0 else shift if length > 0.2 else shift * 10.0
             if shift < 1e-12:
                 shift = 0.0
