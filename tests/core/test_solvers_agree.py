@@ -146,7 +146,7 @@ def braced() -> Spec:
 
 
 def web() -> Spec:
-    """Points inside a cube, each tied to all others and to the corners: in tension everywhere, so there is one shape."""
+    """Points in a cube, each tied to all others and to the corners: in tension everywhere, so there is one shape."""
     rng = np.random.default_rng(4)
     corners = 2.0 * np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
     x = np.concatenate([corners, rng.uniform(-1, 1, (6, 3))])
@@ -273,3 +273,15 @@ def test_equilibria_are_stable(name: str) -> None:
     found = solved(name, "relaxation")
     assert found is not None
     assert tangent_at(compile(Scene.read(SCENES[name]())), found.particles) >= -1e-7
+
+
+def test_newton_gives_up_where_no_step_helps() -> None:
+    """The braced frame free to buckle sideways but drawn flat: a saddle, which Newton does not call an equilibrium.
+
+    It says so after few steps instead of trying the same ones again until patience ends (20,000 iterations).
+    """
+    spec = braced()
+    spec["anchors"] = spec["anchors"][:1]
+    spec["settings"] = {"solver": "newton", "tolerance": 1e-12}
+    found = relax(Scene.read(spec))
+    assert found.status == "stalled" and found.iterations < 1000

@@ -101,7 +101,7 @@ def test_order_of_accuracy(method: str, order: int) -> None:
 
 
 def test_drag_keeps_the_order_two() -> None:
-    """Damping along springs and drag are integrated to order 2 as well: a damped oscillator at t = 1, slope 2 +- 0.15."""
+    """Damping along springs and drag keep order 2: a damped oscillator at t = 1, slope 2 +- 0.15."""
     spring = {"damping": 3.0}
     omega, half = math.sqrt(1000.0), 0.5 * (3.0 + 1.0)
     ringing = math.sqrt(omega**2 - half**2)
