@@ -15,7 +15,8 @@ class Taken(OSError):
 def take(host: str, port: int) -> socket.socket:
     """A listening socket's address, bound; port 0 takes any. Raises Taken with one sentence."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    sock = socket.socket(family, socket.SOCK_STREAM)
+    # named as TCP, or asyncio would not switch off the delay of small writes
+    sock = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         if sys.platform == "win32":
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)
