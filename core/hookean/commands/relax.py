@@ -141,6 +141,8 @@ def _jobs(options: Options) -> list[_Job]:
     ]
     seen: set[Path] = set()
     for job in jobs:
+        if job.picture is not None and job.picture.suffix.lower() != ".png":
+            raise InputError(job.picture.name, "is not a .png file; pictures are PNG, end the name so")
         for path in (job.output, job.report, job.csv, job.picture):
             if path is None:
                 continue

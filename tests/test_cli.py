@@ -1,0 +1,255 @@
+"""The command line: exit codes, files written or not, one sentence for what is wrong, a light start."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+import hookean
+from hookean import cli
+from hookean.commands import relax as command
+from hookean.files import threedm
+from hookean.files.threedm import Additions, NewObject
+
+REAL = Path(__file__).resolve().parents[2] / "shared" / "data" / "rhino"
+CABLE = """
+[[forces]]
+kind = "springs"
+lines = "layer:cable"
+divide = 5
+stiffness = 1000
+[[forces]]
+kind = "unary"
+points = "vertices:layer:cable"
+vector = [0, 0, -20]
+[[anchors]]
+points = "ends:layer:cable"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A working folder with a cable and its recipe."""
+    line = NewObject(np.array([[0.0, 0, 0], [10, 0, 0]]), "cable", "main")
+    threedm.write_new(tmp_path / "cable.3dm", Additions((), [line]), own=False)
+    (tmp_path / "recipe.toml").write_text(CABLE, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*arguments: str) -> Result:
+    """The command in this process; an exception that gets out fails the test."""
+    return CliRunner().invoke(cli.app, list(arguments), catch_exceptions=False)
+
+
+def process(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """The command as a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "hookean.cli", *arguments], cwd=cwd, capture_output=True, text=True, timeout=120
+    )
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_relax_writes_everything_asked_for(folder: Path) -> None:
+    before = (folder / "cable.3dm").read_bytes()
+    result = run(
+        *("relax", "cable.3dm", "-o", "out.3dm", "--recipe", "recipe.toml"),
+        *("--report", "out.json", "--csv", "out.csv", "--picture", "out.png"),
+    )
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert "In equilibrium" in result.stdout and "-> out.3dm" in result.stdout
+    assert names(folder) == ["cable.3dm", "out.3dm", "out.csv", "out.json", "out.png", "recipe.toml"]
+    assert (folder / "cable.3dm").read_bytes() == before
+    rows = (folder / "out.csv").read_text(encoding="utf-8").splitlines()
+    head = rows[0].split(",")
+    assert head[:6] == ["id", "name", "layer", "force", "kind", "element"] and "length [m]" in head
+    total = sum(float(row.split(",")[head.index("length [m]")]) for row in rows[1:] if ",springs," in row)
+    assert total == pytest.approx(10.4679154891668, abs=1e-6)
+    assert json.loads((folder / "out.json").read_text(encoding="utf-8"))["result"]["status"] == "converged"
+    assert (folder / "out.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_explain_solves_and_writes_nothing(folder: Path) -> None:
+    result = run("relax", "cable.3dm", "--explain", "--recipe", "recipe.toml", "-o", "out.3dm")
+    assert result.exit_code == 0
+    assert "forces[0] springs: 5 lines from 1 LineCurve" in result.stdout
+    assert "layer cable: 1 LineCurve -> springs and unary and anchor" in result.stdout
+    assert names(folder) == ["cable.3dm", "recipe.toml"]
+    bare = run("relax", "cable.3dm", "--explain")
+    assert "layer names and user text; nothing is marked as an anchor" in bare.stdout
+
+
+def test_limits_exit_with_1_and_say_which(folder: Path) -> None:
+    (folder / "limits.toml").write_text("max_force = 1\n[layer.cable]\nmax_strain = 1e-6\n", encoding="utf-8")
+    arguments = ("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml", "--check", "limits.toml")
+    result = run(*arguments)
+    assert result.exit_code == 1
+    assert "limit exceeded: model: max force" in result.stderr and "layer cable: max strain" in result.stderr
+    assert (folder / "out.3dm").exists()
+    (folder / "limits.toml").write_text("max_force = 1e9\n", encoding="utf-8")
+    assert run(*arguments).exit_code == 0
+
+
+def test_no_equilibrium_exits_with_3_and_writes_the_last_shape(folder: Path) -> None:
+    (folder / "recipe.toml").write_text(CABLE + "[settings]\nmax_iterations = 1\n", encoding="utf-8")
+    result = run("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml")
+    assert result.exit_code == 3
+    assert "Not in equilibrium after 1 iterations" in result.stderr
+    assert len(threedm.read(folder / "out.3dm").objects) > 1
+
+
+def bad_files(folder: Path) -> list[str]:
+    """Files that are no model: cut, empty, text, a folder, none at all."""
+    data = (folder / "cable.3dm").read_bytes()
+    for part in (1, 30, 50, 99):
+        (folder / f"cut{part}.3dm").write_bytes(data[: len(data) * part // 100])
+    (folder / "empty.3dm").touch()
+    (folder / "text.3dm").write_text("a bridge\n" * 100, encoding="utf-8")
+    (folder / "folder.3dm").mkdir()
+    (folder / "text.json").write_text("a bridge", encoding="utf-8")
+    return [
+        *(f"cut{part}.3dm" for part in (1, 30, 50, 99)),
+        "empty.3dm",
+        "text.3dm",
+        "folder.3dm",
+        "no.3dm",
+        "text.json",
+    ]
+
+
+def test_bad_files_get_one_sentence_and_exit_2(folder: Path) -> None:
+    for name in bad_files(folder):
+        result = run("relax", name, "-o", "out.3dm")
+        assert result.exit_code == 2, name
+        assert result.stdout == ""
+        assert result.stderr.startswith("hookean: ") and result.stderr.count("\n") == 1, result.stderr
+        assert name in result.stderr
+        assert not (folder / "out.3dm").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--recipe", "missing.toml"),
+        ("--recipe", "broken.toml"),
+        ("--recipe", "wrong.toml"),
+        ("--recipe", "cable.3dm"),
+        ("--check", "missing.toml"),
+        ("--check", "broken.toml"),
+        ("-o", "cable.3dm"),
+        ("-o", "no/folder/out.3dm"),
+        ("-o", "out.dwg"),
+        ("-o", "out.3dm", "--csv", "out.3dm"),
+        ("--csv", "cable.3dm"),
+        ("--recipe", "recipe.toml", "--csv", "recipe.toml"),
+        ("--recipe", "recipe.toml", "-o", "out.3dm", "--picture", "picture.jpg"),
+    ],
+)
+def test_bad_options_get_one_sentence_and_exit_2(folder: Path, arguments: tuple[str, ...]) -> None:
+    (folder / "broken.toml").write_text("[[forces", encoding="utf-8")
+    (folder / "wrong.toml").write_text(CABLE.replace("layer:cable", "layer:rope"), encoding="utf-8")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    result = run("relax", "cable.3dm", *arguments)
+    assert result.exit_code == 2
+    assert result.stderr.count("\n") == 1 and result.stderr.startswith("hookean: ")
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_many_files_go_to_a_folder_and_a_bad_one_stops_none(folder: Path) -> None:
+    shutil.copy(folder / "cable.3dm", folder / "b.3dm")
+    (folder / "text.3dm").write_text("no model", encoding="utf-8")
+    result = run(
+        *("relax", "cable.3dm", "text.3dm", "b.3dm", "-r", "recipe.toml"),
+        *("-o", "out", "--csv", "out", "--report", "out"),
+    )
+    assert result.exit_code == 2 and result.stderr.count("\n") == 1
+    assert names(folder / "out") == ["b.3dm", "b.csv", "b.report.json", "cable.3dm", "cable.csv", "cable.report.json"]
+    assert run("relax", "cable.3dm", "b.3dm", "-r", "recipe.toml", "-o", "one.3dm").exit_code == 2
+    assert "would be written twice" in run("relax", "cable.3dm", "cable.3dm", "-o", "out").stderr
+    assert "read from" in run("relax", "cable.3dm", "b.3dm", "-o", ".").stderr
+
+
+def test_ctrl_c_stops_cleanly(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*arguments: object, **options: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("hookean.files.relax_file.relax_file", interrupted)
+    result = run("relax", "cable.3dm", "-o", "out.3dm")
+    assert result.exit_code == command.STOPPED
+    assert result.stderr == "hookean: cable.3dm: stopped, nothing written\n"
+
+
+def test_scenes_in_json(folder: Path) -> None:
+    scene = {"forces": [{"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]]]}], "anchors": [{"points": [[0, 0, 0]]}]}
+    (folder / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
+    assert run("relax", "scene.json", "-o", "result.json", "-q").stdout == ""
+    assert json.loads((folder / "result.json").read_text(encoding="utf-8"))["status"] == "converged"
+    assert run("relax", "scene.json", "-r", "recipe.toml").exit_code == 2
+
+
+def test_version_forces_and_help() -> None:
+    assert run("--version").stdout == f"hookean {hookean.__version__}\n"
+    listed = run("forces")
+    assert listed.exit_code == 0 and "springs" in listed.stdout and "stiffness" in listed.stdout
+    assert run().exit_code != 1 and "relax" in run("--help").stdout
+    assert run("fold").exit_code == 2
+
+
+def test_serve_hands_over_to_the_service(monkeypatch: pytest.MonkeyPatch) -> None:
+    from types import ModuleType
+
+    seen: list[tuple[str, int]] = []
+    main = ModuleType("hookean_server.main")
+    main.serve = lambda host, port: seen.append((host, port))  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "hookean_server.main", main)
+    assert run("serve", "--host", "127.0.0.2", "--port", "1234").exit_code == 0
+    assert seen == [("127.0.0.2", 1234)]
+    monkeypatch.setitem(sys.modules, "hookean_server.main", None)
+    refused = run("serve")
+    assert refused.exit_code == 2 and "not installed" in refused.stderr
+
+
+def test_help_starts_light() -> None:
+    heavy = ("numba", "scipy", "matplotlib", "fastapi", "pydantic", "rhino3dm", "numpy")
+    code = (
+        "import sys, hookean.cli\n"
+        "try:\n    hookean.cli.app(['--help'])\n"
+        "except SystemExit:\n    pass\n"
+        f"print('loaded:', [m for m in {heavy!r} if m in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout.rstrip().endswith("loaded: []"), done.stdout[-200:] + done.stderr
+
+
+def test_processes_answer_with_their_codes(folder: Path) -> None:
+    good = process("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml", cwd=folder)
+    assert (good.returncode, good.stderr) == (0, "")
+    bad = process("relax", "missing.3dm", "-o", "no.3dm", cwd=folder)
+    assert bad.returncode == 2 and bad.stderr == "hookean: missing.3dm: no such file; check the path.\n"
+    first = (folder / "out.3dm").read_bytes()
+    process("relax", "out.3dm", "-o", "again.3dm", "-r", "recipe.toml", cwd=folder)
+    assert (folder / "again.3dm").read_bytes() == first
+
+
+@pytest.mark.parametrize("stem", ["v7_my_surfaces", "v7_my_trimmed_surface", "v7_my_points"])
+def test_real_files_without_a_recipe(folder: Path, stem: str) -> None:
+    source = REAL / f"{stem}.3dm"
+    if not source.exists():
+        pytest.skip(f"no {source}")
+    result = run("relax", str(source), "-o", "out.3dm")
+    expected = 0 if stem == "v7_my_surfaces" else 2
+    assert result.exit_code == expected
+    assert (folder / "out.3dm").exists() == (expected == 0)
+    assert expected == 0 or "holds nothing to relax" in result.stderr
+    assert run("relax", str(source), "--explain").exit_code == 0
