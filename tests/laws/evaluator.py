@@ -37,7 +37,7 @@ class Evaluated:
 
 
 def evaluate(spec: Spec, x: np.ndarray) -> Evaluated:
-    """Forces at positions `x` (n, 3) of a scene made of springs, loads and anchor springs, never yielded before."""
+    """Forces at positions `x` (n, 3) of a scene of springs, hinges, loads and anchor springs, never yielded before."""
     start = np.asarray(spec["particles"], float)
     internal, soft, loads = (np.zeros_like(x) for _ in range(3))
     sizes, counts = [np.zeros(0)], np.zeros(3, int)
@@ -57,6 +57,10 @@ def evaluate(spec: Spec, x: np.ndarray) -> Evaluated:
             away = force["targets"] - x[force["particles"]]
             np.add.at(soft, force["particles"], force["strength"][:, None] * away)
             sizes.append(force["strength"] * np.linalg.norm(away, axis=1))
+        elif force["kind"] == "hinge":
+            pushes = _bending(force, start, x)
+            np.add.at(internal, force["particles"], pushes)
+            sizes.append(np.linalg.norm(pushes, axis=2).max(axis=1))
         else:
             raise KeyError(force["kind"])
     free = np.ones_like(x)
@@ -82,6 +86,36 @@ def _tension(force: Spec, start: np.ndarray, x: np.ndarray) -> tuple[np.ndarray,
     tension = np.where(cut | slack, 0.0, tension)
     direction = (x[b] - x[a]) / np.where(length > 0, length, 1.0)[:, None]
     return tension, direction, np.array([slack.sum(), cut.sum(), (yielded & ~cut & ~slack).sum()])
+
+
+def _angles(corners: np.ndarray) -> np.ndarray:
+    """Fold angles of hinges start-end-tip-tip (m, 4, 3): the normals' angle, by its sine along the edge and cosine."""
+    a, b, c, d = (corners[:, i] for i in range(4))
+    edge = (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
+    one, two = np.cross(b - a, c - a), np.cross(d - a, b - a)
+    one /= np.linalg.norm(one, axis=1)[:, None]
+    two /= np.linalg.norm(two, axis=1)[:, None]
+    return -np.arctan2((np.cross(one, two) * edge).sum(axis=1), (one * two).sum(axis=1))
+
+
+def _bending(force: Spec, start: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Forces of hinges (m, 4, 3): minus moment times the angle's gradient, the latter by fourth-order differences."""
+    corners = x[force["particles"]]
+    rest = _angles(start[force["particles"]]) * force.get("angle_factor", 1.0)
+    turn = _angles(corners) - rest
+    moment = force["strength"] * (turn - 2.0 * np.pi * np.round(turn / (2.0 * np.pi)))
+    gradient = np.zeros_like(corners)
+    h = 1e-3 * np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+    for i in range(4):
+        for c in range(3):
+            for factor, weight in ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0)):
+                for sign in (1.0, -1.0):
+                    moved = corners.copy()
+                    moved[:, i, c] += sign * factor * h
+                    difference = _angles(moved) - _angles(corners)
+                    difference -= 2.0 * np.pi * np.round(difference / (2.0 * np.pi))
+                    gradient[:, i, c] += sign * weight / h * difference
+    return -moment[:, None, None] * gradient
 
 
 def carried(floor: Spec | None, found: Evaluated, x: np.ndarray) -> np.ndarray:

@@ -194,6 +194,27 @@ def kernels_only_add(case: Case, rng: np.random.Generator) -> None:
     assert energy == same
 
 
+def allocates_nothing_that_grows(case: Case, rng: np.random.Generator) -> None:
+    """Machine code takes as many pieces of memory for four times the elements, few, and gives every one back."""
+    from numba.core.runtime import _nrt_python as nrt
+
+    if not nrt.memsys_stats_enabled():
+        nrt.memsys_enable_stats()
+    b = case.block
+    longer = type(b)(*(np.ascontiguousarray(np.concatenate([a] * 4)) for a in (b.indices, b.parameters, b.memory)))
+    kernel, counts = case.run(case.kernel, "force"), []
+    for block in (b, longer):
+        x = case.moved(rng)
+        memory, v, f, w = block.memory.copy(), np.zeros_like(x), np.zeros_like(x), np.zeros(len(x))
+        taken, freed = nrt.memsys_get_stats_alloc(), nrt.memsys_get_stats_free()
+        kernel(x, v, block.indices, block.parameters, memory, f, w)
+        counts.append(nrt.memsys_get_stats_alloc() - taken)
+        assert nrt.memsys_get_stats_free() - freed == counts[-1]
+    assert counts[0] == counts[1]
+    # a handle for each of the seven arrays, and a little room of fixed size
+    assert counts[0] <= 2 * 7 + 2
+
+
 class Guarded(np.ndarray):
     """An array that also refuses negative indices."""
 

@@ -6,20 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from hookean.forces import KINDS
-
 Numbers = np.random.Generator
 Spec = dict[str, Any]
 
-FAMILIES = ("cable", "net", "truss", "web", "soft", "floor", "heap", "unloaded", "shell")
+FAMILIES = ("cable", "net", "truss", "web", "soft", "floor", "heap", "unloaded", "shell", "fold")
 
 
 def random_scene(seed: int) -> Spec:
     """The scene of a seed, as `Scene.read` takes it; families take turns."""
     rng = np.random.default_rng(seed)
     family = FAMILIES[seed % len(FAMILIES)]
-    if family == "shell" and not {"hinge", "shell"} & set(KINDS):
-        family = "net"
     spec: Spec = globals()[f"_{family}"](rng)
     spec.setdefault("settings", {})["tolerance"] = float(rng.choice([1e-6, 1e-6, 1e-9]))
     return spec
@@ -215,11 +211,11 @@ def _ground(rng: Numbers, x: np.ndarray, height: float) -> Spec:
 
 
 def _floor(rng: Numbers) -> Spec:
-    """A net, cable or web that sags onto a floor close below."""
-    spec = [_net, _cable, _web][int(rng.integers(3))](rng)
+    """A net or cable that sags onto a floor close below."""
+    spec = [_net, _net, _cable][int(rng.integers(3))](rng)
     x = spec["particles"]
     spec["settings"] = {"floor": _ground(rng, x, x[:, 2].min() - 0.003 * np.ptp(x[:, 0]))}
-    spec["forces"][-1]["vector"][:, 2] *= 5.0
+    spec["forces"][-1]["vector"][:, 2] *= 30.0
     return spec
 
 
@@ -244,19 +240,48 @@ def _unloaded(rng: Numbers) -> Spec:
     return spec
 
 
-def _shell(rng: Numbers) -> Spec:
-    """A net whose faces resist bending."""
+def _skin(rng: Numbers) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, int]]:
+    """Points, triangles and edges of an irregular, slightly curved grid."""
     x, pairs, cross, (a, b) = _grid(rng)
     number = np.arange(a * b).reshape(a, b)
     quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
+    return x, quads, np.concatenate([pairs, cross[: len(quads)]]), (a, b)
+
+
+def _shell(rng: Numbers) -> Spec:
+    """A net whose faces resist bending."""
+    x, quads, edges, shape = _skin(rng)
     faces = np.concatenate([quads[:, [0, 1, 2, 2]], quads[:, [0, 2, 3, 3]]])
-    edges = np.concatenate([pairs, cross[: len(quads)]])
-    held = _rim(rng, (a, b))
+    held = _rim(rng, shape)
     k = _stiffness(rng, len(edges))
-    size = float(np.median(k)) * float(_lengths(x, pairs).mean()) * rng.uniform(0.002, 0.05)
-    bending = {"kind": "shell", "mesh": "skin"}
+    size = float(np.median(k)) * float(_lengths(x, edges).mean()) * rng.uniform(0.002, 0.05)
     return {
         "particles": x, "meshes": {"skin": {"vertices": x, "faces": faces}},
-        "forces": [_springs(rng, edges, k, rng.uniform(0.7, 1.02)), bending, *_loads(rng, len(x), size)],
+        "forces": [
+            _springs(rng, edges, k, rng.uniform(0.7, 1.02)), {"kind": "shell", "mesh": "skin"},
+            *_loads(rng, len(x), size),
+        ],
+        "anchors": [{"name": "rim", "particles": held}, *_sideways(rng, len(x), held)],
+    }  # fmt: skip
+
+
+def _fold(rng: Numbers) -> Spec:
+    """Triangles folded along the diagonals of a grid and the edges between its cells, with hinges there."""
+    x, quads, edges, (a, b) = _skin(rng)
+    x[:, 2] += 0.2 * rng.normal(size=len(x)) * _lengths(x, edges).mean()
+    number = np.arange(a * b).reshape(a, b)
+    hinges = [[p, r, q, s] for p, q, r, s in quads]
+    hinges += [[number[i, j], number[i, j + 1], number[i + 1, j + 1], number[i - 1, j]]
+               for i in range(1, a - 1) for j in range(b - 1)]  # fmt: skip
+    hinges += [[number[i, j], number[i + 1, j], number[i, j - 1], number[i + 1, j + 1]]
+               for i in range(a - 1) for j in range(1, b - 1)]  # fmt: skip
+    held = _rim(rng, (a, b))
+    k = 100.0 * _stiffness(rng, len(edges))
+    size = float(np.median(k)) * float(_lengths(x, edges).mean()) * rng.uniform(1e-5, 1e-3)
+    strength = size * _lengths(x, edges).mean() * 10.0 ** rng.uniform(-1.0, 1.0, len(hinges))
+    bending = {"kind": "hinge", "particles": np.array(hinges), "strength": strength}
+    bending["angle_factor"] = rng.uniform(0.5, 1.0)
+    return {
+        "particles": x, "forces": [_springs(rng, edges, k, 1.0), bending, *_loads(rng, len(x), size)],
         "anchors": [{"name": "rim", "particles": held}, *_sideways(rng, len(x), held)],
     }  # fmt: skip

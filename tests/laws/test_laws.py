@@ -229,3 +229,9 @@ def test_kernels_stay_inside_their_arrays(case: Case, shape: str) -> None:
         rng = np.random.default_rng(seed)
         x = np.ascontiguousarray(DEGENERATE[shape](case.moved(rng)))
         laws.stays_inside_its_arrays(case, x, rng)
+
+
+@every
+def test_kernels_allocate_nothing_that_grows(case: Case) -> None:
+    """As many allocations for four times the elements, and every one is given back."""
+    laws.allocates_nothing_that_grows(case, np.random.default_rng(2))

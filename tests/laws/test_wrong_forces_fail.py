@@ -102,6 +102,16 @@ def past_the_end(x, v, indices, parameters, memory, f, w):
     return springs_kernel(x, v, indices, parameters, memory, f, w) + 0.0 * x[x.shape[0], 0]
 
 
+def wasteful(x, v, indices, parameters, memory, f, w):
+    """Takes memory for every element."""
+    energy = 0.0
+    for e in range(indices.shape[0]):
+        room = np.zeros(e + 40)
+        room[e] = x[indices[e, 0], 0]
+        energy += room.sum()
+    return energy
+
+
 def halved_hessian(x, indices, parameters, memory, blocks):
     """A tangent off by half of its first entry."""
     springs_hessian(x, indices, parameters, memory, blocks)
@@ -167,6 +177,9 @@ CONTROLS: dict[str, tuple[Callable[[Case], None], Case, Case]] = {
     "memory rests": (lambda c: laws.memory_is_as_declared(c, rng()), toy(end_of_step=creeps), toy()),
     "memory in the kernel": (lambda c: laws.kernels_only_add(c, rng()), toy(writes_memory), toy()),
     "kernels add": (lambda c: laws.kernels_only_add(c, rng()), toy(overwrites), toy()),
+    "allocations": (
+        lambda c: laws.allocates_nothing_that_grows(c, rng()), replaced(RIGHT, kernel=wasteful), RIGHT,
+    ),
     "index below zero": (
         lambda c: laws.stays_inside_its_arrays(c, c.x, rng()), replaced(RIGHT, kernel=wraps_around), RIGHT,
     ),
