@@ -31,8 +31,7 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         try:
             done = _relax_file()(source, target, recipe)
         except InputError as error:
-            pointer = error.pointer if error.pointer.startswith("/") else "/file"
-            raise InputError(pointer, error.sentence.replace(str(folder), "")) from None
+            raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
         clock.lap("solve")
         if options["answer"] == "report":
             return Done(json.dumps(done.to_dict()).encode(), timing=clock.parts)
@@ -74,6 +73,13 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:
         return found["file"], recipe.decode("utf-8") if recipe else None
     except UnicodeDecodeError:
         raise InputError("/recipe", "the text is not UTF-8") from None
+
+
+def _place(pointer: str, recipe: str | None) -> str:
+    """The part of the form a fault is in: pointers lead into the recipe, names are those of the file or the recipe."""
+    if pointer.startswith("/") and not Path(pointer).name.endswith(".3dm"):
+        return f"/recipe{pointer}" if recipe is not None else "/file"
+    return "/recipe" if pointer == "recipe" else "/file"
 
 
 def _relax_file() -> Any:

@@ -1,0 +1,124 @@
+"""A real server on a free port, in a process of its own."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import httpx
+import psutil
+import pytest
+
+CABLE: dict[str, Any] = {
+    "particles": [[0, 0, 0], [2, 0, 0], [4, 0, 0], [6, 0, 0], [8, 0, 0], [10, 0, 0]],
+    "forces": [
+        {"kind": "springs", "particles": [[0, 1], [1, 2], [2, 3], [3, 4], [4, 5]], "stiffness": 1000},
+        {"kind": "unary", "particles": [0, 1, 2, 3, 4, 5], "vector": [0, 0, -20]},
+    ],
+    "anchors": [{"particles": [0, 5]}],
+}
+
+
+def endless(seconds: float = 60.0) -> dict[str, Any]:
+    """A scene that is solved until its time is over: a swinging cable without damping."""
+    springs = {**CABLE["forces"][0], "damping": 0}
+    settings = {"solver": "verlet", "drag": 0, "max_iterations": 10**9, "time_limit": seconds, "tolerance": 0}
+    return {**CABLE, "forces": [springs, CABLE["forces"][1]], "settings": {**settings, "time_step": 0.001}}
+
+
+class Served:
+    """One running server."""
+
+    def __init__(self, **settings: Any) -> None:
+        code = (
+            "import sys; from hookean_server.main import serve; from hookean_server.settings import Settings;"
+            f"sys.exit(serve(port=0, settings=Settings(**{settings!r})))"
+        )
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        assert self.process.stdout is not None
+        self.said = self.process.stdout.readline()
+        found = re.search(r"http://127\.0\.0\.1:(\d+)", self.said)
+        assert found, self.process.communicate(timeout=10)
+        self.url, self.port = found.group(0), int(found.group(1))
+        self.client = httpx.Client(base_url=self.url, timeout=60.0)
+
+    def ready(self) -> Served:
+        """Wait until a worker is idle."""
+        wait_for(lambda: self.health()["workers"]["idle"] > 0, 60.0)
+        return self
+
+    def health(self) -> dict[str, Any]:
+        found: dict[str, Any] = self.client.get("/v1/health").json()
+        return found
+
+    def workers(self) -> list[psutil.Process]:
+        """The processes that solve: children of the fork server or of the server."""
+        found = []
+        for child in psutil.Process(self.process.pid).children(recursive=True):
+            if (
+                child.status() != psutil.STATUS_ZOMBIE
+                and not child.children()
+                and "tracker" not in " ".join(child.cmdline())
+            ):
+                found.append(child)
+        return found
+
+    def family(self) -> list[psutil.Process]:
+        return psutil.Process(self.process.pid).children(recursive=True)
+
+    def end(self, number: int = signal.SIGTERM) -> tuple[int, float, str]:
+        """Exit code, seconds it took and what was written to stderr."""
+        started = time.monotonic()
+        if self.process.poll() is None:
+            self.process.send_signal(number)
+        try:
+            _, said = self.process.communicate(timeout=20)
+        finally:
+            self.process.kill()
+            self.client.close()
+        return self.process.returncode, time.monotonic() - started, said
+
+
+def wait_for(true: Callable[[], Any], seconds: float = 10.0) -> None:
+    until = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < until, "waited too long"
+        time.sleep(0.02)
+
+
+@pytest.fixture(scope="session")
+def served() -> Iterator[Served]:
+    found = Served()
+    yield found.ready()
+    found.end()
+
+
+@pytest.fixture
+def client(served: Served) -> httpx.Client:
+    return served.client
+
+
+def problem(response: httpx.Response, status: int, slug: str) -> dict[str, Any]:
+    """The problem document of a response, checked."""
+    assert response.status_code == status, response.text[:500]
+    assert response.headers["content-type"] == "application/problem+json"
+    found: dict[str, Any] = response.json()
+    assert found["type"] == f"/problems/{slug}"
+    assert found["status"] == status
+    assert found["title"] and found["detail"]
+    assert found["instance"].startswith("urn:uuid:") and found["instance"] == response.headers["x-request-id"]
+    assert set(found) <= {"type", "title", "status", "detail", "instance", "errors"}
+    for error in found.get("errors", []):
+        assert set(error) == {"pointer", "detail"}
+        assert error["pointer"].startswith("/") and len(error["pointer"]) <= 200
+        assert 0 < len(error["detail"]) <= 600
+    assert len(found.get("errors", [])) <= 20
+    assert "Traceback" not in response.text and "site-packages" not in response.text
+    return found

@@ -1,0 +1,141 @@
+"""Every operation over HTTP gives what its function gives."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import compas
+import httpx
+import numpy as np
+import pytest
+import rhino3dm
+from compas.datastructures import Mesh
+from compas.geometry import Line, Polygon, Polyline
+
+from hookean.discretize import curves, surfaces
+from hookean_server.operations import OPERATIONS
+from hookean_server.schemas import EXAMPLES
+
+from .conftest import problem
+
+SMALL = EXAMPLES["discretize"]
+
+
+def sphere() -> Any:
+    return rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 2.0).ToBrep().Surfaces[0]
+
+
+def document(thing: Any) -> Any:
+    return json.loads(compas.json_dumps(thing))
+
+
+def test_the_table_is_listed(client: httpx.Client) -> None:
+    listed = client.get("/v1/discretize").json()["operations"]
+    assert [o["operation"] for o in listed] == list(OPERATIONS)
+    assert all(o["summary"].endswith((".", ":", ",")) or o["summary"] for o in listed)
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_an_operation_is_its_function(client: httpx.Client, name: str) -> None:
+    operation = OPERATIONS[name]
+    answer = client.post(f"/v1/discretize/{name}", json=SMALL[name])
+    assert answer.status_code == 200, answer.text
+    given = dict(SMALL[name])
+    geometry = given.pop(operation.takes)
+    if operation.takes == "mesh":
+        geometry = (geometry["vertices"], geometry["faces"])
+    elif operation.takes in ("curve", "points", "lines"):
+        geometry = np.array(geometry)
+    wanted = operation.function(geometry, **given)
+    found = answer.json()
+    several = wanted if len(operation.gives) > 1 else (wanted,)
+    for key, value in zip(operation.gives, several, strict=True):
+        if key == "mesh":
+            assert found[key] == {"vertices": value.vertices.tolist(), "faces": value.faces.tolist()}
+        else:
+            assert found[key] == np.asarray(value).tolist()
+
+
+def test_curves_as_compas_and_rhino(client: httpx.Client) -> None:
+    points = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]]
+
+    def divided(curve: Any) -> Any:
+        answer = client.post("/v1/discretize/divide", json={"curve": curve, "count": 7})
+        assert answer.status_code == 200, answer.text
+        return answer.json()["points"]
+
+    wanted = curves.divide(np.array(points), 7).tolist()
+    assert divided(points) == divided(document(Polyline(points))) == wanted
+    assert divided(document(Line(points[0], points[1]))) == curves.divide(np.array(points[:2]), 7).tolist()
+    assert divided(document(Polygon(points)))[0] == divided(document(Polygon(points)))[-1]
+    arc = rhino3dm.Arc(rhino3dm.Point3d(0, 0, 0), 2.0, 1.5).ToNurbsCurve()
+    assert divided(arc.Encode()) == curves.divide(arc, 7).tolist()
+
+
+def test_a_worker_that_decoded_rhino_geometry_is_replaced(client: httpx.Client) -> None:
+    before = client.get("/v1/health").json()["workers"]["restarts"]
+    answer = client.post("/v1/discretize/mesh_surface", json={"surface": sphere().Encode(), "u": 6, "v": 5})
+    wanted = surfaces.mesh_surface(sphere(), 6, 5)
+    assert answer.json()["mesh"]["faces"] == wanted.faces.tolist()
+    assert np.allclose(answer.json()["mesh"]["vertices"], wanted.vertices, atol=1e-12)
+    assert client.post("/v1/discretize/length", json={"curve": [[0, 0, 0], [1, 0, 0]]}).json() == {"length": 1.0}
+    assert client.get("/v1/health").json()["workers"]["restarts"] > before
+
+
+def test_meshes_as_compas(client: httpx.Client) -> None:
+    mesh = Mesh.from_meshgrid(2.0, nx=2)
+    plain = dict(zip(("vertices", "faces"), mesh.to_vertices_and_faces(), strict=True))
+    one = client.post("/v1/discretize/warp_weft", json={"mesh": document(mesh)}).json()
+    assert one == client.post("/v1/discretize/warp_weft", json={"mesh": plain}).json()
+    welded = client.post("/v1/discretize/weld", json={"mesh": document(mesh)}).json()["mesh"]
+    assert compas.json_loads(json.dumps(welded)).to_vertices_and_faces() == mesh.to_vertices_and_faces()
+
+
+def test_arrays_as_buffers(client: httpx.Client) -> None:
+    answer = client.post("/v1/discretize/edges?arrays=buffer", json=SMALL["edges"]).json()
+    assert answer["edges"]["dtype"] == "<i8" and answer["lines"]["dtype"] == "<f8"
+
+
+GRID = SMALL["edges"]["mesh"]
+
+
+@pytest.mark.parametrize(
+    ("name", "body", "pointer"),
+    [
+        ("divide", {}, "/count"),
+        ("divide", [], "/"),
+        ("divide", {"count": 3}, "/curve"),
+        ("divide", {"curve": SMALL["divide"]["curve"], "count": 0}, "/count"),
+        ("divide", {"curve": SMALL["divide"]["curve"], "count": 10**9}, "/count"),
+        ("divide", {"curve": SMALL["divide"]["curve"], "count": True}, "/count"),
+        ("divide", {"curve": SMALL["divide"]["curve"], "count": 3, "u": 1}, "/u"),
+        ("divide", {"curve": [[0, 0, 0], [0, 0, 0]], "count": 3}, "/curve"),
+        ("divide", {"curve": [[0, 0, 0], [0, 0, "x"]], "count": 3}, "/curve/1/2"),
+        ("divide", {"curve": {"dtype": "compas.geometry/Sphere", "data": {}}, "count": 3}, "/curve/dtype"),
+        ("divide", {"curve": document(Mesh.from_meshgrid(1.0, nx=1)), "count": 3}, "/curve/dtype"),
+        ("divide", {"curve": {"version": 1, "archive3dm": 60, "opennurbs": 1, "data": "AAAA"}, "count": 3}, "/curve"),
+        ("divide", {"curve": {"version": "1", "archive3dm": 60, "opennurbs": 1, "data": ""}, "count": 3}, "/curve"),
+        ("mesh_surface", {"surface": [[0, 0, 0]], "u": 1, "v": 1}, "/surface"),
+        ("mesh_surface", {"surface": sphere().Encode(), "u": 2000, "v": 2000}, "/v"),
+        ("mesh_surface", {"surface": sphere().Encode(), "u": 2, "v": 2}, "/"),
+        ("edges", {"mesh": {"vertices": GRID["vertices"], "faces": [[0, 1, 99]]}}, "/mesh/faces/0/2"),
+        ("edges", {"mesh": {"vertices": [[0, 0]], "faces": []}}, "/mesh/vertices"),
+        ("edges", {"mesh": 5}, "/mesh"),
+        ("corners", {"mesh": GRID, "angle": -1}, "/angle"),
+        ("corners", {"mesh": GRID, "angle": "1"}, "/angle"),
+        ("diagonals", {"mesh": GRID, "pattern": "all"}, "/pattern"),
+        ("warp_weft", {"mesh": GRID, "strict": 1}, "/strict"),
+        ("weld", {"mesh": GRID, "tolerance": -1}, "/tolerance"),
+        ("remove_duplicate_lines", {"lines": [[[0, 0, 0]]]}, "/lines"),
+        ("remove_duplicate_points", {"points": [[0, 0, 0], [1, 2]]}, "/points"),
+    ],
+)
+def test_faulty_input(client: httpx.Client, name: str, body: Any, pointer: str) -> None:
+    found = problem(client.post(f"/v1/discretize/{name}", json=body), 422, "invalid-input")
+    assert found["errors"][0]["pointer"].startswith(pointer)
+
+
+def test_an_unknown_operation_names_those_there_are(client: httpx.Client) -> None:
+    found = problem(client.post("/v1/discretize/slice", json={}), 404, "not-found")
+    assert "divide" in found["detail"]

@@ -1,0 +1,270 @@
+"""Workers and their ends: health while solving, clients that leave, workers that die or hang, shutdown, taken ports."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from concurrent.futures import Future
+from typing import Any
+
+import httpx
+import psutil
+import pytest
+
+from hookean_server.ports import owner
+
+from .conftest import CABLE, Served, endless, problem, wait_for
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+JSON = {"content-type": "application/json"}
+
+
+@pytest.fixture
+def alone() -> Iterator[Served]:
+    """A server of one worker for tests that break it."""
+    found = Served(workers=1, queue=2)
+    yield found.ready()
+    found.end()
+
+
+def post_later(served: Served, scene: dict[str, Any], path: str = "/v1/relax") -> Future[httpx.Response]:
+    future: Future[httpx.Response] = Future()
+
+    def post() -> None:
+        try:
+            future.set_result(httpx.post(served.url + path, json=scene, timeout=60))
+        except Exception as error:
+            future.set_exception(error)
+
+    threading.Thread(target=post, daemon=True).start()
+    return future
+
+
+def busy(served: Served, count: int = 1) -> None:
+    wait_for(lambda: served.health()["workers"]["busy"] >= count)
+
+
+def test_health_answers_while_all_workers_solve(served: Served) -> None:
+    count = served.health()["workers"]["idle"]
+    running = [post_later(served, endless(3.0)) for _ in range(count)]
+    busy(served, count)
+    times = []
+    while not running[0].done():
+        started = time.monotonic()
+        assert served.health()["service"] == "hookean"
+        times.append(time.monotonic() - started)
+        time.sleep(0.01)
+    assert [r.result().json()["status"] for r in running] == ["time_limit"] * count
+    assert len(times) > 20 and max(times) < 1.0, max(times)
+
+
+def test_the_servers_own_limit_ends_a_solve_with_an_answer() -> None:
+    served = Served(workers=1, solve_seconds=1.0)
+    scene = endless()
+    del scene["settings"]["time_limit"]
+    answer = served.client.post("/v1/relax", json=scene)
+    assert answer.status_code == 200 and answer.json()["status"] == "time_limit"
+    assert served.health()["workers"]["restarts"] == 0
+    served.end()
+
+
+def test_a_client_that_leaves_frees_the_worker(alone: Served) -> None:
+    worker = alone.workers()
+    with pytest.raises(httpx.ReadTimeout):
+        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.5)
+    wait_for(lambda: alone.health()["workers"]["idle"] == 1, 4.0)
+    assert alone.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
+    assert alone.health()["requests"]["taken"] == 0
+    assert [p.pid for p in alone.workers()] == [p.pid for p in worker]  # it stopped by itself
+
+
+def test_a_client_that_leaves_the_queue_is_forgotten(alone: Served) -> None:
+    running = post_later(alone, endless(2.0))
+    busy(alone)
+    with pytest.raises(httpx.ReadTimeout):
+        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3)
+    wait_for(lambda: alone.health()["requests"]["taken"] == 1)
+    assert running.result().json()["status"] == "time_limit"
+    assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
+
+
+def test_a_worker_that_hangs_is_stopped() -> None:
+    served = Served(workers=1, solve_seconds=0.5, grace_seconds=0.5)
+    worker = served.ready().workers()[0]
+    worker.suspend()
+    started = time.monotonic()
+    problem(served.client.post("/v1/relax", json=CABLE), 504, "out-of-time")
+    assert time.monotonic() - started < 3.0
+    assert served.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
+    assert not worker.is_running() or worker.status() == psutil.STATUS_ZOMBIE
+    served.end()
+
+
+def test_a_suspended_worker_whose_client_leaves_is_killed_after_two_seconds(alone: Served) -> None:
+    worker = alone.workers()[0]
+    worker.suspend()
+    started = time.monotonic()
+    with pytest.raises(httpx.ReadTimeout):
+        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3)
+    wait_for(lambda: alone.health()["workers"]["restarts"] == 1, 5.0)
+    assert 1.5 < time.monotonic() - started < 5.0
+    assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
+
+
+def test_killing_a_worker_in_the_middle_of_a_solve(alone: Served) -> None:
+    for _ in range(3):
+        running = post_later(alone, endless())
+        busy(alone)
+        time.sleep(0.1)
+        alone.workers()[0].kill()
+        problem(running.result(timeout=5), 500, "worker-lost")
+        assert alone.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
+
+
+def test_a_worker_that_dies_idle_is_not_noticed_by_the_next_request(alone: Served) -> None:
+    alone.workers()[0].kill()
+    time.sleep(0.1)
+    assert alone.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
+
+
+def test_a_solve_that_needs_too_much_memory() -> None:
+    served = Served(workers=1, worker_memory=200 * 2**20)
+    body = b'{"particles": [' + b"[0,0,0]," * 1_800_000 + b"[0,0,0]]}"
+    problem(served.ready().client.post("/v1/relax", content=body, headers=JSON), 413, "too-large")
+    assert served.client.post("/v1/relax", json=CABLE).status_code == 200
+    served.end()
+
+
+def test_a_full_service_says_so_before_it_reads(alone: Served) -> None:
+    running = [post_later(alone, endless(2.5)) for _ in range(3)]
+    wait_for(lambda: alone.health()["requests"]["taken"] == 3)
+    assert alone.health()["status"] == "full"
+    refused = alone.client.post("/v1/relax", json=CABLE)
+    problem(refused, 503, "busy")
+    assert int(refused.headers["retry-after"]) >= 1
+    problem(alone.client.post("/v1/relax/3dm", files={"file": b"x" * 10**7}), 503, "busy")
+    assert alone.health()["status"] == "full"
+    running[0].result()
+    wait_for(lambda: alone.health()["requests"]["taken"] < 3)
+
+
+def test_a_body_that_does_not_come() -> None:
+    served = Served(workers=1, body_seconds=0.5)
+    served.ready()
+    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\n"
+    head += "Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
+    with socket.create_connection(("127.0.0.1", served.port), timeout=10) as sock:
+        sock.sendall(head.encode())
+        assert sock.recv(65536).startswith(b"HTTP/1.1 408")
+    wait_for(lambda: served.health()["requests"]["taken"] == 0)
+    served.end()
+
+
+def test_a_client_that_leaves_in_the_middle_of_its_body(alone: Served) -> None:
+    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{alone.port}\r\n"
+    head += "Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
+    with socket.create_connection(("127.0.0.1", alone.port), timeout=10) as sock:
+        sock.sendall(head.encode())
+        wait_for(lambda: alone.health()["requests"]["taken"] == 1)
+    wait_for(lambda: alone.health()["requests"]["taken"] == 0)
+    assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("what", ["idle", "solving", "starting", "reading"])
+def test_a_clean_end(number: int, what: str) -> None:
+    served = Served(workers=2)
+    running = None
+    if what != "starting":
+        served.ready()
+        wait_for(lambda: served.health()["workers"]["starting"] == 0)
+    if what == "solving":
+        running = post_later(served, endless())
+        busy(served)
+    if what == "reading":
+        sock = socket.create_connection(("127.0.0.1", served.port))
+        sock.sendall(f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\n".encode())
+        sock.sendall(b"Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{")
+        wait_for(lambda: served.health()["requests"]["taken"] == 1)
+    family = served.family()
+    code, seconds, said = served.end(number)
+    if what == "reading":
+        sock.close()
+    assert code == 0 and seconds < 3.0, (code, seconds, said)
+    assert "Traceback" not in said and "rror" not in said, said
+    wait_for(lambda: not any(alive(p) for p in family), 2.0)
+    if running is not None:
+        problem(running.result(timeout=5), 503, "shutting-down")
+
+
+def alive(process: psutil.Process) -> bool:
+    try:
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
+
+
+def test_no_worker_outlives_a_server_that_is_killed() -> None:
+    served = Served(workers=2).ready()
+    running = post_later(served, endless())
+    busy(served)
+    family = served.family()
+    assert family
+    served.end(signal.SIGKILL)
+    wait_for(lambda: not any(alive(p) for p in family), 5.0)
+    with pytest.raises(httpx.HTTPError):
+        running.result(timeout=5)
+
+
+def test_ctrl_c_reaches_the_whole_group() -> None:
+    """In a terminal every process of the group gets the signal; workers leave the decision to the server."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "hookean_server", "0"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    url = process.stdout.readline().split()[3]
+    wait_for(lambda: httpx.get(f"{url}/v1/health").json()["workers"]["idle"] > 0, 60)
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=10)
+    assert process.returncode == 0 and said == ""
+
+
+def test_it_says_where_it_is_and_what_to_try(served: Served) -> None:
+    assert served.said.startswith(f"hookean serves at {served.url}")
+    line = served.process.stdout.readline()  # type: ignore[union-attr]
+    done = subprocess.run(line, shell=True, capture_output=True, text=True, timeout=30)
+    assert '"status": "converged"' in done.stdout, (line, done.stderr)
+
+
+def test_a_taken_port_is_named_with_its_owner(served: Served) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "hookean_server", str(served.port)], capture_output=True, text=True, timeout=30
+    )
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.count("\n") == 1
+    assert f"Port {served.port} is taken" in done.stderr and f"(process {served.process.pid})" in done.stderr
+
+
+def test_the_owner_of_a_port_without_psutil(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as sock:
+        port = sock.getsockname()[1]
+        assert f"(process {os.getpid()})" in owner(port)
+        monkeypatch.setitem(sys.modules, "psutil", None)
+        if sys.platform == "linux":
+            assert f"(process {os.getpid()})" in owner(port)
+    assert owner(port) == ""
+
+
+def test_a_port_that_is_none() -> None:
+    done = subprocess.run([sys.executable, "-m", "hookean_server", "99999"], capture_output=True, text=True, timeout=30)
+    assert done.returncode == 2 and "Traceback" not in done.stderr
