@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 from uuid import UUID
 
@@ -70,6 +71,20 @@ class Drawing:
     factor: float
     unit: str
     said: str
+
+    @cached_property
+    def by_id(self) -> dict[UUID, list[Item]]:
+        """Items, hidden ones too, by each of their ids."""
+        found: dict[UUID, list[Item]] = {}
+        for item in (*self.items, *self.hidden):
+            for id in item.ids:
+                found.setdefault(id, []).append(item)
+        return found
+
+    @cached_property
+    def visible(self) -> frozenset[Item]:
+        """The items as a set."""
+        return frozenset(self.items)
 
     @property
     def tolerance(self) -> float:

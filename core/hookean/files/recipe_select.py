@@ -81,10 +81,15 @@ def _term(text: str, pointer: str) -> Term:
 
 def select(drawing: Drawing, term: Term, pointer: str) -> list[Item]:
     """Items a selector means, in file order; InputError with what the file has where there are none."""
-    test = _test(term, pointer)
-    found = [item for item in drawing.items if test(item)]
+    if term.key == "id":
+        every = drawing.by_id.get(_id(term, pointer), [])
+        found = [item for item in every if item in drawing.visible]
+        unseen = len(every) - len(found)
+    else:
+        test = _test(term)
+        found = [item for item in drawing.items if test(item)]
+        unseen = 0 if found else sum(map(test, drawing.hidden))
     if not found and not term.everything:
-        unseen = sum(map(test, drawing.hidden))
         if unseen:
             raise InputError(
                 pointer, f'"{term}" finds only hidden objects ({unseen}); show them in Rhino or set hidden = true'
@@ -93,15 +98,16 @@ def select(drawing: Drawing, term: Term, pointer: str) -> list[Item]:
     return found
 
 
-def _test(term: Term, pointer: str) -> Callable[[Item], bool]:
+def _id(term: Term, pointer: str) -> UUID:
+    try:
+        return UUID(term.value)
+    except ValueError:
+        raise InputError(pointer, f'"{term.value}" is no object id; copy it from Rhino\'s What command') from None
+
+
+def _test(term: Term) -> Callable[[Item], bool]:
     if term.everything:
         return lambda item: True
-    if term.key == "id":
-        try:
-            wanted = UUID(term.value)
-        except ValueError:
-            raise InputError(pointer, f'"{term.value}" is no object id; copy it from Rhino\'s What command') from None
-        return lambda item: wanted in item.ids
     if term.key == "layer":
         return lambda item: any(on_layer(path, term.value) for path in item.layers)
     if term.key == "name":

@@ -75,11 +75,23 @@ def split_of(value: Any, pointer: str) -> Split | None:
 
 def straight(item: Item) -> bool:
     """Whether a curve is a line or a polyline, whatever its class."""
-    try:
-        explode(item.geometry)
-    except InputError:
-        return False
-    return True
+    return _segments(item) is not None
+
+
+def _segments(item: Item) -> Floats | None:
+    """The segments of a line or polyline in file units; None for a curve that is bent or cannot be read."""
+    if "segments" not in item.made:
+        if isinstance(item.geometry, rhino.LineCurve):  # most curves are, and files have many
+            line = np.array([[(p.X, p.Y, p.Z) for p in (item.geometry.PointAtStart, item.geometry.PointAtEnd)]])
+            if np.isfinite(line).all() and np.abs(line[0, 1] - line[0, 0]).max() > 1e-12 * np.abs(line).max():
+                item.made["segments"] = line
+                return line
+        try:
+            item.made["segments"] = explode(item.geometry)
+        except InputError:
+            item.made["segments"] = None
+    found: Floats | None = item.made["segments"]
+    return found
 
 
 def lines_of(item: Item, split: Split | None, pointer: str) -> Floats:
@@ -87,8 +99,9 @@ def lines_of(item: Item, split: Split | None, pointer: str) -> Floats:
     try:
         if split is not None:
             return shatter(item.geometry, split[0])
-        if straight(item):
-            return explode(item.geometry)
+        pieces = _segments(item)
+        if pieces is not None:
+            return pieces
         shatter(item.geometry, 1)  # says what else is wrong with it
     except InputError as error:
         raise InputError(pointer, f"{item.label}: {error.sentence}") from None
@@ -130,13 +143,12 @@ def points_of(item: Item, feature: str, split: Split | None, pointer: str) -> Fl
         every = [cloud.Location] if isinstance(cloud, rhino.Point) else cloud.GetPoints()
         return np.array([(p.X, p.Y, p.Z) for p in every], dtype=np.float64).reshape(-1, 3)
     try:
-        ends = end_points(item.geometry)
         if feature in ("start", "ends"):
-            return ends[: 1 if feature == "start" else 2]
+            return end_points(item.geometry)[: 1 if feature == "start" else 2]
+        pieces = _segments(item)
         if split is not None:
             points = divide(item.geometry, split[0])
-        elif straight(item):
-            pieces = explode(item.geometry)
+        elif pieces is not None:
             points = np.concatenate([pieces[:, 0], pieces[-1:, 1]])
         else:
             raise InputError(pointer, "is curved; give divide = N for the points that cut it into N pieces")
