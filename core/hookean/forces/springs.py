@@ -14,8 +14,8 @@ from hookean.forces.base import Block, Floats, Force, Places
 def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
     for e in range(indices.shape[0]):
-        a = indices[e, 0]
-        b = indices[e, 1]
+        a = np.uint64(indices[e, 0])  # unsigned: no index counts from the end
+        b = np.uint64(indices[e, 1])
         dx = x[b, 0] - x[a, 0]
         dy = x[b, 1] - x[a, 1]
         dz = x[b, 2] - x[a, 2]
