@@ -27,30 +27,35 @@ def probe(mode: str, **environment: str) -> Any:
     return json.loads(done.stdout)
 
 
-def test_the_second_process_compiles_nothing(tmp_path: Path) -> None:
+@pytest.fixture
+def copied(tmp_path: Path) -> tuple[Path, dict[str, str]]:
+    """A copy of the package that nobody else edits, and the environment that uses it with an empty cache."""
+    home = tmp_path / "package"
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(Path(hookean.__file__).parent, home / "hookean", ignore=ignored)
+    cache = {"HOOKEAN_CACHE": str(tmp_path / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+    return home / "hookean", {"PYTHONPATH": str(home), **cache}
+
+
+def test_the_second_process_compiles_nothing(copied: tuple[Path, dict[str, str]]) -> None:
     """First process: every kernel, hook and loop misses. Second: every one of them hits, and none misses."""
-    first = probe("cache", HOOKEAN_CACHE=str(tmp_path))
-    second = probe("cache", HOOKEAN_CACHE=str(tmp_path))
+    _, environment = copied
+    first, second = probe("cache", **environment), probe("cache", **environment)
     assert set(first) == set(second) and len(first) > 10
     assert any("_loop" in name for name in first) and any("springs_kernel" in name for name in first)
     assert all(misses > 0 for _, misses in first.values())
     assert {name for name, (hits, misses) in second.items() if hits < 1 or misses} == set()
 
 
-def test_an_edited_kernel_gives_the_new_answer_and_a_revert_is_found_again(tmp_path: Path) -> None:
+def test_an_edited_kernel_gives_the_new_answer_and_a_revert_is_found_again(copied: tuple[Path, dict[str, str]]) -> None:
     """E = k s^2/2 = 50; with the kernel's tension doubled it is 100; reverted, 50 again without compiling.
 
     The relaxation loop, in a file of its own that was not edited, follows as well.
     """
-    home = tmp_path / "package"
-    source = Path(hookean.__file__).parent
-    shutil.copytree(source, home / "hookean", ignore=shutil.ignore_patterns("__pycache__"))
-    environment = {
-        "PYTHONPATH": str(home), "HOOKEAN_CACHE": str(tmp_path / "cache"), "PYTHONDONTWRITEBYTECODE": "1",
-    }  # fmt: skip
+    package, environment = copied
     before = probe("energy", **environment)
     assert before["energy"] == 50.0 and before["hits"] == 0
-    file = home / "hookean" / "forces" / "springs.py"
+    file = package / "forces" / "springs.py"
     text = file.read_text(encoding="utf-8")
     edited = text.replace("tension = k * (length - rest)", "tension = 2.0 * k * (length - rest)")
     assert edited != text
