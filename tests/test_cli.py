@@ -18,6 +18,7 @@ from hookean import cli
 from hookean.commands import relax as command
 from hookean.files import threedm
 from hookean.files.threedm import Additions, NewObject
+from hookean.forces import KINDS
 
 REAL = Path(__file__).resolve().parents[2] / "shared" / "data" / "rhino"
 CABLE = """
@@ -201,7 +202,11 @@ def test_scenes_in_json(folder: Path) -> None:
 def test_version_forces_and_help() -> None:
     assert run("--version").stdout == f"hookean {hookean.__version__}\n"
     listed = run("forces")
-    assert listed.exit_code == 0 and "springs" in listed.stdout and "stiffness" in listed.stdout
+    assert listed.exit_code == 0
+    for kind, cls in KINDS.items():
+        assert f"\n{kind}  " in f"\n{listed.stdout}"
+        assert all(f"\n    {name} " in listed.stdout for name in cls.model_fields if name != "kind")
+    assert "k [force/length] (default 1000" in listed.stdout
     assert run().exit_code != 1 and "relax" in run("--help").stdout
     assert run("fold").exit_code == 2
 
@@ -211,9 +216,9 @@ def test_serve_hands_over_to_the_service(monkeypatch: pytest.MonkeyPatch) -> Non
 
     seen: list[tuple[str, int]] = []
     main = ModuleType("hookean_server.main")
-    main.serve = lambda host, port: seen.append((host, port))  # type: ignore[attr-defined]
+    main.serve = lambda host, port: seen.append((host, port)) or 3  # type: ignore[attr-defined,func-returns-value]
     monkeypatch.setitem(sys.modules, "hookean_server.main", main)
-    assert run("serve", "--host", "127.0.0.2", "--port", "1234").exit_code == 0
+    assert run("serve", "--host", "127.0.0.2", "--port", "1234").exit_code == 3
     assert seen == [("127.0.0.2", 1234)]
     monkeypatch.setitem(sys.modules, "hookean_server.main", None)
     refused = run("serve")

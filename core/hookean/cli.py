@@ -70,7 +70,7 @@ def relax(
 @app.command()
 def serve(
     host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to listen on; 0: any free one", min=0, max=65535)] = 8017,
+    port: Annotated[int, typer.Option(help="Port to listen on; 0: any free one", min=0, max=65535)] = 8765,
 ) -> None:
     """Start the local service: HTTP, and a page to watch shapes relax."""
     import importlib
@@ -81,15 +81,15 @@ def serve(
         if not (error.name or "").startswith("hookean_server"):
             raise
         fail(InputError("serve", "the service (hookean_server) is not installed; install hookean with it"))
-    service.serve(host, port)
+    raise typer.Exit(service.serve(host, port) or 0)
 
 
 @app.command()
 def forces() -> None:
     """List all forces with their formulas, columns, defaults and units."""
-    from hookean.commands.forces import catalogue
+    from hookean.commands.forces import text
 
-    typer.echo(catalogue())
+    typer.echo(text())
 
 
 def fail(error: InputError) -> NoReturn:

@@ -270,6 +270,9 @@ def test_faults_of_a_recipe_are_told_with_its_name(cable: Path) -> None:
     with pytest.raises(InputError) as caught:
         relax_file(cable, None, CABLE.replace("layer:cable", "layer:rope"), recipe_name="bridge.toml")
     assert caught.value.pointer == "bridge.toml /forces/0/lines"
+    with pytest.raises(InputError) as bare:
+        relax_file(cable, None, CABLE.replace("layer:cable", "layer:rope"))
+    assert bare.value.pointer == "/forces/0/lines"
     with pytest.raises(InputError, match="recipes go with"):
         relax_file(Path("scene.json"), None, CABLE)
 

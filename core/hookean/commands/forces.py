@@ -1,22 +1,29 @@
-"""`hookean forces`: every force with its formula and columns."""
+"""`hookean forces`: the catalogue of forces as text."""
 
 from __future__ import annotations
 
+from typing import Any
 
-def catalogue() -> str:
-    """The catalogue as text: for each force its kind, formula, first sentence, and a line for each column."""
-    from hookean.forces import KINDS
+from hookean.catalogue import catalogue
 
-    lines: list[str] = []
-    for kind, cls in KINDS.items():
-        first = " ".join((cls.__doc__ or "").split("\n\n")[0].split())
-        lines += [f"{kind}   {cls.formula}", f"    {first}"]
-        for name, column in cls.model_fields.items():
-            if name in ("kind", "name"):
-                continue
-            default = "required" if column.is_required() else f"default {column.default}"
-            if not column.is_required() and column.default is None:
-                default = "optional"
-            lines.append(f"    {name:<16} {column.description or ''} ({' '.join(default.split())})")
-        lines.append("")
-    return "\n".join(lines).rstrip()
+
+def text() -> str:
+    """For each force its kind, formula and summary, and a line for each field: name, meaning, default, choices."""
+    return "\n\n".join("\n".join(_force(entry)) for entry in catalogue())
+
+
+def _force(entry: dict[str, Any]) -> list[str]:
+    lines = [f"{entry['kind']}  {entry['formula']}".rstrip(), f"    {entry['summary']}"]
+    return lines + [f"    {field['name']:<16} {_field(field)}" for field in entry["fields"]]
+
+
+def _field(field: dict[str, Any]) -> str:
+    if field["required"]:
+        more = "required"
+    elif field["default"] in (None, ""):
+        more = "optional"
+    else:
+        more = f"default {field['default']}"
+    if field.get("choices"):
+        more += f"; {', '.join(map(str, field['choices']))}"
+    return f"{field['description']} ({more})"

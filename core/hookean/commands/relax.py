@@ -47,7 +47,7 @@ def run(options: Options) -> int:
     codes: list[int] = []
     try:
         recipe = None if options.recipe is None else _text(options.recipe)
-        name = options.recipe.name if options.recipe is not None else "recipe"
+        name = options.recipe.name if options.recipe is not None else ""
         if options.explain:
             return max(_explained(file, recipe, name) for file in options.files)
         limits = _limits(options.check)

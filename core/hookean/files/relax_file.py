@@ -81,7 +81,7 @@ class _Source:
     nothing: str = ""
 
 
-def explain_file(source: Path, recipe_text: str | None = None, *, recipe_name: str = "recipe") -> list[str]:
+def explain_file(source: Path, recipe_text: str | None = None, *, recipe_name: str = "") -> list[str]:
     """How a file would be read, in lines for a person; nothing is solved. Raises InputError as `relax_file`."""
     return _read(source, recipe_text, recipe_name).lines
 
@@ -91,7 +91,7 @@ def relax_file(
     target: Path | None = None,
     recipe_text: str | None = None,
     *,
-    recipe_name: str = "recipe",
+    recipe_name: str = "",
     limits: Mapping[str, Any] | None = None,
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
@@ -100,7 +100,8 @@ def relax_file(
 
     A .3dm target is a copy of a .3dm source with results below the layer `hookean`, or a new file; a .json target is
     the result (of a COMPAS document the document with its new shape). A shape short of equilibrium is written too, a
-    cancelled one is not. `limits` as `tables.read_limits` gives them. The source is never written.
+    cancelled one is not. `limits` as `tables.read_limits` gives them; pointers into the recipe are told behind
+    `recipe_name`. The source is never written.
 
     Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written.
     """
@@ -116,7 +117,7 @@ def relax_file(
     read = _read(Path(source), recipe_text, recipe_name)
     if read.nothing:
         raise InputError(Path(source).name, read.nothing)
-    with _about(recipe_name if recipe_text is not None else ""):
+    with _about(recipe_name):
         system = compile(read.scene)
         result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)
     parts = tables.sections(system, result, read.built)
@@ -137,9 +138,9 @@ def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
         if recipe_text is not None:
             raise InputError(source.name, "is a JSON file, which says everything itself; recipes go with .3dm files.")
         return _read_json(source)
-    recipe = None if recipe_text is None else parse_recipe(recipe_text, recipe_name)
+    recipe = None if recipe_text is None else parse_recipe(recipe_text, recipe_name or "recipe")
     model = threedm.read(source)
-    with _about(recipe_name if recipe is not None else ""):
+    with _about(recipe_name):
         understood = understand(model, recipe)
     seen = understood.built.drawing
     return _Source(
