@@ -214,7 +214,10 @@ def test_geometry_rides_along(draw: Callable[..., Any]) -> None:
             {"kind": "lines", "lines": "layer:deck"},
         ],
     }
-    deck, bow, lines = scene_of(model, recipe).geometry
+    understood = understand(model, recipe)
+    assert any("geometry[2] lines that rides along: 1 lines" in line for line in understood.lines)
+    assert any("curve that rides along" in line for line in understood.lines)
+    deck, bow, lines = understood.built.scene.geometry
     assert (deck.name, deck.points.tolist()) == ("edge", LINE.tolist())
     assert (bow.degree, len(bow.points), len(bow.knots)) == (arc.Degree, len(arc.Points), len(arc.Knots))
     assert lines.lines.tolist() == LINE[None].tolist()

@@ -124,9 +124,10 @@ class _Builder:
         pointer = f"/{group}/{number}"
         own = self._split(table, pointer)
         used: Shape | None = None
-        said = str(table.get("kind", "")) if group == "forces" else "anchor"
+        said = "anchor" if group == "anchors" else str(table.get("kind", ""))
         if table.get("name"):
             said += f' "{table["name"]}"'
+        said += " that rides along" if group == "geometry" else ""
         for name in PLACE_FIELDS:
             value = table.get(name)
             if not is_selector(value) or self._literal_mesh(name, table):
