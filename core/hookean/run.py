@@ -98,6 +98,7 @@ class _Watch:
         self.size = system.size
         self.moving = np.inf
         self.fault = ""
+        self.collapse = ""
 
     @property
     def goal(self) -> float:
@@ -108,11 +109,13 @@ class _Watch:
         """Iterations until the next look: about 50 ms of springs, or a twenty-fifth of those done."""
         spent = state.iteration - self.first
         cheap = 8_000_000 // (sum(g.block.indices.size for g in system.groups) + 4_000)
+        if any(g.cls.collapses for g in system.groups):
+            cheap = 0  # looked at often, so that the last good shape is a late one
         return max(1, min(max(FIRST_LOOK, cheap, spent // 25), self.settings.max_iterations - spent))
 
     def look(self, system: System, state: State, *, idle: bool = False, known: bool = False) -> Status:
         """Judge the state as it is now; `known` says that its balance is the one already found."""
-        if not self._sane(system, state):
+        if not self._sane(system, state) or self._collapsed(system, state):
             return Status.DIVERGED
         if not known:
             self.found = balance(system, state)
@@ -129,6 +132,16 @@ class _Watch:
         if limit is not None and time.monotonic() - self.started > limit:
             return Status.TIME_LIMIT
         return Status.RUNNING
+
+    def _collapsed(self, system: System, state: State) -> bool:
+        """Whether some force says that its shape is none any more."""
+        for group in system.groups:
+            for part in group.parts if group.cls.collapses else ():
+                said = part.force.collapsed(group.of(part), state.x)
+                if said:
+                    self.collapse = f"/forces/{part.number}: {said}"
+                    return True
+        return False
 
     def _resting(self, system: System, state: State) -> bool:
         """In physical time a shape may pass through balance at full speed: then it has not arrived."""
@@ -168,6 +181,8 @@ def _sentence(system: System, status: Status, watch: _Watch, state: State) -> st
     if status is Status.CONVERGED:
         rounding = " (the rounding floor)" if found.residual > watch.settings.tolerance else ""
         return f"In equilibrium after {spent} iterations: {left}{rounding}."
+    if status is Status.DIVERGED and watch.collapse:
+        return f"Collapsed after {spent} iterations; the last good shape is returned. {watch.collapse}."
     if status is Status.DIVERGED:
         advice = stability.warning(system, watch.good) or "look for loads that nothing holds, or use solver auto"
         return f"Diverged after {spent} iterations at {watch.fault}; the last good shape is returned. {advice}."

@@ -83,6 +83,7 @@ class Force(Model):
     arity: ClassVar[int] = 1
     everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
+    collapses: ClassVar[bool] = False  # `collapsed` is asked at every look at a run
     # columns of a result with their unit: length, force, moment, angle or none
     outputs: ClassVar[dict[str, str]] = {}
 
@@ -116,6 +117,13 @@ class Force(Model):
         `element_forces` (m, arity, 3): the force each element puts on each of its particles.
         """
         return {}
+
+    def collapsed(self, block: Block, x: Floats) -> str:
+        """What has happened to a shape that is none any more (a film pinched off), as a sentence; empty if it is one.
+
+        Asked where the class declares `collapses`; the run then ends as diverged with this sentence.
+        """
+        return ""
 
     @classmethod
     def example(cls) -> tuple[Force, Floats]:
