@@ -116,7 +116,8 @@ class Welded:
                 if id(force) not in self._rows:
                     self._rows[id(force)] = self.meet(points, f"{pointer}/{name}", force.name)
                 rows = self._rows[id(force)]
-                return self._checked(rows.reshape(len(points), -1), arity, f"{pointer}/{name}")
+                flat = rows.reshape(len(points), -1) if len(points) else np.zeros((0, arity), np.int64)
+                return self._checked(flat, arity, f"{pointer}/{name}")
         mesh = getattr(force, "mesh", None)
         if mesh is not None:
             return self._of_mesh(force, mesh, arity)
@@ -228,7 +229,7 @@ def fits(force: Force, pointer: str, welded: Welded) -> None:
     count = len(welded.elements(force))
     for name in type(force).model_fields:
         value = getattr(force, name)
-        if name in PLACES or not isinstance(value, np.ndarray):
+        if name in PLACES or name in force.shared or not isinstance(value, np.ndarray):
             continue
         single = value.shape == (3,) and name in ("vector", "direction", "point", "normal")
         if not single and len(value) != count:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -294,3 +295,44 @@ def test_blocks_are_expanded_and_go_by_the_id_of_their_instance(tmp_path: Path) 
     assert [i.id for i in understood.built.forces[0].items] == [o.id for o in model.objects]
     assert any("2 block instances (expanded)" in line for line in understood.lines)
     assert len(scene_of(model, springs(lines=f"id:{model.objects[1].id}")).forces[0].lines) == 1
+
+
+FULL: dict[str, Any] = {
+    "hidden": False,
+    "weld_tolerance": 0.001,
+    "units": {"length": "m", "force": "N"},
+    "forces": [
+        {"kind": "springs", "lines": "layer:cable", "divide": 3, "tension_only": True, "rest_factor": 1.0},
+        {"kind": "springs", "mesh": "layer:net", "divide": [2, 2], "edges": "all"},
+        {"kind": "unary", "points": "vertices:layer:cable", "vector": [0, 0, -1]},
+    ],
+    "anchors": [{"points": "ends:layer:cable", "axes": "xyz"}],
+    "geometry": [{"kind": "curve", "points": "layer:cable"}, {"kind": "mesh", "mesh": "layer:net"}],
+    "settings": {"tolerance": 1e-6},
+    "meshes": {"a": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], "faces": [[0, 1, 2]]}},
+}
+ODD = [None, True, -1, 1e300, float("nan"), "", "*", "naked:*", "layer:", "a", [], ["*", 3], [[0, 0, 0]], {"a": 1}]
+
+
+def _places(value: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return [at, *(place for key, item in inner for place in _places(item, (*at, key)))]
+
+
+def test_no_odd_value_anywhere_gets_past_as_anything_but_a_sentence(draw: Callable[..., Any]) -> None:
+    model = draw(NewObject(LINE, "cable"), NewObject(SQUARE, "net"))
+    understand(model, FULL)
+    refusals = 0
+    for place in _places(FULL)[1:]:
+        for odd in ODD:
+            recipe = copy.deepcopy(FULL)
+            table: Any = recipe
+            for key in place[:-1]:
+                table = table[key]
+            table[place[-1]] = odd
+            try:
+                understand(model, recipe)
+            except InputError as error:
+                refusals += 1
+                assert error.sentence and "\n" not in str(error), place
+    assert refusals > 500

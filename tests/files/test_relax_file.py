@@ -309,6 +309,20 @@ def test_seams_and_objects_of_a_joined_mesh_keep_their_ids(tmp_path: Path) -> No
     assert meshes == ["a", "b"]
 
 
+def test_a_shape_that_shrinks_to_a_point_is_told_and_the_file_written(tmp_path: Path) -> None:
+    flat = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2, 3]]))
+    source = drawn(tmp_path / "a.3dm", [NewObject(flat, "net", "bag"), NewObject(LINE, "cable")])
+    recipe = (
+        NAKED.replace("divide = [6, 6]", "")
+        + "targets = [[3, 0, 0], [3, 0, 0], [3, 0, 0], [3, 0, 0]]\n"
+        + '[[forces]]\nkind = "springs"\nlines = "*"\n'
+        + '[[geometry]]\nkind = "polyline"\npoints = [[0, 0, 0]]\n[[geometry]]\nkind = "curve"\npoints = [[0, 0, 0]]\n'
+    )
+    found = relax_file(source, tmp_path / "out.3dm", recipe)
+    assert any(w.startswith("result on layer springs bag is not written") for w in found.warnings)
+    assert [i for i in threedm.read(tmp_path / "out.3dm").objects if i.own and i.kind == "LineCurve"]
+
+
 LIMITS = {
     "max_force = 1": "model: max force",
     "min_force = 1000": "model: min force",

@@ -52,6 +52,8 @@ class _Builder:
         self.recipe = {k: v for k, v in recipe.items() if k not in ("units", "hidden")}
         tolerance = self.recipe.setdefault("weld_tolerance", drawing.tolerance)
         self.tolerance = float(tolerance) if isinstance(tolerance, int | float) and tolerance >= 0 else 0.0
+        given = self.recipe.get("meshes", {})
+        self.literal: Mapping[str, Any] = given if isinstance(given, Mapping) else {}
         self.splits: dict[Item, Split] = {}
         self.meshes: dict[str, Shape] = {}
         self.known: dict[tuple[Any, ...], str] = {}
@@ -71,9 +73,9 @@ class _Builder:
         for group in placed:
             scene[group] = [table for table, _ in placed[group]]
         scene["geometry"] = [table for table, _ in carried]
-        literal = self.recipe.get("meshes", {})
         made = {n: {"vertices": s.array, "faces": s.faces} for n, s in self.meshes.items()}
-        scene["meshes"] = {**literal, **made} if isinstance(literal, Mapping) else literal
+        if isinstance(self.recipe.get("meshes", {}), Mapping):  # else the scene refuses it
+            scene["meshes"] = {**self.literal, **made}
         return Built(
             scene=Scene.read(scene),
             drawing=self.drawing,
@@ -111,8 +113,7 @@ class _Builder:
                         self.splits.setdefault(item, split)  # type: ignore[arg-type]
 
     def _literal_mesh(self, name: str, table: Mapping[str, Any]) -> bool:
-        literal = self.recipe.get("meshes", {})
-        return name == "mesh" and isinstance(table.get(name), str) and table[name] in literal
+        return name == "mesh" and isinstance(table.get(name), str) and table[name] in self.literal
 
     def _split_for(self, item: Item, own: Split | None) -> Split | None:
         if own is not None:
@@ -254,7 +255,7 @@ class _Builder:
         if key not in self.known:
             base = value if isinstance(value, str) else ", ".join(value)
             name, count = base, 1
-            while name in self.meshes or name in self.recipe.get("meshes", {}):
+            while name in self.meshes or name in self.literal:
                 count += 1
                 name = f"{base} ({count})"
             self.known[key] = name

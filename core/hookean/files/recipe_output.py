@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.errors import InputError
 from hookean.files.recipe_build import Built
 from hookean.files.recipe_drawing import Item
 from hookean.files.tables import Section
 from hookean.files.threedm_build import Additions, NewLayer, NewObject
-from hookean.files.threedm_geometry import Points
+from hookean.files.threedm_geometry import Points, build
 from hookean.files.threedm_model import SEPARATOR, rhino
 from hookean.mesh import Mesh
 from hookean.result import Result
@@ -64,8 +65,9 @@ class Palette:
 
 def additions(
     system: System, result: Result, parts: Sequence[Section], built: Built | None, unit: str, factor: float
-) -> Additions:
-    """What to add below the layer `hookean`; `factor` is a file length in scene units, `unit` the file's in words."""
+) -> tuple[Additions, list[str]]:
+    """What to add below the layer `hookean`, and sentences on what Rhino could not take, such as a mesh that shrank to
+    a point; `factor` is a file length in scene units, `unit` the file's in words."""
     scale = 1.0 / factor
     palette = Palette(parts)
     objects: list[NewObject] = []
@@ -75,9 +77,26 @@ def additions(
     objects += _meshes(system, result, parts, built, palette, scale)
     objects += _carried(result, built, scale)
     objects += _reactions(system, result, parts[-1], scale)
+    objects, refused = _drawable(objects)
     used = list(dict.fromkeys(item.layer for item in objects))
     colours = {"reactions": (200, 40, 40, 255)}
-    return Additions([NewLayer(name, colour=colours.get(name, (0, 0, 0, 255))) for name in used], objects)
+    return Additions([NewLayer(name, colour=colours.get(name, (0, 0, 0, 255))) for name in used], objects), refused
+
+
+def _drawable(objects: Sequence[NewObject]) -> tuple[list[NewObject], list[str]]:
+    """Objects that Rhino accepts, and a sentence for each other one; lines always pass."""
+    kept, refused = [], []
+    for item in objects:
+        if isinstance(item.geometry, np.ndarray) and len(item.geometry) == 2:
+            kept.append(item)
+            continue
+        try:
+            build(item.geometry, item.colours, f"{item.layer} {item.name}".strip())
+        except InputError as error:
+            refused.append(f"result on layer {error.pointer} is not written: {error.sentence}")
+        else:
+            kept.append(item)
+    return kept, refused
 
 
 def layer_name(name: str) -> str:
@@ -156,9 +175,9 @@ def _carried(result: Result, built: Built | None, scale: float) -> list[NewObjec
             shapes: list[object] = [Mesh(entry["vertices"] * scale, np.asarray(entry["faces"]))]
         elif entry["kind"] == "lines":
             shapes = list(entry["lines"] * scale)
-        elif entry["kind"] == "polyline":
+        elif entry["kind"] == "polyline" and len(entry["points"]) > 1:
             shapes = [entry["points"] * scale]
-        elif entry["kind"] == "curve":
+        elif entry["kind"] == "curve" and len(entry["points"]) > 1:
             shapes = [_curve(entry["points"] * scale, entry)]
         else:
             shapes = [Points(entry["points"] * scale)]

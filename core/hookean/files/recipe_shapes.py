@@ -176,7 +176,7 @@ def pulling_only(table: dict[str, Any], pointer: str) -> dict[str, Any]:
     try:
         rest = np.broadcast_to(np.asarray(table.get("rest_length", length), dtype=np.float64), length.shape)
         factor = np.broadcast_to(np.asarray(table.get("rest_factor", 1.0), dtype=np.float64), length.shape)
-    except ValueError:
+    except (ValueError, TypeError):
         raise InputError(pointer, f"give one rest length and factor, or one for each of {len(lines)} lines") from None
     return {**table, "rest_length": rest.copy(), "lower_cutoff": rest * factor}
 

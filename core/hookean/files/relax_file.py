@@ -237,7 +237,8 @@ def _write(
     if target.suffix.lower() == ".json":
         put(target, _json(_finite(_answer(found, read))), lambda back: None)
         return
-    added = additions(system, found.result, parts, read.built, read.unit, read.factor)
+    added, refused = additions(system, found.result, parts, read.built, read.unit, read.factor)
+    found.warnings += refused
     if read.built is not None:
         written = threedm.write(source, target, added)
     else:

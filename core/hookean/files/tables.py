@@ -82,7 +82,8 @@ def sections(system: System, result: Result, built: Built | None = None) -> list
     for number, (force, entry) in enumerate(zip(system.scene.forces, result.forces, strict=True)):
         if "particles" not in entry:
             continue
-        particles = np.asarray(entry["particles"]).reshape(len(entry["particles"]), -1)
+        particles = np.asarray(entry["particles"], dtype=np.int64)
+        particles = particles[:, None] if particles.ndim == 1 else particles
         columns = {k: np.asarray(v) for k, v in entry.items() if k not in ("kind", "name", "particles")}
         shape = built.forces[number] if built is not None else None
         owner = np.full(len(particles), -1) if shape is None else _owners(system, number, particles, shape)
