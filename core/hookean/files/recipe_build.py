@@ -172,24 +172,9 @@ class _Builder:
         return self._joined(first, own, pointer)
 
     def _points(self, term: Term, own: Split | None, pointer: str) -> list[Shape]:
-        curves, meshes = shapes.is_curve, shapes.is_mesh
-        fits: dict[str, Callable[[Item], bool]] = {
-            "": lambda i: shapes.is_point(i) or (own is not None and curves(i)),
-            "start": curves,
-            "ends": curves,
-            "vertices": lambda i: shapes.is_point(i) or curves(i) or meshes(i),
-            "inner": lambda i: curves(i) or meshes(i),
-            "corners": meshes,
-            "naked": meshes,
-        }
-        hints = {
-            "": "points; put ends: or vertices: in front for those of curves, naked:, corners: or vertices: for meshes",
-            "start": "curves",
-            "ends": "curves",
-            "vertices": "points, curves, meshes or surfaces",
-            "inner": "curves, meshes or surfaces",
-        }
-        items = self._fitting(term, fits[term.feature], hints.get(term.feature, "meshes or surfaces"), pointer)
+        meshes = shapes.is_mesh
+        fits, hint = shapes.points_from(term.feature, divided=own is not None)
+        items = self._fitting(term, fits, hint, pointer)
         found: list[Shape] = []
         for item in (i for i in items if not meshes(i)):
             split = self._split_for(item, own)

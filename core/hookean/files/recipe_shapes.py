@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,6 +54,20 @@ def is_surface(item: Item) -> bool:
 def is_mesh(item: Item) -> bool:
     """Whether it is a mesh or can be meshed; a SubD gives its control net."""
     return isinstance(item.geometry, rhino.Mesh | rhino.SubD) or is_surface(item)
+
+
+def points_from(feature: str, *, divided: bool) -> tuple[Callable[[Item], bool], str]:
+    """Which objects give points of a feature ("": themselves, curves only where they are divided), and in words."""
+    if not feature:
+        hint = "points; put ends: or vertices: in front for those of curves, naked:, corners: or vertices: for meshes"
+        return (lambda item: is_point(item) or (divided and is_curve(item))), hint
+    if feature in ("start", "ends"):
+        return is_curve, "curves"
+    if feature == "vertices":
+        return (lambda item: is_point(item) or is_curve(item) or is_mesh(item)), "points, curves, meshes or surfaces"
+    if feature == "inner":
+        return (lambda item: is_curve(item) or is_mesh(item)), "curves, meshes or surfaces"
+    return is_mesh, "meshes or surfaces"
 
 
 def split_of(value: Any, pointer: str) -> Split | None:
