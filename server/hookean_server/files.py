@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib
-import json
 import tempfile
 from pathlib import Path
 from typing import Any
 
 from hookean.errors import InputError
+from hookean_server import answers
 from hookean_server.problems import Problem
 from hookean_server.tasks import Cancelled, Clock, Done
 
@@ -28,13 +28,14 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
     with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
         source, target = Path(folder) / "upload.3dm", Path(folder) / "relaxed.3dm"
         source.write_bytes(data)
+        report = options["answer"] == "report"
         try:
-            done = _relax_file()(source, target, recipe)
+            done = _relax_file()(source, None if report else target, recipe, cancelled=cancelled)
         except InputError as error:
             raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
         clock.lap("solve")
-        if options["answer"] == "report":
-            return Done(json.dumps(done.to_dict()).encode(), timing=clock.parts)
+        if report:
+            return Done(answers.dump(done.to_dict(), "list"), timing=clock.parts)
         named = {"content-disposition": 'attachment; filename="relaxed.3dm"'}
         return Done(target.read_bytes(), MODEL, named, clock.parts)
 

@@ -61,8 +61,9 @@ def serve(host: str = "127.0.0.1", port: int = 8765, settings: Settings | None =
     except KeyboardInterrupt:
         pass
     finally:
-        app.state.pool.close(1.0)
+        app.state.pool.stop()
         end_fork_server()
+        app.state.pool.close()
     return 0
 
 

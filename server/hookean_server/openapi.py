@@ -102,6 +102,10 @@ def _build(app: FastAPI) -> dict[str, Any]:
     schemas = scene.pop("$defs")
     schemas["Scene"] = scene
     _accept_documents(schemas)
+    for path in document["paths"].values():
+        for operation in path.values():
+            if "HTTPValidationError" in str(operation["responses"].get("422")):
+                del operation["responses"]["422"]
     found = document.setdefault("components", {}).setdefault("schemas", {})
     found.clear()  # the framework's own forms of validation errors are not ours
     found.update(sorted({**schemas, **SCHEMAS}.items()))

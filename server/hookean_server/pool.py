@@ -8,7 +8,9 @@ from __future__ import annotations
 import asyncio
 import json
 import multiprocessing
+import os
 import queue
+import signal
 import sys
 import threading
 import time
@@ -106,7 +108,7 @@ class Pool:
         for _ in self.lanes:
             self.jobs.put(None)
 
-    def close(self, seconds: float = 2.0) -> None:
+    def close(self, seconds: float = 0.5) -> None:
         """`stop`, and wait until no worker is left; after `seconds` they are killed from here."""
         self.stop()
         until = time.monotonic() + seconds
@@ -186,23 +188,24 @@ class Lane(threading.Thread):
             job.future.set_result(reply)
 
     def _exchange(self, job: Job) -> Reply:
-        connection, process, settings = self.connection, self.process, self.pool.settings
-        if connection is None or process is None:
+        """Hand the job over and wait for the answer, the client's leaving, the deadline or the end of the service."""
+        if self.connection is None:
             raise EOFError
-        connection.send_bytes(json.dumps({"task": job.task, "options": job.options}).encode())
-        connection.send_bytes(job.body)
+        talk = _Talk(self.connection, job)
+        talk.start()
         until, asked = time.monotonic() + job.seconds, False
-        while not (ready := wait([connection, process.sentinel], LOOK)):
+        while not talk.done.wait(LOOK):
             if self.pool.stopping.is_set():
                 raise Problem("shutting-down", "The service stopped before this was done.")
             if job.left.is_set() and not asked:
-                connection.send_bytes(STOP)
-                asked, until = True, time.monotonic() + settings.cancel_seconds
+                asked, until = True, time.monotonic() + self.pool.settings.cancel_seconds
+                if talk.sent:
+                    self.connection.send_bytes(STOP)
             if time.monotonic() > until:
                 raise Problem("out-of-time", f"This was not done in {job.seconds:g} s and has been stopped.")
-        if connection not in ready and not connection.poll(0):
+        if talk.reply is None:
             raise EOFError
-        return Reply(json.loads(connection.recv_bytes()), connection.recv_bytes())
+        return talk.reply
 
     def kill(self) -> None:
         """End the worker now."""
@@ -223,6 +226,30 @@ class Lane(threading.Thread):
                     job.future.set_exception(Problem("shutting-down", "The service stopped before this was done."))
 
 
+class _Talk(threading.Thread):
+    """One exchange with a worker. A worker that hangs blocks this thread only; killing it ends the exchange."""
+
+    def __init__(self, connection: Connection, job: Job) -> None:
+        super().__init__(name="hookean-talk", daemon=True)
+        self.connection, self.job = connection, job
+        self.sent = False
+        self.reply: Reply | None = None
+        self.done = threading.Event()
+
+    def run(self) -> None:
+        """Send the job, receive the answer; no answer where the worker died."""
+        job = self.job
+        try:
+            self.connection.send_bytes(json.dumps({"task": job.task, "options": job.options}).encode())
+            self.connection.send_bytes(job.body)
+            self.sent = True
+            self.reply = Reply(json.loads(self.connection.recv_bytes()), self.connection.recv_bytes())
+        except (OSError, EOFError, ValueError):
+            pass
+        finally:
+            self.done.set()
+
+
 def _context() -> BaseContext:
     """`forkserver` with warmed kernels where there is one (never `fork`: the server has threads), else `spawn`."""
     context = multiprocessing.get_context("forkserver" if FORKED else "spawn")
@@ -237,4 +264,6 @@ def end_fork_server() -> None:
         from multiprocessing import forkserver
 
         with suppress(Exception):
-            forkserver._forkserver._stop()  # type: ignore[attr-defined]
+            server: Any = vars(forkserver)["_forkserver"]
+            os.kill(server._forkserver_pid, signal.SIGKILL)  # it may be busy warming up
+            server._stop()

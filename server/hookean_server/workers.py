@@ -23,18 +23,16 @@ def warm() -> None:
     from hookean.run import relax
     from hookean.scene import Scene
 
-    relax(
-        Scene.model_validate(
-            {
-                "particles": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [2.0, 0.0, 0.0]],
-                "forces": [
-                    {"kind": "springs", "particles": [[0, 1], [1, 2]]},
-                    {"kind": "unary", "particles": [1], "vector": [0.0, 0.0, -1.0]},
-                ],
-                "anchors": [{"particles": [0, 2]}],
-            }
-        )
-    )
+    scene = {
+        "particles": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [2.0, 0.0, 0.0]],
+        "forces": [
+            {"kind": "springs", "particles": [[0, 1], [1, 2]]},
+            {"kind": "unary", "particles": [1], "vector": [0.0, 0.0, -1.0]},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+    }
+    for settings in ({}, {"solver": "verlet", "max_iterations": 10}):
+        relax(Scene.model_validate({**scene, "settings": settings}))
     for name in ("hookean_server.solve", "hookean_server.operations", "hookean.files.compas_json"):
         __import__(name)
 

@@ -25,10 +25,25 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSI
 JSON = {"content-type": "application/json"}
 
 
-@pytest.fixture
-def alone() -> Iterator[Served]:
-    """A server of one worker for tests that break it."""
+@pytest.fixture(scope="module")
+def broken() -> Iterator[Served]:
     found = Served(workers=1, queue=2)
+    yield found.ready()
+    found.end()
+
+
+@pytest.fixture
+def alone(broken: Served) -> Served:
+    """A server of one worker for tests that break it; whole again before each."""
+    wait_for(lambda: broken.health()["requests"]["taken"] == 0)
+    return broken.ready()
+
+
+@pytest.fixture(scope="module")
+def strict() -> Iterator[Served]:
+    """A server of one worker and small limits."""
+    limits = {"solve_seconds": 1.0, "grace_seconds": 3.0, "body_seconds": 0.5, "worker_memory": 200 * 2**20}
+    found = Served(workers=1, **limits)
     yield found.ready()
     found.end()
 
@@ -64,14 +79,13 @@ def test_health_answers_while_all_workers_solve(served: Served) -> None:
     assert len(times) > 20 and max(times) < 1.0, max(times)
 
 
-def test_the_servers_own_limit_ends_a_solve_with_an_answer() -> None:
-    served = Served(workers=1, solve_seconds=1.0)
+def test_the_servers_own_limit_ends_a_solve_with_an_answer(strict: Served) -> None:
     scene = endless()
     del scene["settings"]["time_limit"]
-    answer = served.client.post("/v1/relax", json=scene)
+    before = strict.health()["workers"]["restarts"]
+    answer = strict.client.post("/v1/relax", json=scene)
     assert answer.status_code == 200 and answer.json()["status"] == "time_limit"
-    assert served.health()["workers"]["restarts"] == 0
-    served.end()
+    assert strict.health()["workers"]["restarts"] == before
 
 
 def test_a_client_that_leaves_frees_the_worker(alone: Served) -> None:
@@ -94,25 +108,24 @@ def test_a_client_that_leaves_the_queue_is_forgotten(alone: Served) -> None:
     assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
 
 
-def test_a_worker_that_hangs_is_stopped() -> None:
-    served = Served(workers=1, solve_seconds=0.5, grace_seconds=0.5)
-    worker = served.ready().workers()[0]
+def test_a_worker_that_hangs_is_stopped(strict: Served) -> None:
+    worker = strict.ready().workers()[0]
     worker.suspend()
     started = time.monotonic()
-    problem(served.client.post("/v1/relax", json=CABLE), 504, "out-of-time")
-    assert time.monotonic() - started < 3.0
-    assert served.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
-    assert not worker.is_running() or worker.status() == psutil.STATUS_ZOMBIE
-    served.end()
+    problem(strict.client.post("/v1/relax", json=CABLE), 504, "out-of-time")
+    assert time.monotonic() - started < 6.0
+    assert strict.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
+    assert not alive(worker)
 
 
 def test_a_suspended_worker_whose_client_leaves_is_killed_after_two_seconds(alone: Served) -> None:
     worker = alone.workers()[0]
+    before = alone.health()["workers"]["restarts"]
     worker.suspend()
     started = time.monotonic()
     with pytest.raises(httpx.ReadTimeout):
         httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3)
-    wait_for(lambda: alone.health()["workers"]["restarts"] == 1, 5.0)
+    wait_for(lambda: alone.health()["workers"]["restarts"] > before, 5.0)
     assert 1.5 < time.monotonic() - started < 5.0
     assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
 
@@ -133,12 +146,10 @@ def test_a_worker_that_dies_idle_is_not_noticed_by_the_next_request(alone: Serve
     assert alone.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
 
 
-def test_a_solve_that_needs_too_much_memory() -> None:
-    served = Served(workers=1, worker_memory=200 * 2**20)
+def test_a_solve_that_needs_too_much_memory(strict: Served) -> None:
     body = b'{"particles": [' + b"[0,0,0]," * 1_800_000 + b"[0,0,0]]}"
-    problem(served.ready().client.post("/v1/relax", content=body, headers=JSON), 413, "too-large")
-    assert served.client.post("/v1/relax", json=CABLE).status_code == 200
-    served.end()
+    problem(strict.client.post("/v1/relax", content=body, headers=JSON), 413, "too-large")
+    assert strict.client.post("/v1/relax", json=CABLE).status_code == 200
 
 
 def test_a_full_service_says_so_before_it_reads(alone: Served) -> None:
@@ -154,16 +165,13 @@ def test_a_full_service_says_so_before_it_reads(alone: Served) -> None:
     wait_for(lambda: alone.health()["requests"]["taken"] < 3)
 
 
-def test_a_body_that_does_not_come() -> None:
-    served = Served(workers=1, body_seconds=0.5)
-    served.ready()
-    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\n"
+def test_a_body_that_does_not_come(strict: Served) -> None:
+    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{strict.port}\r\n"
     head += "Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
-    with socket.create_connection(("127.0.0.1", served.port), timeout=10) as sock:
+    with socket.create_connection(("127.0.0.1", strict.port), timeout=10) as sock:
         sock.sendall(head.encode())
         assert sock.recv(65536).startswith(b"HTTP/1.1 408")
-    wait_for(lambda: served.health()["requests"]["taken"] == 0)
-    served.end()
+    wait_for(lambda: strict.health()["requests"]["taken"] == 0)
 
 
 def test_a_client_that_leaves_in_the_middle_of_its_body(alone: Served) -> None:
@@ -176,9 +184,17 @@ def test_a_client_that_leaves_in_the_middle_of_its_body(alone: Served) -> None:
     assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-@pytest.mark.parametrize("what", ["idle", "solving", "starting", "reading"])
-def test_a_clean_end(number: int, what: str) -> None:
+@pytest.mark.parametrize(
+    ("what", "number"),
+    [
+        ("idle", signal.SIGTERM),
+        ("solving", signal.SIGTERM),
+        ("solving", signal.SIGINT),
+        ("starting", signal.SIGTERM),
+        ("reading", signal.SIGTERM),
+    ],
+)
+def test_a_clean_end(what: str, number: int) -> None:
     served = Served(workers=2)
     running = None
     if what != "starting":
