@@ -178,7 +178,7 @@ class _Builder:
         found: list[Shape] = []
         for item in (i for i in items if not meshes(i)):
             split = self._split_for(item, own)
-            points = self._try(item, term, lambda i=item, s=split: shapes.points_of(i, term.feature, s, pointer))
+            points = self._try(item, term, shapes.points_of, term.feature, split, pointer)
             if points is not None:
                 found.append(Shape((item,), points * self.drawing.factor, np.zeros(len(points), np.int64)))
         surfaces = [i for i in items if meshes(i)]
@@ -194,7 +194,7 @@ class _Builder:
         hint = "lines and curves; for the edges of a mesh or surface give mesh = instead of lines ="
         for item in self._fitting(term, shapes.is_curve, hint, pointer):
             split = self._split_for(item, own)
-            lines = self._try(item, term, lambda i=item, s=split: shapes.lines_of(i, s, pointer))
+            lines = self._try(item, term, shapes.lines_of, split, pointer)
             if lines is not None:
                 found.append(Shape((item,), lines * self.drawing.factor, np.zeros(len(lines), np.int64)))
         return found
@@ -208,7 +208,7 @@ class _Builder:
         kept, meshes = [], []
         for item in items:
             split = self._split_for(item, own)
-            mesh = self._try(item, term, lambda i=item, s=split: shapes.mesh_of(i, s, pointer))
+            mesh = self._try(item, term, shapes.mesh_of, split, pointer)
             if mesh is not None:
                 kept.append(item)
                 meshes.append(mesh)
@@ -224,10 +224,10 @@ class _Builder:
             raise InputError(pointer, f'"{term}" finds {shapes.counted(items)}; here go {what}')
         return good
 
-    def _try(self, item: Item, term: Term | None, make: Callable[[], Any]) -> Any:
-        """What `make` gives; where it refuses, None and the reason, if what does not fit may be left out."""
+    def _try(self, item: Item, term: Term | None, make: Callable[..., Any], *arguments: Any) -> Any:
+        """What `make` gives; where it refuses, None and the reason noted, if what does not fit may be left out."""
         try:
-            return make()
+            return make(item, *arguments)
         except InputError as error:
             if not (self.lenient or (term is not None and term.everything)):
                 raise

@@ -60,7 +60,8 @@ class Palette:
         steps = np.linspace(0.0, 1.0, len(_VIRIDIS))
         mixed = np.stack([np.interp(t, steps, _VIRIDIS[:, c]) for c in range(3)], axis=1)
         mixed[np.abs(forces) <= self.slack] = SLACK
-        return np.rint(mixed).astype(np.int64)
+        rounded: Colours = np.rint(mixed).astype(np.int64)
+        return rounded
 
 
 def additions(
@@ -158,8 +159,8 @@ def _meshes(
             mine = np.flatnonzero(owner == number)
             own = faces[owner[faces[:, 0]] == number] - mine[0]
             points = result.particles[at[mine]] * scale
-            force = mean[at[mine]]
-            text = {"force": f"{force.min():.6g} to {force.max():.6g} {result.units.force}", **_source(item)}
+            carried = mean[at[mine]]
+            text = {"force": f"{carried.min():.6g} to {carried.max():.6g} {result.units.force}", **_source(item)}
             label = item.name if item is not None else mesh
             found.append(NewObject(Mesh(points, own), layer_name(name), label, None, text, colours=colours[at[mine]]))
     return found
