@@ -29,6 +29,54 @@ def device(function: F) -> F:
     return function
 
 
+_TABLES: dict[bytes, Any] = {}
+
+
+def keep(table: Any) -> float:
+    """Keep a table (rows, columns) for the kernels of this process; returns the address for `rows`, a whole number.
+
+    For what all elements of a force share and is too large to repeat in each one's parameters, such as the triangles
+    of a target. Equal tables are kept once. The address goes into a column of parameters, and never into a file.
+    """
+    import numpy as np
+
+    table = np.array(table, dtype=np.float64, order="C")
+    key = hashlib.sha256(repr(table.shape).encode() + table.tobytes()).digest()
+    return float(_TABLES.setdefault(key, table).ctypes.data)
+
+
+@device
+def rows(address: float, count: float, columns: int) -> Any:
+    """The kept table at an address, inside a kernel: (count, columns), to be read only."""
+    import ctypes
+
+    import numpy as np
+
+    start = ctypes.cast(int(address), ctypes.POINTER(ctypes.c_double))
+    return np.ctypeslib.as_array(start, (int(count), columns))
+
+
+@cache
+def _native_rows() -> Any:
+    """`rows` as machine code."""
+    import numba
+    from numba.extending import intrinsic
+
+    @intrinsic
+    def pointer(typing, address):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+            return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
+
+        return numba.types.CPointer(numba.types.float64)(numba.types.int64), generate
+
+    @numba.njit
+    @device
+    def native(address, count, columns):  # type: ignore[no-untyped-def]
+        return numba.carray(pointer(numba.int64(address)), (numba.int64(count), columns))
+
+    return native
+
+
 @cache
 def compiled(function: Callable[..., Any], role: str | None = None) -> Any:
     """Machine code of `function`, from the cache on disk when its source is unchanged.
@@ -38,6 +86,8 @@ def compiled(function: Callable[..., Any], role: str | None = None) -> Any:
     """
     import numba
 
+    if function is rows:
+        return _native_rows()
     prepared = _with_devices(function)
     numba.config.CACHE_DIR = str(cache_folder(function))
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
@@ -116,6 +166,7 @@ def _with_devices(function: Callable[..., Any]) -> Callable[..., Any]:
         return function
     twin = types.FunctionType(function.__code__, {**module, **used}, function.__name__)
     twin.__module__, twin.__qualname__ = function.__module__, function.__qualname__
+    twin.__dict__.update(vars(function))
     return twin
 
 

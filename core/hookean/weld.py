@@ -167,6 +167,13 @@ class Welded:
         """Faces `(m, 4)` of the scene's mesh `name`, in particles; a triangle repeats its last corner."""
         return np.ascontiguousarray(self.vertices(name)[self.scene.meshes[name].faces])
 
+    def geometry(self, name: str) -> tuple[Floats, Ints]:
+        """Vertices (n, 3) and faces (m, 4) of the scene's mesh `name`, as drawn; InputError if there is none."""
+        if name not in self.scene.meshes:
+            known = ", ".join(repr(n) for n in self.scene.meshes) or "none"
+            raise InputError("/meshes", f"mesh {name!r} does not exist; the scene has {known}")
+        return self.scene.meshes[name].vertices, self.scene.meshes[name].faces
+
     def meet(self, points: Floats, pointer: str, name: str = "", *, silent: bool = False) -> Ints:
         """The nearest particle of each point within the tolerance, else -1 and a line in the report."""
         flat = points.reshape(-1, 3)

@@ -62,6 +62,10 @@ class Places(Protocol):
         """Faces `(m, 4)` of the scene's mesh `name`, in particles; a triangle repeats its last corner."""
         ...
 
+    def geometry(self, name: str) -> tuple[Floats, Ints]:
+        """Vertices (n, 3) and faces (m, 4) of the scene's mesh `name`, as drawn; InputError if there is none."""
+        ...
+
 
 class Force(Model):
     """Base of all forces. A force is one file in this folder: a class with columns, and its kernel.
@@ -83,6 +87,7 @@ class Force(Model):
     arity: ClassVar[int] = 1
     everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
+    shared: ClassVar[tuple[str, ...]] = ()  # columns of the force as a whole, not one row for each element
     collapses: ClassVar[bool] = False  # `collapsed` is asked at every look at a run
     # columns of a result with their unit: length, force, moment, angle or none
     outputs: ClassVar[dict[str, str]] = {}
