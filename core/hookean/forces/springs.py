@@ -48,7 +48,8 @@ def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-
             tension /= length
             if parameters[e, 1] > 0.0:
                 rate = (v[b, 0] - v[a, 0]) * dx + (v[b, 1] - v[a, 1]) * dy + (v[b, 2] - v[a, 2]) * dz
-                tension += parameters[e, 1] * rate / (length * length)
+                if rate != 0.0:  # at rest, and that is most of the time, there is no division
+                    tension += parameters[e, 1] * rate / (length * length)
             dx *= tension
             dy *= tension
             dz *= tension

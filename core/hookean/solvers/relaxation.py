@@ -114,6 +114,16 @@ def relaxation_loop(  # type: ignore[no-untyped-def]
     return count
 
 
+def undamped(system: System, parameters: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The parameters without damping: kernels see no speed here, and need not look for one at every spring."""
+    tables = list(parameters)
+    for i, group in enumerate(system.groups):
+        if group.cls.damped:
+            tables[i] = parameters[i].copy()
+            tables[i][:, [name == "damping" for name in group.block.names]] = 0.0
+    return tuple(tables)
+
+
 class Method(Solver):
     """Kinetic damping; the work horse for nets, membranes and shells."""
 
@@ -129,10 +139,10 @@ class Method(Solver):
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """At most `count` iterations, stopping at the first shape within `goal`."""
         still, f, carried = (np.zeros_like(state.x) for _ in range(3))
+        functions, indices, parameters, memory = system.tuples(state)
         done = kernels.call(
             kernels.compiled(relaxation_loop),
-            *system.tuples(state),
-            *system.hooks(),
+            functions, indices, undamped(system, parameters), memory, *system.hooks(),
             state.x, state.v, state.free, still, f, np.zeros(len(state.x)), state.scratch["mass"], carried,
             state.scratch["clock"], count, goal,
         )  # fmt: skip
