@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.balance import Balance
+from hookean.forces import KINDS
 from hookean.state import State
 from hookean.system import System
 from hookean.units import Units
@@ -67,6 +68,27 @@ class Result:
             if name in (columns["name"], columns["kind"]):
                 return columns
         raise KeyError(name)
+
+    def summary(self) -> list[str]:
+        """A few lines for a person: how many particles, the range of every column of force, the reactions."""
+        lines = [f"{len(self.particles)} particles"]
+        for entry in self.forces:
+            title = f"{entry['name']} ({entry['kind']})" if entry["name"] else entry["kind"]
+            column = next((c for c in ("force", "moment") if np.size(entry.get(c, ()))), None)
+            if column is None:
+                continue
+            values = np.asarray(entry[column])
+            sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+            unit = self.units.of(KINDS[entry["kind"]].outputs[column])
+            lines.append(f"{title}: {len(sizes)} elements, {column} {sizes.min():.4g} to {sizes.max():.4g} {unit}")
+        reactions = np.asarray(self.reactions["force"]).reshape(-1, 3)
+        if len(reactions):
+            largest = np.linalg.norm(reactions, axis=1).max()
+            together = reactions.sum(axis=0)
+            total = ", ".join(f"{c:.4g}" for c in np.where(np.abs(together) > 1e-9 * largest, together, 0.0))
+            unit = self.units.force
+            lines.append(f"{len(reactions)} reactions: largest {largest:.4g} {unit}, together ({total}) {unit}")
+        return lines
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain lists and numbers, by the names of the HTTP answer."""

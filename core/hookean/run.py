@@ -82,7 +82,7 @@ def relax_state(
     _restore(state, watch.good)
     used = getattr(method, "used", None)
     name = f"auto: {', '.join(used) or 'nothing to do'}" if used is not None else method.name
-    return gather(system, state, watch.found, status, _sentence(system, status, watch, state), name)
+    return gather(system, state, watch.found, status, _sentence(system, status, watch), name)
 
 
 class _Watch:
@@ -91,7 +91,7 @@ class _Watch:
     def __init__(self, system: System, state: State) -> None:
         self.settings = system.scene.settings
         self.started = time.monotonic()
-        self.first = state.iteration
+        self.first = self.last = state.iteration
         self.best, self.best_at = np.inf, state.iteration
         self.good = state.copy()
         self.found: Balance = balance(system, state)
@@ -115,6 +115,7 @@ class _Watch:
 
     def look(self, system: System, state: State, *, idle: bool = False, known: bool = False) -> Status:
         """Judge the state as it is now; `known` says that its balance is the one already found."""
+        self.last = state.iteration
         if not self._sane(system, state) or self._collapsed(system, state):
             return Status.DIVERGED
         if not known:
@@ -174,17 +175,17 @@ def _restore(state: State, good: State) -> None:
     state.x, state.v, state.free, state.time, state.iteration = good.x, good.v, good.free, good.time, good.iteration
 
 
-def _sentence(system: System, status: Status, watch: _Watch, state: State) -> str:
+def _sentence(system: System, status: Status, watch: _Watch) -> str:
     found, unit = watch.found, system.scene.units.force
     left = f"residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance"
-    spent = state.iteration - watch.first
+    spent = watch.last - watch.first
     if status is Status.CONVERGED:
         rounding = " (the rounding floor)" if found.residual > watch.settings.tolerance else ""
         return f"In equilibrium after {spent} iterations: {left}{rounding}."
     if status is Status.DIVERGED and watch.collapse:
         return f"Collapsed after {spent} iterations; the last good shape is returned. {watch.collapse}."
     if status is Status.DIVERGED:
-        advice = stability.warning(system, watch.good) or "look for loads that nothing holds, or use solver auto"
+        advice = stability.warning(system, watch.good) or "Look for loads that nothing holds, or use solver auto"
         return f"Diverged after {spent} iterations at {watch.fault}; the last good shape is returned. {advice}."
     if status is Status.STALLED:
         return (
@@ -262,7 +263,7 @@ class Simulation:
 
     def frame(self) -> Frame:
         """The state as a client sees it."""
-        message = _sentence(self.system, self.status, self._watch, self.state)
+        message = _sentence(self.system, self.status, self._watch)
         if self.status is Status.RUNNING:
             message = f"Running: residual {self._watch.found.residual:.3g}."
         return Frame(
@@ -279,7 +280,7 @@ class Simulation:
     def result(self) -> Result:
         """Everything about the present state."""
         found = balance(self.system, self.state)
-        message = _sentence(self.system, self.status, self._watch, self.state)
+        message = _sentence(self.system, self.status, self._watch)
         if self.status is Status.RUNNING:
             message = f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {self.scene.units.force}."
         return gather(self.system, self.state, found, self.status, message, self.solver.name)

@@ -131,6 +131,7 @@ def test_every_way_to_end_has_a_status_and_a_sentence():
         assert result.message.endswith(".")
         assert np.isfinite(result.particles).all()
     assert ended[Status.MAX_ITERATIONS].iterations == 3
+    assert "Diverged after 0" not in ended[Status.DIVERGED].message
     assert any("nothing" in w or "no spring" in w for w in ended[Status.DIVERGED].report.warnings)
 
 
@@ -158,3 +159,12 @@ def test_held_axes_slide_on_the_others():
     result = relax(scene)
     assert result.particles[1] == pytest.approx([1.5, 0, 0], abs=1e-6)
     assert result.reactions["force"][1] == pytest.approx([0, 0, 3], abs=1e-12)
+
+
+def test_a_summary_says_what_the_columns_say():
+    """Ranges of force and the sum of reactions, with units: 120 N of load on six particles, 120 N of reaction."""
+    lines = relax(cable()).summary()
+    assert lines[0] == "6 particles"
+    assert lines[1] == "cable (springs): 5 elements, force 89.28 to 97.83 N"
+    assert lines[-1].startswith("2 reactions: largest 107.6 N")
+    assert lines[-1].endswith("120) N")

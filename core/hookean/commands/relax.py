@@ -89,6 +89,8 @@ def _one(job: _Job, recipe: str | None, name: str, limits: dict[str, Any] | None
     if not quiet:
         where = f" -> {job.output}" if job.output is not None else " (nothing written: give -o)"
         typer.echo(f"{job.source.name}: {found.result.message}{where}")
+        for line in found.result.summary():
+            typer.echo(f"  {line}")
     return EXCEEDED if found.exceeded else CONVERGED
 
 
