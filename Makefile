@@ -4,7 +4,7 @@ PORT ?= 8765
 BIN = .venv/bin
 EXAMPLE = gh_examples/9.24-membrane
 
-.PHONY: run test soak bench lint clean
+.PHONY: run test soak bench docs lint clean
 
 run: .venv/run
 	@mkdir -p out
@@ -20,6 +20,9 @@ soak: .venv/test
 
 bench: .venv/test
 	$(BIN)/python benchmarks/run.py
+
+docs: .venv/run
+	$(BIN)/python -c "from hookean.catalogue import page; print(page(), end='')" > docs/forces.md
 
 lint: .venv/test
 	$(BIN)/ruff check

@@ -62,6 +62,11 @@ def schema() -> dict[str, Any]:
     return Scene.model_json_schema(schema_generator=_Schema)
 
 
+def page() -> str:
+    """The page docs/forces.md."""
+    return "# Forces\n\nMade from the classes in `core/hookean/forces`: `make docs` writes this page.\n\n" + markdown()
+
+
 def markdown() -> str:
     """The catalogue as Markdown: a table of all forces, then one table of fields for each."""
     entries = catalogue()
@@ -78,8 +83,9 @@ def markdown() -> str:
             default = "required" if f["required"] else "" if f["default"] in (None, "") else f"`{_said(f['default'])}`"
             cells = (f"`{f['name']}`", f["unit"], default, _allowed(f), _cell(f["description"]))
             lines.append(f"| {' | '.join(cells)} |")
-        told = ", ".join(f"`{o['name']}` [{o['unit']}]" for o in e["outputs"]) or "nothing"
-        lines += ["", f"A result tells {told} for every element."]
+        told = ", ".join(f"`{o['name']}` [{o['unit']}]" for o in e["outputs"])
+        if told:
+            lines += ["", f"A result tells {told} for every element."]
     return "\n".join(lines) + "\n"
 
 
