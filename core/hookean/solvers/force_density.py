@@ -66,9 +66,11 @@ class Method(Solver):
         )
         f, _, _ = system.evaluate(state)
         touched = whole.diagonal() > 0
-        patterns = np.unique(state.free, axis=1, return_inverse=True)[1].ravel()
-        for pattern in range(patterns.max() + 1):
-            axes = np.flatnonzero(patterns == pattern)
+        left = [0, 1, 2]
+        while left:
+            # axes on which the same particles are held share one factor
+            axes = [axis for axis in left if np.array_equal(state.free[:, axis], state.free[:, left[0]])]
+            left = [axis for axis in left if axis not in axes]
             free = np.flatnonzero((state.free[:, axes[0]] > 0) & touched)
             if len(free):
                 factor = splu(whole[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A")
