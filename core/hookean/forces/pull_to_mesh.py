@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from hookean.columns import Faces, IndexRows, NonNegatives, Points, fault
+from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.kernels import device, keep, rows
 
@@ -215,6 +216,8 @@ class PullToMesh(Force):
         vertices, faces = self.vertices, self.faces
         if vertices is None or faces is None:
             vertices, faces = places.geometry(str(self.target))
+            if not len(faces):
+                raise InputError(f"/meshes/{self.target}/faces", "a target without faces given; give at least one")
         return pulls(places.elements(self), self.strength, *tree(vertices[cuts(faces)]))
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
