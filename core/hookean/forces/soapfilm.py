@@ -13,13 +13,12 @@ from hookean.kernels import device
 SLIVER = 1e-8
 """Triangles lower than this part of their size have no plane to speak of, and no film force."""
 NEEDLE = 1e-4  # a film whose triangles become so much thinner than they were has collapsed
-TENSION, YARNS, SHARE, THREADS, EVEN, START, AREA = 0, 1, 3, 4, 10, 11, 14  # columns of the parameters
+TENSION, YARNS, SHARE, THREADS, EVEN, START = 0, 1, 3, 4, 10, 11  # columns of the parameters
 
 
 @device
 def plane(x, indices, e, g, n) -> Any:  # type: ignore[no-untyped-def]
-    # g (3, 3): the edge opposite to each corner; n: the unit normal, 0 for a sliver. Returns twice the area and
-    # the sum of squared edges.
+    # g (3, 3): the edge opposite to each corner; n: the unit normal, 0 for a sliver. Returns twice the area.
     size = 0.0
     for i in range(3):
         p = indices[e, (i + 1) % 3]
@@ -34,7 +33,7 @@ def plane(x, indices, e, g, n) -> Any:  # type: ignore[no-untyped-def]
     flat = double > SLIVER * size and size > 1e-140
     for c in range(3):
         n[c] = n[c] / double if flat else 0.0
-    return double, size
+    return double
 
 
 @device
@@ -75,7 +74,7 @@ def soapfilm_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no
     n = np.zeros(3)
     d = np.zeros(3)
     for e in range(indices.shape[0]):
-        double, _ = plane(x, indices, e, g, n)
+        double = plane(x, indices, e, g, n)
         tension = parameters[e, TENSION] * parameters[e, SHARE]
         even = tension * parameters[e, EVEN]
         tension -= even
@@ -145,7 +144,7 @@ def soapfilm_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no
     for e in range(indices.shape[0]):
         block = blocks[e]
         block[:] = 0.0
-        double, _ = plane(x, indices, e, g, n)
+        double = plane(x, indices, e, g, n)
         tension = parameters[e, TENSION] * parameters[e, SHARE]
         even = tension * parameters[e, EVEN]
         film_block(block, tension - even, even, parameters, e, g, n, double)
@@ -203,7 +202,7 @@ class SoapFilm(Force):
     example_faces: ClassVar[list[list[int]]] = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: T, warp, weft, share, yarns by corners, s, start cotangents, start area."""
+        """Arrays for the kernel: T, warp, weft, share, yarns by corners, s, start cotangents."""
         faces = places.faces(self.mesh)
         corners, share, face = halves(faces)
         area, cotangents = shapes(places.x, corners)
@@ -220,7 +219,6 @@ class SoapFilm(Force):
             threads=yarns(places.x, corners, first),
             evenness=np.minimum(0.5, self.evenness * (area / (whole or 1.0))),
             start=cotangents,
-            area=area,
         )
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
