@@ -9,6 +9,7 @@ from hookean.catalogue import page
 
 ROOT = Path(__file__).parents[1]
 
+
 def test_the_page_of_forces_is_the_catalogue():
     """docs/forces.md is what `make docs` would write now."""
     assert (ROOT / "docs" / "forces.md").read_text(encoding="utf-8") == page()

@@ -40,7 +40,9 @@ def test_the_curl_line_sends_the_same_scene():
     body = words[words.index("-d") + 1]
     assert words[words.index("-H") + 1] == "Content-Type: application/json"
     result = relax(Scene.read(body))
-    assert result.force("springs")["force"] == pytest.approx([97.82876, 91.49025, 89.27747, 91.49025, 97.82876], abs=1e-3)
+    assert result.force("springs")["force"] == pytest.approx(
+        [97.82876, 91.49025, 89.27747, 91.49025, 97.82876], abs=1e-3
+    )
     json.loads(body)
 
 

@@ -182,9 +182,7 @@ def _light(faces: Floats, eye: Floats) -> Floats:
     return np.column_stack([colour, np.full(len(faces), 0.80)])
 
 
-def _draw_floor(
-    drawing: Any, things: Things, eye: Floats, extent: float, point: Floats, normal: Floats
-) -> Floats:
+def _draw_floor(drawing: Any, things: Things, eye: Floats, extent: float, point: Floats, normal: Floats) -> Floats:
     """A part of the plane under the model, with its grid; returns its corners in the picture."""
     from matplotlib.collections import LineCollection
 

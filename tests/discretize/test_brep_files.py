@@ -213,9 +213,7 @@ def _covers_its_sides(face: Any, brep: Any) -> bool:
     loop = face.Loops[0]
     trims = [loop.Trims[i].EdgeIndex for i in range(loop.TrimCount)]
     walked = np.concatenate([_dense(brep.Edges[e]) for e in trims if e >= 0])
-    sides = [
-        _dense(face.IsoCurve(d, at)) for d in (0, 1) for at in (face.Domain(1 - d).T0, face.Domain(1 - d).T1)
-    ]
+    sides = [_dense(face.IsoCurve(d, at)) for d in (0, 1) for at in (face.Domain(1 - d).T0, face.Domain(1 - d).T1)]
 
     def run(chains: list[np.ndarray]) -> float:
         return sum(float(np.linalg.norm(np.diff(c, axis=0), axis=1).sum()) for c in chains)

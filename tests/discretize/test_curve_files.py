@@ -86,7 +86,7 @@ def test_ends_and_closing(file: str, rhino_objects: Any) -> None:
 
 
 def test_edges_of_breps_are_curves_too(rhino_objects: Any) -> None:
-    (brep, _), = rhino_objects("v7_my_brep.3dm")
+    ((brep, _),) = rhino_objects("v7_my_brep.3dm")
     for i in range(len(brep.Edges)):
         edge = brep.Edges[i]
         ends = end_points(edge)

@@ -41,9 +41,7 @@ def test_arc_is_cut_at_equal_angles(radius: float, angle: float, count: int, tur
     arc = r.Arc(circle, angle)
     frame = cg.Frame(*[[p.X, p.Y, p.Z] for p in (plane.Origin, plane.XAxis, plane.YAxis)])
     t = angle * np.arange(count + 1) / count
-    want = xyz(plane.Origin) + radius * (
-        np.cos(t)[:, None] * xyz(plane.XAxis) + np.sin(t)[:, None] * xyz(plane.YAxis)
-    )
+    want = xyz(plane.Origin) + radius * (np.cos(t)[:, None] * xyz(plane.XAxis) + np.sin(t)[:, None] * xyz(plane.YAxis))
     for curve in (arc, arc.ToNurbsCurve(), cg.Arc(radius, 0.0, angle, frame=frame)):
         assert length(curve) == pytest.approx(radius * angle, rel=1e-12)
         # a position is as good as the whole length (1e-12 L) and float64 at the coordinates' size

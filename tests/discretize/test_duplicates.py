@@ -114,13 +114,23 @@ def test_a_chain_is_thinned_from_its_start() -> None:
     [
         (f, *case)
         for f, case in itertools.chain(
-            ((remove_duplicate_points, c) for c in [
-                (np.zeros((3, 2)), 1.0, "shape"), ([[0, 0, np.nan]], 1.0, "^points/0: it is not finite"),
-                (np.zeros((3, 3)), -1.0, "^tolerance"), (np.zeros((3, 3)), np.nan, "^tolerance"), ("ab", 1.0, "shape"),
-            ]),
-            ((remove_duplicate_lines, c) for c in [
-                (np.zeros((3, 3)), 1.0, "shape"), ([[[0, 0, 0], [np.inf, 0, 0]]], 1.0, "^lines/0: it is not finite"),
-            ]),
+            (
+                (remove_duplicate_points, c)
+                for c in [
+                    (np.zeros((3, 2)), 1.0, "shape"),
+                    ([[0, 0, np.nan]], 1.0, "^points/0: it is not finite"),
+                    (np.zeros((3, 3)), -1.0, "^tolerance"),
+                    (np.zeros((3, 3)), np.nan, "^tolerance"),
+                    ("ab", 1.0, "shape"),
+                ]
+            ),
+            (
+                (remove_duplicate_lines, c)
+                for c in [
+                    (np.zeros((3, 3)), 1.0, "shape"),
+                    ([[[0, 0, 0], [np.inf, 0, 0]]], 1.0, "^lines/0: it is not finite"),
+                ]
+            ),
         )
     ],
 )

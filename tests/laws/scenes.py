@@ -43,6 +43,7 @@ def _others(rng: Numbers, x: np.ndarray, pairs: np.ndarray, size: float) -> list
 
     A tie's lower cutoff and a prop's upper cutoff are at its rest length, where the force is zero: no jump there.
     """
+
     def some(count: int) -> np.ndarray:
         chosen = pairs[rng.choice(len(pairs), min(count, len(pairs)), replace=False)]
         hop = rng.integers(0, len(x), (count, 2))

@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from hookean.discretize.arcs import arc as arc
+    from hookean.discretize.arcs import interpolate as interpolate
     from hookean.discretize.breps import is_trimmed as is_trimmed
     from hookean.discretize.breps import mesh_faces as mesh_faces
     from hookean.discretize.curves import divide as divide
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     from hookean.discretize.warpweft import warp_weft as warp_weft
 
 _NAMES = {
+    "arcs": "arc interpolate",
     "breps": "is_trimmed mesh_faces",
     "curves": "divide end_points explode length shatter",
     "duplicates": "remove_duplicate_lines remove_duplicate_points unique_lines unique_points",

@@ -112,9 +112,7 @@ def _mesh_walls_and_caps(extrusion: Any, brep: Any, u: int, v: int, pointer: str
     return compact(points, same, np.concatenate([quads, *cuts]))
 
 
-def _grids(
-    faces: list[Any], edges: Any, u: int, v: int, pointer: str
-) -> tuple[Array, Index, Index, dict[int, Index]]:
+def _grids(faces: list[Any], edges: Any, u: int, v: int, pointer: str) -> tuple[Array, Index, Index, dict[int, Index]]:
     """Points of all faces, what each is the same as, all quads, and the points along each edge."""
     sides = [seams.face_sides(f, edges) if edges is not None else [] for f in faces]
     size = seams.face_counts(sides, u, v)

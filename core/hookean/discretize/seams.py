@@ -94,9 +94,7 @@ def face_counts(sides: list[list[Side]], u: int, v: int) -> list[tuple[int, int]
     return [(size[taken[find(2 * f)]], size[taken[find(2 * f + 1)]]) for f in range(len(sides))]
 
 
-def shared_ids(
-    grids: list[Array], sides: list[list[Side]]
-) -> tuple[list[Index], Index, dict[int, Index]]:
+def shared_ids(grids: list[Array], sides: list[list[Side]]) -> tuple[list[Index], Index, dict[int, Index]]:
     """Numbers of the points of each grid, what each number is the same as, and the numbers along each edge.
 
     Points are the same where a face is collapsed or closed, at the same step along a shared edge, and

@@ -73,7 +73,8 @@ class Method(Solver):
             left = [axis for axis in left if axis not in axes]
             free = np.flatnonzero((state.free[:, axes[0]] > 0) & touched)
             if len(free):
+                spots = np.ix_(free, np.array(axes))
                 factor = splu(whole[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A")
-                state.x[np.ix_(free, axes)] += factor.solve(np.ascontiguousarray(f[np.ix_(free, axes)]))
+                state.x[spots] += factor.solve(np.ascontiguousarray(f[spots]))
         state.iteration += 1
         return 1
