@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from hookean.patch import Patch as Patch
     from hookean.result import Result as Result
     from hookean.result import Status as Status
-    from hookean.run import Frame as Frame
-    from hookean.run import Simulation as Simulation
     from hookean.run import relax as relax
-    from hookean.run import simulate as simulate
     from hookean.scene import Scene as Scene
+    from hookean.simulation import Frame as Frame
+    from hookean.simulation import Simulation as Simulation
+    from hookean.simulation import simulate as simulate
 
 __version__ = "0.1.0"
 
@@ -23,11 +23,11 @@ _HOMES = {
     "Scene": "scene",
     "Result": "result",
     "Status": "result",
-    "Frame": "run",
-    "Simulation": "run",
+    "Frame": "simulation",
+    "Simulation": "simulation",
     "Patch": "patch",
     "relax": "run",
-    "simulate": "run",
+    "simulate": "simulation",
 }
 
 __all__ = ["InputError", *_HOMES]

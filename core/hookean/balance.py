@@ -41,9 +41,9 @@ class Balance:
 def balance(system: System, state: State) -> Balance:
     """Judge a shape at rest."""
     f, w, _ = system.evaluate(state)
-    reactions = -f * (1.0 - state.free)
     left = f * state.free
     contact = system.support(state, left) if system.contacts else np.zeros_like(f)
+    reactions = -(f + contact) * (1.0 - state.free)
     size = _lengths(left)
     worst = int(np.argmax(size)) if len(size) else 0
     out = float(size[worst]) if len(size) else 0.0

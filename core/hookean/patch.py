@@ -5,20 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field, StrictInt, StrictStr, ValidationError
 
 from hookean.columns import Indices, Model, Points
 from hookean.errors import InputError
 from hookean.forces.base import PLACES
 from hookean.scene import Anchor, Settings, first_fault
 from hookean.state import State
-from hookean.system import Held, System, hold
+from hookean.system import Floats, Group, Held, Part, System, hold
 
 
 class Move(Model):
     """New targets for an anchor, by its name or its number in the scene."""
 
-    anchor: str | int = Field(description="Name or number of an anchor")
+    anchor: StrictStr | StrictInt = Field(description="Name or number of an anchor")
     targets: Points = Field(description="Where its particles go [length], one each")
 
 
@@ -46,18 +46,38 @@ class Patch(Model):
             raise first_fault(error) from None
 
 
+class Undo:
+    """Everything a patch may change, as it was before."""
+
+    def __init__(self, system: System, state: State) -> None:
+        self.scene, self.drag, self.held = system.scene, system.drag, system.held
+        self._state = state.copy()
+        self._groups = [
+            (group.block.parameters.copy(), [part.force for part in group.parts])
+            for group in system.groups + system.contacts
+        ]
+
+    def put_back(self, system: System, state: State) -> None:
+        """Undo the patch."""
+        system.scene, system.drag, system.held = self.scene, self.drag, self.held
+        for group, (parameters, forces) in zip(system.groups + system.contacts, self._groups, strict=True):
+            group.block.parameters[:] = parameters
+            for part, force in zip(group.parts, forces, strict=True):
+                part.force = force
+        for name, value in vars(self._state).items():
+            setattr(state, name, value)
+
+
 def apply(system: System, state: State, patch: Patch) -> None:
-    """Write a patch into a running system and raise its revision. InputError leaves both untouched."""
+    """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Undo`)."""
     held = _held(system, state, patch)
     forces = _forces(system, patch)
     settings = _settings(system, patch)
-    blocks = {number: system.places.recompile(number, force) for number, force in forces.items()}
     for group in system.groups + system.contacts:
         for part in group.parts:
-            if part.number in blocks:
+            if part.number in forces:
                 part.force = forces[part.number]
-                fresh = blocks[part.number]
-                group.block.parameters[part.rows] = fresh.parameters[part.inputs]
+                group.block.parameters[part.rows] = _rows(system, group, part)
     listed = tuple(forces.get(i, f) for i, f in enumerate(system.scene.forces))
     system.scene = system.scene.model_copy(update={"forces": listed, "settings": settings})
     system.drag = settings.drag
@@ -65,37 +85,64 @@ def apply(system: System, state: State, patch: Patch) -> None:
     state.free[:] = 1.0
     for anchor in held:
         hold(state, anchor)
+    system.put_outside(state)
     state.revision += 1
+
+
+def _rows(system: System, group: Group, part: Part) -> Floats:
+    """Parameters of a changed force for the elements it had; InputError if it has others now."""
+    fresh = system.places.recompile(part.number, part.force)
+    met = (fresh.indices >= 0).all(axis=1)
+    indices, parameters = fresh.indices[met], fresh.parameters[met]
+    if not np.array_equal(indices, group.block.indices[part.rows]):
+        raise InputError(
+            f"/forces/{part.number}", "this changes which particles it acts on; send a new scene"
+        )
+    return parameters
 
 
 def _held(system: System, state: State, patch: Patch) -> list[Held]:
     """The anchors after the patch: moved, thinned by releases, joined by pins."""
-    held = [Held(h.number, h.particles, h.targets.copy(), h.free) for h in system.held]
-    names = [a.name for a in system.scene.anchors]
+    held = [Held(h.number, h.particles, h.targets.copy(), h.free, h.name) for h in system.held]
     for i, move in enumerate(patch.move):
-        number = names.index(move.anchor) if move.anchor in names else move.anchor
-        chosen = [h for h in held if h.number == number]
-        if not chosen:
-            known = ", ".join(repr(n) for n in names if n) or f"numbers 0 to {len(names) - 1}"
-            raise InputError(f"/move/{i}/anchor", f"{move.anchor!r} is no anchor of the scene; it has {known}")
-        if len(move.targets) != len(chosen[0].particles):
+        anchor = _named(held, move.anchor, f"/move/{i}/anchor")
+        if len(move.targets) != len(anchor.particles):
             raise InputError(
                 f"/move/{i}/targets",
-                f"{len(move.targets)} targets for {len(chosen[0].particles)} particles; give one for each",
+                f"{len(move.targets)} targets for {len(anchor.particles)} particles; give one for each",
             )
-        chosen[0].targets = np.array(move.targets)
+        anchor.targets = np.array(move.targets)
     _exist(patch.release, len(state.x), "/release")
     for h in held:
-        stays = ~np.isin(h.particles, patch.release)
-        h.particles, h.targets = h.particles[stays], np.ascontiguousarray(h.targets[stays])
+        _thin(h, patch.release)
     for i, pin in enumerate(patch.pin):
         if pin.particles is None:
             raise InputError(f"/pin/{i}", "a running system pins particles by number; give particles")
         _exist(pin.particles, len(state.x), f"/pin/{i}/particles")
         targets = state.x[pin.particles] if pin.targets is None else np.array(pin.targets)
         free = np.array([0.0 if axis in pin.axes else 1.0 for axis in "xyz"])
-        held.append(Held(-1, np.array(pin.particles), targets, free))
-    return held
+        for h in held:
+            if (free <= h.free).all():  # the pin holds all that this one held
+                _thin(h, pin.particles)
+        held.append(Held(-1, np.array(pin.particles), targets, free, pin.name))
+    return [h for h in held if h.number >= 0 or len(h.particles)]
+
+
+def _thin(anchor: Held, particles: Any) -> None:
+    stays = ~np.isin(anchor.particles, particles)
+    anchor.particles, anchor.targets = anchor.particles[stays], np.ascontiguousarray(anchor.targets[stays])
+
+
+def _named(held: list[Held], wanted: str | int, pointer: str) -> Held:
+    """The one anchor of a name or number."""
+    found = [h for h in held if (h.name == wanted and wanted != "") or (h.number == wanted and h.number >= 0)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise InputError(pointer, f"{len(found)} anchors are called {wanted!r}; say which by number")
+    names = ", ".join(repr(h.name) for h in held if h.name)
+    numbers = ", ".join(str(h.number) for h in held if h.number >= 0)
+    raise InputError(pointer, f"{wanted!r} is no anchor; there are {names or 'no names'}, numbers {numbers or 'none'}")
 
 
 def _exist(particles: Any, count: int, pointer: str) -> None:
@@ -110,11 +157,16 @@ def _forces(system: System, patch: Patch) -> dict[int, Any]:
     scene = system.scene
     changed: dict[int, Any] = {}
     for key, values in patch.forces.items():
-        names = [f.name for f in scene.forces]
-        number = names.index(key) if key in names else int(key) if key.isdigit() else -1
-        if not 0 <= number < len(names):
-            known = ", ".join(repr(n) for n in names if n) or f"numbers 0 to {len(names) - 1}"
-            raise InputError(f"/forces/{key}", f"no force of this name or number; the scene has {known}")
+        named = [i for i, f in enumerate(scene.forces) if f.name == key and key]
+        numbered = int(key) if key.isascii() and key.isdigit() else -1
+        if len(named) > 1:
+            raise InputError(f"/forces/{key}", f"{len(named)} forces have this name; say which by number")
+        number = named[0] if named else numbered
+        if not 0 <= number < len(scene.forces):
+            names = ", ".join(repr(f.name) for f in scene.forces if f.name) or "no names"
+            raise InputError(
+                f"/forces/{key}", f"no force of this name or number; there are {names} and {len(scene.forces)} forces"
+            )
         fixed = [n for n in values if n in (*PLACES, "kind", "edges")]
         if fixed:
             raise InputError(f"/forces/{key}/{fixed[0]}", "cannot change while it runs; send the changed scene anew")

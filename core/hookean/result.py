@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
@@ -136,14 +137,16 @@ def plain(value: Any) -> Any:
     return [plain(v) for v in value] if isinstance(value, list | tuple) else value
 
 
-def gather(system: System, state: State, found: Balance, status: Status, message: str, solver: str) -> Result:
+def gather(
+    system: System, state: State, found: Balance, status: Status, message: str, solver: str, *, moving: bool
+) -> Result:
     """Collect a result from a state and its balance."""
     _, _, energies = system.evaluate(state)
     energy: dict[str, float] = {}
     for group, value in zip(system.groups, energies, strict=True):
         kind = str(group.cls.model_fields["kind"].default)
         energy[kind] = energy.get(kind, 0.0) + float(value)
-    energy["kinetic"] = float(0.5 * (system.mass[:, None] * state.v**2 * state.free).sum()) if state.time > 0 else 0.0
+    energy["kinetic"] = float(0.5 * (system.mass[:, None] * state.v**2 * state.free).sum()) if moving else 0.0
     energy["total"] = sum(energy.values())
     return Result(
         status=status,
@@ -160,7 +163,7 @@ def gather(system: System, state: State, found: Balance, status: Status, message
         iterations=state.iteration,
         time=state.time,
         solver=solver,
-        report=system.report,
+        report=deepcopy(system.report),
         units=system.scene.units,
     )
 
@@ -209,7 +212,7 @@ def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
     names = [""] * len(system.x)
     for anchor in system.held:
         for particle in anchor.particles:
-            names[particle] = system.scene.anchors[anchor.number].name
+            names[particle] = anchor.name
     return {"particles": held, "force": found.reactions[held], "names": [names[p] for p in held]}
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
 import numpy as np
@@ -135,7 +134,9 @@ class Scene(Model):
     particles: Points = Field(
         default=np.zeros((0, 3)), description="Start positions [length]; never merged or renumbered"
     )
-    masses: Positives = Field(default=1.0, description="Mass of each particle [force time^2/length]")
+    masses: Positives = Field(
+        default=1.0, description="Mass of given particles [force time^2/length]; welded ones: 1"
+    )
     velocities: Points | None = Field(default=None, description="Start velocities [length/time], one for each particle")
     meshes: dict[str, MeshData] = Field(default={}, description="Meshes by name")
     forces: tuple[AnyForce, ...] = Field(default=(), description="What acts on the particles")
@@ -160,7 +161,7 @@ class Scene(Model):
         """The scene as JSON with sorted keys and without white space: equal scenes, equal text."""
         return json.dumps(self.model_dump(mode="json"), sort_keys=True, separators=(",", ":"))
 
-    @cached_property
+    @property
     def digest(self) -> str:
         """SHA-256 of the canonical form."""
         return hashlib.sha256(self.canonical.encode()).hexdigest()

@@ -19,51 +19,58 @@ def critical_time_step(omega: float, damping_ratio: float = 0.0) -> float:
     `omega` [1/time] is the highest circular frequency, `damping_ratio` zeta [-] its part of critical damping. The
     `verlet` solver treats damping to second order and stays stable up to this step and a little beyond.
     """
-    return 2.0 / omega * (np.sqrt(1.0 + damping_ratio**2) - damping_ratio) if omega > 0.0 else np.inf
+    # 1 / (sqrt + zeta) is the same number without cancellation
+    return 2.0 / omega / float(np.hypot(1.0, damping_ratio) + damping_ratio) if omega > 0.0 else np.inf
+
+
+def highest_rates(system: System, state: State) -> tuple[float, float]:
+    """Largest eigenvalues of M^-1 K [1/time^2] and of M^-1 C [1/time] for small vibrations about a state.
+
+    K is every force's tangent stiffness, hinges included, C the damping along springs and the drag. Held axes do not
+    move.
+    """
+    matrix, free, scale = _scaled_stiffness(system, state)
+    stiffness = 0.0 if matrix is None or matrix.nnz == 0 else max(_largest(matrix), 0.0)
+    drag = system.drag * float(scale.max(initial=0.0)) ** 2
+    if not system.damped or not len(free):
+        return stiffness, drag
+
+    def damping(u: Floats) -> Floats:
+        motion = np.zeros(state.x.size)
+        motion[free] = u.ravel() * scale
+        return _damping_force(system, state, motion.reshape(state.x.shape)).ravel()[free] * scale
+
+    from scipy.sparse.linalg import LinearOperator
+
+    return stiffness, max(_largest(LinearOperator((len(free), len(free)), matvec=damping, dtype=np.float64)), drag)
 
 
 def highest_mode(system: System, state: State) -> tuple[float, float]:
-    """Highest circular frequency [1/time] of small vibrations about a state, and its damping ratio [-].
-
-    From K u = omega^2 M u with every force's tangent stiffness, hinges included; zeta = u^T C u / (2 omega) with
-    damping along springs and drag, u^T M u = 1. Held axes do not move.
-    """
-    from scipy.sparse.linalg import ArpackNoConvergence, eigsh
-
-    matrix, free, scale = _scaled_stiffness(system, state)
-    if matrix is None or matrix.shape[0] == 0 or matrix.nnz == 0:
-        return 0.0, 0.0
-    if matrix.shape[0] <= 60:
-        values, vectors = np.linalg.eigh(matrix.toarray())
-        top, mode = float(values[-1]), vectors[:, -1]
-    else:
-        start = 1.0 + 0.5 * np.sin(np.arange(matrix.shape[0]) * 12.9898)
-        try:
-            values, vectors = eigsh(matrix, k=1, which="LA", v0=start, tol=1e-6)
-            top, mode = float(values[0]), vectors[:, 0]
-        except ArpackNoConvergence:
-            # the row bound is never too small
-            return float(np.sqrt(abs(matrix).sum(axis=1).max())), 0.0
-    if top <= 0.0:
-        return 0.0, 0.0
-    omega = float(np.sqrt(top))
-    motion = np.zeros(state.x.size)
-    motion[free] = mode * scale
-    return omega, _damping(system, state, motion.reshape(state.x.shape)) / (2.0 * omega)
+    """Highest circular frequency [1/time] of small vibrations about a state, and the damping ratio [-] it would have
+    with the largest damping of any motion."""
+    stiffness, damping = highest_rates(system, state)
+    omega = float(np.sqrt(stiffness))
+    return omega, damping / (2.0 * omega) if omega > 0.0 else 0.0
 
 
 def stable_time_step(system: System, state: State) -> float:
-    """The step [time] up to which explicit time stepping of this state is stable; infinite without stiffness."""
-    return critical_time_step(*highest_mode(system, state))
+    """The step [time] up to which explicit time stepping of this state is stable; infinite without stiffness.
+
+    dt^2 k / 4 + dt c / 2 <= 1 with the highest rates k and c: `critical_time_step`, also where only damping limits.
+    """
+    return _step(*highest_rates(system, state))
+
+
+def _step(stiffness: float, damping: float) -> float:
+    half = 0.5 * damping
+    below = half + float(np.hypot(half, np.sqrt(stiffness)))
+    return 2.0 / below if below > 0.0 else np.inf
 
 
 def warning(system: System, state: State) -> str:
     """A sentence if the scene's time step is too large, with the step that would hold; else empty."""
     given = system.scene.settings.time_step
-    _, w, _ = system.evaluate(state)
-    bound = float(np.sqrt((w / system.mass).max())) if len(w) else 0.0
-    # every mode is below this bound and its damping below that of springs alone: no need to look closer
-    if not system.damped and given * bound < 2.0 * np.exp(-system.drag * given / system.mass.min()):
+    if given <= _step(*_bounds(system, state)):
         return ""
     holds = stable_time_step(system, state)
     if given <= holds:
@@ -73,6 +80,36 @@ def warning(system: System, state: State) -> str:
         f"/settings/time_step: {given:g} {unit} is too large for this stiffness, mass and damping; the motion will "
         f"explode. Steps up to {_down(holds):.4g} {unit} hold: use one of those, more mass or less stiffness"
     )
+
+
+def _bounds(system: System, state: State) -> tuple[float, float]:
+    """Bounds of the highest rates that cost one pass: row sums of stiffness and of damping over mass."""
+    _, w, _ = system.evaluate(state)
+    rows = np.full(len(w), system.drag)
+    for group in system.groups:
+        if not group.cls.damped:
+            continue
+        if group.cls.arity != 2 or "damping" not in group.block.names:
+            return np.inf, np.inf
+        c = group.block.parameters[:, group.block.names.index("damping")]
+        rows += np.bincount(group.block.indices.ravel(), np.repeat(2.0 * c, 2), len(w))
+    return float((w / system.mass).max()), float((rows / system.mass).max())
+
+
+def _largest(operator: Any) -> float:
+    """Largest eigenvalue of a symmetric matrix or operator."""
+    from scipy.sparse.linalg import ArpackNoConvergence, eigsh
+
+    size = operator.shape[0]
+    if size <= 60:
+        return float(np.linalg.eigvalsh(operator @ np.eye(size))[-1])
+    start = 1.0 + 0.5 * np.sin(np.arange(size) * 12.9898)
+    try:
+        return float(eigsh(operator, k=1, which="LA", v0=start, tol=1e-6, return_eigenvectors=False)[0])
+    except ArpackNoConvergence as error:
+        # Ritz values come from below; a tenth more is on the safe side
+        found = error.eigenvalues
+        return 1.1 * float(found[-1]) if len(found) else float(np.abs(operator @ np.ones(size)).max())
 
 
 def _down(value: float) -> float:
@@ -109,11 +146,10 @@ def _scaled_stiffness(system: System, state: State) -> tuple[Any, NDArray[np.int
     return (diagonal @ whole @ diagonal).tocsr(), free, scale
 
 
-def _damping(system: System, state: State, motion: Floats) -> float:
-    """u^T C u of a motion u: damping forces are linear in the velocity."""
+def _damping_force(system: System, state: State, motion: Floats) -> Floats:
+    """C u of a motion u (n, 3): damping forces are linear in the velocity."""
     trial = state.copy()
     trial.v = motion
     moving, _, _ = system.evaluate(trial, still=False)
     resting, _, _ = system.evaluate(trial)
-    work = -float((motion * (moving - resting)).sum())
-    return work + float((system.drag * motion**2).sum())
+    return resting - moving + system.drag * motion

@@ -41,6 +41,12 @@ class State:
             self.force_scale,
         )
 
+    def fits(self, other: State) -> bool:
+        """Whether both are states of one system: equal shapes, finite numbers."""
+        mine, others = [self.x, self.v, self.free, *self.memory], [other.x, other.v, other.free, *other.memory]
+        same = len(mine) == len(others) and all(a.shape == b.shape for a, b in zip(mine, others, strict=True))
+        return same and all(np.isfinite(a).all() for a in mine)
+
     def arrays(self) -> dict[str, Floats]:
         """Everything as named arrays, for a file."""
         named = {"x": self.x, "v": self.v, "free": self.free, "force_scale": np.array([self.force_scale])}

@@ -51,6 +51,7 @@ class Held:
     particles: Ints
     targets: Floats
     free: Floats  # (3,) 0 where held
+    name: str = ""
 
 
 @dataclass
@@ -76,9 +77,11 @@ class System:
 
     @property
     def size(self) -> float:
-        """Length scale of the model [length]: the diagonal of its start, or how far from the origin it is."""
-        diagonal = float(np.linalg.norm(np.ptp(self.x, axis=0)))
-        return diagonal or float(np.abs(self.x).max()) or 1.0
+        """Length scale of the model [length]: the diagonal of its start and its anchors' targets, or how far from
+        the origin it is."""
+        reach = np.concatenate([self.x, *(anchor.targets for anchor in self.held)])
+        diagonal = float(np.linalg.norm(np.ptp(reach, axis=0)))
+        return diagonal or float(np.abs(reach).max()) or 1.0
 
     @property
     def damped(self) -> bool:
@@ -96,8 +99,15 @@ class System:
         state = State(x=self.x.copy(), v=self.v.copy(), free=free)
         for anchor in self.held:
             hold(state, anchor)
+        self.put_outside(state)
         state.memory = [np.zeros_like(g.block.memory) for g in self.groups]
         return state
+
+    def put_outside(self, state: State) -> None:
+        """Put particles that contacts do not allow where they are onto the surface of the contact."""
+        for group in self.contacts:
+            hook = kernels.compiled(group.cls.impact, "impact")
+            hook(state.x, state.v, state.v, state.x, state.v, state.free, 0.0, group.block.parameters)
 
     def evaluate(self, state: State, *, only: str = "", still: bool = True) -> tuple[Floats, Floats, Floats]:
         """Forces (n, 3) on the particles, lumped stiffness (n,) and the energy of each group.
@@ -278,7 +288,7 @@ def _anchors(welded: Welded) -> list[Held]:
         met = particles >= 0
         targets = welded.x[particles] if anchor.targets is None else np.asarray(anchor.targets)
         free = np.array([0.0 if axis in anchor.axes else 1.0 for axis in "xyz"])
-        held.append(Held(i, particles[met], np.ascontiguousarray(targets[met]), free))
+        held.append(Held(i, particles[met], np.ascontiguousarray(targets[met]), free, anchor.name))
     return held
 
 

@@ -61,7 +61,7 @@ class Welded:
         self.scene = scene
         self.report = Report()
         self.tolerance = scene.weld_tolerance
-        self._keep: list[Force] = []
+        self._patched: dict[int, Force] = {}  # rows are found by identity, so these must live as long as they do
         self._rows: dict[int, Ints] = {}
         self._meshes: dict[str, Ints] = {}
         self._pointer: dict[int, str] = {id(f): f"/forces/{i}" for i, f in enumerate(scene.forces)}
@@ -104,6 +104,8 @@ class Welded:
         particles = getattr(force, "particles", None)
         if particles is not None:
             rows: Ints = particles.reshape(-1, 1) if arity == 1 and particles.ndim == 1 else particles
+            if not particles.size:
+                return np.zeros((0, arity), np.int64)
             if rows.ndim != 2 or rows.shape[1] != arity:
                 raise InputError(
                     f"{pointer}/particles",
@@ -125,11 +127,15 @@ class Welded:
 
     def recompile(self, number: int, force: Force) -> Block:
         """The block of a changed force that stays where force `number` of the scene was."""
-        old = self.scene.forces[number]
-        self._keep.append(force)  # rows are found by identity, so it must live as long as they do
+        first = self.scene.forces[number]
+        if number in self._patched:
+            gone = id(self._patched[number])
+            self._rows.pop(gone, None)
+            self._pointer.pop(gone, None)
+        self._patched[number] = force
         self._pointer[id(force)] = f"/forces/{number}"
-        if id(old) in self._rows:
-            self._rows[id(force)] = self._rows[id(old)]
+        if id(first) in self._rows:
+            self._rows[id(force)] = self._rows[id(first)]
         fits(force, f"/forces/{number}", self)
         return force.compile(self)
 
@@ -175,12 +181,17 @@ class Welded:
         return self.scene.meshes[name].vertices, self.scene.meshes[name].faces
 
     def meet(self, points: Floats, pointer: str, name: str = "", *, silent: bool = False) -> Ints:
-        """The nearest particle of each point within the tolerance, else -1 and a line in the report."""
+        """The particle of each point: the first within the tolerance, as welding has it; else -1, and a line in the
+        report names the nearest."""
         flat = points.reshape(-1, 3)
         if self._tree is None or not len(flat):
             distance, nearest = np.full(len(flat), np.inf), np.full(len(flat), -1)
         else:
-            distance, nearest = self._tree.query(flat)
+            near, which = self._tree.query(flat, k=min(2, len(self.x)))
+            distance, nearest = near.reshape(len(flat), -1)[:, 0], which.reshape(len(flat), -1)[:, 0]
+            # where more than one is near enough, the first one wins
+            for i in np.flatnonzero((near.reshape(len(flat), -1)[:, 1:] <= self.tolerance).any(axis=1)):
+                nearest[i] = min(self._tree.query_ball_point(flat[i], self.tolerance))
         missed = distance > self.tolerance
         if not silent:
             for i in np.flatnonzero(missed):
@@ -219,12 +230,14 @@ def weld(given: Floats, points: Floats, tolerance: float) -> tuple[Floats, Ints]
 def _keepers(points: Floats, given: int, tolerance: float) -> Ints:
     """For each point the one it becomes: itself, or the first kept point within the tolerance."""
     keeper = np.arange(len(points))
-    pairs = cKDTree(points).query_pairs(max(tolerance, 0.0), output_type="ndarray")
-    pairs = np.sort(pairs, axis=1)
-    pairs = pairs[pairs[:, 1] >= given]
-    for a, b in pairs[np.lexsort((pairs[:, 0], pairs[:, 1]))]:
-        if keeper[b] == b and keeper[a] == a:
-            keeper[b] = a
+    tree = cKDTree(points)
+    near = tree.query(points, k=2)[0][:, 1] <= tolerance if len(points) > 1 else np.zeros(len(points), bool)
+    for a in np.flatnonzero(near):
+        if keeper[a] != a:
+            continue
+        for b in tree.query_ball_point(points[a], tolerance):
+            if b > a and b >= given and keeper[b] == b:
+                keeper[b] = a
     return keeper
 
 

@@ -178,7 +178,7 @@ def test_a_net_of_uniform_tension_under_small_pressure(n: int, c: float) -> None
 
 def test_pressure_makes_no_particles_and_is_patched() -> None:
     """Vertices that meet no particle are reported, their faces left out; the pressure changes while it runs."""
-    from hookean.run import Simulation
+    from hookean.simulation import Simulation
 
     x = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]])
     meshes = {"m": {"vertices": [*x, [5, 5, 5]], "faces": [[0, 1, 2], [1, 3, 2]]}}

@@ -14,7 +14,7 @@ from hookean import Scene, relax
 from hookean.errors import InputError
 from hookean.forces import PullToCurve, PullToMesh, Unary
 from hookean.kernels import keep, rows
-from hookean.run import Simulation
+from hookean.simulation import Simulation
 from hookean.system import compile
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=60, database=None)

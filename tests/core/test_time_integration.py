@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hookean import Scene, Simulation
-from hookean.run import Status
+from hookean.result import Status
 from hookean.solvers import solver
 from hookean.stability import highest_mode, stable_time_step
 from hookean.system import System, compile

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from hookean.columns import NonNegatives, Vector, fault
+from hookean.columns import Vector, fault
 from hookean.forces.base import Block, Floats, Force, Places
 
 
@@ -104,7 +104,7 @@ def floor_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore
                 along = (v[i, c] - speed * n) * free[i, c]
                 slip += along * along
                 f[i, c] += press * n * free[i, c]
-                carried[i, c] += press * n * free[i, c]
+                carried[i, c] += press * n
                 v[i, c] -= speed * n * free[i, c] / reach
                 shear += f[i, c] * f[i, c] * free[i, c]
             slip = np.sqrt(slip)
@@ -144,8 +144,8 @@ class Floor(Force):
         default=np.array([0.0, 0.0, 1.0]), description="Direction to the free side; only its direction counts"
     )
     restitution: float = Field(default=0.7, ge=0, le=1, description="Part of the speed kept in a rebound [-]")
-    static_friction: NonNegatives = Field(default=0.6, description="mu_s [-]: holds up to mu_s N")
-    kinetic_friction: NonNegatives = Field(default=0.5, description="mu_k [-]: slides against mu_k N")
+    static_friction: float = Field(default=0.6, ge=0, le=1e12, description="mu_s [-]: holds up to mu_s N")
+    kinetic_friction: float = Field(default=0.5, ge=0, le=1e12, description="mu_k [-]: slides against mu_k N")
 
     formula: ClassVar[str] = "N ≥ 0, |T| ≤ μ N"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"

@@ -101,7 +101,7 @@ def springs_yield(x, indices, parameters, memory):  # type: ignore[no-untyped-de
             stretch = length - first - memory[e, 0]
             limit = parameters[e, 6] * first
             off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
-            if np.abs(stretch) > limit and not off:
+            if limit > 0.0 and np.abs(stretch) > limit and not off:
                 memory[e, 0] += stretch - np.copysign(limit, stretch)
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 # a tangent larger than this costs more to factor than the relaxation it saves
 LARGEST_NEWTON = 60_000
 FIRST_NEWTON = 4_000
+NEWTON_STEPS = 60
 
 
 class Method(Solver):
@@ -39,28 +40,36 @@ class Method(Solver):
         self._relaxation.start(system, state)
         state.scratch["next_newton"] = np.array([float(state.iteration + FIRST_NEWTON), FIRST_NEWTON])
         self.used = []
+        self._steps = 0
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Some iterations of whatever is due."""
         if self._one_solve:
-            self._use("force_density")
-            done = self._linear.advance(system, state, count, goal)
             self._one_solve = False
-            return done
-        due, pause = state.scratch["next_newton"]
+            done = self._linear.advance(system, state, count, goal)
+            if done:
+                self._use("force_density")
+                return done
+        if self._steps > 0:
+            return self._finish(system, state, count, goal)
+        due, _ = state.scratch["next_newton"]
         if state.iteration < due or 3 * len(state.x) > LARGEST_NEWTON:
             self._use("relaxation")
             return self._relaxation.advance(system, state, min(count, max(int(due) - state.iteration, 1)), goal)
-        return self._finish(system, state, min(count, 60), goal, float(pause))
-
-    def _finish(self, system: System, state: State, count: int, goal: float, pause: float) -> int:
-        """Newton steps from here; relaxation afterwards starts afresh, and waits twice as long before the next."""
+        self._steps, self._pause = NEWTON_STEPS, float(state.scratch["next_newton"][1])
         self._newton.start(system, state)
-        done = self._newton.advance(system, state, count, goal)
+        return self._finish(system, state, count, goal)
+
+    def _finish(self, system: System, state: State, count: int, goal: float) -> int:
+        """Newton steps from here; relaxation afterwards starts afresh, and waits twice as long before the next."""
+        done = self._newton.advance(system, state, min(count, self._newton.longest, self._steps), goal)
+        self._steps = self._steps - done if done else 0
         if done:
             self._use("newton")
-        self._relaxation.start(system, state)
-        state.scratch["next_newton"] = np.array([state.iteration + 2.0 * pause, 2.0 * pause])
+        if self._steps <= 0:
+            self._relaxation.start(system, state)
+            pause = 2.0 * self._pause
+            state.scratch["next_newton"] = np.array([state.iteration + pause, pause])
         return max(done, 1)
 
     def _use(self, name: str) -> None:

@@ -14,6 +14,7 @@ class Solver(ABC):
     """One way to equilibrium, or through time. Everything it remembers is in `state.scratch`."""
 
     name: ClassVar[str]
+    longest: ClassVar[int] = 10**9  # iterations in one call, so that a run can be cancelled in between
     physical: ClassVar[bool] = False  # advances physical time with the scene's masses, damping and drag
 
     def refuse(self, system: System) -> str:

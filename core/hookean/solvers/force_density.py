@@ -43,8 +43,13 @@ class Method(Solver):
             linear = linear or bool(len(p))
         return "" if linear else "there is no spring"
 
+    def start(self, system: System, state: State) -> None:
+        """Start from rest."""
+        state.scratch.clear()
+        state.v[:] = 0.0
+
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
-        """Solve K dx = f on the free axes; one iteration, a second only to sweep up rounding."""
+        """Solve K dx = f on the free axes; none done where some particles hang on nothing that is held."""
         import scipy.sparse as sparse
         from scipy.sparse.linalg import splu
 
@@ -66,6 +71,7 @@ class Method(Solver):
         )
         f, _, _ = system.evaluate(state)
         touched = whole.diagonal() > 0
+        x = state.x.copy()
         left = [0, 1, 2]
         while left:
             # axes on which the same particles are held share one factor
@@ -74,7 +80,13 @@ class Method(Solver):
             free = np.flatnonzero((state.free[:, axes[0]] > 0) & touched)
             if len(free):
                 spots = np.ix_(free, np.array(axes))
-                factor = splu(whole[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A")
-                state.x[spots] += factor.solve(np.ascontiguousarray(f[spots]))
+                try:
+                    factor = splu(whole[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A")
+                except RuntimeError:  # singular
+                    return 0
+                x[spots] += factor.solve(np.ascontiguousarray(f[spots]))
+        if not np.isfinite(x).all():
+            return 0
+        state.x[:] = x
         state.iteration += 1
         return 1

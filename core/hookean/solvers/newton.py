@@ -25,6 +25,7 @@ class Method(Solver):
     """Sparse Newton; best from a shape that is already near, for tight tolerances."""
 
     name: ClassVar[str] = "newton"
+    longest: ClassVar[int] = 3
 
     def start(self, system: System, state: State) -> None:
         """Start from rest with a small shift."""
@@ -46,13 +47,13 @@ class Method(Solver):
                 break
             before, size = energy, np.abs(left).max()
             length, energy, left = _search(system, state, step, energy, left)
-            done += 1
-            state.iteration += 1
             if length == 0.0:
                 shift = max(shift, 1e-8) * 10.0
                 if shift > 1e4:
                     break
                 continue
+            done += 1
+            state.iteration += 1
             helped = helped or energy < before or np.abs(left).max() < 0.99 * size
             shift = shift * 0.1 if length == 1.0 else shift if length > 0.2 else shift * 10.0
             if shift < 1e-12:

@@ -1,0 +1,215 @@
+"""Simulation: a live system, frame by frame, patched while it runs, saved and resumed bit for bit."""
+
+from __future__ import annotations
+
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean import stability
+from hookean.balance import balance
+from hookean.errors import InputError
+from hookean.patch import Patch, Undo, apply
+from hookean.result import Result, Status, carried, gather
+from hookean.run import Progress, relax_state
+from hookean.scene import Scene
+from hookean.solvers import solver
+from hookean.state import State
+from hookean.system import Held, System, compile
+from hookean.watch import Watch
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a client sees of a running simulation: positions (n, 3) [length], time [time], energies [force length]."""
+
+    particles: Floats
+    geometry: list[dict[str, object]]
+    time: float
+    iteration: int
+    revision: int
+    residual: float
+    status: Status
+    message: str
+
+
+def simulate(scene: Scene, frames: int | None = None) -> Iterator[Frame]:
+    """Frames of a scene in motion, `sub_iterations` steps apart, bouncing included; ends at rest or after `frames`.
+
+    The first frame is the start. The scene's solver, or `verlet` where that is `auto`.
+    """
+    running = Simulation(scene)
+    yield running.frame()
+    shown = 0
+    while running.status is Status.RUNNING and (frames is None or shown < frames):
+        running.step()
+        shown += 1
+        yield running.frame()
+
+
+class Simulation:
+    """A running system: stepped frame by frame, patched while it runs, saved and resumed bit for bit."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.system = compile(scene)
+        self.state = self.system.start()
+        self._begin(start=True)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as patches have left it."""
+        return self.system.scene
+
+    def _begin(self, *, start: bool, warn: bool = True) -> None:
+        """Take up the scene's solver; `start` lets it forget what it did before."""
+        name = self.scene.settings.solver
+        self.solver = solver("verlet" if name == "auto" else name)
+        refusal = self.solver.refuse(self.system)
+        if refusal:
+            raise InputError("/settings/solver", refusal)
+        if warn:
+            self._warn()
+        if start:
+            self.solver.start(self.system, self.state)
+        self._watch = Watch(self.system, self.state, self.solver)
+        self.status = Status.RUNNING
+        self._said = ""
+
+    def _warn(self) -> None:
+        warnings = self.system.report.warnings
+        warnings[:] = [w for w in warnings if not w.startswith("/settings/time_step")]
+        if self.solver.physical and (said := stability.warning(self.system, self.state)):
+            warnings.append(said)
+
+    def step(self, frames: int = 1) -> Status:
+        """Advance by whole frames of `sub_iterations` steps; a diverged step restores the last good state."""
+        for _ in range(frames):
+            self.iterate(self.scene.settings.sub_iterations)
+            if self.status is not Status.RUNNING:
+                break
+        return self.status
+
+    def iterate(self, count: int) -> Status:
+        """Advance by at most `count` iterations of the solver."""
+        if self.status is Status.DIVERGED:
+            return self.status
+        self.solver.advance(self.system, self.state, count, 0.0 if self.solver.physical else self._watch.goal)
+        self.status = self._watch.look(self.system, self.state)
+        self._said = ""
+        if self.status is Status.DIVERGED:
+            self.state = self._watch.good.copy()
+        elif self.status is Status.CONVERGED and not self.solver.physical:
+            self.system.remember(self.state)
+        elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):
+            self.status = Status.RUNNING  # somebody is watching; they decide when to stop
+        return self.status
+
+    def _message(self) -> str:
+        found, unit = self._watch.found, self.scene.units.force
+        if self.status is Status.RUNNING:
+            return f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance."
+        return self._said or self._watch.sentence(self.system, self.status)
+
+    def frame(self) -> Frame:
+        """The state as a client sees it."""
+        return Frame(
+            self.state.x.copy(),
+            carried(self.system, self.state),
+            self.state.time,
+            self.state.iteration,
+            self.state.revision,
+            self._watch.found.residual,
+            self.status,
+            self._message(),
+        )
+
+    def result(self) -> Result:
+        """Everything about the present state."""
+        found = balance(self.system, self.state)
+        return gather(
+            self.system, self.state, found, self.status, self._message(), self.solver.name, moving=self.solver.physical
+        )
+
+    def relax(self, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Result:
+        """Go to equilibrium from here with the scene's solver (auto: relaxation and Newton)."""
+        result = relax_state(self.system, self.state, solver(self.scene.settings.solver), progress, cancelled)
+        self._begin(start=True, warn=False)
+        self.status, self._said = result.status, result.message
+        return result
+
+    def patch(self, edit: Patch | dict[str, object]) -> int:
+        """Change anchors, loads, stiffness, rest lengths or settings while it runs; returns the new revision.
+
+        InputError says what does not fit, and nothing has changed then.
+        """
+        edit = Patch.read(edit)
+        undo, before = Undo(self.system, self.state), self.solver
+        try:
+            apply(self.system, self.state, edit)
+            same = self.scene.settings.solver == undo.scene.settings.solver
+            if not same:
+                self.state.v[:] = 0.0  # what one solver calls velocity means nothing to another
+            # a moved anchor neither stiffens nor quickens anything by itself
+            warn = bool(edit.forces or edit.settings or len(edit.release))
+            self._begin(start=not (same and before.physical), warn=warn)
+        except InputError:
+            undo.put_back(self.system, self.state)
+            self.solver = before
+            raise
+        return self.state.revision
+
+    def save(self, path: str | Path) -> None:
+        """Everything about this simulation in one .npz file: the scene, the state and the anchors as they are now."""
+        arrays = self.state.arrays()
+        for i, anchor in enumerate(self.system.held):
+            arrays[f"held_{i}"] = np.column_stack([anchor.particles, anchor.targets])
+            arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free])
+        names = {f"name_{i}": np.array(anchor.name) for i, anchor in enumerate(self.system.held)}
+        texts = {"scene": np.array(self.scene.canonical), "status": np.array(str(self.status)), **names}
+        with open(path, "wb") as file:
+            np.savez(file, allow_pickle=False, **texts, **arrays)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Simulation:
+        """The simulation that `save` wrote; it goes on bit for bit. InputError where the file is not one."""
+        try:
+            with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            loaded = cls(Scene.read(str(arrays.pop("scene"))))
+            status = Status(str(arrays.pop("status")))
+            count = sum(name.startswith("held_") for name in arrays)
+            loaded.system.held = [_anchor(arrays, i, loaded.system) for i in range(count)]
+            state = State.of(arrays)
+            if not state.fits(loaded.state):
+                raise ValueError
+        except (OSError, KeyError, ValueError, IndexError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
+            raise InputError(str(path), "not a saved simulation; give a file that Simulation.save wrote") from None
+        loaded.state = state
+        loaded._begin(start=False)
+        loaded.status = status
+        return loaded
+
+    def reset(self) -> None:
+        """Back to the start positions; anchors keep the particles they were given, and their present targets."""
+        revision = self.state.revision
+        self.state = self.system.start()
+        self.state.revision = revision
+        self._begin(start=True)
+
+
+def _anchor(arrays: dict[str, NDArray[np.generic]], i: int, system: System) -> Held:
+    """The i-th anchor of a saved simulation; ValueError where it does not fit the system."""
+    rows = np.asarray(arrays.pop(f"held_{i}"), np.float64).reshape(-1, 4)
+    axes = np.asarray(arrays.pop(f"axes_{i}"), np.float64).reshape(4)
+    particles = rows[:, 0].astype(np.int64)
+    if len(rows) and not (particles.min() >= 0 and particles.max() < len(system.x) and np.isfinite(rows).all()):
+        raise ValueError
+    name = str(arrays.pop(f"name_{i}"))
+    return Held(int(axes[0]), particles, np.ascontiguousarray(rows[:, 1:]), axes[1:].copy(), name)
