@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hookean import Scene, relax
-from hookean.forces import Bend, Springs, Unary
-from hookean.system import compile
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
+
+from hookean import Scene, relax
+from hookean.forces import Bend, Springs, Unary
+from hookean.system import compile
 
 EPS = float(np.finfo(float).eps)
 EA = 1e7  # axial stiffness in units of EI / L^2: strains P / EA ~ 1e-6 or less
@@ -222,9 +223,7 @@ def test_a_free_corner_finds_its_rest_angle() -> None:
         Springs(particles=[[0, 1], [1, 2]], stiffness=100.0),
         Bend(particles=[[0, 1, 2]], stiffness=1.0, rest_angle=1.2),
     ]
-    result = relax(
-        Scene(particles=x, forces=forces, anchors=[{"particles": [0, 1]}], settings={"tolerance": 1e-9})
-    )
+    result = relax(Scene(particles=x, forces=forces, anchors=[{"particles": [0, 1]}], settings={"tolerance": 1e-9}))
     assert result.converged
     assert result.force("bend")["angle"][0] == pytest.approx(1.2, abs=1e-7)
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
 from hookean import Scene, relax
 from hookean.forces import Hinge, Springs, Unary
 from hookean.forces.dihedral import fold_angles
 from hookean.system import compile
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
 EPS = float(np.finfo(float).eps)
 FLAT = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.7, 1.5, 0.0], [1.2, -0.6, 0.0]])

@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import Delaunay
+
 from hookean import Scene, relax
 from hookean.errors import InputError
 from hookean.forces import Shell, Springs, Unary
 from hookean.forces.shell import triangles
 from hookean.system import System, compile
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.spatial import Delaunay
 
 EPS = float(np.finfo(float).eps)
 seeded = settings(derandomize=True, deadline=None, max_examples=25, database=None)
@@ -167,34 +168,37 @@ def test_constant_curvature_is_exact_and_in_balance_on_any_mesh(curvature: np.nd
     e = 1e-5: the fold angles are linear in it to e^2 = 1e-10, and rounding of angles is eps / e = 2e-11.
     """
     rng = np.random.default_rng(seed)
-    n = 11
+    n = 16
     grid = np.stack(np.meshgrid(np.arange(n), np.arange(n), indexing="ij"), axis=-1).reshape(-1, 2) / (n - 1)
-    grid[:] += rng.uniform(-0.03, 0.03, grid.shape)
+    grid[:] += rng.uniform(-0.02, 0.02, grid.shape)
     x = np.column_stack([grid, np.zeros(len(grid))])
     scene = skin(x, Delaunay(grid).simplices, strength=3.0)
     bent = x.copy()
     bent[:, 2] = 0.5e-5 * np.einsum("ni,ij,nj->n", grid, curvature, grid)
     corners, moment = moments(scene, bent)
-    away = inside(corners, x, 0.3)
-    assert away.sum() > 20
+    away = inside(corners, x, 0.2)
+    assert away.sum() > 100
     assert moment[away] / (3e-5 * np.linalg.norm(curvature)) == pytest.approx(1.0, abs=1e-7)
     f, _, _, _ = at(scene, bent)
-    alone = inside(np.arange(len(x))[:, None], x, 0.36)
-    assert alone.sum() >= 4
-    # moments D e K times h^0: single triangles pull with D e |K|, what is left of their sum is rounding
-    assert np.abs(f[alone]).max() <= 1e-7 * 3e-5 * np.linalg.norm(curvature)
+    alone = inside(np.arange(len(x))[:, None], x, 0.3)
+    assert alone.sum() > 20
+    # single triangles pull with about D e |K|; across the plate rounding is left of their sum, in it order e D e |K|
+    pull = 3e-5 * np.linalg.norm(curvature)
+    assert np.abs(f[alone, 2]).max() <= 1e-9 * pull
+    assert np.abs(f[alone]).max() <= 1e-5 * pull
 
 
 @pytest.mark.parametrize("degrees", [0.0, 30.0, 45.0, 80.0])
-def test_a_sheet_rolled_to_a_cylinder_has_its_exact_energy(degrees: float) -> None:
-    """D / (2 R^2) per area in every direction, on irregular triangles, far from flat: error of order h^2 / R^2.
+def test_a_sheet_rolled_to_a_cylinder_has_its_exact_moment(degrees: float) -> None:
+    """Moment D / R in every direction, on irregular triangles, far from flat: error of order h^2 / R^2.
 
-    R = 1, h = 1/8 and 1/16: chords of h shorten folds by h^2 / 24; sides, where naked edges turn freely across them,
-    leave out bending over the angle's part of a rim of width h / 3, so moments are compared away from the sides.
+    R = 1, h = 1/8, 1/16, 1/32. A chord is h^2 / 24 shorter than its arc: 6.5e-4 at the coarsest, so 1e-3 holds all;
+    over four times finer the root mean square falls by 4^1.6 at least (4^2 in theory; the meshes are random). At the
+    sides naked edges turn freely, so triangles are compared away from them.
     """
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     errors = []
-    for n in (9, 17):
+    for n in (9, 17, 33):
         rng = np.random.default_rng(5)
         grid = np.stack(np.meshgrid(np.arange(n), np.arange(n), indexing="ij"), axis=-1).reshape(-1, 2) / (n - 1)
         grid += rng.uniform(-0.2, 0.2, grid.shape) / (n - 1)
@@ -202,16 +206,19 @@ def test_a_sheet_rolled_to_a_cylinder_has_its_exact_energy(degrees: float) -> No
         rolled = np.column_stack([np.sin(across), along, 1 - np.cos(across)])
         x = np.column_stack([grid, np.zeros(len(grid))])
         corners, moment = moments(skin(x, Delaunay(grid).simplices, strength=1.0), rolled)
-        errors.append(np.abs(moment[inside(corners, x, 0.25)] - 1.0).max())
-    assert errors[0] <= 0.02
-    assert errors[1] <= 0.4 * errors[0]
+        errors.append(np.sqrt(np.mean((moment[inside(corners, x, 0.25)] - 1.0) ** 2)))
+    assert errors[0] <= 1e-3
+    assert errors[2] <= errors[0] / 4**1.6
 
 
 def test_drawn_flat_or_between() -> None:
-    """Factor 1: no force as drawn; 0: wants to be flat; the energy goes with the square of 1 - factor."""
+    """Factor 1: no force as drawn; 0: wants to be flat; the energy goes with the square of 1 - factor.
+
+    Angles are known to some 10 eps, so the energy as drawn is a square of those.
+    """
     _, x = Shell.example()
     energies = [at(skin(x, Shell.example_faces, angle_factor=a), x)[2] for a in (1.0, 0.5, 0.0)]
-    assert energies[0] == 0.0
+    assert energies[0] <= 20.0 * (100 * EPS) ** 2
     assert energies[1] == pytest.approx(0.25 * energies[2], rel=1e-12)
     assert energies[2] > 1.0
 
@@ -317,16 +324,15 @@ def test_a_band_with_one_side_is_a_shell_too() -> None:
     n = 24
     t = np.linspace(0, 2 * np.pi, n, endpoint=False)
     rims = [
-        np.column_stack(
-            [(2 + r * np.cos(t / 2)) * np.cos(t), (2 + r * np.cos(t / 2)) * np.sin(t), r * np.sin(t / 2)]
-        )
+        np.column_stack([(2 + r * np.cos(t / 2)) * np.cos(t), (2 + r * np.cos(t / 2)) * np.sin(t), r * np.sin(t / 2)])
         for r in (-0.5, 0.0, 0.5)
     ]
     x = np.concatenate(rims)
     quads = [[n * r + i, n * r + i + 1, n * r + n + i + 1, n * r + n + i] for r in (0, 1) for i in range(n - 1)]
     quads += [[n - 1, 2 * n, n, 2 * n - 1], [2 * n - 1, n, 0, 3 * n - 1]]
     scene = skin(x, quads)
-    assert np.abs(at(scene, x)[0]).max() == 0.0
+    drawn, w, _, _ = at(scene, x)
+    assert np.abs(drawn).max() <= 1e-14 * w.max()
     f, _, energy, _ = at(scene, x + np.random.default_rng(0).uniform(-0.05, 0.05, x.shape))
     assert energy > 0.0
     assert np.abs(f.sum(axis=0)).max() <= 1e-12 * np.abs(f).sum()
@@ -445,5 +451,8 @@ def test_lumped_stiffness_bounds_the_tangent(seed: int) -> None:
     for block, index in zip(system.stiffness_blocks(group, state, state.memory[0]), group.block.indices, strict=True):
         place = (3 * index[:, None] + np.arange(3)).ravel()
         np.add.at(whole, (place[:, None], place[None]), block)
-    scale = 1.0 / np.sqrt(np.repeat(w, 3))
-    assert np.linalg.eigvalsh(scale[:, None] * whole * scale).max() <= 1.0 + 1e-7
+    # a corner of one triangle may hold no fold: no stiffness then, and none to bound
+    stiff = np.flatnonzero(np.repeat(w, 3) > 0)
+    assert np.abs(np.delete(whole, stiff, axis=0)).max(initial=0.0) == 0.0
+    scale = 1.0 / np.sqrt(np.repeat(w, 3)[stiff])
+    assert np.linalg.eigvalsh(scale[:, None] * whole[np.ix_(stiff, stiff)] * scale).max() <= 1.0 + 1e-7

@@ -120,7 +120,9 @@ class Bend(Force):
     def example(cls) -> tuple[Bend, Floats]:
         """Three corners of a rod in space: bent, over-bent, at a right angle."""
         x = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [1.8, 0.8, 0.3], [1.9, 1.7, 1.0], [1.0, 1.6, 1.6]])
-        return cls(particles=[[0, 1, 2], [1, 2, 3], [2, 3, 4]], stiffness=[5.0, 20.0, 1.0], rest_angle=[0.0, 1.2, 0.9]), x
+        return cls(
+            particles=[[0, 1, 2], [1, 2, 3], [2, 3, 4]], stiffness=[5.0, 20.0, 1.0], rest_angle=[0.0, 1.2, 0.9]
+        ), x
 
 
 def turn_angles(x: Floats, corners: Ints) -> Floats:

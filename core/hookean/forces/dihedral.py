@@ -9,6 +9,8 @@ clothing with folds and wrinkles", 2003.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,10 +23,12 @@ SLIVER = 1e-8
 
 
 @device
-def fold(x, a, b, c, d, g):  # type: ignore[no-untyped-def]
-    # g (4, 5): for a, b, c, d the gradient of the angle, then two bounds of what a spring of unit stiffness
-    # (g g^T) and a unit moment (second derivatives of the angle) take from the stiffness of a particle.
-    # A sliver gives angle nan.
+def fold(x: Any, a: Any, b: Any, c: Any, d: Any, g: Any) -> Any:
+    """Fold angle [rad] of a, b, c, d; nan for a sliver, and then `g` is not written.
+
+    `g` (4, 5): for a, b, c, d the gradient of the angle; then what one unit of stiffness (g g^T) and one unit of moment
+    (the second derivatives of the angle) add at most to the stiffness that each particle feels.
+    """
     ex = x[b, 0] - x[a, 0]
     ey = x[b, 1] - x[a, 1]
     ez = x[b, 2] - x[a, 2]
@@ -82,8 +86,8 @@ def fold(x, a, b, c, d, g):  # type: ignore[no-untyped-def]
 
 
 @device
-def wrapped(angle):  # type: ignore[no-untyped-def]
-    # the same angle in (-pi, pi]
+def wrapped(angle: Any) -> Any:
+    """The same angle in (-pi, pi]."""
     return angle - 2.0 * np.pi * np.ceil((angle - np.pi) / (2.0 * np.pi))
 
 

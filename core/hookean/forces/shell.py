@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -197,13 +198,14 @@ def _elements(corners: Ints, pointer: str) -> tuple[Ints, NDArray[np.bool_]]:
     return index, there
 
 
-def _place(x: Floats, a: Ints, b: Ints, c: Ints, za: Complex, zb: Complex, side: float) -> Complex:
-    """Where c comes to lie when triangle a b c is laid into the plane with a at za and b at zb."""
-    e, p = x[b] - x[a], x[c] - x[a]
+def _place(x: Floats, corners: Sequence[Ints] | Ints, za: Complex, zb: Complex, side: float) -> Complex:
+    """Where corner c comes to lie when triangle a b c is laid into the plane with a at za and b at zb."""
+    a, b, c = (x[corner] for corner in corners)
+    e, p = b - a, c - a
     ee = (e * e).sum(axis=1)
     safe = np.where(ee > 0, ee, 1.0)
     foot, height = (p * e).sum(axis=1) / safe, np.linalg.norm(np.cross(e, p), axis=1) / safe
-    return za + (zb - za) * (foot + side * 1j * height)
+    return np.asarray(za + (zb - za) * (foot + side * 1j * height))
 
 
 def _tensor(z: Complex) -> Floats:
@@ -240,14 +242,14 @@ def _split(x: Floats, index: Ints, there: NDArray[np.bool_], i: int) -> Floats:
     has = [there[:, n] for n in (3 + i, 3 + j, 3 + k, 6 + 2 * i, 7 + 2 * i)]
     za = np.zeros(len(index), complex)
     zb = za + np.linalg.norm(x[node[1]] - x[node[0]], axis=1)
-    zc, zd = _place(x, *node[:3], za, zb, 1.0), _place(x, node[0], node[1], node[3], za, zb, -1.0)
+    zc, zd = _place(x, node[:3], za, zb, 1.0), _place(x, (node[0], node[1], node[3]), za, zb, -1.0)
     folds = np.stack(
         [
             _fold_of_curvature(za, zb, zc, zd, has[0]),
-            _fold_of_curvature(zb, zc, za, _place(x, node[1], node[2], node[4], zb, zc, -1.0), has[1]),
-            _fold_of_curvature(zc, za, zb, _place(x, node[2], node[0], node[5], zc, za, -1.0), has[2]),
-            _fold_of_curvature(za, zd, zb, _place(x, node[0], node[3], node[6], za, zd, -1.0), has[3]),
-            _fold_of_curvature(zd, zb, za, _place(x, node[3], node[1], node[7], zd, zb, -1.0), has[4]),
+            _fold_of_curvature(zb, zc, za, _place(x, (node[1], node[2], node[4]), zb, zc, -1.0), has[1]),
+            _fold_of_curvature(zc, za, zb, _place(x, (node[2], node[0], node[5]), zc, za, -1.0), has[2]),
+            _fold_of_curvature(za, zd, zb, _place(x, (node[0], node[3], node[6]), za, zd, -1.0), has[3]),
+            _fold_of_curvature(zd, zb, za, _place(x, (node[3], node[1], node[7]), zd, zb, -1.0), has[4]),
         ],
         axis=1,
     )
@@ -275,7 +277,7 @@ def _curvature_rows(x: Floats, index: Ints, there: NDArray[np.bool_]) -> tuple[F
     """sqrt(A) K (m, 3, 9) by fold angles, K as (xx, yy, sqrt 2 xy) in the triangle's plane, and the areas (m,)."""
     za = np.zeros(len(index), complex)
     zb = za + np.linalg.norm(x[index[:, 1]] - x[index[:, 0]], axis=1)
-    z = np.stack([za, zb, _place(x, index[:, 0], index[:, 1], index[:, 2], za, zb, 1.0)], axis=1)
+    z = np.stack([za, zb, _place(x, index.T[:3], za, zb, 1.0)], axis=1)
     edges = np.roll(z, -1, axis=1) - z
     area = 0.5 * zb.real * z[:, 2].imag
     outward = -1j * edges / np.abs(edges)
