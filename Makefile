@@ -8,6 +8,7 @@ EXAMPLE = gh_examples/9.24-membrane
 
 run: .venv/run
 	@mkdir -p out
+	@echo "Relaxing $(EXAMPLE) ..."
 	$(BIN)/hookean relax $(EXAMPLE)/model.3dm --recipe $(EXAMPLE)/recipe.toml -o out/membrane.3dm \
 		--picture out/membrane.png --csv out/membrane.csv
 	@$(BIN)/hookean serve --port $(PORT)
@@ -31,12 +32,14 @@ lint: .venv/test
 
 .venv/run: pyproject.toml
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'hookean needs Python 3.11 or newer: make PYTHON=python3.12')"
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	@echo "Installing into .venv, a minute or two ..."
+	@$(PYTHON) -m venv .venv
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
 	@touch $@
 
 .venv/test: .venv/run
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@echo "Installing what the tests need ..."
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
 	@touch $@
 
 clean:

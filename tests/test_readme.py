@@ -52,7 +52,7 @@ def test_the_file_line_writes_what_it_says(tmp_path):
     assert words[0] == "hookean"
     for option in ("-o", "--picture", "--csv"):
         place = words.index(option) + 1
-        words[place] = str(tmp_path / words[place])
+        words[place] = str(tmp_path / Path(words[place]).name)
     command = [sys.executable, "-m", "hookean.cli", *words[1:]]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr

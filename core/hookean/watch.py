@@ -115,7 +115,8 @@ class Watch:
             return f"Collapsed after {spent} iterations; the last good shape is returned. {self.collapse}."
         if status is Status.DIVERGED:
             advice = stability.warning(system, self.good) if self.method.physical else ""
-            advice = advice or "Look for loads that nothing holds"
+            anchored = any(len(anchor.particles) for anchor in system.held)
+            advice = advice or ("Look for loads that nothing holds" if anchored else "The scene has no anchors: hold some")
             return f"Diverged after {spent} iterations at {self.fault}; the last good shape is returned. {advice}."
         if status is Status.STALLED:
             return (
