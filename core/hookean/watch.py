@@ -116,7 +116,7 @@ class Watch:
         if status is Status.DIVERGED:
             advice = stability.warning(system, self.good) if self.method.physical else ""
             anchored = any(len(anchor.particles) for anchor in system.held)
-            advice = advice or ("Look for loads that nothing holds" if anchored else "The scene has no anchors: hold some")
+            advice = advice or ("Look for loads that nothing holds" if anchored else "No particle is held: add anchors")
             return f"Diverged after {spent} iterations at {self.fault}; the last good shape is returned. {advice}."
         if status is Status.STALLED:
             return (
