@@ -20,7 +20,7 @@ soak: .venv/test
 	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile
 
 bench: .venv/test
-	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/run.py $(if $(wildcard ../shared/bench),--shared ../shared/bench)
 
 docs: .venv/run
 	$(BIN)/python -c "from hookean.catalogue import page; print(page(), end='')" > docs/forces.md
