@@ -72,7 +72,7 @@ def serve(
     host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port to listen on; 0: any free one", min=0, max=65535)] = 8765,
 ) -> None:
-    """Start the local service: HTTP, and a page to watch shapes relax."""
+    """Start the local service: the same over HTTP, until Ctrl-C."""
     import importlib
 
     try:

@@ -16,7 +16,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from hookean_server.app import create_app
-from hookean_server.pool import end_fork_server
+from hookean_server.pool import FORKED, _context, end_fork_server
 from hookean_server.ports import Taken, take
 from hookean_server.settings import Settings
 
@@ -57,6 +57,7 @@ def serve(host: str = "127.0.0.1", port: int = 8765, settings: Settings | None =
     )
     server = Server(config, app)
     try:
+        _start_fork_server()
         server.run(sockets=[sock])
     except KeyboardInterrupt:
         pass
@@ -65,6 +66,21 @@ def serve(host: str = "127.0.0.1", port: int = 8765, settings: Settings | None =
         end_fork_server()
         app.state.pool.close()
     return 0
+
+
+def _start_fork_server() -> None:
+    """Start the process that workers are forked from deaf to Ctrl-C, which reaches the whole group, from its birth."""
+    if not FORKED:
+        return
+    from multiprocessing import forkserver, resource_tracker
+
+    _context()
+    resource_tracker.ensure_running()  # it unblocks the signal after its own start
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
 
 
 class Server(uvicorn.Server):

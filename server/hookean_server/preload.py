@@ -1,8 +1,13 @@
 """Imported once by the fork server, so that every worker starts with warm kernels."""
 
-from contextlib import suppress
+import signal
 
-from hookean_server.workers import warm
+# a terminal sends Ctrl-C to every process of the group; the service alone decides what it means
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+from contextlib import suppress  # noqa: E402
+
+from hookean_server.workers import warm  # noqa: E402
 
 with suppress(Exception):
     warm()

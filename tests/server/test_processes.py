@@ -255,6 +255,26 @@ def test_ctrl_c_reaches_the_whole_group() -> None:
     assert process.returncode == 0 and said == ""
 
 
+@pytest.mark.parametrize("seconds", [0.0, 0.05, 0.15, 0.3, 1.0])
+def test_ctrl_c_soon_after_the_start(seconds: float) -> None:
+    """While the fork server starts and warms up too: nothing said, exit code 0, no process left."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "hookean_server", "0"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    process.stdout.readline()
+    time.sleep(seconds)
+    family = psutil.Process(process.pid).children(recursive=True)
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=10)
+    assert process.returncode == 0 and said == ""
+    wait_for(lambda: not any(alive(p) for p in family), 2.0)
+
+
 def test_it_says_where_it_is_and_what_to_try(served: Served) -> None:
     assert served.said.startswith(f"hookean serves at {served.url}")
     line = served.process.stdout.readline()  # type: ignore[union-attr]
