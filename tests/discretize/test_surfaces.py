@@ -165,3 +165,10 @@ def test_bad_input_gets_a_sentence(surface: Any, u: Any, v: Any, says: str) -> N
 def test_what_has_no_faces_is_refused_by_its_name() -> None:
     with pytest.raises(InputError, match=r"^roof: .*no faces"):
         mesh_faces(r.Circle(r.Point3d(0, 0, 0), 1), 2, 2, name="roof")
+
+
+def test_too_few_pieces_round_a_sphere_are_refused():
+    """One piece round and one up leave two poles and no face between them."""
+    sphere = r.Sphere(r.Point3d(0, 0, 0), 1.0).ToNurbsSurface()
+    with pytest.raises(InputError, match="at least 3"):
+        mesh_surface(sphere, 1, 1)

@@ -35,7 +35,10 @@ def mesh_surface(surface: Any, u: int, v: int) -> Mesh:
         return mesh_faces(surface, u, v)
     grid = sample(surface, *counts(u, v))
     ids = merged_ids(grid)
-    return compact(grid.reshape(-1, 3), ids.ravel(), grid_faces(ids))
+    mesh = compact(grid.reshape(-1, 3), ids.ravel(), grid_faces(ids))
+    if not len(mesh.faces):
+        raise InputError("u, v", f"{u} x {v} pieces of a closed surface leave no face; give at least 3 round it")
+    return mesh
 
 
 def counts(u: Any, v: Any) -> tuple[int, int]:
