@@ -1,4 +1,16 @@
-"""hookean: particle-spring form finding. Describe a Scene, relax it, read the forces."""
+"""hookean: particle-spring form finding. Describe a Scene, relax it, read the forces.
+
+    from hookean import Scene, relax
+
+    scene = Scene.read({"forces": [{"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]]]}]})  # or JSON text
+    result = relax(scene)
+    print(result.message, result.force("springs")["force"])
+
+`relax` brings a Scene to equilibrium and returns a Result with its Status. `simulate` yields the Frames of a scene in
+motion; a Simulation is stepped, patched (Patch), saved and loaded. Bad input raises InputError, one sentence with its
+place. Every force is a class here by its name (`hookean.Springs`, `hookean.Unary` ...). docs/scene.md tells of every
+field, docs/forces.md of every force.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +42,17 @@ _HOMES = {
     "simulate": "simulation",
 }
 
-__all__ = ["InputError", *_HOMES]
+__all__ = [
+    "Frame",
+    "InputError",
+    "Patch",
+    "Result",
+    "Scene",
+    "Simulation",
+    "Status",
+    "relax",
+    "simulate",
+]
 
 
 def __getattr__(name: str) -> Any:
@@ -43,3 +65,9 @@ def __getattr__(name: str) -> Any:
         if cls.__name__ == name:
             return cls
     raise AttributeError(f"module 'hookean' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    from hookean.forces import KINDS
+
+    return sorted([*__all__, *(cls.__name__ for cls in KINDS.values()), "__doc__", "__version__"])

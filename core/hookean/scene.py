@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import difflib
 import hashlib
 import json
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
+import re
+from types import UnionType
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, get_args, get_origin
 
 import numpy as np
 from pydantic import Field, ValidationError, field_validator, model_validator
@@ -134,9 +137,7 @@ class Scene(Model):
     particles: Points = Field(
         default=np.zeros((0, 3)), description="Start positions [length]; never merged or renumbered"
     )
-    masses: Positives = Field(
-        default=1.0, description="Mass of given particles [force time^2/length]; welded ones: 1"
-    )
+    masses: Positives = Field(default=1.0, description="Mass of given particles [force time^2/length]; welded ones: 1")
     velocities: Points | None = Field(default=None, description="Start velocities [length/time], one for each particle")
     meshes: dict[str, MeshData] = Field(default={}, description="Meshes by name")
     forces: tuple[AnyForce, ...] = Field(default=(), description="What acts on the particles")
@@ -198,15 +199,135 @@ def faults(error: ValidationError) -> list[InputError]:
     """Every fault of a validation error as pointer and sentence."""
     found = []
     kinds = set(KINDS)
-    for entry in error.errors(include_url=False, include_input=False):
+    root = _model(error.title)
+    for entry in error.errors(include_url=False):
         context = entry.get("ctx", {})
         # pydantic names the chosen class of a union in the location; a pointer has no such step
         place = entry["loc"]
         steps = [str(s) for i, s in enumerate(place) if not (s in kinds and i == 2 and place[0] == "forces")]
         pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
         pointer += str(context.get("at", ""))
-        sentence = str(context.get("sentence") or entry["msg"])
+        sentence = str(context.get("sentence") or _sentence(entry, root))
         found.append(InputError(pointer or "/", sentence))
+    return found
+
+
+def _sentence(entry: Any, root: type[Model] | None) -> str:
+    """What pydantic found, in our words: what was given, what is allowed."""
+    kind, context, given = entry["type"], entry.get("ctx", {}), _shown(entry["input"])
+    if kind in ("extra_forbidden", "missing"):
+        name, owner = str(entry["loc"][-1]), _owner(root, entry["loc"][:-1])
+        if owner is None:
+            return f"{_shown(name)} is not known here" if kind == "extra_forbidden" else f"{name} is needed"
+        if kind == "missing":
+            field = owner.model_fields.get(name)
+            return f"{name} is needed: {field.description}" if field and field.description else f"{name} is needed"
+        return f"{_shown(name)} is no field of {_called(owner)}; {_meant(name, list(owner.model_fields), 'it has')}"
+    if kind == "union_tag_invalid":
+        known = re.findall(r"'([^']*)'", context["expected_tags"])
+        return f"kind {_shown(context['tag'])} is none; {_meant(context['tag'], known, 'there are', always=True)}"
+    if kind == "union_tag_not_found":
+        return f"kind is needed; there are {', '.join(KINDS)}"
+    if kind == "literal_error":
+        allowed = re.findall(r"'([^']*)'", context["expected"])
+        return f"{given} given; {_meant(str(entry['input']), allowed, 'one of', always=True)}"
+    for rule, key, words in _LIMITS:
+        if kind == rule:
+            return f"{given} given; {words} {context[key]:g} allowed"
+    expected = next((words for start, words in _EXPECTED.items() if kind.startswith(start)), "")
+    if isinstance(entry["input"], str):
+        given = "a text"  # which may be anything, and long
+    return f"{given} given; {expected} expected" if expected else str(entry["msg"])
+
+
+_LIMITS = (
+    ("greater_than", "gt", "more than"),
+    ("greater_than_equal", "ge", "at least"),
+    ("less_than", "lt", "less than"),
+    ("less_than_equal", "le", "at most"),
+)
+_EXPECTED = {
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "dict_type": "an object of names and values",
+    "model_": "an object of names and values",
+    "string_type": "a text",
+    "bool_": "true or false",
+    "int_": "a whole number",
+    "float_": "a number",
+    "finite_number": "a finite number",
+}
+
+
+def _meant(given: Any, known: list[str], introduction: str, *, always: bool = False) -> str:
+    """The nearest known name as a question, or all of them; with `always` both."""
+    near = difflib.get_close_matches(str(given).lower(), {n.lower(): n for n in known}, 1)
+    nearest = next((n for n in known if near and n.lower() == near[0]), None)
+    listed = f"{introduction} {', '.join(known)}"
+    if nearest is None:
+        return listed
+    return f"{listed}; did you mean {nearest}?" if always else f"did you mean {nearest}?"
+
+
+def _shown(value: Any) -> str:
+    """A given value as JSON, if it is short; else what it is."""
+    if isinstance(value, str | int | float) or value is None:
+        text = json.dumps(value if not isinstance(value, str) else value[:60])
+        return text if len(text) <= 80 else f"{text[:60]}..."
+    if isinstance(value, dict):
+        return "an object"
+    return "a list" if isinstance(value, list | tuple) else type(value).__name__
+
+
+def _called(model: type[Model]) -> str:
+    """What a person calls a model: the kind of a force, else its name."""
+    if issubclass(model, Force):
+        return str(model.model_fields["kind"].default)
+    return "mesh" if model is MeshData else model.__name__.lower()
+
+
+def _model(title: str) -> type[Model] | None:
+    """The model that a validation error is about."""
+    waiting: list[type[Model]] = [Model]
+    for model in waiting:
+        if model.__name__ == title:
+            return model
+        waiting += model.__subclasses__()
+    return None
+
+
+def _owner(root: type[Model] | None, place: tuple[Any, ...]) -> type[Model] | None:
+    """The model at a location within `root`, found by the annotations of fields."""
+    hints: list[Any] = [root]
+    for step in place:
+        hints = [inner for hint in hints for inner in _inside(hint, step)]
+    found = [h for hint in hints for h in _alternatives(hint) if isinstance(h, type) and issubclass(h, Model)]
+    return found[0] if len(found) == 1 else None
+
+
+def _alternatives(hint: Any) -> list[Any]:
+    """A hint without `Annotated`, and the members of a union."""
+    if get_origin(hint) is Annotated:
+        return _alternatives(get_args(hint)[0])
+    if get_origin(hint) in (Union, UnionType):
+        return [a for member in get_args(hint) for a in _alternatives(member)]
+    return [hint]
+
+
+def _inside(hint: Any, step: Any) -> list[Any]:
+    """The hints one step of a location further in."""
+    found: list[Any] = []
+    for option in _alternatives(hint):
+        origin, inner = get_origin(option), get_args(option)
+        if origin in (tuple, list):
+            found += [a for a in inner if a is not Ellipsis]
+        elif origin is dict:
+            found.append(inner[1])
+        elif isinstance(option, type) and issubclass(option, Model):
+            if step in option.model_fields:
+                found.append(option.model_fields[step].annotation)
+            elif issubclass(option, Force) and step == _called(option):
+                found.append(option)
     return found
 
 

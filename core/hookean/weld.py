@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic.fields import FieldInfo
 from scipy.spatial import cKDTree
 
+from hookean.columns import Vector, Vectors
 from hookean.errors import InputError
 from hookean.forces import Block, Force
 from hookean.forces.base import PLACES
@@ -247,12 +249,21 @@ def fits(force: Force, pointer: str, welded: Welded) -> None:
     if not placed or (force.element_arity > 2 and getattr(force, "mesh", None) is not None):
         return
     count = len(welded.elements(force))
-    for name in type(force).model_fields:
+    for name, column in type(force).model_fields.items():
         value = getattr(force, name)
         if name in PLACES or name in force.shared or not isinstance(value, np.ndarray):
             continue
-        single = value.shape == (3,) and name in ("vector", "direction", "point", "normal")
+        single = value.shape == (3,) and _takes_a_vector(column)
         if not single and len(value) != count:
             raise InputError(
                 f"{pointer}/{name}", f"{len(value)} values for {count} elements; give one value or one for each"
             )
+
+
+def _takes_a_vector(column: FieldInfo) -> bool:
+    """Whether a column's type is `Vector` or `Vectors`, so that three numbers are one value."""
+    marks = [*column.metadata, *(mark for option in get_args(column.annotation) for mark in get_args(option)[1:])]
+    return any(mark is kind for mark in marks for kind in _ONE_VECTOR)
+
+
+_ONE_VECTOR = (get_args(Vector)[1], get_args(Vectors)[1])

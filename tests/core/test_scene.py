@@ -110,18 +110,29 @@ def test_arrays_may_come_as_buffers(points: list[tuple[float, float, float]]):
         ("/forces/0/particles", [[0, -1]], "/forces/0/particles/0/1", "counted from 0"),
         ("/forces/0/particles", [[0, 1.5]], "/forces/0/particles/0/1", "whole"),
         ("/forces/0/particles", [[0, True]], "/forces/0/particles/0/1", "whole"),
-        ("/forces/0/kind", "sprngs", "/forces/0", "springs"),
-        ("/forces/0/stifness", 10, "/forces/0/stifness", "not permitted"),
+        ("/forces/0/kind", "sprngs", "/forces/0", 'kind "sprngs" is none; there are anchor_spring, bend'),
+        ("/forces/0/kind", "sprngs", "/forces/0", "unary; did you mean springs?"),
+        ("/forces/0/stifness", 10, "/forces/0/stifness", '"stifness" is no field of springs; did you mean stiffness?'),
+        ("/forces/0/qqq", 10, "/forces/0/qqq", '"qqq" is no field of springs; it has name, '),
+        ("/anchors/0/partikles", [0], "/anchors/0/partikles", "no field of anchor; did you mean particles?"),
+        ("/settings/tolerence", 1, "/settings/tolerence", "no field of settings; did you mean tolerance?"),
+        ("/settings/floor", {"hight": 1}, "/settings/floor/hight", "no field of floor"),
+        ("/meshes/skin/face", [], "/meshes/skin/face", "no field of mesh; did you mean faces?"),
+        ("/ancors", [], "/ancors", "no field of scene; did you mean anchors?"),
+        ("/forces/0", {"kind": "unary", "points": []}, "/forces/0/vector", "vector is needed: F [force], one vector"),
+        ("/forces/0", {"particles": []}, "/forces/0", "kind is needed; there are anchor_spring"),
+        ("/forces", 3, "/forces", "3 given; a list expected"),
         ("/forces/2/mesh", "skn", "/forces/2/mesh", "'skin'"),
         ("/forces/0/particles", None, "/forces/0", "exactly one of particles, lines, mesh"),
         ("/meshes/skin/faces/0/3", 4, "/meshes/skin/faces/0/3", "vertex 4 does not exist"),
         ("/anchors/1/targets", [[0, 0, 0], [1, 1, 1]], "/anchors/1/targets", "2 targets for 1"),
         ("/anchors/0/axes", "w", "/anchors/0/axes", "xyz"),
         ("/settings/solver", "magic", "/settings/solver", "relaxation"),
-        ("/settings/time_step", 0, "/settings/time_step", "greater than 0"),
+        ("/settings/time_step", 0, "/settings/time_step", "0 given; more than 0 allowed"),
         ("/masses", 0, "/masses", "more than 0"),
         ("/masses", [1, 2, 3], "/masses", "3 masses for 2 particles"),
-        ("/units/length", "parsec", "/units/length", "'mm'"),
+        ("/units/length", "parsec", "/units/length", '"parsec" given; one of mm, cm, dm'),
+        ("/units/force", "KN", "/units/force", '"KN" given; one of mN, N, kN, MN, lbf, kip; did you mean kN?'),
     ],
 )
 def test_a_fault_is_one_sentence_with_its_place(path: str, value: object, pointer: str, says: str):
@@ -167,3 +178,23 @@ def test_units_are_one_consistent_system():
     metres, millimetres = Units(), Units(length="mm", force="kN")
     assert metres.factor("stiffness", millimetres) == pytest.approx(1e-6)
     assert millimetres.factor("force length^2", metres) == pytest.approx(1e-3)
+
+
+def test_one_vector_is_one_value_whatever_its_name():
+    """A new force's own columns of type Vector or Vectors: three numbers fit any count of elements."""
+    from hookean.columns import Reals, Vector, Vectors
+    from hookean.forces.unary import Unary
+    from hookean.weld import Welded, fits
+
+    class Wind(Unary):
+        blow: Vectors | None = None
+        lee: Vector | None = None
+        gusts: Reals = 1.0
+
+    places = Welded(Scene.read({"particles": [[0, 0, 0], [1, 0, 0]]}))
+    given = {"particles": [0, 1], "vector": [0, 0, 1]}
+    fits(Wind(**given, blow=[1, 0, 0], lee=[0, 1, 0]), "/forces/0", places)
+    fits(Wind(**given, blow=[[1, 0, 0], [2, 0, 0]]), "/forces/0", places)
+    for wrong in ({"blow": [[1, 0, 0]] * 3}, {"gusts": [1, 2, 3]}):
+        with pytest.raises(InputError, match="3 values for 2 elements"):
+            fits(Wind(**given, **wrong), "/forces/0", places)
