@@ -12,7 +12,8 @@ ROOT = Path(__file__).parents[1]
 
 def test_the_page_of_forces_is_the_catalogue():
     """docs/forces.md is what `make docs` would write now."""
-    assert (ROOT / "docs" / "forces.md").read_text(encoding="utf-8") == page()
+    same = (ROOT / "docs" / "forces.md").read_text(encoding="utf-8") == page()
+    assert same, "docs/forces.md is not what the classes say: run make docs"
 
 
 def test_the_recipe_and_the_limits_of_the_docs_are_read():
