@@ -184,6 +184,28 @@ def test_the_unit_of_the_file_changes_no_force(tmp_path: Path, unit: str) -> Non
     assert total == pytest.approx(10.4679154891668 * metre[unit], rel=1e-11)
 
 
+def test_without_a_recipe_the_unit_of_the_file_changes_no_force(tmp_path: Path) -> None:
+    found = []
+    for unit, per_metre in (("Meters", 1.0), ("Millimeters", 1e3), ("Inches", 1 / 0.0254)):
+        path = drawn(
+            tmp_path / f"{unit}.3dm",
+            [
+                NewObject(LINE * per_metre, "springs", user_text={"divide": "5", "load": "-20", "rest_length": "1.5"}),
+                NewObject((LINE + [0, 3, 0]) * per_metre, "cables", user_text={"divide": "4", "load": "0, 0, -5"}),
+                *(NewObject((LINE[i] + [0, y, 0]) * per_metre, "anchors") for i in (0, 1) for y in (0, 3)),
+            ],
+            unit,
+        )
+        found.append(relax_file(path, tmp_path / f"{unit}-out.3dm"))
+        assert any(line.startswith("units: m, N, s; the file is in ") for line in explain_file(path))
+        assert found[-1].result.converged
+    for name in ("springs", "cables"):
+        first, *others = (f.result.force(name)["force"] for f in found)
+        assert first.max() > 1.0
+        for other in others:
+            assert np.allclose(other, first, rtol=1e-9, atol=1e-9)
+
+
 def test_own_output_relaxes_to_the_same_file(cable: Path, tmp_path: Path) -> None:
     first, again, third = (tmp_path / name for name in ("1.3dm", "2.3dm", "3.3dm"))
     one = relax_file(cable, first, CABLE)
@@ -294,7 +316,7 @@ def test_lines_drawn_twice_and_anchors_that_miss_are_told(tmp_path: Path) -> Non
     )
     recipe = '[[forces]]\nkind = "springs"\nlines = "layer:cable"\n[[anchors]]\npoints = "*, ends:layer:cable"\n'
     warnings = relax_file(source, None, recipe).warnings
-    assert any("1 elements join the same particles" in w for w in warnings)
+    assert any("1 element joins the same particles" in w for w in warnings)
     assert any("no particle at (3, 3, 3)" in w for w in warnings)
 
 

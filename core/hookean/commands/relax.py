@@ -8,11 +8,14 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from hookean.errors import InputError
+
+if TYPE_CHECKING:
+    from hookean.result import Result
 
 CONVERGED, EXCEEDED, BAD_INPUT, NOT_CONVERGED, STOPPED = 0, 1, 2, 3, 130
 SHOW_AFTER = 0.5  # seconds of solving before a progress line appears
@@ -89,9 +92,15 @@ def _one(job: _Job, recipe: str | None, name: str, limits: dict[str, Any] | None
     if not quiet:
         where = f" -> {job.output}" if job.output is not None else " (nothing written: give -o)"
         typer.echo(f"{job.source.name}: {found.result.message}{where}")
-        for line in found.result.summary():
+        for line in _summary(found.result):
             typer.echo(f"  {line}")
     return EXCEEDED if found.exceeded else CONVERGED
+
+
+def _summary(result: Result) -> list[str]:
+    first, *more = result.summary()
+    merged = result.report.merged
+    return [first, *([f"{merged} point{'s' * (merged != 1)} merged"] if merged else []), *more]
 
 
 def _explained(file: Path, recipe: str | None, name: str) -> int:

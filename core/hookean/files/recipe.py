@@ -48,7 +48,8 @@ from typing import TYPE_CHECKING, Any
 from hookean.errors import InputError
 from hookean.files.recipe_build import Built, build
 from hookean.files.recipe_drawing import NO_LAYER, Drawing, Item, drawing
-from hookean.files.recipe_select import listed
+from hookean.files.recipe_notes import notes
+from hookean.files.recipe_select import count, listed
 from hookean.files.threedm_model import Model
 
 if TYPE_CHECKING:
@@ -70,11 +71,12 @@ def __getattr__(name: str) -> Any:
 @dataclass(frozen=True, eq=False)
 class Understood:
     """How a file was read: the scene with where it came from, lines that tell a person, and a sentence where the
-    file holds nothing to relax."""
+    file holds nothing to relax; `notes` on what was left out, guessed or may be misspelt."""
 
     built: Built
     lines: list[str]
     nothing: str = ""
+    notes: tuple[str, ...] = ()
 
 
 def parse_recipe(text: str, name: str = "recipe") -> dict[str, Any]:
@@ -95,9 +97,9 @@ def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Underst
     Raises InputError: a selector that finds nothing, an object that does not fit, a fault of the scene.
     """
     if recipe is None:
-        from hookean.files.recipe_convention import by_convention
+        from hookean.files.recipe_convention import UNITS, by_convention
 
-        seen = drawing(model)
+        seen = drawing(model, UNITS)
         built, said, nothing = by_convention(seen)
     else:
         nothing = ""
@@ -107,7 +109,8 @@ def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Underst
         seen = drawing(model, recipe.get("units"), hidden=hidden)
         built, said = build(seen, recipe), "a recipe"
     lines = _told(seen, built, said)
-    return Understood(built, [*lines, f"{model.name} {nothing}"] if nothing else lines, nothing)
+    told = tuple(notes(seen, built, conventional=recipe is None))
+    return Understood(built, [*lines, f"{model.name} {nothing}"] if nothing else lines, nothing, told)
 
 
 def _told(seen: Drawing, built: Built, said: str) -> list[str]:
@@ -135,12 +138,12 @@ def _told(seen: Drawing, built: Built, said: str) -> list[str]:
 
 
 def _counts(seen: Drawing) -> str:
-    parts = [f"{len(seen.items)} visible objects"]
+    parts = [count(len(seen.items), "visible object")]
     locked = sum(item.locked for item in seen.items)
     if locked:
         parts.append(f"{locked} of them locked (used like the others)")
     if seen.instances:
-        parts.append(f"{seen.instances} block instances (expanded)")
+        parts.append(f"{count(seen.instances, 'block instance')} (expanded)")
     if seen.hidden:
         parts.append(f"{len(seen.hidden)} hidden (left out)")
     if seen.paper:
@@ -148,7 +151,7 @@ def _counts(seen: Drawing) -> str:
     if seen.own:
         parts.append(f"{seen.own} of an earlier run (left out)")
     if seen.model.lights:
-        parts.append(f"{seen.model.lights} lights")
+        parts.append(count(seen.model.lights, "light"))
     return ", ".join(parts)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from hookean.errors import InputError
 from hookean.files import recipe_shapes as shapes
 from hookean.files.recipe_drawing import Drawing, Item
-from hookean.files.recipe_select import Term, is_selector, listed, select, terms
+from hookean.files.recipe_select import Term, count, is_selector, listed, select, terms
 from hookean.files.recipe_shapes import Shape, Split
 from hookean.scene import Scene
 
@@ -36,6 +36,7 @@ class Built:
     uses: dict[Item, list[str]]
     left: dict[Item, str]
     notes: list[str] = field(default_factory=list)
+    guessed: bool = False  # anchors were not marked, so loose ends are held
 
 
 def build(drawing: Drawing, recipe: Mapping[str, Any], *, lenient: bool = False) -> Built:
@@ -136,16 +137,17 @@ class _Builder:
             used = self._shape(name, value, own, f"{pointer}/{name}")
             if name == "mesh":
                 table[name] = self._named(value, used, own)
-                count = f"a mesh of {len(used.array)} vertices and {len(used.faces)} faces"  # type: ignore[arg-type]
+                faces = 0 if used.faces is None else len(used.faces)
+                size = f"a mesh of {count(len(used.array), 'vertex', 'vertices')} and {count(faces, 'face')}"
             else:
                 table[name] = used.array
-                count = f"{len(used.array)} {name}"
+                size = count(len(used.array), name.removesuffix("s"))
             owners = [used.items[i] for i in np.unique(used.owner)]
             self._use(owners, said)
-            self.notes.append(f"{group}[{number}] {said}: {count} from {shapes.counted(owners)}")
+            self.notes.append(f"{group}[{number}] {said}: {size} from {shapes.counted(owners)}")
         plain = {k: v for k, v in table.items() if k not in SPLIT_FIELDS}
         if used is None and isinstance(table.get("points"), np.ndarray):
-            self.notes.append(f"{group}[{number}] {said}: {len(table['points'])} points")
+            self.notes.append(f"{group}[{number}] {said}: {count(len(table['points']), 'point')}")
         return (shapes.pulling_only(plain, pointer) if "tension_only" in plain else plain), used
 
     def _use(self, items: Sequence[Item], said: str) -> None:
@@ -239,10 +241,10 @@ class _Builder:
         key = (own, *shape.items)
         if key not in self.known:
             base = value if isinstance(value, str) else ", ".join(value)
-            name, count = base, 1
+            name, number = base, 1
             while name in self.meshes or name in self.literal:
-                count += 1
-                name = f"{base} ({count})"
+                number += 1
+                name = f"{base} ({number})"
             self.known[key] = name
             self.meshes[name] = shape
         return self.known[key]
@@ -268,7 +270,9 @@ class _Builder:
                 named = {"name": item.name or item.layer, **plain, **more, "points": points * self.drawing.factor}
                 found.append((named, item))
         self._use([item for _, item in found if item is not None], f"{kind} that rides along")
-        self.notes.append(f"geometry[{number}]: {len(found)} {kind}s ride along")
+        self.notes.append(
+            f"geometry[{number}]: {count(len(found), kind)} {'rides' if len(found) == 1 else 'ride'} along"
+        )
         return found
 
 

@@ -13,7 +13,10 @@
 User text of an object overrides: `stiffness`, `damping`, `rest_factor`, `rest_length`, `upper_cutoff`,
 `lower_cutoff`, `plasticity`, `edges` (meshes), `divide` ("20", "10, 20"; curved curves are cut into 10 and surfaces
 into 10 x 10 without it), `load` ("0, 0, -20", or "-20" along z; on springs and meshes it acts on every particle of
-the object), `axes` of anchors ("xz"). Numbers are in the file's length unit, N and s.
+the object), `axes` of anchors ("xz").
+
+The defaults and all numbers of user text are in m, N and s, whatever the file's length unit: k = 1000 is 1000 N/m, and
+the same model in mm, m or inches gives the same forces.
 
 A file that names no such layer is taken as drawn: curves become springs with their loose ends held, meshes
 and open surfaces membranes with their naked vertices held, points anchors. Where a file names layers but no anchors,
@@ -35,7 +38,7 @@ from hookean.errors import InputError
 from hookean.files import recipe_shapes as shapes
 from hookean.files.recipe_build import Built, build
 from hookean.files.recipe_drawing import Drawing, Item, above, layers_of
-from hookean.files.recipe_select import listed
+from hookean.files.recipe_select import count, listed
 from hookean.files.threedm_model import SEPARATOR
 
 ROLES = {
@@ -57,6 +60,10 @@ NUMBERS = (
     "plasticity",
 )
 DEFAULT_DIVIDE = 10
+TEXTS = (*NUMBERS, "edges", "divide", "load", "axes")
+"""The keys of user text that mean something."""
+UNITS = {"length": "m", "force": "N", "time": "s"}
+FLOOR = "marks the height of the floor"
 
 
 @dataclass
@@ -96,14 +103,15 @@ def by_convention(drawing: Drawing) -> tuple[Built, str, str]:
     reading = _Reading()
     for item, role in roles.items():
         _read(item, role, reading)
-    if not reading.anchors:
+    marked = bool(reading.anchors)
+    if not marked:
         _hold_loose(drawing, reading)
         said += "; nothing is marked as an anchor: loose ends and naked vertices are held"
     nothing = ""
     if not reading.elastic:
         why = next((f"; {item.label}: {why}" for item, why in reading.left.items()), "")
         nothing = (
-            f"holds nothing to relax ({len(drawing.items)} visible objects on layers "
+            f"holds nothing to relax ({count(len(drawing.items), 'visible object')} on layers "
             f"{listed(layers_of(drawing.items))}{why}); put curves or meshes on a layer named springs, cables or "
             "membrane, or give a recipe"
         )
@@ -112,6 +120,7 @@ def by_convention(drawing: Drawing) -> tuple[Built, str, str]:
         reading.anchors.clear()
     built = build(drawing, _recipe(drawing, reading), lenient=True)
     built.left = {i: why for i, why in {**reading.left, **built.left}.items() if i not in built.uses}
+    built.guessed = not marked and not nothing
     return built, said, nothing
 
 
@@ -132,7 +141,7 @@ def _read(item: Item, role: str, reading: _Reading) -> None:
     elif role == "floor":
         box = item.geometry.GetBoundingBox()
         reading.floor = max(box.Max.Z, -np.inf if reading.floor is None else reading.floor)
-        reading.left[item] = "marks the height of the floor"
+        reading.left[item] = FLOOR
     elif role == "geometry":
         _along(item, reading)
     elif role:
@@ -276,6 +285,11 @@ def _leave(item: Item, reading: _Reading, why: str) -> None:
 
 
 def _recipe(drawing: Drawing, reading: _Reading) -> dict[str, Any]:
+    names: dict[str, int] = {}
+    for table in reading.forces.values():
+        name = str(table["name"])
+        names[name] = names.get(name, 0) + 1
+        table["name"] = name if names[name] == 1 else f"{name}/{names[name]}"
     recipe: dict[str, Any] = {"forces": list(reading.forces.values()), "anchors": list(reading.anchors.values())}
     recipe["geometry"] = reading.geometry
     if reading.floor is not None:

@@ -140,7 +140,14 @@ def _has(drawing: Drawing, key: str) -> str:
         return f"its object names are {listed(n for item in drawing.items for n in item.names if n)}"
     if key == "text":
         return f"its user text keys are {listed(k for item in drawing.items for k in item.text)}"
-    return f"the file has {len(drawing.items)} visible objects"
+    return f"the file has {count(len(drawing.items), 'visible object')}"
+
+
+def count(number: int, one: str, many: str = "") -> str:
+    """A number with its noun, such as `1 point` and `2 points`."""
+    if number != 1:
+        one = many or one + ("es" if one.endswith(("sh", "s", "x")) else "s")
+    return f"{number} {one}"
 
 
 def listed(names: Iterable[str], most: int = 12) -> str:

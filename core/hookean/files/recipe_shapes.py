@@ -16,6 +16,7 @@ from hookean.discretize.duplicates import unique_points
 from hookean.discretize.meshes import as_mesh, corners, naked_vertices, tidy_faces
 from hookean.errors import InputError
 from hookean.files.recipe_drawing import Item
+from hookean.files.recipe_select import count
 from hookean.files.threedm_model import rhino
 from hookean.mesh import Mesh
 
@@ -200,7 +201,7 @@ def counted(items: Sequence[Item]) -> str:
     kinds: dict[str, int] = {}
     for item in items:
         kinds[item.kind] = kinds.get(item.kind, 0) + 1
-    return ", ".join(f"{n} {kind}" for kind, n in kinds.items()) or "nothing"
+    return ", ".join(count(n, kind) for kind, n in kinds.items()) or "nothing"
 
 
 def joined(items: Sequence[Item], meshes: Sequence[Mesh], factor: float) -> Shape:

@@ -22,6 +22,7 @@ from hookean.files.recipe import parse_recipe, understand
 from hookean.files.recipe_build import Built
 from hookean.files.recipe_drawing import UNIT_NAMES
 from hookean.files.recipe_output import additions
+from hookean.files.recipe_select import count
 from hookean.files.threedm_atomic import check_target, put
 from hookean.scene import Scene
 
@@ -149,7 +150,7 @@ def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
         understood.built,
         seen.factor,
         seen.unit,
-        tuple(model.warnings),
+        (*model.warnings, *understood.notes),
         nothing=understood.nothing,
     )
 
@@ -227,7 +228,9 @@ def _doubled(parts: list[tables.Section]) -> list[str]:
         if part.internal and part.particles.shape[1] == 2:
             twice = len(part.particles) - len(np.unique(np.sort(part.particles, axis=1), axis=0))
             if twice:
-                said.append(f"{part.name}: {twice} elements join the same particles as another and pull twice")
+                join, pull = ("joins", "pulls") if twice == 1 else ("join", "pull")
+                elements = count(twice, "element")
+                said.append(f"{part.name}: {elements} {join} the same particles as another and {pull} twice")
     return said
 
 
