@@ -24,3 +24,44 @@ def test_the_recipe_and_the_limits_of_the_docs_are_read():
     recipe, limits = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "rhino-files.md").read_text("utf-8"), re.S)
     assert parse_recipe(recipe)["forces"][0]["lines"] == "layer:cables"
     assert read_limits(limits, "limits.toml")
+
+
+SCENE = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
+
+
+def test_the_blocks_of_the_page_of_the_scene_run(tmp_path, monkeypatch, capsys):
+    """The JSON of docs/scene.md is a scene that relaxes, its Python runs from top to bottom."""
+    from hookean import Scene, relax
+
+    (text,) = re.findall(r"```json\n(.*?)```", SCENE, re.S)
+    assert relax(Scene.read(text)).converged
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    for code in re.findall(r"```python\n(.*?)```", SCENE, re.S):
+        exec(compile(code, "docs/scene.md", "exec"), names)
+    said = capsys.readouterr().out
+    assert said.startswith("converged In equilibrium") and "did you mean stiffness?" in said
+
+
+def test_the_page_of_the_scene_names_everything():
+    """Every field of scene, anchor, geometry, settings, patch and result, every solver and status, every route."""
+    from dataclasses import fields
+
+    from hookean import Patch, Result, Scene, Status
+    from hookean.scene import Anchor, Geometry, MeshData, Settings
+    from hookean.solvers import NAMES
+    from hookean_server.app import create_app
+    from hookean_server.settings import Settings as ServerSettings
+
+    wanted = {n for model in (Scene, Anchor, Geometry, MeshData, Settings, Patch) for n in model.model_fields}
+    wanted |= {f.name for f in fields(Result)} | set(NAMES) | {str(s) for s in Status}
+    missing = sorted(name for name in wanted if f"`{name}`" not in SCENE)
+    assert not missing, f"docs/scene.md does not tell of {', '.join(missing)}"
+    for name, field in Settings.model_fields.items():
+        told = re.search(rf"^\| `{name}` \| ([^ |]+)", SCENE, re.M)
+        assert told and told[1] == (
+            "none" if field.default is None else f"{field.default}".replace("1e-06", "1e-6").removesuffix(".0")
+        )
+    routes = set(create_app(ServerSettings()).openapi()["paths"])
+    for route in re.findall(r"`(?:GET|POST) (/v1[^`]*)`", SCENE):
+        assert route in routes | {"/v1/openapi.json", "/v1/discretize/{operation}"}, route
