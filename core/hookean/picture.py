@@ -68,16 +68,24 @@ def _is_png(data: bytes) -> None:
         raise InputError("picture", "did not come out as PNG; try again with another version of matplotlib")
 
 
-def _colours(low: float, high: float) -> tuple[Any, float, float]:
-    """Colour map and the forces at its two ends: about 0 where both signs occur, else over the extremes."""
-    from matplotlib.colors import LinearSegmentedColormap as Map
-
+def ramp(low: float, high: float) -> tuple[list[str], float, float]:
+    """Colours at even steps and the forces at their two ends: about 0 where both signs occur, else over the extremes
+    `low` and `high`; where there are no forces, not finite, as for zeros."""
+    low, high = (low, high) if low <= high else (0.0, 0.0)
     largest = max(abs(low), abs(high))
     if low < -1e-9 * largest and high > 1e-9 * largest:
-        return Map.from_list("both", [*COLD, "#d3d3d3", *WARM]), -largest, largest
+        return [*COLD, "#d3d3d3", *WARM], -largest, largest
     colours = COLD if high <= 1e-9 * largest and largest > 0 else WARM
     margin = 0.0 if high > low else max(abs(high), 1.0) * 1e-3
-    return Map.from_list("one", colours), low - margin, high + margin
+    return colours, low - margin, high + margin
+
+
+def _colours(low: float, high: float) -> tuple[Any, float, float]:
+    """Colour map and the forces at its two ends."""
+    from matplotlib.colors import LinearSegmentedColormap as Map
+
+    colours, first, last = ramp(low, high)
+    return Map.from_list("forces", colours), first, last
 
 
 def _paint(result: Result, things: Things, eye: Floats, title: str, size: tuple[int, int]) -> bytes:
@@ -101,7 +109,9 @@ def _paint(result: Result, things: Things, eye: Floats, title: str, size: tuple[
             handles=entries, loc="lower center", bbox_to_anchor=(0.5, 0.012), ncol=len(entries), frameon=False,
             fontsize=13, labelcolor=INK, handletextpad=0.6, columnspacing=2.2,
         )  # fmt: skip
-    if len(things.forces):
+    if len(things.forces) and low == high == 0.0:
+        figure.text(0.885, 0.845, "no force", fontsize=14, color=INK, va="bottom", weight="bold")
+    elif len(things.forces):
         _colour_bar(figure, low, high, unit, scale)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
@@ -156,7 +166,7 @@ def _draw_body(drawing: Any, things: Things, eye: Floats, scale: tuple[Any, floa
     fill = np.concatenate([_light(things.faces, eye), np.zeros((len(lines), 4))])
     edge = np.concatenate([np.zeros((len(faces), 4)), colours])
     width = float(np.clip(90.0 / np.sqrt(len(lines) + 1.0), 0.45, 4.5))
-    widths = np.concatenate([np.zeros(len(faces)), np.where(slack, 0.5 * width, width)])
+    widths = np.concatenate([np.zeros(len(faces)), np.where(slack, max(0.7 * width, 1.2), width)])
     smooth = np.concatenate([np.zeros(len(faces), bool), np.ones(len(lines), bool)])
     drawing.add_collection(
         PolyCollection(

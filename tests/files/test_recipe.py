@@ -216,7 +216,7 @@ def test_geometry_rides_along(draw: Callable[..., Any]) -> None:
         ],
     }
     understood = understand(model, recipe)
-    assert any("geometry[2] lines that rides along: 1 lines" in line for line in understood.lines)
+    assert any("geometry[2] lines that rides along: 1 line " in line for line in understood.lines)
     assert any("curve that rides along" in line for line in understood.lines)
     deck, bow, lines = understood.built.scene.geometry
     assert (deck.name, deck.points.tolist()) == ("edge", LINE.tolist())

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from hookean.result import Result
 
 CONVERGED, EXCEEDED, BAD_INPUT, NOT_CONVERGED, STOPPED = 0, 1, 2, 3, 130
+_VERBS = ("is ", "has ", "holds ", "ends ", "cannot ", "would ")
 SHOW_AFTER = 0.5  # seconds of solving before a progress line appears
 
 
@@ -53,7 +54,7 @@ def run(options: Options) -> int:
         name = options.recipe.name if options.recipe is not None else ""
         if options.explain:
             return max(_explained(file, recipe, name) for file in options.files)
-        limits = _limits(options.check)
+        limits = _limits(options.check), options.check.name if options.check is not None else ""
         jobs = _jobs(options)
     except InputError as error:
         return _bad(error)
@@ -68,12 +69,19 @@ def run(options: Options) -> int:
     return next((code for code in (BAD_INPUT, NOT_CONVERGED, EXCEEDED) if code in codes), CONVERGED)
 
 
-def _one(job: _Job, recipe: str | None, name: str, limits: dict[str, Any] | None, quiet: bool) -> int:
-    from hookean.files.relax_file import relax_file, report_json
+def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] | None, str], quiet: bool) -> int:
+    from hookean.files.relax_file import LimitsError, relax_file, report_json
     from hookean.files.threedm_atomic import put
 
+    fault: InputError | None = None
     with _progress(job.source.name, quiet) as progress:
-        found = relax_file(job.source, job.output, recipe, recipe_name=name, limits=limits, progress=progress)
+        try:
+            found = relax_file(
+                job.source, job.output, recipe, recipe_name=name, limits=limits[0], limits_name=limits[1],
+                progress=progress,
+            )  # fmt: skip
+        except LimitsError as error:
+            found, fault = error.found, error
     if job.report is not None:
         put(job.report, report_json(found), lambda back: None)
     if job.csv is not None:
@@ -87,7 +95,11 @@ def _one(job: _Job, recipe: str | None, name: str, limits: dict[str, Any] | None
     for sentence in found.exceeded:
         typer.echo(f"hookean: {job.source.name}: limit exceeded: {sentence}", err=True)
     if not found.result.converged:
-        typer.echo(f"hookean: {job.source.name}: {found.result.message}", err=True)
+        wrote = f" The last good shape was written to {job.output}." if job.output is not None else ""
+        typer.echo(f"hookean: {job.source.name}: {found.result.message}{wrote}", err=True)
+    if fault is not None:
+        raise fault
+    if not found.result.converged:
         return NOT_CONVERGED
     if not quiet:
         where = f" -> {job.output}" if job.output is not None else " (nothing written: give -o)"
@@ -114,7 +126,10 @@ def _explained(file: Path, recipe: str | None, name: str) -> int:
 
 
 def _bad(error: InputError) -> int:
-    typer.echo(f"hookean: {' '.join(str(error).split())}", err=True)
+    # a sentence that goes on from what it is about needs no colon: "a.toml is a recipe"
+    joint = " " if error.sentence.startswith(_VERBS) and not error.pointer.startswith("/") else ": "
+    said = f"{error.pointer}{joint}{error.sentence}" if error.pointer else error.sentence
+    typer.echo(f"hookean: {' '.join(said.split())}", err=True)
     return BAD_INPUT
 
 

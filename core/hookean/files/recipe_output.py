@@ -15,6 +15,7 @@ from hookean.files.threedm_build import Additions, NewLayer, NewObject
 from hookean.files.threedm_geometry import Points, build
 from hookean.files.threedm_model import SEPARATOR, rhino
 from hookean.mesh import Mesh
+from hookean.picture import ramp
 from hookean.result import Result
 from hookean.system import System
 
@@ -23,42 +24,23 @@ Ints = NDArray[np.int64]
 Colours = NDArray[np.int64]
 
 SLACK = (150, 150, 150)
-# viridis at nine even steps: lightness grows evenly, and it reads the same with any colour vision
-_VIRIDIS = np.array(
-    [
-        [68, 1, 84],
-        [71, 45, 123],
-        [59, 82, 139],
-        [44, 114, 142],
-        [33, 145, 140],
-        [40, 174, 128],
-        [94, 201, 98],
-        [173, 220, 48],
-        [253, 231, 37],
-    ],
-    dtype=np.float64,
-)
 REACTION_SIZE = 0.1  # the largest reaction is drawn this long, as a part of the model's size
 
 
 class Palette:
-    """Colours of forces, from the smallest to the largest of a result; what carries nothing is grey."""
+    """Colours of forces as in the picture of the same result; what carries nothing is grey."""
 
     def __init__(self, parts: Sequence[Section]) -> None:
         every = np.concatenate([np.zeros(0), *(p.columns["force"] for p in parts if p.internal)])
         self.slack = 1e-9 * float(np.abs(every).max(initial=0.0))
-        carrying = every[np.abs(every) > self.slack]
-        self.low = float(carrying.min()) if len(carrying) else 0.0
-        self.high = float(carrying.max()) if len(carrying) else 1.0
+        self.colours, self.low, self.high = ramp(float(every.min(initial=np.inf)), float(every.max(initial=-np.inf)))
 
     def __call__(self, forces: Floats) -> Colours:
         """RGB `(n, 3)` 0-255 of forces `(n,)`."""
-        span = self.high - self.low
-        # forces equal but for rounding are one colour, not the whole range of them
-        even = span > 1e-9 * max(abs(self.low), abs(self.high))
-        t = np.clip((forces - self.low) / span, 0.0, 1.0) if even else np.full(len(forces), 1.0)
-        steps = np.linspace(0.0, 1.0, len(_VIRIDIS))
-        mixed = np.stack([np.interp(t, steps, _VIRIDIS[:, c]) for c in range(3)], axis=1)
+        t = np.clip((forces - self.low) / (self.high - self.low), 0.0, 1.0)
+        stops = np.array([[int(c[i : i + 2], 16) for i in (1, 3, 5)] for c in self.colours], dtype=np.float64)
+        steps = np.linspace(0.0, 1.0, len(stops))
+        mixed = np.stack([np.interp(t, steps, stops[:, c]) for c in range(3)], axis=1)
         mixed[np.abs(forces) <= self.slack] = SLACK
         rounded: Colours = np.rint(mixed).astype(np.int64)
         return rounded
@@ -159,11 +141,25 @@ def _meshes(
             mine = np.flatnonzero(owner == number)
             own = faces[owner[faces[:, 0]] == number] - mine[0]
             points = result.particles[at[mine]] * scale
-            carried = mean[at[mine]]
-            text = {"force": f"{carried.min():.6g} to {carried.max():.6g} {result.units.force}", **_source(item)}
+            text = {**_ranges(system, parts, mesh, item, str(result.units.force)), **_source(item)}
             label = item.name if item is not None else mesh
             found.append(NewObject(Mesh(points, own), layer_name(name), label, None, text, colours=colours[at[mine]]))
     return found
+
+
+def _ranges(system: System, parts: Sequence[Section], mesh: str, item: Item | None, unit: str) -> dict[str, str]:
+    """The least and largest force and strain of the elements that a mesh has from an object, as user text."""
+    found: dict[str, list[Floats]] = {"force": [], "strain": []}
+    for part in parts:
+        if part.internal and getattr(system.scene.forces[part.number], "mesh", None) == mesh:
+            numbers = [i for i, other in enumerate(part.items) if other is item]
+            mine = np.isin(part.owner, numbers) if item is not None else np.ones(len(part.owner), bool)
+            for name in found:
+                if name in part.columns and mine.any():
+                    found[name].append(part.columns[name][mine])
+    units = {"force": f" {unit}", "strain": ""}
+    ends = {name: np.concatenate(values) for name, values in found.items() if values}
+    return {name: f"{v.min():.6g} to {v.max():.6g}{units[name]}" for name, v in ends.items()}
 
 
 def _carried(result: Result, built: Built | None, scale: float) -> list[NewObject]:

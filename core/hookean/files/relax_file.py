@@ -68,6 +68,14 @@ class FileResult:
         return {key: _finite(value) for key, value in plain.items()}
 
 
+class LimitsError(InputError):
+    """Limits that could never be exceeded, found out after the file was relaxed and written: `found`."""
+
+    def __init__(self, error: InputError, found: FileResult) -> None:
+        super().__init__(error.pointer, error.sentence)
+        self.found = found
+
+
 @dataclass(eq=False)
 class _Source:
     """A file read: its scene, where that came from, lengths of the file in the scene's unit and the file's unit."""
@@ -94,6 +102,7 @@ def relax_file(
     *,
     recipe_name: str = "",
     limits: Mapping[str, Any] | None = None,
+    limits_name: str = "limits",
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> FileResult:
@@ -104,7 +113,8 @@ def relax_file(
     cancelled one is not. `limits` as `tables.read_limits` gives them; pointers into the recipe are told behind
     `recipe_name`. The source is never written.
 
-    Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written.
+    Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written; LimitsError,
+    with everything written, where limits name what the file does not have.
     """
     from hookean.result import Status
     from hookean.run import relax_state
@@ -127,10 +137,16 @@ def relax_file(
     )
     report = result.report
     found.warnings = [*read.warnings, *report.warnings, *(u.sentence for u in report.unmatched), *_doubled(parts)]
+    fault: InputError | None = None
     if limits is not None:
-        found.exceeded = tables.exceeded(limits, parts, system, result)
+        try:
+            found.exceeded = tables.exceeded(limits, parts, system, result, limits_name, Path(source).name)
+        except InputError as error:
+            fault = error
     if target is not None and result.status is not Status.CANCELLED:
         _write(found, system, parts, read, Path(source), target)
+    if fault is not None:
+        raise LimitsError(fault, found)
     return found
 
 
@@ -139,9 +155,11 @@ def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
         if recipe_text is not None:
             raise InputError(source.name, "is a JSON file, which says everything itself; recipes go with .3dm files.")
         return _read_json(source)
+    if source.suffix.lower() == ".toml":
+        raise InputError(source.name, "is a recipe; give it with -r, and a .3dm file to relax")
     recipe = None if recipe_text is None else parse_recipe(recipe_text, recipe_name or "recipe")
     model = threedm.read(source)
-    with _about(recipe_name):
+    with _about(recipe_name if recipe is not None else source.name, source.name):
         understood = understand(model, recipe)
     seen = understood.built.drawing
     return _Source(
@@ -156,11 +174,13 @@ def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
 
 
 @contextlib.contextmanager
-def _about(name: str) -> Iterator[None]:
-    """Pointers into a recipe, told with its name."""
+def _about(name: str, source: str = "") -> Iterator[None]:
+    """Pointers into a recipe, told with its name; those to an object, with the file's."""
     try:
         yield
     except InputError as error:
+        if source and error.pointer and not error.pointer.startswith(("/", source)):
+            raise InputError(f"{source}: {error.pointer}", error.sentence) from None
         if not name or not error.pointer.startswith("/"):
             raise
         raise InputError(f"{name} {error.pointer}", error.sentence) from None
@@ -176,6 +196,8 @@ def _read_json(source: Path) -> _Source:
     except InputError as error:
         raise InputError(error.pointer, error.sentence.replace(".3dm", ".json")) from None
     value = parse(data, source.name)
+    if isinstance(value, dict) and ({"result", "rows"} <= value.keys() or {"status", "particles"} <= value.keys()):
+        raise InputError(source.name, "is a result, not a scene; give the file it came from")
     document = None
     with _about(source.name):
         if compas_json.is_document(value):

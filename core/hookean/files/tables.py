@@ -19,6 +19,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -225,13 +226,13 @@ def read_limits(text: str, name: str = "limits") -> dict[str, Any]:
     from hookean.files.recipe import parse_recipe
 
     limits = parse_recipe(text, name)
-    _known(limits, name, (*LIMITS, "units", *_SCOPES))
+    _known(limits, f"{name} ", (*LIMITS, "units", *_SCOPES))
     for scope in _SCOPES:
         tables = limits.get(scope, {})
         if not isinstance(tables, dict):
-            raise InputError(f"{name}/{scope}", f"give tables such as [{scope}.NAME]")
+            raise InputError(f"{name} /{scope}", f"give tables such as [{scope}.NAME]")
         for key, table in tables.items():
-            _known(table, f"{name}/{scope}/{key}", tuple(LIMITS))
+            _known(table, f"{name} /{scope}/{key}", tuple(LIMITS))
     return limits
 
 
@@ -248,20 +249,26 @@ def _known(table: Any, pointer: str, allowed: tuple[str, ...]) -> None:
 
 
 def exceeded(
-    limits: Mapping[str, Any], parts: Sequence[Section], system: System, result: Result, name: str = "limits"
+    limits: Mapping[str, Any],
+    parts: Sequence[Section],
+    system: System,
+    result: Result,
+    name: str = "limits",
+    source: str = "the file",
 ) -> list[str]:
     """A sentence for each limit that is exceeded; InputError where one names a force, layer or anchor that is not
     there, for it could never be exceeded."""
     try:
         units = Units.model_validate({**result.units.model_dump(), **limits.get("units", {})})
     except (ValidationError, TypeError):
-        raise InputError(f"{name}/units", 'give a table such as {length = "m", force = "kN"}') from None
+        raise InputError(f"{name} /units", 'give a table such as {length = "m", force = "kN"}') from None
     found = _check("model", limits, [(p, np.ones(len(p.particles), bool)) for p in parts], system, result, units)
     for scope in _SCOPES:
         for key, table in limits.get(scope, {}).items():
             chosen = [(p, _mask(p, scope, key)) for p in parts]
             if not any(mask.any() for _, mask in chosen):
-                raise InputError(f"{name}/{scope}/{key}", f"there is none; there are {_there(parts, scope)}")
+                there = f"has no such {scope}; it has {_there(parts, scope)}"
+                raise InputError(f"{name} /{scope}/{key}", f"{source} {there}")
             found += _check(f"{scope} {key}", table, chosen, system, result, units)
     return found
 
@@ -273,7 +280,9 @@ def _mask(part: Section, scope: str, key: str) -> NDArray[np.bool_]:
         return np.array([o >= 0 and good[o] for o in part.owner.tolist()], dtype=bool).reshape(count)
     if scope == "anchor":
         return np.array([n == key for n in part.names] or [False] * count, dtype=bool).reshape(count)
-    return np.full(count, part.kind != "reaction" and key in (part.name, part.kind))
+    # forces of one layer without a recipe are numbered: cables, cables/2
+    base = re.sub(r"/\d+$", "", part.name)
+    return np.full(count, part.kind != "reaction" and key in (part.name, part.kind, base))
 
 
 def _there(parts: Sequence[Section], scope: str) -> str:

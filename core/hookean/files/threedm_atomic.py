@@ -20,11 +20,12 @@ def check_target(target: StrPath, source: StrPath | None = None) -> None:
     name = path.name or str(target)
     try:
         if source is not None and _same(target, source):
-            raise InputError(name, "is the file read from, which is never written over; give another path.")
+            raise InputError(name, "the file read from is never written over; give another path.")
         if path.is_dir():
             raise InputError(name, "is a folder; give the path of the file to write.")
         if not path.parent.is_dir():
-            raise InputError(name, "is to be written to a folder that does not exist; make the folder first.")
+            folder = path.parent.as_posix()
+            raise InputError(name, f"is to be written to {folder}, a folder that does not exist; make it first.")
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise
