@@ -70,6 +70,7 @@ def test_relax_writes_everything_asked_for(folder: Path) -> None:
     )
     assert (result.exit_code, result.stderr) == (0, "")
     assert "In equilibrium" in result.stdout and "-> out.3dm" in result.stdout
+    assert "  4 points merged\n" in result.stdout
     assert names(folder) == ["cable.3dm", "out.3dm", "out.csv", "out.json", "out.png", "recipe.toml"]
     assert (folder / "cable.3dm").read_bytes() == before
     rows = (folder / "out.csv").read_text(encoding="utf-8").splitlines()
@@ -102,11 +103,30 @@ def test_limits_exit_with_1_and_say_which(folder: Path) -> None:
     assert run(*arguments).exit_code == 0
 
 
+def test_a_limit_on_a_force_that_is_not_there_stops_no_output(folder: Path) -> None:
+    (folder / "limits.toml").write_text("[force.rope]\nmax_force = 1\n", encoding="utf-8")
+    arguments = ("-o", "out.3dm", "-r", "recipe.toml", "--check", "limits.toml", "--csv", "out.csv")
+    result = run("relax", "cable.3dm", *arguments)
+    assert result.exit_code == 2
+    assert "hookean: limits.toml /force/rope: cable.3dm has no such force; it has" in result.stderr
+    assert (folder / "out.3dm").exists() and (folder / "out.csv").exists()
+
+
+def test_notes_are_told_without_explain(folder: Path) -> None:
+    result = run("relax", "cable.3dm", "-o", "out.3dm", "--report", "out.json")
+    note = "nothing is marked as an anchor: loose ends are held (2 particles)"
+    assert result.stderr == f"hookean: cable.3dm: note: {note}\n"
+    assert note in json.loads((folder / "out.json").read_text(encoding="utf-8"))["warnings"]
+    recipe = run("relax", "recipe.toml")
+    assert recipe.stderr.startswith("hookean: recipe.toml is a recipe; give it with -r")
+
+
 def test_no_equilibrium_exits_with_3_and_writes_the_last_shape(folder: Path) -> None:
     (folder / "recipe.toml").write_text(CABLE + "[settings]\nmax_iterations = 1\n", encoding="utf-8")
     result = run("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml")
     assert result.exit_code == 3
     assert "Not in equilibrium after 1 iterations" in result.stderr
+    assert "The last good shape was written to out.3dm." in result.stderr
     assert len(threedm.read(folder / "out.3dm").objects) > 1
 
 

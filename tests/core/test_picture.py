@@ -162,6 +162,14 @@ def test_slack_springs_are_grey(tmp_path: Path) -> None:
     assert ink(drawn(result, tmp_path, size=(1600, 1200)), picture.SLACK, near=0.04) > 500
 
 
+def test_without_any_force_there_is_no_colour_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = {"forces": [{"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]]], "rest_factor": 1.0}]}
+    monkeypatch.setattr(picture, "_colour_bar", lambda *given: pytest.fail("a bar of no forces"))
+    result = relax(Scene.read(scene))
+    assert legend(result) == (0.0, 0.0, "N")
+    assert ink(drawn(result, tmp_path, size=(1600, 1200)), picture.SLACK, near=0.04) > 500
+
+
 EDGES = {
     "one particle": {"particles": [[1, 2, 3]]},
     "far away": {"particles": [[1e9, 0, 0], [1e9 + 1, 0, 0]], "forces": [{"kind": "springs", "particles": [[0, 1]]}]},

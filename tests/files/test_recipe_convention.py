@@ -149,3 +149,29 @@ def test_hidden_and_locked_objects_are_counted(draw: Callable[..., Any], tmp_pat
     locked = understand(threedm.read(tmp_path / "locked.3dm"))
     assert any("1 of them locked (used like the others)" in line for line in locked.lines)
     assert len(locked.built.scene.forces[0].lines) == 1
+
+
+def test_what_is_left_out_or_misspelt_is_noted(draw: Callable[..., Any]) -> None:
+    model = draw(
+        NewObject(LINE, "springs", user_text={"stifness": "50"}),
+        NewObject(LINE[0], "anchers"),
+        NewObject(LINE[0], "loads"),
+        NewObject(LINE[1], "loads"),
+    )
+    found = understand(model)
+    notes = "\n".join(found.notes)
+    assert "1 Point on layer anchers left out" in notes and "did you mean anchors?" in notes
+    assert '2 Points on layer loads left out: has no user text "load"' in notes
+    assert "nothing is marked as an anchor: loose ends are held (2 particles)" in notes
+    assert "user text stifness" in notes and "did you mean stiffness?" in notes
+    loop = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 0]])
+    assert "nothing is held at all" in understand(draw(NewObject(loop, "springs"))).notes
+    assert understand(draw(NewObject(LINE, "springs"), NewObject(LINE[0], "anchors"))).notes == ()
+
+
+def test_forces_of_one_layer_have_names_of_their_own(draw: Callable[..., Any]) -> None:
+    lines = [NewObject(LINE + [0, i, 0], "ties", user_text={"stiffness": str(9 + i)}) for i in range(3)]
+    model = draw(
+        NewObject(LINE, "ties::springs"), *(NewObject(o.geometry, "springs", "", None, o.user_text) for o in lines)
+    )
+    assert [f.name for f in scene_of(model).forces] == ["ties springs", "springs", "springs/2", "springs/3"]

@@ -19,10 +19,13 @@ from hookean.errors import InputError
 from hookean.files import recipe as recipes
 from hookean.files import tables, threedm
 from hookean.files.archive import scan
-from hookean.files.relax_file import FileResult, explain_file, relax_file, report_json
+from hookean.files.recipe_output import Palette
+from hookean.files.relax_file import FileResult, LimitsError, explain_file, relax_file, report_json
 from hookean.files.threedm import Additions, NewObject
 from hookean.mesh import Mesh
+from hookean.picture import _colours, legend
 from hookean.result import Status
+from hookean.system import compile
 
 rhino: Any = _rhino3dm
 CABLE = """
@@ -447,3 +450,47 @@ def test_the_service_finds_relax_file_beside_recipes() -> None:
     assert recipes.relax_file is relax_file and recipes.FileResult is FileResult
     with pytest.raises(AttributeError):
         _ = recipes.nothing
+
+
+def test_a_mesh_tells_the_range_of_its_elements_in_the_colours_of_the_picture(tmp_path: Path) -> None:
+    square = Mesh(
+        np.array([[i, j, 0.3 * i * j] for i in range(3) for j in range(3)], dtype=float),
+        np.array([[0, 3, 4, 1], [1, 4, 5, 2], [3, 6, 7, 4], [4, 7, 8, 5]]),
+    )
+    source = drawn(tmp_path / "a.3dm", [NewObject(square, "net", "sail"), NewObject(LINE + [0, 9, 0], "springs")])
+    found = relax_file(source, tmp_path / "out.3dm")
+    objects = threedm.read(tmp_path / "out.3dm").objects
+    (text,) = [item.user_text for item in objects if item.own and item.kind == "Mesh"]
+    rows = [row for row in found.rows if row["name"] == "sail" and row["kind"] == "springs"]
+    for key, column, unit in (("force", "force [N]", " N"), ("strain", "strain [-]", "")):
+        values = [row[column] for row in rows]
+        assert text[key] == f"{min(values):.6g} to {max(values):.6g}{unit}"
+    parts = [p for p in tables.sections(compile(found.scene), found.result) if p.internal]
+    palette = Palette(parts)
+    low, high, _ = legend(found.result)
+    cmap, first, last = _colours(low, high)
+    values = np.linspace(low + 0.01 * (high - low), high, 7)
+    expected = cmap((values - first) / (last - first))[:, :3] * 255
+    assert np.abs(palette(values) - expected).max() <= 2
+
+
+def test_limits_on_what_is_not_there_are_told_after_everything_is_written(cable: Path, tmp_path: Path) -> None:
+    limits = tables.read_limits("[force.rope]\nmax_force = 1", "l.toml")
+    with pytest.raises(LimitsError, match=r"l\.toml /force/rope: cable\.3dm has no such force; it has") as caught:
+        relax_file(cable, tmp_path / "out.3dm", CABLE, limits=limits, limits_name="l.toml")
+    assert (tmp_path / "out.3dm").exists() and caught.value.found.result.converged
+    with pytest.raises(InputError, match=r"^l\.toml /max_froce: "):
+        tables.read_limits("max_froce = 1", "l.toml")
+
+
+def test_wrong_files_are_called_what_they_are(cable: Path, tmp_path: Path) -> None:
+    relax_file(cable, tmp_path / "w.json", CABLE)
+    with pytest.raises(InputError, match="is a result, not a scene"):
+        relax_file(tmp_path / "w.json")
+    with pytest.raises(InputError, match="is a recipe; give it with -r"):
+        relax_file(tmp_path / "good.toml")
+    with pytest.raises(InputError, match=r"written to .*missing, a folder"):
+        relax_file(cable, tmp_path / "missing" / "out.3dm", CABLE)
+    stiff = drawn(tmp_path / "s.3dm", [NewObject(LINE, "springs", user_text={"stiffness": "stiff"})])
+    with pytest.raises(InputError, match=r"^s\.3dm: LineCurve .*user text stiffness"):
+        relax_file(stiff)

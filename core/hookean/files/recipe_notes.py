@@ -36,6 +36,8 @@ def _left(seen: Drawing, built: Built) -> list[str]:
     groups: dict[tuple[str, str], list[Item]] = {}
     for item in seen.items:
         why = built.left.get(item, FLOOR)
+        if "trimmed and without a cached" in why:  # one sentence for all of them; --explain names the faces
+            why = "trimmed faces without a render mesh; save the file shaded, untrim them, or mesh them in Rhino"
         if item not in built.uses and why != FLOOR:
             groups.setdefault((item.layer or NO_LAYER, why), []).append(item)
     for item in seen.hidden:
