@@ -11,6 +11,11 @@ from .cases import Case
 EPS = float(np.finfo(float).eps)
 
 
+def _at_most(case: Case, what: str, got: float, allowed: float) -> None:
+    """A size within its tolerance; else which force, what, how large."""
+    assert got <= allowed, f"{case.name}: {what}: {got:.6g}, at most {allowed:.6g} expected"
+
+
 def force_is_the_gradient(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
     """f = -dE/dx by central differences, to 1e-6 of the largest force.
 
@@ -27,7 +32,7 @@ def force_is_the_gradient(case: Case, rng: np.random.Generator, amount: float = 
             shifted[spot] += sign * h
             sides.append(case.force(shifted, None, memory)[2])
         slope[spot] = (sides[0] - sides[1]) / (2.0 * h)
-    assert np.abs(f + slope).max() <= 1e-6 * np.abs(f).max()
+    _at_most(case, "force + dE/dx", np.abs(f + slope).max(), 1e-6 * np.abs(f).max())
 
 
 def nothing_from_outside(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
@@ -35,9 +40,9 @@ def nothing_from_outside(case: Case, rng: np.random.Generator, amount: float = 0
     memory, x = case.past(rng), case.moved(rng, amount)
     f, w, _ = case.force(x, rng.normal(size=x.shape), memory)
     force, reach = case.scales(x, f, w)
-    assert np.abs(f.sum(axis=0)).max() <= 1e-12 * force
+    _at_most(case, "sum of forces", np.abs(f.sum(axis=0)).max(), 1e-12 * force)
     moment = np.cross(x - x.mean(axis=0), f).sum(axis=0)
-    assert np.abs(moment).max() <= 1e-12 * force * reach
+    _at_most(case, "sum of moments", np.abs(moment).max(), 1e-12 * force * reach)
 
 
 def something_from_outside(case: Case, rng: np.random.Generator) -> None:
@@ -46,7 +51,9 @@ def something_from_outside(case: Case, rng: np.random.Generator) -> None:
     f, w, _ = case.force(x)
     force, reach = case.scales(x, f, w)
     moment = np.cross(x, f).sum(axis=0)
-    assert np.abs(f.sum(axis=0)).max() > 1e-9 * force or np.abs(moment).max() > 1e-9 * force * reach
+    assert np.abs(f.sum(axis=0)).max() > 1e-9 * force or np.abs(moment).max() > 1e-9 * force * reach, (
+        f"{case.name}: the resultant is zero, so role is internal"
+    )
 
 
 def rigid_motion_changes_nothing(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
@@ -59,22 +66,29 @@ def rigid_motion_changes_nothing(case: Case, rng: np.random.Generator, amount: f
     f, w, energy = case.force(x, v, memory)
     g, u, same = case.force(turned, np.ascontiguousarray(v @ rotation.T), memory)
     force, reach = case.scales(x, f, w)
-    assert np.abs(g - f @ rotation.T).max() <= 1e-10 * force
-    assert abs(energy - same) <= 1e-10 * force * reach
-    assert np.abs(u - w).max() <= 1e-10 * w.max()
+    _at_most(case, "force turned - force of the turned shape", np.abs(g - f @ rotation.T).max(), 1e-10 * force)
+    _at_most(case, "energy before - after a rigid motion", abs(energy - same), 1e-10 * force * reach)
+    _at_most(case, "lumped stiffness w before - after a rigid motion", np.abs(u - w).max(), 1e-10 * w.max())
     rigid = rng.normal(size=3) + np.cross(rng.normal(size=3), x)
     still, _, _ = case.force(x, None, memory)
-    assert np.abs(case.force(x, rigid, memory)[0] - still).max() <= 1e-10 * force
+    _at_most(
+        case,
+        "force that a rigid velocity changes",
+        np.abs(case.force(x, rigid, memory)[0] - still).max(),
+        1e-10 * force,
+    )
 
 
 def zero_at_rest(case: Case) -> None:
     """Started at its rest values a force is zero and so is its energy, to 1e-12 of stiffness x size."""
     f, w, energy = case.force(case.x)
     force, reach = case.scales(case.x, f, w)
-    assert np.abs(f).max() <= 1e-12 * w.max() * reach
-    assert abs(energy) <= 1e-12 * force * reach
+    _at_most(case, "force at rest", np.abs(f).max(), 1e-12 * w.max() * reach)
+    _at_most(case, "energy at rest", abs(energy), 1e-12 * force * reach)
     shaken = case.moved(np.random.default_rng(0), 0.05)
-    assert np.abs(case.force(shaken)[0]).max() > 1e-6 * w.max() * case.spacing * 0.05
+    assert np.abs(case.force(shaken)[0]).max() > 1e-6 * w.max() * case.spacing * 0.05, (
+        f"{case.name}: moved away from rest, there is no force"
+    )
 
 
 def degenerate_stays_finite(case: Case, x: np.ndarray, rng: np.random.Generator) -> None:
@@ -82,11 +96,13 @@ def degenerate_stays_finite(case: Case, x: np.ndarray, rng: np.random.Generator)
     v = rng.normal(size=x.shape)
     memory = case.past(rng)
     f, w, energy = case.force(x, v, memory)
-    assert np.isfinite(f).all() and np.isfinite(w).all() and np.isfinite(energy)
-    assert (w >= 0).all()
-    assert np.isfinite(case.noted(x, memory)).all()
+    assert np.isfinite(f).all() and np.isfinite(w).all() and np.isfinite(energy), (
+        f"{case.name}: f, w or energy is not finite"
+    )
+    assert (w >= 0).all(), f"{case.name}: a lumped stiffness w is negative"
+    assert np.isfinite(case.noted(x, memory)).all(), f"{case.name}: the memory is not finite"
     if case.hessian is not None:
-        assert np.isfinite(_blocks(case, x, memory)).all()
+        assert np.isfinite(_blocks(case, x, memory)).all(), f"{case.name}: the hessian is not finite"
 
 
 def order_of_elements_does_not_matter(case: Case, rng: np.random.Generator) -> None:
@@ -100,9 +116,11 @@ def order_of_elements_does_not_matter(case: Case, rng: np.random.Generator) -> N
     g, u, same = type(case)(**{**vars(case), "block": other}).force(x, v, np.ascontiguousarray(memory[order]))
     force, reach = case.scales(x, f, w)
     tolerance = 4.0 * EPS * (1 + len(order))
-    assert np.abs(f - g).max() <= tolerance * force
-    assert np.abs(w - u).max() <= tolerance * w.max()
-    assert abs(energy - same) <= tolerance * (force * reach + abs(energy))
+    _at_most(case, "force that the order of elements changes", np.abs(f - g).max(), tolerance * force)
+    _at_most(case, "w that the order of elements changes", np.abs(w - u).max(), tolerance * w.max())
+    _at_most(
+        case, "energy that the order of elements changes", abs(energy - same), tolerance * (force * reach + abs(energy))
+    )
 
 
 def names_of_particles_do_not_matter(case: Case, rng: np.random.Generator) -> None:
@@ -117,7 +135,9 @@ def names_of_particles_do_not_matter(case: Case, rng: np.random.Generator) -> No
     g, u, same = type(case)(**{**vars(case), "block": other}).force(
         np.ascontiguousarray(x[back]), np.ascontiguousarray(v[back]), memory
     )
-    assert (g[number] == f).all() and (u[number] == w).all() and same == energy
+    assert (g[number] == f).all() and (u[number] == w).all() and same == energy, (
+        f"{case.name}: other numbers of particles give other forces, w or energy"
+    )
 
 
 def lumped_stiffness_bounds_the_tangent(case: Case, rng: np.random.Generator, amount: float) -> None:
@@ -131,10 +151,15 @@ def lumped_stiffness_bounds_the_tangent(case: Case, rng: np.random.Generator, am
     tangent = _assembled(case, _blocks(case, x, case.block.memory))
     weightless = np.repeat(~stiff, 3)
     # a particle without stiffness feels none
-    assert np.abs(tangent[weightless]).max(initial=0.0) <= 1e-9
+    _at_most(case, "tangent of a particle with w = 0", np.abs(tangent[weightless]).max(initial=0.0), 1e-9)
     scale = np.where(weightless, 0.0, 1.0 / np.sqrt(np.repeat(np.where(stiff, w, 1.0), 3)))
     top = np.linalg.eigvalsh(scale[:, None] * tangent * scale).max()
-    assert top <= 1.0 + (1e-9 if case.hessian is not None else 1e-7)
+    _at_most(
+        case,
+        "largest eigenvalue of tangent / w (w too small?)",
+        top,
+        1.0 + (1e-9 if case.hessian is not None else 1e-7),
+    )
 
 
 def tangent_is_the_gradient_of_the_force(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
@@ -145,8 +170,14 @@ def tangent_is_the_gradient_of_the_force(case: Case, rng: np.random.Generator, a
     memory, x = case.past(rng), case.moved(rng, amount)
     exact, close = _blocks(case, x, memory), _differences(case, x, memory)
     for block, difference, jumps in zip(exact, close, _kinked(case, x, memory), strict=True):
-        assert np.abs(block - block.T).max() <= 4 * EPS * np.abs(block).max()
-        assert jumps or np.abs(block - difference).max() <= 1e-6 * np.abs(difference).max()
+        _at_most(case, "hessian - its transpose", np.abs(block - block.T).max(), 4 * EPS * np.abs(block).max())
+        if not jumps:
+            _at_most(
+                case,
+                "hessian - differences of the force",
+                np.abs(block - difference).max(),
+                1e-6 * np.abs(difference).max(),
+            )
 
 
 def damping_is_as_declared(case: Case, rng: np.random.Generator) -> None:
@@ -155,27 +186,34 @@ def damping_is_as_declared(case: Case, rng: np.random.Generator) -> None:
     v = rng.normal(size=x.shape)
     still, w, energy = case.force(x, None, memory)
     moving, w_moving, energy_moving = case.force(x, v, memory)
-    assert energy == energy_moving and (w == w_moving).all()
+    assert energy == energy_moving and (w == w_moving).all(), f"{case.name}: energy or w changes with the velocity"
     if not case.damped:
-        assert (still == moving).all()
+        assert (still == moving).all(), f"{case.name}: damped is False, but the force changes with the velocity"
         return
     scale, _ = case.scales(x, still, w)
     drag = moving - still
-    assert float((v * drag).sum()) <= 1e-12 * scale * np.abs(v).max()
+    _at_most(case, "power of damping (it must take energy)", float((v * drag).sum()), 1e-12 * scale * np.abs(v).max())
     double = case.force(x, 2.0 * v, memory)[0] - still
-    assert np.abs(double - 2.0 * drag).max() <= 1e-12 * scale
+    _at_most(case, "damping at 2 v - 2 x damping at v", np.abs(double - 2.0 * drag).max(), 1e-12 * scale)
 
 
 def memory_is_as_declared(case: Case, rng: np.random.Generator) -> None:
     """Kernels never write memory; the end of a step does, where declared, and noting the same shape twice is idle."""
     x = case.moved(rng)
     if not case.remembers:
-        assert case.end_of_step is None and case.block.memory.shape[1] == 0
+        assert case.end_of_step is None and case.block.memory.shape[1] == 0, (
+            f"{case.name}: remembers is False, but there is an end_of_step or memory"
+        )
         return
     memory = case.noted(x)
-    assert memory.shape[1] > 0
+    assert memory.shape[1] > 0, f"{case.name}: remembers is True, but the block has no memory"
     again = case.noted(x, memory)
-    assert np.abs(again - memory).max() <= 8 * EPS * max(np.abs(memory).max(), case.spacing)
+    _at_most(
+        case,
+        "memory that noting the same shape twice changes",
+        np.abs(again - memory).max(),
+        8 * EPS * max(np.abs(memory).max(), case.spacing),
+    )
 
 
 def kernels_only_add(case: Case, rng: np.random.Generator) -> None:
@@ -186,12 +224,12 @@ def kernels_only_add(case: Case, rng: np.random.Generator) -> None:
     before = [a.copy() for a in (*inputs, f, w)]
     energy = case.run(case.kernel, "force")(*inputs, f, w)
     for array, copy in zip(inputs, before, strict=False):
-        assert (array == copy).all()
+        assert (array == copy).all(), f"{case.name}: the kernel writes its inputs"
     alone, stiffness, same = case.force(x, v, memory)
     scale, _ = case.scales(x, alone, stiffness)
-    assert np.abs(f - before[5] - alone).max() <= 1e-13 * (scale + 10.0)
-    assert np.abs(w - before[6] - stiffness).max() <= 1e-13 * (stiffness.max() + 10.0)
-    assert energy == same
+    _at_most(case, "f added - force alone", np.abs(f - before[5] - alone).max(), 1e-13 * (scale + 10.0))
+    _at_most(case, "w added - w alone", np.abs(w - before[6] - stiffness).max(), 1e-13 * (stiffness.max() + 10.0))
+    assert energy == same, f"{case.name}: the energy depends on what f and w hold"
 
 
 def allocates_nothing_that_grows(case: Case, rng: np.random.Generator) -> None:
@@ -209,10 +247,10 @@ def allocates_nothing_that_grows(case: Case, rng: np.random.Generator) -> None:
         taken, freed = nrt.memsys_get_stats_alloc(), nrt.memsys_get_stats_free()
         kernel(x, v, block.indices, block.parameters, memory, f, w)
         counts.append(nrt.memsys_get_stats_alloc() - taken)
-        assert nrt.memsys_get_stats_free() - freed == counts[-1]
-    assert counts[0] == counts[1]
+        assert nrt.memsys_get_stats_free() - freed == counts[-1], f"{case.name}: memory taken is not given back"
+    assert counts[0] == counts[1], f"{case.name}: more elements take more pieces of memory"
     # a handle for each of the seven arrays, and a little room of fixed size
-    assert counts[0] <= 2 * 7 + 2
+    _at_most(case, "pieces of memory taken", counts[0], 2 * 7 + 2)
 
 
 class Guarded(np.ndarray):
@@ -248,19 +286,29 @@ def stays_inside_its_arrays(case: Case, x: np.ndarray, rng: np.random.Generator)
         energy = float(case.kernel(*inputs, f, w))
     g, u, same = case.force(x, v, memory)
     force, reach = case.scales(x, g, u)
-    assert np.abs(np.asarray(f) - g).max() <= 4 * EPS * force
-    assert np.abs(np.asarray(w) - u).max() <= 4 * EPS * u.max()
-    assert abs(energy - same) <= 4 * EPS * (force * reach + abs(same))
+    _at_most(case, "force of Python - of machine code", np.abs(np.asarray(f) - g).max(), 4 * EPS * force)
+    _at_most(case, "w of Python - of machine code", np.abs(np.asarray(w) - u).max(), 4 * EPS * u.max())
+    _at_most(case, "energy of Python - of machine code", abs(energy - same), 4 * EPS * (force * reach + abs(same)))
     if case.hessian is not None:
         blocks = guarded(np.zeros_like(_blocks(case, x, memory)))
         with np.errstate(all="ignore"):
             case.hessian(inputs[0], *inputs[2:], blocks)
         exact = _blocks(case, x, memory)
-        assert np.abs(np.asarray(blocks) - exact).max() <= 16 * EPS * np.abs(exact).max()
+        _at_most(
+            case,
+            "hessian of Python - of machine code",
+            np.abs(np.asarray(blocks) - exact).max(),
+            16 * EPS * np.abs(exact).max(),
+        )
     if case.end_of_step is not None:
         with np.errstate(all="ignore"):
             case.end_of_step(inputs[0], *inputs[2:])
-        assert np.abs(np.asarray(inputs[4]) - case.noted(x, memory)).max() <= 4 * EPS * reach
+        _at_most(
+            case,
+            "memory of Python - of machine code",
+            np.abs(np.asarray(inputs[4]) - case.noted(x, memory)).max(),
+            4 * EPS * reach,
+        )
 
 
 def _blocks(case: Case, x: np.ndarray, memory: np.ndarray) -> np.ndarray:
