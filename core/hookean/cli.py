@@ -60,7 +60,7 @@ def relax(
 
     Without a recipe, layers named springs, cables, membrane, anchors, loads, floor and geometry and the objects' user
     text (stiffness, rest_factor, divide, load, axes ...) say what is what; without such layers curves become springs
-    and meshes membranes, held at loose ends and naked vertices. Their numbers are in m, N and s, whatever the file's unit.
+    and meshes membranes, held at loose ends and naked vertices. Numbers are in m, N and s.
     --explain tells.
     """
     from hookean.commands.relax import Options, run
