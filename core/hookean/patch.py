@@ -95,9 +95,7 @@ def _rows(system: System, group: Group, part: Part) -> Floats:
     met = (fresh.indices >= 0).all(axis=1)
     indices, parameters = fresh.indices[met], fresh.parameters[met]
     if not np.array_equal(indices, group.block.indices[part.rows]):
-        raise InputError(
-            f"/forces/{part.number}", "this changes which particles it acts on; send a new scene"
-        )
+        raise InputError(f"/forces/{part.number}", "this changes which particles it acts on; send a new scene")
     return parameters
 
 
