@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from hookean.system import System
 
 # a tangent larger than this costs more to factor than the relaxation it saves
-LARGEST_NEWTON = 60_000
+LARGEST_NEWTON = 60_000  # unknowns
+LARGEST_BLOCKS = 3_000_000  # entries of all element blocks; a shell's have 36 x 36 each
 FIRST_NEWTON = 4_000
 NEWTON_STEPS = 60
 
@@ -37,6 +38,8 @@ class Method(Solver):
     def start(self, system: System, state: State) -> None:
         """Look at the system and choose."""
         self._one_solve = not self._linear.refuse(system)
+        entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if g.cls.role != "load")
+        self._small = 3 * len(state.x) <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS
         self._relaxation.start(system, state)
         state.scratch["next_newton"] = np.array([float(state.iteration + FIRST_NEWTON), FIRST_NEWTON])
         self.used = []
@@ -53,7 +56,7 @@ class Method(Solver):
         if self._steps > 0:
             return self._finish(system, state, count, goal)
         due, _ = state.scratch["next_newton"]
-        if state.iteration < due or 3 * len(state.x) > LARGEST_NEWTON:
+        if state.iteration < due or not self._small:
             self._use("relaxation")
             return self._relaxation.advance(system, state, min(count, max(int(due) - state.iteration, 1)), goal)
         self._steps, self._pause = NEWTON_STEPS, float(state.scratch["next_newton"][1])
