@@ -13,6 +13,8 @@ from hookean.state import State
 from hookean.system import System, compile
 from hookean.watch import Watch
 
+COARSE = 1e-3  # a rounding floor above this is worth a word
+
 Progress = Callable[[int, float], None]
 """Called with the iteration and the residual now and then while a relaxation runs."""
 
@@ -53,6 +55,11 @@ def relax_state(
             progress(state.iteration, watch.found.residual)
     if status is Status.CONVERGED:
         system.remember(state)  # other ends are on no physical path, and leave no mark
+    if status is Status.CONVERGED and watch.found.floor > COARSE:
+        system.report.warnings.append(
+            f"rounding alone leaves a residual of {watch.found.floor:.1g}: stiffness or coordinates are very large for "
+            "these loads, and the shape is no better known than that"
+        )
     _restore(state, watch.good, memory=status is Status.DIVERGED)
     if not method.physical:
         state.v[:] = 0.0  # fictitious: nothing moved
