@@ -35,7 +35,10 @@ def _why(host: str, port: int, error: Exception) -> str:
 
     if getattr(error, "errno", None) in (errno.EADDRINUSE, getattr(errno, "WSAEADDRINUSE", errno.EADDRINUSE)):
         holder = owner(port)
-        return f"Port {port} is taken by {holder or 'another program'}; stop it, or choose another with --port (make: PORT=9000 make run)."
+        return (
+            f"Port {port} is taken by {holder or 'another program'}; stop it, or choose another with --port "
+            "(make: PORT=9000 make run)."
+        )
     if getattr(error, "errno", None) == errno.EACCES:
         return f"Port {port} may not be used by this user; choose one above 1023 with --port."
     return f"{host}:{port} cannot be listened on ({getattr(error, 'strerror', None) or error}); choose another address."
