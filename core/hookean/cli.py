@@ -1,4 +1,4 @@
-"""The command line: relax, serve, forces. Starts light: what a command needs is imported when it runs."""
+"""The command line: relax, example, serve, forces. Starts light: what a command needs is imported when it runs."""
 
 from __future__ import annotations
 
@@ -66,6 +66,26 @@ def relax(
     from hookean.commands.relax import Options, run
 
     raise typer.Exit(run(Options(files, output, recipe, explain, report, csv, picture, check, quiet)))
+
+
+@app.command()
+def example(
+    figure: Annotated[
+        str | None, typer.Argument(help="Figure or name, such as 9.11; without it all are listed")
+    ] = None,
+    picture: Annotated[Path | None, typer.Option(help="Draw it to this .png file")] = None,
+    copy: Annotated[Path | None, typer.Option(help="Copy its folder here, to change it")] = None,
+    figures: Annotated[Path | None, typer.Option(help="Run and draw all, a folder for each in this one")] = None,
+) -> None:
+    """The figures of the chapter that hookean implements: list them, or run one and check its numbers.
+
+    Exits with 0 if all numbers are as expected, 1 if one is not, 2 for bad input.
+    """
+    from hookean.commands import example as command
+
+    if figures is not None:
+        raise typer.Exit(command.figures(figures))
+    raise typer.Exit(command.listing() if figure is None else command.run(figure, picture, copy))
 
 
 @app.command()

@@ -90,6 +90,15 @@ class _Source:
     nothing: str = ""
 
 
+def read_scene(source: Path, recipe: Path | None = None) -> Scene:
+    """The scene a file holds: a .3dm by its recipe (or by convention), or JSON. Raises InputError as `relax_file`."""
+    text = None if recipe is None else recipe.read_text(encoding="utf-8")
+    read = _read(source, text, "" if recipe is None else recipe.name)
+    if read.nothing:
+        raise InputError(source.name, read.nothing)
+    return read.scene
+
+
 def explain_file(source: Path, recipe_text: str | None = None, *, recipe_name: str = "") -> list[str]:
     """How a file would be read, in lines for a person; nothing is solved. Raises InputError as `relax_file`."""
     return _read(source, recipe_text, recipe_name).lines

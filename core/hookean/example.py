@@ -1,0 +1,143 @@
+"""Examples: the figures of the source chapter, each a folder that runs, is drawn and is checked.
+
+A folder holds its input (`scene.json`, or `model.3dm` and `recipe.toml`), `example.py` with `run(folder) -> Outcome`,
+`expected.json` with the numbers it is held to and where they come from, `README.md` and `picture.png`. They stand in
+`gh_examples/` of the project, and travel in the wheel.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from hookean.errors import InputError
+from hookean.sheet import Graph, Panel, sheet
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What an example's `run` returns: its numbers by the names of expected.json, in the units given there, and what
+    its picture shows. `title` stands above the picture."""
+
+    numbers: Mapping[str, float]
+    panels: Sequence[Panel | Graph]
+    columns: int | None = None
+    same_scale: bool = True
+    size: tuple[int, int] | None = None
+
+
+class Expected(BaseModel):
+    """A number an example is held to: `value` within `tolerance` (absolute, in `unit`), or bounds; and its `source`:
+    `chapter: ...`, `closed form: ...` or `script NAME: ...`, a script beside it that does not import hookean."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    unit: str
+    value: float | None = None
+    tolerance: Annotated[float, Field(gt=0)] | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    source: Annotated[str, Field(pattern=r"^(chapter|closed form|script [a-z_]+\.py): \S")]
+
+    @model_validator(mode="after")
+    def _whole(self) -> Expected:
+        bounded = self.at_least is not None or self.at_most is not None
+        if (self.value is None) == (not bounded) or (self.value is None) != (self.tolerance is None):
+            raise ValueError("give value and tolerance, or at_least and at_most, or one of these two")
+        return self
+
+    def holds(self, number: float) -> bool:
+        """Whether a number is what was expected."""
+        if self.value is not None and self.tolerance is not None:
+            return abs(number - self.value) <= self.tolerance
+        low = -np.inf if self.at_least is None else self.at_least
+        return low <= number <= (np.inf if self.at_most is None else self.at_most)
+
+    def __str__(self) -> str:
+        if self.value is not None:
+            return f"{self.value:.9g} ± {self.tolerance:.1g}"
+        if self.at_least is not None and self.at_most is not None:
+            return f"{self.at_least:.9g} to {self.at_most:.9g}"
+        return f"at least {self.at_least:.9g}" if self.at_least is not None else f"at most {self.at_most:.9g}"
+
+
+class Expectations(BaseModel):
+    """The file expected.json: title, figures of the chapter it stands for, numbers by name."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    title: str
+    figures: tuple[str, ...]
+    kind: Literal["chapter", "essay"] = "chapter"
+    numbers: Annotated[dict[str, Expected], Field(min_length=1)]
+
+
+@dataclass(frozen=True)
+class Example:
+    """One folder of examples."""
+
+    folder: Path
+
+    @property
+    def name(self) -> str:
+        return self.folder.name
+
+    @cached_property
+    def expected(self) -> Expectations:
+        return Expectations.model_validate(json.loads((self.folder / "expected.json").read_text(encoding="utf-8")))
+
+    def run(self) -> Outcome:
+        """Run the example afresh."""
+        spec = importlib.util.spec_from_file_location(f"example_{self.name}", self.folder / "example.py")
+        assert spec is not None and spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        outcome: Any = module.run(self.folder)
+        assert isinstance(outcome, Outcome)
+        return outcome
+
+    def draw(self, outcome: Outcome, path: Path) -> None:
+        """Its picture, as a PNG file."""
+        sheet(
+            outcome.panels, path, title=self.expected.title, columns=outcome.columns, same_scale=outcome.same_scale,
+            size=outcome.size,
+        )  # fmt: skip
+
+
+def home() -> Path:
+    """The folder of the examples: beside the installed package, or in the project."""
+    package = Path(__file__).parent
+    return next(
+        (place for place in (package / "gh_examples", package.parents[1] / "gh_examples") if place.is_dir()), package
+    )
+
+
+def examples() -> list[Example]:
+    """All examples, in the order of the chapter, those of its essay last."""
+    found = [Example(path.parent) for path in home().glob("*/expected.json")]
+    return sorted(found, key=lambda e: ([int(p) for p in e.name.partition("-")[0].split(".") if p.isdigit()] or [99],
+                                        e.name))  # fmt: skip
+
+
+def find(wanted: str) -> Example:
+    """The example of a folder's name, or of a figure's number; InputError names the ones there are."""
+    known = examples()
+    for fits in (
+        lambda e: e.name == wanted,
+        lambda e: e.name.partition("-")[2] == wanted,
+        lambda e: e.name.partition("-")[0] == wanted,
+        lambda e: wanted in e.expected.figures,
+    ):
+        for example in known:
+            if fits(example):
+                return example
+    names = ", ".join(e.name for e in known)
+    raise InputError(wanted, f"no example has this figure or name; there are {names}")
