@@ -65,3 +65,33 @@ def test_the_page_of_the_scene_names_everything():
     routes = set(create_app(ServerSettings()).openapi()["paths"])
     for route in re.findall(r"`(?:GET|POST) (/v1[^`]*)`", SCENE):
         assert route in routes | {"/v1/openapi.json", "/v1/discretize/{operation}"}, route
+
+
+def test_the_pages_of_physics_and_solvers_tell_of_all():
+    """docs/physics.md has a row for every force, docs/solvers.md for every solver; neither of any that is not there."""
+    from hookean.forces import KINDS
+    from hookean.solvers import NAMES
+
+    physics = (ROOT / "docs" / "physics.md").read_text("utf-8")
+    rows = {name for row in re.findall(r"^\| (`.*?) \|", physics, re.M) for name in re.findall(r"`(\w+)`", row)}
+    assert rows == set(KINDS)
+    rows = set(re.findall(r"^\| .*? \| `(\w+)` \|", (ROOT / "docs" / "solvers.md").read_text("utf-8"), re.M))
+    assert rows == set(NAMES)
+
+
+def test_what_kangaroo_users_are_sent_to_exists():
+    """Every name in the second column of docs/from-kangaroo.md names something of hookean."""
+    import hookean
+    from hookean.forces import KINDS
+    from hookean.scene import Scene
+    from hookean.scene import Settings as SceneSettings
+    from hookean.solvers import NAMES
+
+    text = (ROOT / "docs" / "from-kangaroo.md").read_text("utf-8")
+    columns = [row.split("|")[2] for row in text.splitlines() if row.startswith("|")]
+    named = {name for column in columns for name in re.findall(r"`([^`]+)`", column)}
+    fields = {field for cls in KINDS.values() for field in cls.model_fields}
+    known = {*KINDS, *fields, *NAMES, *Scene.model_fields, *SceneSettings.model_fields, *hookean.__all__}
+    known |= {"axes", "lines", "mesh", "move", "pin", "release", "patch", "discretize", "hookean relax"}
+    known |= {"corners:", "naked:", 'edges = "warp"', "rest_factor = 0", "settings.floor"}
+    assert named <= known, named - known
