@@ -10,7 +10,7 @@ from pydantic import Field, StrictInt, StrictStr, ValidationError
 from hookean.columns import Indices, Model, Points
 from hookean.errors import InputError
 from hookean.forces.base import PLACES
-from hookean.scene import Anchor, Settings, first_fault
+from hookean.scene import Anchor, Scene, Settings, first_fault
 from hookean.state import State
 from hookean.system import Floats, Group, Held, Part, System, hold
 
@@ -73,14 +73,20 @@ def apply(system: System, state: State, patch: Patch) -> None:
     held = _held(system, state, patch)
     forces = _forces(system, patch)
     settings = _settings(system, patch)
+    listed = tuple(forces.get(i, f) for i, f in enumerate(system.scene.forces))
+    retune(system, state, system.scene.model_copy(update={"forces": listed, "settings": settings}), held)
+
+
+def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None:
+    """Give a running system other parameters, settings and anchors; raises its revision. `scene` has the system's
+    own places and elements; InputError where not, and then parts of it may have landed (see `Undo`)."""
     for group in system.groups + system.contacts:
         for part in group.parts:
-            if part.number in forces:
-                part.force = forces[part.number]
+            if part.number >= 0 and scene.forces[part.number] is not part.force:
+                part.force = scene.forces[part.number]
                 group.block.parameters[part.rows] = _rows(system, group, part)
-    listed = tuple(forces.get(i, f) for i, f in enumerate(system.scene.forces))
-    system.scene = system.scene.model_copy(update={"forces": listed, "settings": settings})
-    system.drag = settings.drag
+    system.scene = scene
+    system.drag = scene.settings.drag
     system.held = held
     state.free[:] = 1.0
     for anchor in held:
