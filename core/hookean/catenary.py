@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import factorial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -52,24 +52,46 @@ def tensions(
 ) -> Floats:
     """Tensions (count + 1,) [force] at the points of `catenary`, with `weight` per length [force/length].
 
-    Infinite where the cable is straight.
+    Infinite where the cable is straight. InputError as `catenary`, and for a weight that is not above 0.
     """
+    heavy = _number(weight, "weight", "the weight per length is a finite number above 0")
+    if heavy <= 0.0:
+        raise InputError("weight", f"{heavy:g} given; the weight per length is above 0")
     shape = _hang(start, end, length, count, gravity)
-    return weight * shape.y
+    return heavy * shape.y
 
 
 def catenary_of(a: float, x: ArrayLike) -> Floats:
-    """Heights y = a cosh(x / a) [length] at distances x [length] from the lowest point; the directrix is y = 0."""
-    return np.asarray(a * np.cosh(np.asarray(x, dtype=float) / a))
+    """Heights y = a cosh(x / a) [length] at distances x [length] from the lowest point; the directrix is y = 0.
+
+    InputError where a is not above 0, a distance is not finite, or a height is beyond the largest float64.
+    """
+    above = _number(a, "a", "the parameter is a finite number above 0")
+    if above <= 0.0:
+        raise InputError("a", f"{above:g} given; the parameter is the height of the lowest point, above 0")
+    try:
+        across = np.array(x, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("x", f"{x!r} given; a distance or a row of distances expected") from None
+    if not np.isfinite(across).all():
+        raise InputError("x", "a distance that is not finite given; all are finite numbers")
+    with np.errstate(over="ignore"):
+        heights = np.asarray(above * np.cosh(across / above))
+    if not np.isfinite(heights).all():
+        furthest = float(np.abs(across).max())
+        raise InputError("x", f"{furthest:g} given with a = {above:g}; no height is that large, stay within 700 a")
+    return heights
 
 
 def parameter(span: float, length: float, rise: float = 0.0) -> float:
     """The parameter a [length] of a cable with its ends `span` apart across gravity and `rise` along it.
 
-    Infinite where the cable is straight, 0 where the ends are above each other. InputError where it is too short.
+    Infinite where the cable is straight, 0 where the ends are above each other. InputError where it is too short,
+    or a number is not finite.
     """
-    span, rise = abs(float(span)), abs(float(rise))
-    u = _half_angle(span, _excess(np.array([span, 0.0, rise]), float(length)))
+    span = abs(_number(span, "span", "the distance of the ends across gravity is a finite number"))
+    rise = abs(_number(rise, "rise", "the distance of the ends along gravity is a finite number"))
+    u = _half_angle(span, _excess(np.array([span, 0.0, rise]), length))
     return np.inf if u == 0.0 else 0.0 if np.isinf(u) else 0.5 * span / u
 
 
@@ -135,10 +157,11 @@ def _along(a: float, u: float, reach: float, rise: float, length: float, arc: Fl
 
 def _excess(chord: Floats, length: float) -> float:
     """L^2 - |chord|^2 [length^2], exact but for the last rounding; InputError where the cable is too short."""
-    if not (np.isfinite(length) and 0.0 <= length <= 1e100):
+    length = _number(length, "length", "the length of the cable is a finite number, not below 0")
+    if length < 0.0:
         raise InputError("length", f"{length!r} given; the length of the cable is a finite number, not below 0")
     apart = sum(Fraction(float(c)) ** 2 for c in chord)
-    excess = float(Fraction(float(length)) ** 2 - apart)
+    excess = float(Fraction(length) ** 2 - apart)
     if excess < -8.0 * np.finfo(float).eps * float(apart):
         shortest = float(np.linalg.norm(chord))
         raise InputError(
@@ -199,3 +222,14 @@ def _point(value: ArrayLike, name: str) -> Floats:
     if point.shape != (3,) or not (np.abs(point) <= 1e100).all():
         raise InputError(name, f"{value!r} given; x, y, z expected, finite and below 1e100")
     return point
+
+
+def _number(value: Any, name: str, allowed: str) -> float:
+    """A finite number; InputError says what was given and what is allowed."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(name, f"{value!r} given; {allowed}") from None
+    if not abs(number) <= 1e100:
+        raise InputError(name, f"{number!r} given; {allowed}" + (", up to 1e100" if np.isfinite(number) else ""))
+    return number

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from decimal import Decimal, localcontext
 from typing import Any
 
@@ -170,3 +171,31 @@ def test_what_cannot_be_is_refused(change: dict[str, Any], says: str) -> None:
     call = {"start": (0, 0, 0), "end": (3, 4, 0), "length": 6.0, "count": 4, **change}
     with pytest.raises(InputError, match=says):
         catenary(call.pop("start"), call.pop("end"), call.pop("length"), **call)
+
+
+NO_NUMBER = float("nan")
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda: catenary([0, 0, 0], [3, 4, 0], "long"), "length: 'long' given; .* finite number"),  # type: ignore[arg-type]
+        (lambda: catenary([0, 0, 0], [3, 4, 0], 1e300), r"length: 1e\+300 given; .* up to 1e100"),
+        (lambda: tensions([0, 0, 0], [3, 4, 0], 6.0, weight=NO_NUMBER), "weight: nan given"),
+        (lambda: tensions([0, 0, 0], [3, 4, 0], 5.0, weight=0.0), "weight: 0 given; .* above 0"),
+        (lambda: parameter(NO_NUMBER, 6.0), "span: nan given"),
+        (lambda: parameter(4.0, 6.0, float("inf")), "rise: inf given"),
+        (lambda: sag(None, 6.0), "span: None given"),  # type: ignore[arg-type]
+        (lambda: sag(4.0, 3.0), "length: 3 given; the ends are 4 apart"),
+        (lambda: catenary_of(0.0, [1.0]), "a: 0 given; .* above 0"),
+        (lambda: catenary_of(-2.0, [1.0]), "a: -2 given; .* above 0"),
+        (lambda: catenary_of(NO_NUMBER, [1.0]), "a: nan given"),
+        (lambda: catenary_of(2.0, [1.0, NO_NUMBER]), "x: a distance that is not finite"),
+        (lambda: catenary_of(2.0, "wide"), "x: 'wide' given"),
+        (lambda: catenary_of(1.0, [0.0, -1e5]), "x: 100000 given with a = 1; .* within 700 a"),
+    ],
+)
+def test_numbers_that_are_none_are_refused(call: Callable[[], Any], says: str) -> None:
+    """No function of catenaries returns what is not a number, and none answers with an error of its libraries."""
+    with pytest.raises(InputError, match=says):
+        call()
