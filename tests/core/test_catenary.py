@@ -57,13 +57,20 @@ def plane(gravity: Any) -> np.ndarray:
 
 
 GRAVITIES = {"down": (0, 0, -1), "sideways": (2.0, 0, 0), "aslant": (1.0, -2.0, 0.5)}
-SHAPES = {"level": (10.0, 0.0, 12.0), "rising": (4.0, 3.0, 7.0), "falling": (1.0, -8.0, 8.5)}
+SHAPES = {
+    "nearly taut": (6.0, 2.5, 6.5001),
+    "level": (10.0, 0.0, 12.0),
+    "rising": (4.0, 3.0, 7.0),
+    "falling": (1.0, -8.0, 8.5),
+    "very slack": (3.0, -1.0, 60.0),
+}
 
 
 @pytest.mark.parametrize("gravity", GRAVITIES)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_points_lie_on_the_closed_form(shape: str, gravity: str) -> None:
-    """Three shapes under three gravities: every point to 1e-12 of the length (some eps of a, sinh and the frame)."""
+    """Five shapes, nearly taut to very slack, under three gravities: every point to 1e-12 of the length (some eps of a,
+    sinh and the frame)."""
     (span, rise, length), frame = SHAPES[shape], plane(GRAVITIES[gravity])
     start = np.array([1.0, -2.0, 0.5])
     end = start + span * frame[0] + rise * frame[2]
