@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Self
 
 import numpy as np
-from pydantic import Field, StrictInt, StrictStr, ValidationError
+from pydantic import Field, StrictInt, StrictStr, ValidationError, model_validator
 
-from hookean.columns import Indices, Model, Points
+from hookean.columns import Indices, Model, Points, Vector, fault
 from hookean.errors import InputError
 from hookean.forces.base import PLACES
 from hookean.scene import Anchor, Scene, Settings, first_fault
@@ -16,10 +17,17 @@ from hookean.system import Floats, Group, Held, Part, System, hold
 
 
 class Move(Model):
-    """New targets for an anchor, by its name or its number in the scene."""
+    """An anchor moved, by its name or its number in the scene: to targets, or as a whole by a shift."""
 
     anchor: StrictStr | StrictInt = Field(description="Name or number of an anchor")
-    targets: Points = Field(description="Where its particles go [length], one each")
+    targets: Points | None = Field(default=None, description="Where its particles go [length], one each")
+    shift: Vector | None = Field(default=None, description="How far from where the scene holds them [length]")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        if (self.targets is None) == (self.shift is None):
+            raise fault("give exactly one of targets, shift")
+        return self
 
 
 class Patch(Model):
@@ -71,21 +79,15 @@ class Undo:
 def apply(system: System, state: State, patch: Patch) -> None:
     """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Undo`)."""
     held = _held(system, state, patch)
-    forces = _forces(system, patch)
+    forces = changed_forces(system.scene, patch.forces)
     settings = _settings(system, patch)
-    listed = tuple(forces.get(i, f) for i, f in enumerate(system.scene.forces))
-    retune(system, state, system.scene.model_copy(update={"forces": listed, "settings": settings}), held)
+    retune(system, state, _with(system.scene, forces).model_copy(update={"settings": settings}), held)
 
 
 def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None:
     """Give a running system other parameters, settings and anchors; raises its revision. `scene` has the system's
     own places and elements; InputError where not, and then parts of it may have landed (see `Undo`)."""
-    for group in system.groups + system.contacts:
-        for part in group.parts:
-            if part.number >= 0 and scene.forces[part.number] is not part.force:
-                part.force = scene.forces[part.number]
-                group.block.parameters[part.rows] = _rows(system, group, part)
-    system.scene = scene
+    _put_forces(system, scene)
     system.drag = scene.settings.drag
     system.held = held
     state.free[:] = 1.0
@@ -93,6 +95,24 @@ def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None
         hold(state, anchor)
     system.put_outside(state)
     state.revision += 1
+
+
+def lead_forces(system: System, forces: Mapping[int, Any]) -> None:
+    """Give a running system changed forces, by number; its revision stays."""
+    _put_forces(system, _with(system.scene, forces))
+
+
+def _with(scene: Scene, forces: Mapping[int, Any]) -> Scene:
+    return scene.model_copy(update={"forces": tuple(forces.get(i, f) for i, f in enumerate(scene.forces))})
+
+
+def _put_forces(system: System, scene: Scene) -> None:
+    for group in system.groups + system.contacts:
+        for part in group.parts:
+            if part.number >= 0 and scene.forces[part.number] is not part.force:
+                part.force = scene.forces[part.number]
+                group.block.parameters[part.rows] = _rows(system, group, part)
+    system.scene = scene
 
 
 def _rows(system: System, group: Group, part: Part) -> Floats:
@@ -109,13 +129,16 @@ def _held(system: System, state: State, patch: Patch) -> list[Held]:
     """The anchors after the patch: moved, thinned by releases, joined by pins."""
     held = [Held(h.number, h.particles, h.targets.copy(), h.free, h.name) for h in system.held]
     for i, move in enumerate(patch.move):
-        anchor = _named(held, move.anchor, f"/move/{i}/anchor")
-        if len(move.targets) != len(anchor.particles):
+        anchor = named(held, move.anchor, f"/move/{i}/anchor")
+        if move.shift is not None:
+            anchor.targets = home(system, anchor, f"/move/{i}/shift") + move.shift
+        elif move.targets is not None and len(move.targets) == len(anchor.particles):
+            anchor.targets = np.array(move.targets)
+        elif move.targets is not None:
             raise InputError(
                 f"/move/{i}/targets",
                 f"{len(move.targets)} targets for {len(anchor.particles)} particles; give one for each",
             )
-        anchor.targets = np.array(move.targets)
     _exist(patch.release, len(state.x), "/release")
     for h in held:
         _thin(h, patch.release)
@@ -137,7 +160,21 @@ def _thin(anchor: Held, particles: Any) -> None:
     anchor.particles, anchor.targets = anchor.particles[stays], np.ascontiguousarray(anchor.targets[stays])
 
 
-def _named(held: list[Held], wanted: str | int, pointer: str) -> Held:
+def home(system: System, held: Held, pointer: str) -> Floats:
+    """Where the scene holds an anchor's particles (n, 3) [length]; InputError for one that the scene does not have."""
+    if held.number < 0:
+        raise InputError(pointer, "this anchor was pinned while running and has no place in the scene; give targets")
+    anchor = system.scene.anchors[held.number]
+    if anchor.targets is None:
+        return system.x[held.particles]
+    at = anchor.particles
+    if at is None:
+        at = system.places.meet(np.asarray(anchor.points), "", silent=True)
+    rows = {int(particle): row for row, particle in enumerate(at)}
+    return np.asarray(anchor.targets)[[rows[int(particle)] for particle in held.particles]]
+
+
+def named(held: list[Held], wanted: str | int, pointer: str) -> Held:
     """The one anchor of a name or number."""
     found = [h for h in held if (h.name == wanted and wanted != "") or (h.number == wanted and h.number >= 0)]
     if len(found) == 1:
@@ -156,11 +193,10 @@ def _exist(particles: Any, count: int, pointer: str) -> None:
         raise InputError(f"{pointer}/{place}", f"particle {given} does not exist; there are {count}, counted from 0")
 
 
-def _forces(system: System, patch: Patch) -> dict[int, Any]:
-    """The changed forces by number, validated as if they had been given so at first."""
-    scene = system.scene
+def changed_forces(scene: Scene, given_values: Mapping[str, Mapping[str, Any]]) -> dict[int, Any]:
+    """Forces by number with new values of columns, validated as if they had been given so at first."""
     changed: dict[int, Any] = {}
-    for key, values in patch.forces.items():
+    for key, values in given_values.items():
         named = [i for i, f in enumerate(scene.forces) if f.name == key and key]
         numbered = int(key) if key.isascii() and key.isdigit() else -1
         if len(named) > 1:

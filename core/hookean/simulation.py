@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,16 +16,20 @@ from numpy.typing import NDArray
 from hookean import stability
 from hookean.balance import balance
 from hookean.errors import InputError
+from hookean.history import History, Setup
 from hookean.patch import Patch, Undo, apply
 from hookean.result import Result, Status, carried, gather
 from hookean.run import Progress, relax_state
 from hookean.scene import Scene
+from hookean.script import Playing, Script
 from hookean.solvers import solver
 from hookean.state import State
-from hookean.system import Held, System, compile
+from hookean.stream import Stream
+from hookean.system import Held, System, compile, hold
 from hookean.watch import Watch
 
 Floats = NDArray[np.float64]
+Source = Stream | str | Path | Iterable[str]
 
 
 @dataclass(frozen=True)
@@ -40,26 +46,43 @@ class Frame:
     message: str
 
 
-def simulate(scene: Scene, frames: int | None = None) -> Iterator[Frame]:
-    """Frames of a scene in motion, `sub_iterations` steps apart, bouncing included; ends at rest or after `frames`.
+def simulate(
+    scene: Scene,
+    frames: int | None = None,
+    *,
+    script: Script | dict[str, object] | str | None = None,
+    stream: Source | None = None,
+) -> Iterator[Frame]:
+    """Frames of a scene in motion, `sub_iterations` steps apart, bouncing included; ends at rest, after `frames` or
+    with the frame in which the stream ends. A script that still moves something keeps it running.
 
     The first frame is the start. The scene's solver, or `verlet` where that is `auto`.
     """
-    running = Simulation(scene)
+    running = Simulation(scene, script, stream)
     yield running.frame()
     shown = 0
-    while running.status is Status.RUNNING and (frames is None or shown < frames):
+    while running.status is Status.RUNNING and not running.over and (frames is None or shown < frames):
         running.step()
         shown += 1
         yield running.frame()
 
 
 class Simulation:
-    """A running system: stepped frame by frame, patched while it runs, saved and resumed bit for bit."""
+    """A running system: stepped frame by frame, patched while it runs, saved and resumed bit for bit.
 
-    def __init__(self, scene: Scene) -> None:
+    A `script` leads anchors and columns of forces through time (see `hookean.script`), a `stream` (path, `-` for
+    standard input, or lines of CSV) gives the values of its drives. Both need a solver of physical time.
+    """
+
+    def __init__(
+        self, scene: Scene, script: Script | dict[str, object] | str | None = None, stream: Source | None = None
+    ) -> None:
         self.system = compile(scene)
+        self._playing: Playing | None = None
+        if script is not None or stream is not None:
+            self._playing = Playing(Script.read({} if script is None else script), stream, self.system)
         self.state = self.system.start()
+        self.history = History()
         self._begin(start=True)
 
     @property
@@ -67,11 +90,18 @@ class Simulation:
         """The scene as patches have left it."""
         return self.system.scene
 
+    @property
+    def over(self) -> bool:
+        """Whether the stream that drives it has ended."""
+        return self._playing is not None and self._playing.over
+
     def _begin(self, *, start: bool, warn: bool = True) -> None:
         """Take up the scene's solver; `start` lets it forget what it did before."""
         name = self.scene.settings.solver
         self.solver = solver("verlet" if name == "auto" else name)
         refusal = self.solver.refuse(self.system)
+        if self._playing is not None and not self.solver.physical:
+            refusal = f"{name} knows no time, and a script does; use verlet, yoshida or auto"
         if refusal:
             raise InputError("/settings/solver", refusal)
         if warn:
@@ -100,9 +130,11 @@ class Simulation:
         """Advance by at most `count` iterations of the solver."""
         if self.status is Status.DIVERGED:
             return self.status
-        self.solver.advance(self.system, self.state, count, 0.0 if self.solver.physical else self._watch.goal)
+        self._advance(count)
         self.status = self._watch.look(self.system, self.state)
         self._said = ""
+        if self.status is Status.CONVERGED and self._playing is not None and not self._playing.finished:
+            self.status = Status.RUNNING  # at rest, but not for long
         if self.status is Status.DIVERGED:
             self.state = self._watch.good.copy()
         elif self.status is Status.CONVERGED and not self.solver.physical:
@@ -110,6 +142,18 @@ class Simulation:
         elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):
             self.status = Status.RUNNING  # somebody is watching; they decide when to stop
         return self.status
+
+    def _advance(self, count: int) -> None:
+        playing = self._playing
+        while count and playing is not None and not playing.finished:
+            if playing.before(self.system, self.state, self.scene.settings.time_step):
+                self._warn()
+            self.solver.advance(self.system, self.state, 1, 0.0)
+            playing.after(self.system, self.state)
+            count -= 1
+        if count:
+            goal = 0.0 if self.solver.physical else self._watch.goal
+            self.solver.advance(self.system, self.state, count, goal)
 
     def _message(self) -> str:
         found, unit = self._watch.found, self.scene.units.force
@@ -144,20 +188,37 @@ class Simulation:
         self.status, self._said = result.status, result.message
         return result
 
-    def patch(self, edit: Patch | dict[str, object]) -> int:
+    def patch(self, edit: Patch | dict[str, object], *, gesture: str = "") -> int:
         """Change anchors, loads, stiffness, rest lengths or settings while it runs; returns the new revision.
 
-        InputError says what does not fit, and nothing has changed then.
+        Edits of one `gesture`, such as the drag of an anchor, are taken back as one. InputError says what does not
+        fit, and nothing has changed then.
         """
         edit = Patch.read(edit)
+        setup = Setup.of(self.system)
+        # a moved anchor neither stiffens nor quickens anything by itself
+        warn = bool(edit.forces or edit.settings or len(edit.release))
+        revision = self._changed(lambda: apply(self.system, self.state, edit), warn=warn)
+        self.history.note(setup, gesture)
+        return revision
+
+    def undo(self) -> int:
+        """Take the last patch back; returns the new revision. The form follows, as after any patch. InputError where
+        there is none."""
+        return self._changed(lambda: self.history.undo(self.system, self.state))
+
+    def redo(self) -> int:
+        """Make the patch again that was taken back last; InputError where there is none."""
+        return self._changed(lambda: self.history.redo(self.system, self.state))
+
+    def _changed(self, change: Callable[[], None], *, warn: bool = True) -> int:
+        """Make a change that lands whole or not at all; the new revision."""
         undo, before = Undo(self.system, self.state), self.solver
         try:
-            apply(self.system, self.state, edit)
+            change()
             same = self.scene.settings.solver == undo.scene.settings.solver
             if not same:
                 self.state.v[:] = 0.0  # what one solver calls velocity means nothing to another
-            # a moved anchor neither stiffens nor quickens anything by itself
-            warn = bool(edit.forces or edit.settings or len(edit.release))
             self._begin(start=not (same and before.physical), warn=warn)
         except InputError:
             undo.put_back(self.system, self.state)
@@ -165,43 +226,86 @@ class Simulation:
             raise
         return self.state.revision
 
-    def save(self, path: str | Path) -> None:
-        """Everything about this simulation in one .npz file: the scene, the state and the anchors as they are now."""
+    def succeed(self, scene: Scene) -> Simulation:
+        """A simulation of another scene that goes on from here: particles that start where one of this scene starts
+        (within the weld tolerance) are where that one is now, with its velocity. Anchors are those of the new scene,
+        its forces remember nothing yet."""
+        from scipy.spatial import cKDTree
+
+        new = Simulation(scene)
+        apart, same = cKDTree(self.system.x).query(new.system.x)
+        known = apart <= scene.weld_tolerance
+        new.state.x[known], new.state.v[known] = self.state.x[same[known]], self.state.v[same[known]]
+        for anchor in new.system.held:
+            hold(new.state, anchor)
+        new.system.put_outside(new.state)
+        new.state.revision = self.state.revision + 1
+        new._begin(start=True)
+        return new
+
+    def save(self, path: str | Path | IO[bytes]) -> None:
+        """Everything about this simulation in one .npz file: the scene, the state and the anchors as they are now. Its
+        history of patches is not in it."""
         arrays = self.state.arrays()
         for i, anchor in enumerate(self.system.held):
             arrays[f"held_{i}"] = np.column_stack([anchor.particles, anchor.targets])
             arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free])
         names = {f"name_{i}": np.array(anchor.name) for i, anchor in enumerate(self.system.held)}
         texts = {"scene": np.array(self.scene.canonical), "status": np.array(str(self.status)), **names}
-        with open(path, "wb") as file:
+        if self._playing is not None:
+            texts["script"] = np.array(self._playing.script.model_dump_json())
+            texts["finished"] = np.array(self._playing.finished)
+        with _opened(path, "wb") as file:
             np.savez(file, allow_pickle=False, **texts, **arrays)
 
     @classmethod
-    def load(cls, path: str | Path) -> Simulation:
-        """The simulation that `save` wrote; it goes on bit for bit. InputError where the file is not one."""
+    def load(cls, path: str | Path | IO[bytes], stream: Source | None = None) -> Simulation:
+        """The simulation that `save` wrote; it goes on bit for bit, with its stream given anew from the first row.
+        InputError where the file is not one."""
         try:
-            with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
+            with _opened(path, "rb") as opened, np.load(opened, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in file.files}
-            loaded = cls(Scene.read(str(arrays.pop("scene"))))
+            script = str(arrays.pop("script")) if "script" in arrays else None
+            finished = bool(arrays.pop("finished", False))
+            loaded = cls(Scene.read(str(arrays.pop("scene"))), script, stream)
             status = Status(str(arrays.pop("status")))
             count = sum(name.startswith("held_") for name in arrays)
             loaded.system.held = [_anchor(arrays, i, loaded.system) for i in range(count)]
             state = State.of(arrays)
             if not state.fits(loaded.state):
                 raise ValueError
+        except InputError as error:
+            if stream is not None or error.pointer == "/drives":
+                raise
+            raise _no_simulation(path) from None
         except (OSError, KeyError, ValueError, IndexError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
-            raise InputError(str(path), "not a saved simulation; give a file that Simulation.save wrote") from None
+            raise _no_simulation(path) from None
         loaded.state = state
+        if loaded._playing is not None:
+            loaded._playing.finished = finished  # what patches moved after its end stays moved
         loaded._begin(start=False)
         loaded.status = status
         return loaded
 
     def reset(self) -> None:
-        """Back to the start positions; anchors keep the particles they were given, and their present targets."""
+        """Back to the start positions; anchors keep the particles they were given, and their present targets, or
+        those of their script at its start. InputError for a stream that cannot be read again."""
         revision = self.state.revision
+        if self._playing is not None:
+            self._playing.rewind(self.system)
         self.state = self.system.start()
         self.state.revision = revision
         self._begin(start=True)
+
+
+def _opened(path: str | Path | IO[bytes], mode: str) -> contextlib.AbstractContextManager[IO[bytes]]:
+    """A file by its path, or a stream that its owner closes."""
+    return open(path, mode) if isinstance(path, str | Path) else contextlib.nullcontext(path)
+
+
+def _no_simulation(path: str | Path | IO[bytes]) -> InputError:
+    where = str(path) if isinstance(path, str | Path) else "file"
+    return InputError(where, "not a saved simulation; give a file that Simulation.save wrote")
 
 
 def _anchor(arrays: dict[str, NDArray[np.generic]], i: int, system: System) -> Held:

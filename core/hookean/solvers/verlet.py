@@ -63,7 +63,8 @@ def verlet_loop(  # type: ignore[no-untyped-def]
             for i in range(n):
                 for c in range(3):
                     push = v[i, c] + 0.5 * dt * f[i, c] / mass[i]
-                    v[i, c] = push / (1.0 + 0.5 * dt * drag / mass[i]) * free[i, c]
+                    if free[i, c] != 0.0:  # held axes go on as fast as their anchor is led
+                        v[i, c] = push / (1.0 + 0.5 * dt * drag / mass[i])
         for b in range(len(notes)):
             notes[b](x, indices[b], parameters[b], memory[b])
 
