@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean import stability
-from hookean.balance import balance
+from hookean.balance import Balance, balance
 from hookean.errors import InputError
 from hookean.history import History, Setup
 from hookean.patch import Patch, Undo, apply
@@ -155,7 +155,14 @@ class Simulation:
             goal = 0.0 if self.solver.physical else self._watch.goal
             self.solver.advance(self.system, self.state, count, goal)
 
-    def _message(self) -> str:
+    @property
+    def balance(self) -> Balance:
+        """How far the shape was from equilibrium when it was last looked at."""
+        return self._watch.found
+
+    @property
+    def message(self) -> str:
+        """How it stands, in a sentence."""
         found, unit = self._watch.found, self.scene.units.force
         if self.status is Status.RUNNING:
             return f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance."
@@ -171,14 +178,14 @@ class Simulation:
             self.state.revision,
             self._watch.found.residual,
             self.status,
-            self._message(),
+            self.message,
         )
 
     def result(self) -> Result:
         """Everything about the present state."""
         found = balance(self.system, self.state)
         return gather(
-            self.system, self.state, found, self.status, self._message(), self.solver.name, moving=self.solver.physical
+            self.system, self.state, found, self.status, self.message, self.solver.name, moving=self.solver.physical
         )
 
     def relax(self, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Result:
@@ -243,6 +250,15 @@ class Simulation:
         new._begin(start=True)
         return new
 
+    def take_up(self, state: State, status: Status) -> None:
+        """Go on from a state that `State.of` read back; its anchors are those of the system. ValueError where it is
+        the state of another system."""
+        if not state.fits(self.state):
+            raise ValueError("a state of another system")
+        self.state = state
+        self._begin(start=False, warn=False)
+        self.status = status
+
     def save(self, path: str | Path | IO[bytes]) -> None:
         """Everything about this simulation in one .npz file: the scene, the state and the anchors as they are now. Its
         history of patches is not in it."""
@@ -271,20 +287,15 @@ class Simulation:
             status = Status(str(arrays.pop("status")))
             count = sum(name.startswith("held_") for name in arrays)
             loaded.system.held = [_anchor(arrays, i, loaded.system) for i in range(count)]
-            state = State.of(arrays)
-            if not state.fits(loaded.state):
-                raise ValueError
+            loaded.take_up(State.of(arrays), status)
         except InputError as error:
             if stream is not None or error.pointer == "/drives":
                 raise
             raise _no_simulation(path) from None
         except (OSError, KeyError, ValueError, IndexError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
             raise _no_simulation(path) from None
-        loaded.state = state
         if loaded._playing is not None:
             loaded._playing.finished = finished  # what patches moved after its end stays moved
-        loaded._begin(start=False)
-        loaded.status = status
         return loaded
 
     def reset(self) -> None:
