@@ -1,8 +1,10 @@
-"""View: what of a result is to be seen, and from where. The geometry behind `picture`, without any drawing."""
+"""View: what of a result is to be seen, and from where. The geometry behind pictures, without any drawing."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,29 +16,45 @@ from hookean.result import Result
 from hookean.scene import Scene
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 VIEWS = {"front": (-90.0, 0.0), "right": (0.0, 0.0), "top": (-90.0, 90.0), "isometric": (-60.0, 28.0)}
 """Named views as azimuth and elevation of the eye [degrees]."""
 
 
 @dataclass
+class Shape:
+    """Springs, faces and strokes through one set of positions."""
+
+    points: Floats
+    springs: Ints = field(default_factory=lambda: np.zeros((0, 2), np.int64))
+    faces: Floats = field(default_factory=lambda: np.zeros((0, 4, 3)))
+    edged: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))  # faces whose edges are not all springs
+    strokes: list[Floats] = field(default_factory=list)
+
+    @property
+    def body(self) -> Floats:
+        """All points of the shape, (k, 3)."""
+        return np.concatenate([self.points, self.faces.reshape(-1, 3), *self.strokes])
+
+
+@dataclass
 class Things:
     """What is to be drawn, in space. Arrows are rows of a foot and a vector."""
 
-    points: Floats
-    springs: NDArray[np.int64]
-    forces: Floats
-    faces: Floats  # (m, 4, 3)
-    strokes: list[Floats]
+    shape: Shape
+    forces: Floats  # of the springs
     held: Floats
     loads: Floats  # (k, 2, 3)
     reactions: Floats  # (k, 2, 3)
     floors: list[tuple[Floats, Floats]] = field(default_factory=list)
+    frames: dict[str, Shape] = field(default_factory=dict)
+    curves: dict[str, Floats] = field(default_factory=dict)
 
     @property
     def body(self) -> Floats:
-        """All points of the model, (k, 3)."""
-        return np.concatenate([self.points, self.faces.reshape(-1, 3), *self.strokes])
+        """All points of the model, its frames and curves, (k, 3)."""
+        return np.concatenate([self.shape.body, *(f.body for f in self.frames.values()), *self.curves.values()])
 
 
 def springs(result: Result) -> tuple[NDArray[np.int64], Floats]:
@@ -50,30 +68,61 @@ def springs(result: Result) -> tuple[NDArray[np.int64], Floats]:
     return np.concatenate(pairs), np.concatenate(forces)
 
 
-def collect(result: Result, scene: Scene | None) -> Things:
+def collect(
+    result: Result | None,
+    scene: Scene | None,
+    frames: Mapping[str, Floats] | None = None,
+    curves: Mapping[str, Floats] | None = None,
+) -> Things:
+    """What is to be seen of a result, of the same particles elsewhere (`frames`) and of further `curves`.
+
+    InputError where frames or curves have the wrong shape, or nothing is to be seen.
+    """
+    lines = {label: _points(f"curve {label!r}", given, None) for label, given in (curves or {}).items()}
+    if result is None:
+        if frames:
+            raise InputError(
+                "panel", "has frames but no result; frames are drawn with the springs of a result, give it"
+            )
+        none = np.zeros((0, 2, 3))
+        things = Things(Shape(np.zeros((0, 3))), np.zeros(0), np.zeros((0, 3)), none, none, curves=lines)
+    else:
+        things = _of_result(result, scene)
+        count, mesh = len(result.particles), _Meshes(result, scene)
+        for label, given in (frames or {}).items():
+            things.frames[label] = mesh.shape(_points(f"frame {label!r}", given, count), things.shape.springs)
+        things.curves = lines
+    if not len(things.body):
+        raise InputError("panel", "has nothing to draw; give it a result with particles, or a curve")
+    return things
+
+
+def _points(pointer: str, given: Any, count: int | None) -> Floats:
+    """Points (k, 3) of a frame or curve, `count` of them if that is given."""
+    try:
+        points = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(pointer, "is not an array of numbers; give points (k, 3)") from None
+    if points.ndim != 2 or points.shape[1] != 3 or not len(points) or len(points) != (count or len(points)):
+        wanted = f"({count}, 3), one point for each particle" if count else "(k, 3), k at least 1"
+        raise InputError(pointer, f"has the shape {points.shape}; give {wanted}")
+    if not np.isfinite(points).all():
+        raise InputError(pointer, "has a coordinate that is not finite; give finite points")
+    return points
+
+
+def _of_result(result: Result, scene: Scene | None) -> Things:
     x = result.particles
     pairs, forces = springs(result)
-    faces, strokes = [np.zeros((0, 4, 3))], []
-    for item in result.geometry:
-        if item["kind"] == "mesh":
-            faces.append(np.asarray(item["vertices"])[np.asarray(item["faces"])])
-        elif item["kind"] == "lines":
-            strokes += list(np.asarray(item["lines"]))
-        elif item["kind"] == "polyline" or item.get("degree") == 1:
-            strokes.append(np.asarray(item["points"]))
-    things = Things(x, pairs, forces, np.zeros((0, 4, 3)), strokes, x[:0], _loads(result), np.zeros((0, 2, 3)))
     held = np.asarray(result.reactions["particles"], dtype=np.int64)
-    things.held = x[held]
     pushes = [np.stack([x[held], np.asarray(result.reactions["force"]).reshape(-1, 3)], axis=1)]
     touching = np.asarray(result.contacts["particles"], dtype=np.int64)
     pushes.append(np.stack([x[touching], np.asarray(result.contacts["force"]).reshape(-1, 3)], axis=1))
-    things.reactions = np.concatenate(pushes)
+    shape = _Meshes(result, scene).shape(x, pairs)
+    things = Things(shape, forces, x[held], _loads(result), np.concatenate(pushes))
     if scene is not None:
-        if len(faces) == 1:
-            faces += _meshes_of_forces(scene, x)
         floors = [f for f in (scene.settings.floor, *scene.forces) if isinstance(f, Floor)]
         things.floors = [(np.asarray(f.point), np.asarray(f.normal) / np.linalg.norm(f.normal)) for f in floors]
-    things.faces = np.concatenate(faces)
     return things
 
 
@@ -88,14 +137,82 @@ def _loads(result: Result) -> Floats:
     return np.stack([result.particles[loaded], total[loaded]], axis=1)
 
 
-def _meshes_of_forces(scene: Scene, x: Floats) -> list[Floats]:
-    """Faces of the meshes that forces on areas act on, where the particles are now."""
+class _Meshes:
+    """Carried geometry and the meshes of forces, to be put through any positions of the particles."""
+
+    def __init__(self, result: Result, scene: Scene | None) -> None:
+        self.items = result.geometry
+        self.at = {point.tobytes(): i for i, point in reversed(list(enumerate(result.particles + 0.0)))}
+        carries = any(item["kind"] == "mesh" for item in self.items)
+        self.of_forces = [] if carries or scene is None else _meshes_of_forces(scene)
+
+    def shape(self, x: Floats, pairs: Ints) -> Shape:
+        """Everything with the particles at `x`; what rides on none stays."""
+        faces, edged, strokes = [np.zeros((0, 4, 3))], [np.zeros(0, bool)], []
+        joined = {tuple(pair) for pair in np.sort(pairs, axis=1).tolist()}
+        for item in self.items:
+            if item["kind"] == "mesh":
+                rows, corners = self._riders(item["vertices"]), np.asarray(item["faces"])
+                faces.append(self._moved(item["vertices"], rows, x)[corners])
+                edged.append(_open(rows[corners], joined))
+            elif item["kind"] == "lines":
+                ends = np.asarray(item["lines"]).reshape(-1, 3)
+                strokes += list(self._moved(ends, self._riders(ends), x).reshape(-1, 2, 3))
+            elif item["kind"] in ("polyline", "curve"):
+                points = self._moved(item["points"], self._riders(item["points"]), x)
+                strokes.append(smooth(points, item) if item["kind"] == "curve" else points)
+        for corners in self.of_forces:
+            faces.append(x[corners])
+            edged.append(_open(corners, joined))
+        return Shape(x, pairs, np.concatenate(faces), np.concatenate(edged), strokes)
+
+    def _riders(self, points: Any) -> Ints:
+        """The particle each point rides on, which is exactly where it is; -1 for none."""
+        return np.array([self.at.get(p.tobytes(), -1) for p in np.asarray(points, np.float64) + 0.0], dtype=np.int64)
+
+    def _moved(self, points: Any, rows: Ints, x: Floats) -> Floats:
+        return np.where((rows >= 0)[:, None], x[np.maximum(rows, 0)], np.asarray(points, np.float64))
+
+
+def _open(corners: Ints, joined: set[tuple[int, ...]]) -> NDArray[np.bool_]:
+    """Which faces have an edge without a spring along it, or a corner that is no particle."""
+    edges = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1), axis=-1)
+    free = [any(a < 0 or (a != b and (a, b) not in joined) for a, b in face) for face in edges.tolist()]
+    return np.array(free, dtype=bool)
+
+
+def _meshes_of_forces(scene: Scene) -> list[Ints]:
+    """Faces (m, 4), by particles, of the meshes that forces on areas act on."""
     from hookean.weld import Welded
 
     given = [getattr(f, "mesh", None) for f in scene.forces if f.element_arity > 2]
     names = list(dict.fromkeys(name for name in given if name is not None))
     welded = Welded(scene) if names else None
-    return [x[welded.faces(name)] for name in names if welded is not None]
+    return [welded.faces(name) for name in names if welded is not None]
+
+
+def smooth(points: Floats, curve: Mapping[str, Any]) -> Floats:
+    """A NURBS curve as a fine polyline: control points, `degree`, `knots` as Rhino counts them (points + degree - 1),
+    clamped and uniform where there are none that fit, and `weights`."""
+    from scipy.interpolate import BSpline
+
+    count = len(points)
+    degree = min(int(curve.get("degree") or 3), count - 1)
+    if degree < 2:
+        return points
+    given = np.asarray(curve.get("knots") or (), dtype=np.float64)
+    if len(given) != count + degree - 1 or (np.diff(given) < 0).any() or not given[degree - 1] < given[count - 1]:
+        given = np.clip(np.arange(count + degree - 1.0) - degree + 1, 0, count - degree)
+    knots = np.concatenate([given[:1], given, given[-1:]])
+    weights = np.broadcast_to(1.0 if curve.get("weights") is None else np.asarray(curve["weights"]), count)
+    if not (weights > 0).all():
+        weights = np.ones(count)
+    spline = BSpline(knots, np.column_stack([points * weights[:, None], weights]), degree)
+    inner = np.unique(knots[degree : count + 1])
+    at = np.unique(np.concatenate([np.linspace(a, b, 17) for a, b in pairwise(inner)]))
+    raised = spline(at)
+    line: Floats = raised[:, :3] / raised[:, 3:]
+    return line
 
 
 def eye_of(view: Any, things: Things) -> Floats:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from hookean import picture
+from hookean import colours, furniture
 from hookean.errors import InputError
 from hookean.picture import legend, render
 from hookean.result import Result
@@ -78,7 +78,7 @@ def test_size_and_content(tmp_path: Path) -> None:
     assert 0.005 < painted.mean() < 0.5
     middle = painted[300:900, 100:1300]
     assert middle.any(axis=0).mean() > 0.8  # the cable spans the drawing
-    for colour in (picture.LOAD, picture.REACTION, picture.INK):
+    for colour in (colours.LOAD, colours.REACTION, colours.INK):
         assert ink(pixels, colour) > 100
 
 
@@ -99,8 +99,8 @@ def test_legend_ends_are_the_extreme_forces(scene: Scene) -> None:
 
 def test_the_drawn_bar_ends_where_the_legend_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     seen = []
-    ticks = picture._ticks
-    monkeypatch.setattr(picture, "_ticks", lambda low, high: seen.append(ticks(low, high)) or seen[-1])
+    ticks = colours.ticks
+    monkeypatch.setattr(furniture, "ticks", lambda *given: seen.append(ticks(*given)) or seen[-1])
     result = relax(cable())
     drawn(result, tmp_path)
     assert (seen[0][0], seen[0][-1]) == legend(result)[:2]
@@ -109,7 +109,8 @@ def test_the_drawn_bar_ends_where_the_legend_does(tmp_path: Path, monkeypatch: p
 
 @pytest.mark.parametrize("low, high", [(-3.0, 5.0), (0.0, 7.0), (-7.0, -1.0), (2.0, 2.0), (0.0, 0.0), (-1e9, 1e-3)])
 def test_colours_reach_both_ends(low: float, high: float) -> None:
-    _, first, last = picture._colours(low, high)
+    scale = colours.Scale(low, high, "N")
+    first, last = scale.first, scale.last
     assert first <= low <= high <= last and first < last
     if low < 0.0 < high and high > 1e-9 * abs(low):
         assert first == -last
@@ -125,7 +126,7 @@ def test_pull_is_warm_and_push_is_cold(tmp_path: Path) -> None:
             "anchors": [{"points": [[0, 0, 0]]}],
         }
         pixels = drawn(relax(Scene.read(scene)), tmp_path, size=(1600, 1200))
-        return pixels[600, 1440:1455].mean(axis=0)
+        return pixels[600, 1408:1424].mean(axis=0)
 
     pull, push = bar(100.0), bar(-100.0)
     assert pull[0] > pull[2] and push[2] > push[0]
@@ -159,15 +160,15 @@ def test_slack_springs_are_grey(tmp_path: Path) -> None:
     }
     result = relax(Scene.read(scene))
     assert legend(result) == (0.0, 500.0, "N")
-    assert ink(drawn(result, tmp_path, size=(1600, 1200)), picture.SLACK, near=0.04) > 500
+    assert ink(drawn(result, tmp_path, size=(1600, 1200)), colours.SLACK, near=0.04) > 500
 
 
 def test_without_any_force_there_is_no_colour_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = {"forces": [{"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]]], "rest_factor": 1.0}]}
-    monkeypatch.setattr(picture, "_colour_bar", lambda *given: pytest.fail("a bar of no forces"))
+    monkeypatch.setattr(furniture, "ticks", lambda *given: pytest.fail("a bar of no forces"))
     result = relax(Scene.read(scene))
     assert legend(result) == (0.0, 0.0, "N")
-    assert ink(drawn(result, tmp_path, size=(1600, 1200)), picture.SLACK, near=0.04) > 500
+    assert ink(drawn(result, tmp_path, size=(1600, 1200)), colours.SLACK, near=0.04) > 500
 
 
 EDGES = {
@@ -210,7 +211,7 @@ def test_plane_shapes_are_seen_face_on() -> None:
 def test_proportions_are_true(tmp_path: Path) -> None:
     square = [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [1, 0, 1]], [[1, 0, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 0]]]
     scene = Scene.read({"forces": [{"kind": "springs", "lines": square}]})
-    pixels = drawn(relax(scene), tmp_path, size=(1600, 1200))[130:1080, 60:1380]
+    pixels = drawn(relax(scene), tmp_path, size=(1600, 1200))[130:1050, 60:1380]
     rows, columns = np.nonzero((pixels < 0.9).any(axis=2))
     assert abs(np.ptp(rows) - np.ptp(columns)) <= 3
 

@@ -1,0 +1,156 @@
+"""Page: a figure measured in inches from its lower left corner, with text that fits; ends as the bytes of a PNG."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hookean.colours import INK
+
+WIDTH = 14.0
+"""Inches of a page's width; text of 12 points is then legible where a page is shown 900 pixels wide."""
+LARGE, MEDIUM, SMALL = 21.0, 15.0, 12.0
+"""Sizes of text in points: of the page, of a panel, of all else."""
+ROW = 0.29
+"""Height of a row of a legend in inches."""
+
+
+class Box(NamedTuple):
+    """A rectangle of the page in inches."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass
+class Entry:
+    """A sample and its words in a legend; `style` are the properties of the sample's line."""
+
+    label: str
+    style: dict[str, Any] = field(default_factory=dict)
+
+
+class Page:
+    """A white figure of `width` x `height` inches."""
+
+    def __init__(self, width: float, height: float, dpi: float) -> None:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        self.width, self.height, self.dpi = width, height, dpi
+        # a hundredth of a pixel more, lest rounding takes one away
+        size = ((width * dpi + 0.01) / dpi, (height * dpi + 0.01) / dpi)
+        self.figure = Figure(figsize=size, dpi=dpi, facecolor="white")
+        self.canvas = FigureCanvasAgg(self.figure)
+        self.inches = self.figure.dpi_scale_trans
+
+    def axes(self, box: Box) -> Any:
+        """Axes that fill a box."""
+        w, h = self.width, self.height
+        return self.figure.add_axes((box.x / w, box.y / h, box.width / w, box.height / h))
+
+    def text(self, x: float, y: float, text: str, size: float = SMALL, colour: str = INK, **more: Any) -> None:
+        """Words at a place; a `$` is only a `$`."""
+        self.figure.text(x, y, text, fontsize=size, color=colour, transform=self.inches, parse_math=False, **more)
+
+    def line(self, x: Any, y: Any, **style: Any) -> None:
+        from matplotlib.lines import Line2D
+
+        self.figure.add_artist(Line2D(x, y, transform=self.inches, **style))
+
+    def legend(self, rows: list[list[Entry]], box: Box) -> None:
+        """Rows of entries in the middle of a box, from its top."""
+        for i, row in enumerate(rows):
+            y = box.y + box.height - (i + 0.5) * ROW
+            x = box.x + 0.5 * (box.width - sum(_span(e, box.width) for e in row) + _GAP)
+            for entry in row:
+                sample = _sample(entry)
+                at = [x + 0.5 * (sample - 0.12)] if entry.style.get("linestyle") == "" else [x, x + sample - 0.12]
+                self.line(at, [y] * len(at), **entry.style)
+                self.text(x + sample, y, fitted(entry.label, box.width - sample), va="center_baseline")
+                x += _span(entry, box.width)
+
+    def png(self) -> bytes:
+        """The page as a PNG file: a palette of 256 colours where that shows no difference, else full colour."""
+        from PIL import Image
+
+        self.canvas.draw()
+        image = Image.fromarray(np.asarray(self.canvas.buffer_rgba())[..., :3].copy())
+        few = image.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
+        palette = np.array(few.getpalette(), np.uint8).reshape(-1, 3)
+        palette[(palette >= 253).all(axis=1)] = 255  # paper is white
+        few.putpalette(palette.ravel().tolist())
+        off = np.abs(palette[np.asarray(few)].astype(np.int16) - np.asarray(image)).max()
+        buffer = io.BytesIO()
+        (few if off <= 24 else image).save(buffer, format="png", optimize=True)
+        return buffer.getvalue()
+
+
+_GAP = 0.32
+
+
+def _sample(entry: Entry) -> float:
+    """Inches from the start of a sample to its words."""
+    return 0.28 if entry.style.get("marker") in ("s", "o") and entry.style.get("linestyle") == "" else 0.46
+
+
+def flow(entries: list[Entry], width: float) -> list[list[Entry]]:
+    """The entries of a legend in rows of at most `width` inches, about equally long."""
+
+    def rows(most: float) -> list[list[Entry]]:
+        found: list[list[Entry]] = []
+        used = np.inf
+        for entry in entries:
+            span = _span(entry, width)
+            if used + span > most + _GAP:
+                found.append([])
+                used = 0.0
+            found[-1].append(entry)
+            used += span
+        return found
+
+    if not entries:
+        return []
+    fewest = len(rows(width))
+    return next(r for part in (0.5, 0.6, 0.7, 0.8, 0.9, 1.0) if len(r := rows(part * width)) == fewest)
+
+
+def _span(entry: Entry, width: float) -> float:
+    return min(_sample(entry) + measured(entry.label), width) + _GAP
+
+
+def measured(text: str, size: float = SMALL, weight: str = "normal") -> float:
+    """Width of a line of text in inches."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    width: float = text_to_path.get_text_width_height_descent(text, FontProperties(size=size, weight=weight), False)[0]
+    return width / 72.0
+
+
+def fitted(text: str, width: float, size: float = SMALL, weight: str = "normal") -> str:
+    """Text cut to a width in inches, with an ellipsis where it was longer."""
+    text = " ".join(text.split())
+    if measured(text, size, weight) <= width:
+        return text
+    low, high = 0, len(text)
+    while low < high:
+        middle = (low + high + 1) // 2
+        fits = measured(text[:middle].rstrip() + "…", size, weight) <= width
+        low, high = (middle, high) if fits else (low, middle - 1)
+    return text[:low].rstrip() + "…"
+
+
+def wrapped(text: str, width: float, size: float, weight: str = "normal", most: int = 2) -> list[str]:
+    """Text in at most so many lines of a width in inches; the last one cut where there is more."""
+    words, lines = text.split(), list[str]()
+    while words and len(lines) < most - 1:
+        taken = next((n for n in range(len(words), 1, -1) if measured(" ".join(words[:n]), size, weight) <= width), 1)
+        lines.append(fitted(" ".join(words[:taken]), width, size, weight))
+        words = words[taken:]
+    return [*lines, fitted(" ".join(words), width, size, weight)] if words else lines
