@@ -83,7 +83,7 @@ class Drawing:
         for kind, (colour, _) in ARROWS.items():
             arrows = self._arrows(kind)
             if len(arrows):
-                _paint_arrows(axes, arrows, colour, max(0.0032 * self.extent, 1.5 * point))
+                _paint_arrows(axes, arrows, colour, max(0.0032 * self.extent, 1.3 * point))
 
     @property
     def _slack(self) -> NDArray[np.bool_]:
@@ -93,8 +93,8 @@ class Drawing:
     def _shades(self) -> dict[str, Any]:
         """Colours of the frames, the first one faintest."""
         count = len(self.things.frames)
-        strength = [0.30 + 0.55 * (i + 1) / (count + 1) for i in range(count)]
-        shades = [tuple(1.0 - s * (1.0 - np.array([0.38, 0.47, 0.56]))) for s in strength]
+        strength = [0.32 + 0.58 * i / max(count - 1, 1) for i in range(count)]
+        shades = [tuple(1.0 - s * (1.0 - np.array([0.24, 0.38, 0.54]))) for s in strength]
         return dict(zip(self.things.frames, shades, strict=True))
 
     def _styles(self) -> dict[str, dict[str, Any]]:
@@ -163,7 +163,7 @@ def _paint_frame(axes: Any, shape: Shape, eye: Floats, colour: Any, zorder: floa
     if len(shape.faces):
         edges = np.where(shape.edged, _edge_width(len(shape.faces), boldness), 0.0)
         polygons = PolyCollection(
-            list(shape.faces @ eye[:2].T), facecolors=(*colour, 0.16), edgecolors=(*colour, 0.8), linewidths=edges,
+            list(shape.faces @ eye[:2].T), facecolors=(*colour, 0.16), edgecolors=(*colour, 0.45), linewidths=edges,
             zorder=zorder,
         )  # fmt: skip
         axes.add_collection(polygons, autolim=False)
@@ -229,8 +229,8 @@ def _light(faces: Floats, eye: Floats) -> Floats:
     lamp = np.array([-0.45, 0.65, 0.62]) @ eye
     towards = np.where((normal @ eye[2]) < 0, -1.0, 1.0)
     shine = 0.62 + 0.38 * np.clip((normal @ lamp) * towards, 0.0, 1.0)
-    colour = np.array([0.80, 0.87, 0.93])[None] * shine[:, None]
-    return np.column_stack([colour, np.full(len(faces), 0.80)])
+    colour = np.array([0.79, 0.88, 0.96])[None] * shine[:, None]
+    return np.column_stack([colour, np.full(len(faces), 0.84)])
 
 
 def _paint_points(axes: Any, things: Things, eye: Floats, boldness: float) -> None:

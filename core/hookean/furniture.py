@@ -32,6 +32,7 @@ def colour_bar(page: Page, box: Box, scale: Scale, words: str = "") -> None:
     height = box.height - (0.84 if words else 0.62)
     bar = page.axes(Box(box.x + 0.06, box.y, 0.22, height))
     values = np.linspace(low, high, 400)
+    page.colours += [tuple(c) for c in np.round(255 * scale.colours(values[::8])[:, :3]).astype(int).tolist()]
     bottom, upper = (low, high) if high > low else (low - 0.5, low + 0.5)
     bar.imshow(scale.colours(values).reshape(-1, 1, 4), origin="lower", aspect="auto", extent=(0, 1, bottom, upper))
     bar.set_xticks([])

@@ -142,6 +142,8 @@ def compose(
     spaces = [cell for cell in cells if isinstance(cell, SpaceCell)]
     if len(cells) == 1 and not title and spaces:
         title, spaces[0].title = spaces[0].title, ""
+    for cell in spaces if columns > 1 else []:
+        cell.drawing.reach = {kind: 1.35 * reach for kind, reach in cell.drawing.reach.items()}  # small panels
     common = _share(spaces) if same_scale else None
     grid = _Grid(cells, columns, title, common is not None, same_scale)
     if size is None:
@@ -165,7 +167,7 @@ def _share(spaces: list[SpaceCell]) -> Scale | None:
         if len(loaded) > 1 and max(loaded) <= 8.0 * min(loaded):
             extent = max(cell.drawing.extent * cell.metres for cell in spaces)
             count = max(cell.drawing.most(kind)[1] for cell in spaces)
-            reach = Drawing.reach_of(kind, extent, max(loaded), count)
+            reach = 1.35 * Drawing.reach_of(kind, extent, max(loaded), count)
             for cell in spaces:
                 cell.drawing.reach[kind] = reach * NEWTONS[cell.force_unit] / cell.metres
     ends = [cell.ends for cell in spaces if cell.ends]
@@ -224,7 +226,7 @@ class _Grid:
     def _row(self, row: range, width: float, per_inch: dict[int, float]) -> float:
         """Height of the drawings of a row."""
         tall = [cell.seen[1] / per_inch[i] for i in row if isinstance(cell := self.cells[i], SpaceCell)]
-        graphs = [0.62 * width] if len(tall) < len(row) else []
+        graphs = [(0.5 if width > WIDE else 0.62) * width] if len(tall) < len(row) else []
         return float(max(*tall, *graphs, 0.3 * width))
 
     def _per_inch(self, width: float, rows: list[float]) -> dict[int, float]:
@@ -270,6 +272,6 @@ def _status(result: Result, width: float) -> str:
     parts = [str(result.status).replace("_", " "), f"residual {residual}", count, result.solver]
     if result.time > 0.0:
         parts.insert(1, f"time {number(result.time)} {result.units.time}")
-    while len(parts) > 1 and measured("  ·  ".join(parts)) > width:
+    while len(parts) > 1 and measured(" · ".join(parts)) > width:
         parts.pop()
-    return fitted("  ·  ".join(parts), width)
+    return fitted(" · ".join(parts), width)

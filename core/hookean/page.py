@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,8 @@ LARGE, MEDIUM, SMALL = 21.0, 15.0, 12.0
 """Sizes of text in points: of the page, of a panel, of all else."""
 ROW = 0.29
 """Height of a row of a legend in inches."""
+MANY = 4096
+"""Colours from which on a picture is saved with a palette."""
 
 
 class Box(NamedTuple):
@@ -48,6 +51,7 @@ class Page:
         self.figure = Figure(figsize=size, dpi=dpi, facecolor="white")
         self.canvas = FigureCanvasAgg(self.figure)
         self.inches = self.figure.dpi_scale_trans
+        self.colours: list[tuple[int, ...]] = []  # that a palette must have
 
     def axes(self, box: Box) -> Any:
         """Axes that fill a box."""
@@ -76,19 +80,38 @@ class Page:
                 x += _span(entry, box.width)
 
     def png(self) -> bytes:
-        """The page as a PNG file: a palette of 256 colours where that shows no difference, else full colour."""
+        """The page as a PNG file; one of very many colours with a palette of 256, where that shows no difference."""
         from PIL import Image
 
         self.canvas.draw()
-        image = Image.fromarray(np.asarray(self.canvas.buffer_rgba())[..., :3].copy())
-        few = image.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
-        palette = np.array(few.getpalette(), np.uint8).reshape(-1, 3)
-        palette[(palette >= 253).all(axis=1)] = 255  # paper is white
-        few.putpalette(palette.ravel().tolist())
-        off = np.abs(palette[np.asarray(few)].astype(np.int16) - np.asarray(image)).max()
+        pixels = np.asarray(self.canvas.buffer_rgba())[..., :3]
+        image = _few(pixels, self.colours) or Image.fromarray(pixels.copy())
         buffer = io.BytesIO()
-        (few if off <= 24 else image).save(buffer, format="png", optimize=True)
+        image.save(buffer, format="png", compress_level=9)
         return buffer.getvalue()
+
+
+def _few(pixels: Any, kept: list[tuple[int, ...]]) -> Any:
+    """The same image with a palette that has white and the colours `kept`; None where it has few colours already, or
+    a palette would not do."""
+    from PIL import Image
+    from scipy.spatial import cKDTree
+
+    packed = pixels.astype(np.uint32) @ np.array([65536, 256, 1], np.uint32)
+    values, places = np.unique(packed, return_inverse=True)
+    if len(values) <= MANY:
+        return None
+    colours = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=-1).astype(np.uint8)
+    room = 255 - len(kept)
+    most = Image.fromarray(colours[None]).quantize(room, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    found = np.array(most.getpalette(), np.uint8).reshape(-1, 3)[:room]
+    palette = np.concatenate([found, [(255, 255, 255)], np.array(kept, np.uint8).reshape(-1, 3)]).astype(np.uint8)
+    _, nearest = cKDTree(palette.astype(float)).query(colours.astype(float))
+    if np.abs(palette[nearest].astype(int) - colours).max() > 24:
+        return None
+    image = Image.fromarray(nearest.astype(np.uint8)[places].reshape(packed.shape))
+    image.putpalette(palette.ravel().tolist())
+    return image
 
 
 _GAP = 0.32
@@ -124,6 +147,7 @@ def _span(entry: Entry, width: float) -> float:
     return min(_sample(entry) + measured(entry.label), width) + _GAP
 
 
+@lru_cache(maxsize=1024)
 def measured(text: str, size: float = SMALL, weight: str = "normal") -> float:
     """Width of a line of text in inches."""
     from matplotlib.font_manager import FontProperties
