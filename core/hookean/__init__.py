@@ -7,9 +7,9 @@
     print(result.message, result.force("springs")["force"])
 
 `relax` brings a Scene to equilibrium and returns a Result with its Status. `simulate` yields the Frames of a scene in
-motion; a Simulation is stepped, patched (Patch), saved and loaded. Bad input raises InputError, one sentence with its
-place. Every force is a class here by its name (`hookean.Springs`, `hookean.Unary` ...). docs/scene.md tells of every
-field, docs/forces.md of every force.
+motion; a Simulation is stepped, patched (Patch), saved and loaded; a Script and a Stream lead either through time. Bad
+input raises InputError, one sentence with its place. Every force is a class here by its name (`hookean.Springs`,
+`hookean.Unary` ...). docs/scene.md tells of every field, docs/forces.md of every force.
 """
 
 from __future__ import annotations
@@ -25,9 +25,11 @@ if TYPE_CHECKING:
     from hookean.result import Status as Status
     from hookean.run import relax as relax
     from hookean.scene import Scene as Scene
+    from hookean.script import Script as Script
     from hookean.simulation import Frame as Frame
     from hookean.simulation import Simulation as Simulation
     from hookean.simulation import simulate as simulate
+    from hookean.stream import Stream as Stream
 
 __version__ = "0.1.0"
 
@@ -38,6 +40,8 @@ _HOMES = {
     "Frame": "simulation",
     "Simulation": "simulation",
     "Patch": "patch",
+    "Script": "script",
+    "Stream": "stream",
     "relax": "run",
     "simulate": "simulation",
 }
@@ -48,8 +52,10 @@ __all__ = [
     "Patch",
     "Result",
     "Scene",
+    "Script",
     "Simulation",
     "Status",
+    "Stream",
     "relax",
     "simulate",
 ]

@@ -1,4 +1,4 @@
-"""The command line: relax, example, serve, forces. Starts light: what a command needs is imported when it runs."""
+"""The command line: relax, simulate, example, serve, forces. Starts light: a command imports what it needs."""
 
 from __future__ import annotations
 
@@ -66,6 +66,36 @@ def relax(
     from hookean.commands.relax import Options, run
 
     raise typer.Exit(run(Options(files, output, recipe, explain, report, csv, picture, check, quiet)))
+
+
+@app.command()
+def simulate(
+    file: Annotated[Path, typer.Argument(help=".3dm file, scene or COMPAS document in .json")],
+    recipe: Annotated[
+        Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
+    ] = None,
+    script: Annotated[
+        Path | None, typer.Option(help="Paths of anchors and forces, and drives (TOML, JSON), in the scene's units")
+    ] = None,
+    stream: Annotated[
+        str | None, typer.Option(help="Values over time for the drives (CSV); - is standard input")
+    ] = None,
+    frames: Annotated[int | None, typer.Option(help="Stop after so many frames", min=0)] = None,
+    csv: Annotated[str | None, typer.Option(help="A row for each frame, as it comes; - is standard output")] = None,
+    picture: Annotated[Path | None, typer.Option(help="A picture (PNG) of the frames over each other")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help=".3dm or .json file to write the last shape to")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say only what is wrong")] = False,
+) -> None:
+    """Run a file in motion: it bounces, anchors move, loads change. The input is never changed.
+
+    Ends at rest, after --frames, or with the stream; exits with 0 then, with 2 for bad input, with 3 if it diverged or
+    never came to rest, with 130 after Ctrl-C. The frames until then are written in each case.
+    """
+    from hookean.commands.simulate import Options, run
+
+    raise typer.Exit(run(Options(file, recipe, script, stream, frames, csv, picture, output, quiet)))
 
 
 @app.command()

@@ -24,6 +24,7 @@ path: springs are damped by how fast they stretch, not by how fast their support
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -161,7 +162,8 @@ class Script(Model):
 
     def at(self, time: float, since: float | None = None) -> Patch | None:
         """The patch that puts everything where it is at `time`; None if there is nothing, or no change `since` then."""
-        patch = Patch(move=tuple(p.move(time) for p in self.anchors), forces=self.columns(time))
+        columns = {f: {c: np.asarray(v).tolist() for c, v in of.items()} for f, of in self.columns(time).items()}
+        patch = Patch(move=tuple(path.move(time) for path in self.anchors), forces=columns)
         before = None if since is None else self.at(since)
         return None if patch == before or not (patch.move or patch.forces) else patch
 
@@ -231,9 +233,7 @@ class Playing:
     def rewind(self, system: System) -> None:
         """Everything as it is at the start: anchors, forces, the first row. InputError for a stream that is gone."""
         if self._started and self._stream is not None and not self._stream.again:
-            raise InputError(
-                "stream", "cannot be read a second time; start a new simulation, or give the path of a file"
-            )
+            raise InputError("stream", "cannot be read twice; start a new simulation, or give the path of a file")
         self._rows: Iterator[Row] = iter(())
         if self._stream is not None:
             wanted = dict.fromkeys(drive.source for drive in self.script.drives)
@@ -326,7 +326,7 @@ def _tried(system: System, path: ForcePath | Drive, value: Any, pointer: str, wh
     except InputError as error:
         if error.pointer == f"/forces/{key}":
             where = "/force"
-        elif not error.pointer.startswith(f"/forces/{key}/{path.column}") or "no field" in error.sentence:
+        elif path.column not in error.pointer or re.search("no field|cannot change", error.sentence):
             where = "/column"
         raise InputError(f"{pointer}{where}", error.sentence) from None
 

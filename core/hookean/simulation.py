@@ -95,6 +95,11 @@ class Simulation:
         """Whether the stream that drives it has ended."""
         return self._playing is not None and self._playing.over
 
+    @property
+    def driven(self) -> bool:
+        """Whether a script or stream still has something to do."""
+        return self._playing is not None and not self._playing.finished
+
     def _begin(self, *, start: bool, warn: bool = True) -> None:
         """Take up the scene's solver; `start` lets it forget what it did before."""
         name = self.scene.settings.solver
@@ -133,7 +138,7 @@ class Simulation:
         self._advance(count)
         self.status = self._watch.look(self.system, self.state)
         self._said = ""
-        if self.status is Status.CONVERGED and self._playing is not None and not self._playing.finished:
+        if self.status is Status.CONVERGED and self.driven:
             self.status = Status.RUNNING  # at rest, but not for long
         if self.status is Status.DIVERGED:
             self.state = self._watch.good.copy()

@@ -50,19 +50,19 @@ def run(options: Options) -> int:
     """Relax every file; the exit code is the gravest: bad input, then not converged, then a limit exceeded."""
     codes: list[int] = []
     try:
-        recipe = None if options.recipe is None else _text(options.recipe)
+        recipe = None if options.recipe is None else text_of(options.recipe)
         name = options.recipe.name if options.recipe is not None else ""
         if options.explain:
             return max(_explained(file, recipe, name) for file in options.files)
         limits = _limits(options.check), options.check.name if options.check is not None else ""
         jobs = _jobs(options)
     except InputError as error:
-        return _bad(error)
+        return bad(error)
     for job in jobs:
         try:
             codes.append(_one(job, recipe, name, limits, options.quiet))
         except InputError as error:
-            codes.append(_bad(error))
+            codes.append(bad(error))
         except KeyboardInterrupt:
             typer.echo(f"hookean: {job.source.name}: stopped, nothing written", err=True)
             return STOPPED
@@ -121,11 +121,12 @@ def _explained(file: Path, recipe: str | None, name: str) -> int:
     try:
         typer.echo("\n".join(explain_file(file, recipe, recipe_name=name)))
     except InputError as error:
-        return _bad(error)
+        return bad(error)
     return CONVERGED
 
 
-def _bad(error: InputError) -> int:
+def bad(error: InputError) -> int:
+    """Say what is wrong in one line; the exit code for it."""
     # a sentence that goes on from what it is about needs no colon: "a.toml is a recipe"
     joint = " " if error.sentence.startswith(_VERBS) and not error.pointer.startswith("/") else ": "
     said = f"{error.pointer}{joint}{error.sentence}" if error.pointer else error.sentence
@@ -133,7 +134,8 @@ def _bad(error: InputError) -> int:
     return BAD_INPUT
 
 
-def _text(path: Path) -> str:
+def text_of(path: Path) -> str:
+    """The text in a file; InputError where there is none."""
     try:
         return path.read_bytes().decode("utf-8")
     except UnicodeDecodeError:
@@ -146,7 +148,7 @@ def _text(path: Path) -> str:
 def _limits(path: Path | None) -> dict[str, Any] | None:
     if path is None:
         return None
-    text = _text(path)
+    text = text_of(path)
     from hookean.files.tables import read_limits
 
     return read_limits(text, path.name)

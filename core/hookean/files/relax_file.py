@@ -77,7 +77,7 @@ class LimitsError(InputError):
 
 
 @dataclass(eq=False)
-class _Source:
+class Source:
     """A file read: its scene, where that came from, lengths of the file in the scene's unit and the file's unit."""
 
     scene: Scene
@@ -125,21 +125,47 @@ def relax_file(
     Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written; LimitsError,
     with everything written, where limits name what the file does not have.
     """
-    from hookean.result import Status
     from hookean.run import relax_state
     from hookean.solvers import solver
     from hookean.system import compile
 
+    check_output(target, source)
+    read = open_file(Path(source), recipe_text, recipe_name)
+    with about(recipe_name):
+        system = compile(read.scene)
+        result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)
+    return conclude(read, Path(source), system, result, target, limits=limits, limits_name=limits_name)
+
+
+def check_output(target: Path | None, source: Path) -> None:
+    """InputError where a result cannot be written to `target`."""
     if target is not None:
         check_target(target, source)
         if target.suffix.lower() not in (".3dm", ".json"):
             raise InputError(target.name, "ends neither in .3dm nor in .json; name the output so.")
-    read = _read(Path(source), recipe_text, recipe_name)
+
+
+def open_file(source: Path, recipe_text: str | None = None, recipe_name: str = "") -> Source:
+    """What a file holds; InputError where that is nothing to relax."""
+    read = _read(source, recipe_text, recipe_name)
     if read.nothing:
-        raise InputError(Path(source).name, read.nothing)
-    with _about(recipe_name):
-        system = compile(read.scene)
-        result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)
+        raise InputError(source.name, read.nothing)
+    return read
+
+
+def conclude(
+    read: Source,
+    source: Path,
+    system: System,
+    result: Result,
+    target: Path | None = None,
+    *,
+    limits: Mapping[str, Any] | None = None,
+    limits_name: str = "limits",
+) -> FileResult:
+    """A result as `relax_file` gives it, written to `target` and held to limits: of a system that `read` describes."""
+    from hookean.result import Status
+
     parts = tables.sections(system, result, read.built)
     found = FileResult(
         result, read.scene, read.lines, tables.rows(parts, result), tables.per_object(parts, result.units)
@@ -149,17 +175,17 @@ def relax_file(
     fault: InputError | None = None
     if limits is not None:
         try:
-            found.exceeded = tables.exceeded(limits, parts, system, result, limits_name, Path(source).name)
+            found.exceeded = tables.exceeded(limits, parts, system, result, limits_name, source.name)
         except InputError as error:
             fault = error
     if target is not None and result.status is not Status.CANCELLED:
-        _write(found, system, parts, read, Path(source), target)
+        _write(found, system, parts, read, source, target)
     if fault is not None:
         raise LimitsError(fault, found)
     return found
 
 
-def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
+def _read(source: Path, recipe_text: str | None, recipe_name: str) -> Source:
     if source.suffix.lower() == ".json":
         if recipe_text is not None:
             raise InputError(source.name, "is a JSON file, which says everything itself; recipes go with .3dm files.")
@@ -168,10 +194,10 @@ def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
         raise InputError(source.name, "is a recipe; give it with -r, and a .3dm file to relax")
     recipe = None if recipe_text is None else parse_recipe(recipe_text, recipe_name or "recipe")
     model = threedm.read(source)
-    with _about(recipe_name if recipe is not None else source.name, source.name):
+    with about(recipe_name if recipe is not None else source.name, source.name):
         understood = understand(model, recipe)
     seen = understood.built.drawing
-    return _Source(
+    return Source(
         understood.built.scene,
         understood.lines,
         understood.built,
@@ -183,7 +209,7 @@ def _read(source: Path, recipe_text: str | None, recipe_name: str) -> _Source:
 
 
 @contextlib.contextmanager
-def _about(name: str, source: str = "") -> Iterator[None]:
+def about(name: str, source: str = "") -> Iterator[None]:
     """Pointers into a recipe, told with its name; those to an object, with the file's."""
     try:
         yield
@@ -195,7 +221,7 @@ def _about(name: str, source: str = "") -> Iterator[None]:
         raise InputError(f"{name} {error.pointer}", error.sentence) from None
 
 
-def _read_json(source: Path) -> _Source:
+def _read_json(source: Path) -> Source:
     from hookean.files import compas_json
     from hookean.files.scene_json import parse
     from hookean.files.threedm_read import read_bytes
@@ -208,7 +234,7 @@ def _read_json(source: Path) -> _Source:
     if isinstance(value, dict) and ({"result", "rows"} <= value.keys() or {"status", "particles"} <= value.keys()):
         raise InputError(source.name, "is a result, not a scene; give the file it came from")
     document = None
-    with _about(source.name):
+    with about(source.name):
         if compas_json.is_document(value):
             document = compas_json.read(value)
             scene = Scene.read(_of_document(document, value))
@@ -224,7 +250,7 @@ def _read_json(source: Path) -> _Source:
     if document is not None:
         what = "naked vertices" if document.kind == "mesh" else "nodes of one edge"
         lines.append(f"a document without a scene: its edges are springs of rest factor 0, its {what} are held")
-    return _Source(scene, lines, unit=units.length, compas=document)
+    return Source(scene, lines, unit=units.length, compas=document)
 
 
 def _of_document(document: Any, value: Any) -> dict[str, Any]:
@@ -266,7 +292,7 @@ def _doubled(parts: list[tables.Section]) -> list[str]:
 
 
 def _write(
-    found: FileResult, system: System, parts: list[tables.Section], read: _Source, source: Path, target: Path
+    found: FileResult, system: System, parts: list[tables.Section], read: Source, source: Path, target: Path
 ) -> None:
     if target.suffix.lower() == ".json":
         put(target, _json(_finite(_answer(found, read))), lambda back: None)
@@ -286,7 +312,7 @@ def _write(
             found.warnings.append(said)
 
 
-def _answer(found: FileResult, read: _Source) -> Any:
+def _answer(found: FileResult, read: Source) -> Any:
     """The result, or a COMPAS document with its points moved."""
     document = read.compas
     if document is None:

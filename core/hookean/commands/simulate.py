@@ -1,0 +1,224 @@
+"""`hookean simulate`: a file in motion, a row for each frame, and an exit code."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import typer
+
+from hookean.commands import relax as command
+from hookean.errors import InputError
+from hookean.files.threedm_atomic import check_target
+
+if TYPE_CHECKING:
+    from hookean.files.relax_file import FileResult, Source
+    from hookean.result import Result
+    from hookean.simulation import Simulation
+
+ENDED, BAD_INPUT, RESTLESS, STOPPED = command.CONVERGED, command.BAD_INPUT, command.NOT_CONVERGED, command.STOPPED
+SHAPES = 8  # drawn over each other, at most twice as many
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the command was given; `csv` and `stream` may be `-`."""
+
+    source: Path
+    recipe: Path | None
+    script: Path | None
+    stream: str | None
+    frames: int | None
+    csv: str | None
+    picture: Path | None
+    output: Path | None
+    quiet: bool
+
+
+@dataclass
+class _Seen:
+    """What a run has shown so far: its last frame, and some shapes of the way by time."""
+
+    result: Result | None = None
+    frames: int = 0
+    stride: int = 1
+    shapes: list[tuple[float, Any]] = field(default_factory=list)
+
+    def note(self, result: Result) -> None:
+        if self.result is not None:
+            self.frames += 1
+        self.result = result
+        if self.frames % self.stride == 0:
+            self.shapes.append((result.time, result.particles))
+        if len(self.shapes) > 2 * SHAPES:
+            self.shapes, self.stride = self.shapes[::2], 2 * self.stride
+
+
+def run(options: Options) -> int:
+    """Run the file in motion; what was seen before bad input or Ctrl-C is written all the same."""
+    try:
+        _check(options)
+        read, running = _ready(options)
+        seen = _Seen()
+        fault: InputError | None = None
+        code = STOPPED
+        with _table(options.csv) as write, contextlib.suppress(KeyboardInterrupt):
+            try:
+                code = _go(running, options.frames, seen, write)
+            except InputError as error:
+                fault, code = error, BAD_INPUT
+        if seen.result is not None:
+            _conclude(options, read, running, seen, code)
+        return command.bad(fault) if fault is not None else code
+    except InputError as error:
+        return command.bad(error)
+    except KeyboardInterrupt:
+        typer.echo(f"hookean: {options.source.name}: stopped, nothing written", err=True)
+        return STOPPED
+
+
+def _check(options: Options) -> None:
+    from hookean.files.relax_file import check_output
+
+    check_output(options.output, options.source)
+    if options.picture is not None and options.picture.suffix.lower() != ".png":
+        raise InputError(options.picture.name, "is not a .png file; pictures are PNG, end the name so")
+    stream = None if options.stream in (None, "-") else Path(str(options.stream))
+    table = None if options.csv in (None, "-") else Path(str(options.csv))
+    targets = [target for target in (options.output, options.picture, table) if target is not None]
+    for target in targets:
+        for source in (options.source, options.recipe, options.script, stream):
+            if source is not None:
+                check_target(target, source)
+        if [t.resolve() for t in targets].count(target.resolve()) > 1:
+            raise InputError(str(target), "would be written twice; give files of different names")
+
+
+def _ready(options: Options) -> tuple[Source, Simulation]:
+    from hookean.files.relax_file import about, open_file
+    from hookean.script import Script
+    from hookean.simulation import Simulation
+    from hookean.system import compile
+
+    recipe = None if options.recipe is None else command.text_of(options.recipe)
+    name = options.recipe.name if options.recipe is not None else ""
+    read = open_file(options.source, recipe, name)
+    with about(name):
+        compile(read.scene)
+    if options.script is None:
+        return read, Simulation(read.scene, None, options.stream)
+    script = Script.read(command.text_of(options.script), options.script.name)
+    with about(options.script.name):
+        return read, Simulation(read.scene, script, options.stream)
+
+
+def _go(running: Simulation, frames: int | None, seen: _Seen, write: Callable[[list[Any]], None]) -> int:
+    """Frame by frame to rest, to `frames` or to the end of the stream; else as far as the scene's iterations go."""
+    result = running.result()
+    write(_heading(result))
+    write(_row(result, running))
+    seen.note(result)
+    most = running.scene.settings.max_iterations
+    while running.status == "running" and not running.over and (frames is None or seen.frames < frames):
+        if frames is None and running.state.iteration >= most and not running.driven:
+            return RESTLESS
+        running.step()
+        result = running.result()
+        write(_row(result, running))
+        seen.note(result)
+    return RESTLESS if running.status == "diverged" else ENDED
+
+
+def _heading(result: Result) -> list[Any]:
+    units = result.units
+    forces = [f"largest force of {name} [{units.of(unit)}]" for name, unit, _ in _forces(result)]
+    return [
+        f"time [{units.time}]", "iteration", "residual [-]", f"kinetic energy [{units.of('energy')}]", *forces,
+        f"largest displacement [{units.length}]", f"largest reaction [{units.force}]",
+    ]  # fmt: skip
+
+
+def _row(result: Result, running: Simulation) -> list[Any]:
+    moved = np.linalg.norm(result.particles - running.system.x, axis=1).max(initial=0.0)
+    reactions = np.asarray(result.reactions["force"]).reshape(-1, 3)
+    numbers = [
+        result.energy["kinetic"], *(value for _, _, value in _forces(result)),
+        moved, np.linalg.norm(reactions, axis=1).max(initial=0.0),
+    ]  # fmt: skip
+    return [f"{result.time:.10g}", result.iterations, f"{result.residual:.6g}", *(f"{n:.10g}" for n in numbers)]
+
+
+def _forces(result: Result) -> list[tuple[str, str, float]]:
+    """Name, unit and largest force (or moment) of each force that has one; tension +, compression -."""
+    from hookean.forces import KINDS
+
+    found: list[tuple[str, str, float]] = []
+    for number, entry in enumerate(result.forces):
+        outputs = KINDS[entry["kind"]].outputs
+        column = next((c for c in ("force", "moment") if c in outputs), None)
+        if column is None:
+            continue
+        values = np.asarray(entry.get(column, ()), dtype=float)
+        sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+        largest = float(sizes[np.argmax(np.abs(sizes))]) if len(sizes) else 0.0
+        name = entry["name"] or entry["kind"]
+        taken = any(name == other for other, _, _ in found)
+        found.append((f"{name} (force {number})" if taken else name, outputs[column], largest))
+    return found
+
+
+@contextlib.contextmanager
+def _table(target: str | None) -> Iterator[Callable[[list[Any]], None]]:
+    """Writes rows as they come, so that nothing is lost and a pipe sees each at once."""
+    if target is None:
+        yield lambda row: None
+        return
+    try:
+        whole: Any = contextlib.nullcontext(sys.stdout)
+        if target != "-":
+            whole = open(target, "w", encoding="utf-8", newline="")  # noqa: SIM115
+    except OSError as error:
+        raise InputError(target, f"cannot be written ({error.strerror}); check the path") from None
+    with whole as file:
+        lines = csv.writer(file, lineterminator="\n")
+
+        def write(row: list[Any]) -> None:
+            lines.writerow(row)
+            file.flush()
+
+        yield write
+
+
+def _conclude(options: Options, read: Source, running: Simulation, seen: _Seen, code: int) -> None:
+    from hookean.files.relax_file import conclude
+
+    result = seen.result
+    assert result is not None
+    found = conclude(read, options.source, running.system, result, options.output)
+    if options.picture is not None:
+        from hookean.sheet import Panel, sheet
+
+        frames = {f"{time:.4g} {result.units.time}": x for time, x in seen.shapes if time < result.time}
+        sheet([Panel(result, read.scene, frames=frames)], options.picture, title=options.source.stem)
+    _tell(options, found, seen, code)
+
+
+def _tell(options: Options, found: FileResult, seen: _Seen, code: int) -> None:
+    result, name = found.result, options.source.name
+    for sentence in found.warnings:
+        typer.echo(f"hookean: {name}: note: {sentence}", err=True)
+    how = {STOPPED: "stopped", RESTLESS: "not at rest", BAD_INPUT: "broken off"}.get(code, "")
+    said = f"{seen.frames} frames, {result.time:.6g} {result.units.time}. {result.message}"
+    if how:
+        typer.echo(f"hookean: {name}: {how} after {said}", err=True)
+    elif not options.quiet:
+        to = options.csv == "-"  # which has standard output to itself
+        typer.echo(f"{name}: {said}", err=to)
+        for line in result.summary():
+            typer.echo(f"  {line}", err=to)
