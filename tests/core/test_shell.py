@@ -289,6 +289,21 @@ def test_quads_split_along_their_shorter_diagonal() -> None:
     assert found[8:] == [[0, 1, 2]]
 
 
+@pytest.mark.parametrize("shift", [0.0, 10.0])
+def test_a_mesh_in_single_precision_is_cut_like_the_same_in_double(shift: float) -> None:
+    """Trapezoids on a sphere have equal diagonals, at least 0.2 long; files of Rhino round coordinates to 6e-8 of 11.
+
+    So diagonals differ by some 1e-6 / 0.2 = 5e-6 at most, and all are draws, cut from first to third corner.
+    """
+    up, around = np.meshgrid(np.pi * np.arange(1, 12) / 12, np.pi * np.arange(20) / 10, indexing="ij")
+    x = np.stack([np.sin(up) * np.cos(around), np.sin(up) * np.sin(around), np.cos(up)], axis=-1).reshape(-1, 3) + shift
+    a = np.arange(200).reshape(10, 20)
+    b = np.roll(a, -1, axis=1)
+    faces = np.stack([a, b, b + 20, a + 20], axis=-1).reshape(-1, 4)
+    found = triangles(x.astype(np.float32).astype(float), faces)
+    assert found.tolist() == np.stack([faces[:, :3], faces[:, [0, 2, 3]]], axis=1).reshape(-1, 3).tolist()
+
+
 def test_the_diagonal_of_a_quad_folds_as_any_edge() -> None:
     """One square folded along its split by an angle t: E = A D |K|^2 / 2 for its two triangles, naked edges free.
 

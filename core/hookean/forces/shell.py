@@ -147,8 +147,9 @@ def triangles(x: Floats, faces: Ints) -> Ints:
         return np.asarray((one * other).sum(axis=1) > 0)
 
     fits, other_fits = inside(a, b, c, d), inside(b, c, d, a)
-    # equal but for rounding is a draw, so that a regular grid is cut in a regular way
-    along_first = np.where(fits == other_fits, first <= second * (1.0 + 1e-9), fits)
+    # equal but for rounding is a draw, so that a regular grid is cut in a regular way; Rhino's meshes have single
+    # precision, 6e-8 of coordinates that may be a hundred times the diagonals
+    along_first = np.where(fits == other_fits, first <= second * (1.0 + 1e-5), fits)
     quad = faces[:, 2] != faces[:, 3]
     one = np.where((along_first | ~quad)[:, None], faces[:, [0, 1, 2]], faces[:, [0, 1, 3]])
     two = np.where(along_first[:, None], faces[:, [0, 2, 3]], faces[:, [1, 2, 3]])
