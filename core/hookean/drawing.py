@@ -64,6 +64,8 @@ class Drawing:
             if len(self.given[kind]):
                 style = {"color": colour, "marker": r"$\rightarrow$", "markersize": 17, "linestyle": ""}
                 found.append(Entry(self._arrow_label(kind, unit), style))
+        if self.things.shape.strokes:
+            found.append(Entry("carried geometry", {"color": INK, "linewidth": 1.6}))
         found += [Entry(label, {"color": shade, "linewidth": 2.4}) for label, shade in self._shades().items()]
         return [*found, *(Entry(label, style) for label, style in self._styles().items())]
 
@@ -93,7 +95,7 @@ class Drawing:
     def _shades(self) -> dict[str, Any]:
         """Colours of the frames, the first one faintest."""
         count = len(self.things.frames)
-        strength = [0.32 + 0.58 * i / max(count - 1, 1) for i in range(count)]
+        strength = [0.32 + 0.48 * i / max(count - 1, 1) for i in range(count)]
         shades = [tuple(1.0 - s * (1.0 - np.array([0.24, 0.38, 0.54]))) for s in strength]
         return dict(zip(self.things.frames, shades, strict=True))
 
@@ -138,7 +140,7 @@ class Drawing:
         sizes = np.linalg.norm(self.given[kind][:, 1], axis=1)
         thinned = -(-len(sizes) // MOST_ARROWS)
         few = f", 1 of {thinned} drawn" if thinned > 1 else ""
-        alike = np.ptp(sizes) <= 1e-9 * sizes.max()
+        alike = number(sizes.min()) == number(sizes.max())
         return f"{kind}{' ' if alike else ', longest '}{number(sizes.max())} {unit}{few}"
 
 
@@ -159,7 +161,7 @@ def _paint_floor(axes: Any, corners: Floats, lines: Floats) -> None:
 def _paint_frame(axes: Any, shape: Shape, eye: Floats, colour: Any, zorder: float, boldness: float) -> None:
     from matplotlib.collections import LineCollection, PolyCollection
 
-    width = _width(len(shape.springs), boldness) * 0.75
+    width = _width(len(shape.springs), boldness) * (0.75 if len(shape.springs) <= 60 else 0.45)
     if len(shape.faces):
         edges = np.where(shape.edged, _edge_width(len(shape.faces), boldness), 0.0)
         polygons = PolyCollection(
