@@ -17,7 +17,11 @@ from hookean_server import openapi, routes_about, routes_discretize, routes_rela
 from hookean_server.limits import BodyLimit, Guard, Problems
 from hookean_server.pool import Pool
 from hookean_server.problems import Problem
+from hookean_server.sessions import frames
+from hookean_server.sessions import routes as session_routes
+from hookean_server.sessions.manager import Manager
 from hookean_server.settings import Settings
+from hookean_server.store import Store
 
 _SLUGS = {404: "not-found", 405: "method-not-allowed", 413: "too-large", 415: "unsupported-media"}
 
@@ -25,15 +29,20 @@ _SLUGS = {404: "not-found", 405: "method-not-allowed", 413: "too-large", 415: "u
 def create_app(settings: Settings | None = None) -> FastAPI:
     """The service as an ASGI application; its workers start with its lifespan, or with the first request."""
     settings = settings or Settings()
-    pool = Pool(settings)
+    pool, store = Pool(settings), Store(settings.state)
+    sessions = Manager(settings, store)
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         pool.start()
+        store.start()
+        await sessions.start()
         try:
             yield
         finally:
+            await sessions.close()
             pool.close()
+            store.close()
 
     app = FastAPI(
         title="hookean",
@@ -46,7 +55,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         exception_handlers={HTTPException: _refused, RequestValidationError: _faulty},
     )
     app.state.settings, app.state.pool, app.state.instance = settings, pool, secrets.token_hex(16)
-    for part in (routes_about, routes_relax, routes_discretize):
+    app.state.store, app.state.sessions = store, sessions
+    for part in (routes_about, routes_relax, routes_discretize, session_routes, frames):
         app.include_router(part.router)
     # the last one added is the outermost
     app.add_middleware(BodyLimit, settings=settings)

@@ -40,6 +40,21 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         return Done(target.read_bytes(), MODEL, named, clock.parts)
 
 
+def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
+    """The scene that an uploaded file holds, as JSON; options and faults as `relax_upload`."""
+    from hookean.files.relax_file import open_file
+
+    data, recipe = parts(Path(options["path"]), options["content_type"])
+    with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
+        source = Path(folder) / "upload.3dm"
+        source.write_bytes(data)
+        try:
+            read = open_file(source, recipe, "recipe" if recipe is not None else "")
+        except InputError as error:
+            raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
+    return Done(read.scene.canonical.encode())
+
+
 def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:
     """The bytes of the part `file` and the text of the part `recipe` of a multipart form on disk."""
     from python_multipart import exceptions, parse_form

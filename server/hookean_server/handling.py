@@ -13,7 +13,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 
 from hookean_server.limits import media_type
-from hookean_server.pool import Job, Pool
+from hookean_server.pool import Job, Pool, Reply
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 
@@ -34,11 +34,20 @@ async def compute(request: Request, task: str, options: dict[str, Any], *, once:
         body = await read_json(request)
         single = once(body) if callable(once) else bool(once)
         job = Job(task, options, body, settings.solve_seconds + settings.grace_seconds, single)
-        return await _answered(request, pool, job)
+        return _response(await _answered(request, pool, job))
 
 
 async def compute_upload(request: Request, task: str, options: dict[str, Any]) -> Response:
     """Run a task on the multipart body of a request, which is streamed to disk; the worker is replaced afterwards."""
+    return _response(await _uploaded(request, task, options))
+
+
+async def uploaded_scene(request: Request) -> bytes:
+    """The scene, as JSON, of the .3dm file in a form."""
+    return (await _uploaded(request, "scene", {})).body
+
+
+async def _uploaded(request: Request, task: str, options: dict[str, Any]) -> Reply:
     pool, settings = _service(request)
     if media_type(request.headers) != "multipart/form-data":
         raise Problem("unsupported-media", "Send the file as a form: Content-Type: multipart/form-data.")
@@ -60,20 +69,23 @@ def _service(request: Request) -> tuple[Pool, Settings]:
     return request.app.state.pool, request.app.state.settings
 
 
-async def _answered(request: Request, pool: Pool, job: Job) -> Response:
-    """The worker's answer as a response; a client that leaves stops the worker."""
+async def _answered(request: Request, pool: Pool, job: Job) -> Reply:
+    """The worker's answer; a client that leaves stops the worker."""
     work = asyncio.ensure_future(pool.run(job))
     gone = asyncio.ensure_future(_left(request))
     try:
         await asyncio.wait({work, gone}, return_when=asyncio.FIRST_COMPLETED)
         if not work.done():
             raise ClientDisconnect
-        reply = work.result()
+        return work.result()
     finally:
         for task in (work, gone):
             task.cancel()
             with suppress(asyncio.CancelledError, Problem):
                 await task
+
+
+def _response(reply: Reply) -> Response:
     timing = ", ".join(f"{name};dur={1000 * seconds:.3f}" for name, seconds in reply.head["timing"].items())
     headers = {**reply.head["headers"], "cache-control": "no-store", "server-timing": timing}
     return Response(reply.body, media_type=reply.head["type"], headers=headers)

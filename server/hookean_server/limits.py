@@ -19,7 +19,6 @@ from hookean_server.settings import Settings
 
 log = logging.getLogger("hookean.server")
 SAFE = {"GET", "HEAD", "OPTIONS"}
-FILES = "/v1/relax/3dm"
 
 
 class Problems:
@@ -148,8 +147,9 @@ class BodyLimit:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        limit = self.settings.file_limit if scope["path"] == FILES else self.settings.json_limit
         headers: dict[bytes, bytes] = dict(scope["headers"])
+        form = headers.get(b"content-type", b"").lower().startswith(b"multipart/form-data")
+        limit = self.settings.file_limit if form else self.settings.json_limit
         stated = headers.get(b"content-length", b"0" if b"transfer-encoding" not in headers else b"")
         scope["raw_receive"], scope["body_done"] = receive, stated == b"0"
         if stated.isdigit() and int(stated[:20]) > limit:

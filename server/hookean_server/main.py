@@ -16,7 +16,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from hookean_server.app import create_app
-from hookean_server.pool import FORKED, _context, end_fork_server
+from hookean_server.pool import FORKED, context, end_fork_server
 from hookean_server.ports import Taken, take
 from hookean_server.settings import Settings
 
@@ -47,11 +47,13 @@ def serve(host: str = "127.0.0.1", port: int = 8765, settings: Settings | None =
         app,
         log_level="warning",
         access_log=False,
+        ws="websockets-sansio",
+        ws_per_message_deflate=False,
+        ws_max_size=settings.message_limit,
         server_header=False,
         date_header=False,
         http="h11",
         h11_max_incomplete_event_size=2 * settings.header_limit,
-        ws_per_message_deflate=False,
         timeout_graceful_shutdown=1,
         lifespan="on",
     )
@@ -74,7 +76,7 @@ def _start_fork_server() -> None:
         return
     from multiprocessing import forkserver, resource_tracker
 
-    _context()
+    context()
     resource_tracker.ensure_running()  # it unblocks the signal after its own start
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:

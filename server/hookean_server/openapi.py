@@ -13,22 +13,25 @@ from hookean_server.problems import CATALOGUE, MEDIA_TYPE
 from hookean_server.schemas import EXAMPLES, SCHEMAS, operation_schema
 
 HEALTH = {"application/json": {"schema": {"$ref": "#/components/schemas/Health"}}}
+SESSION = {"application/json": {"schema": {"$ref": "#/components/schemas/Session"}}}
+SESSIONS = {"application/json": {"schema": {"$ref": "#/components/schemas/Sessions"}}}
 FORCES = {"application/json": {"schema": {"$ref": "#/components/schemas/Catalogue"}}}
 _ALWAYS = (403, 404, 405, 431, 500)
 _COMPUTED = (*_ALWAYS, 408, 413, 415, 422, 503, 504)
+_LIVE = (*_COMPUTED, 409, 412, 429, 507)
 
 
 def problems(
-    success: dict[str, Any] | None = None, *codes: int, computed: bool = False
+    success: dict[str, Any] | None = None, *codes: int, computed: bool = False, live: bool = False
 ) -> dict[int | str, dict[str, Any]]:
     """`responses` of an operation: its success and every problem it can give."""
     found: dict[int | str, dict[str, Any]] = {}
     if success is not None:
         found[200] = {"description": "Done", "content": success}
     for code in codes:
-        found[code] = {"description": "As before"}
+        found[code] = {"description": "As before"} if code == 304 else {"description": "Done", "content": success or {}}
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
-    for status in _COMPUTED if computed else _ALWAYS:
+    for status in _LIVE if live else _COMPUTED if computed else _ALWAYS:
         titles = [f"{title} (`{slug}`)" for slug, (code, title, _) in CATALOGUE.items() if code == status]
         found[status] = {"description": "; ".join(titles), "content": content}
     return found
@@ -75,6 +78,48 @@ def discretize(name: str) -> dict[str, Any]:
         ),
         "operation_id": f"discretize_{name}",
     }
+
+
+_FORM = {
+    "type": "object",
+    "properties": {
+        "file": {"type": "string", "format": "binary", "description": "The .3dm file"},
+        "recipe": {"type": "string", "description": "What to make of it, as JSON text; none: as drawn"},
+    },
+    "required": ["file"],
+}
+
+
+def session_body(*codes: int) -> dict[str, Any]:
+    """What routes say of themselves that make a session of a scene or a file."""
+    found = problems(None, live=True)
+    found.update({code: {"description": "The session", "content": SESSION} for code in codes})
+    extra = _takes({"$ref": "#/components/schemas/Scene"}, EXAMPLES["relax"])
+    extra["requestBody"]["content"]["multipart/form-data"] = {"schema": _FORM}
+    return {"responses": found, "openapi_extra": extra}
+
+
+def edit() -> dict[str, Any]:
+    """What the route of edits says of itself."""
+    examples = {"a load": {"forces": {"1": {"vector": [0.0, 0.0, -5.0]}}}, "a pin": {"pin": [{"particles": [2]}]}}
+    extra = _takes({"$ref": "#/components/schemas/Edit"}, examples)
+    return {"responses": problems(SESSION, live=True), "openapi_extra": extra}
+
+
+def acted() -> dict[int | str, dict[str, Any]]:
+    """Responses of commands to a session."""
+    return problems(SESSION, live=True)
+
+
+def branched() -> dict[str, Any]:
+    """What the route of branches says of itself."""
+    return {"responses": {**problems(None, live=True), 201: {"description": "The branch", "content": SESSION}}}
+
+
+def exported(*codes: int) -> dict[int | str, dict[str, Any]]:
+    """Responses of what is taken out of a session."""
+    return problems({"application/json": {"schema": {"type": "object"}}, "application/octet-stream": {}}, *codes,
+                    live=True)  # fmt: skip
 
 
 def install(app: FastAPI) -> None:

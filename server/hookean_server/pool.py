@@ -68,7 +68,7 @@ class Pool:
         """Start the workers, each in its thread; returns at once."""
         with self._lock:
             if not self.lanes and not self.stopping.is_set():
-                self.lanes = [Lane(self, _context()) for _ in range(self.settings.lanes)]
+                self.lanes = [Lane(self, context()) for _ in range(self.settings.lanes)]
                 for lane in self.lanes:
                     lane.start()
 
@@ -250,7 +250,7 @@ class _Talk(threading.Thread):
             self.done.set()
 
 
-def _context() -> BaseContext:
+def context() -> BaseContext:
     """`forkserver` with warmed kernels where there is one (never `fork`: the server has threads), else `spawn`."""
     context = multiprocessing.get_context("forkserver" if FORKED else "spawn")
     if FORKED:

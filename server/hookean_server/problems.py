@@ -29,6 +29,12 @@ CATALOGUE: dict[str, tuple[int, str, str]] = {
     "not-found": (404, "There is nothing here", "The API's description at /v1/openapi.json lists every address."),
     "method-not-allowed": (405, "This address does not take that method", "The header Allow lists those it takes."),
     "slow-body": (408, "The body did not arrive in time", "Send the body without long pauses."),
+    "key-taken": (409, "There is one of this key already", "Choose another key, or leave it to the service."),
+    "stale-revision": (
+        412,
+        "Somebody else has edited it",
+        "The header ETag has the present revision: look at what it is now and send the edit with If-Match for that.",
+    ),
     "too-large": (413, "Too large", "Send less, for example arrays as buffers instead of lists, or a coarser model."),
     "unsupported-media": (
         415,
@@ -46,6 +52,11 @@ CATALOGUE: dict[str, tuple[int, str, str]] = {
         "Each entry of errors points at one fault and says what is allowed.",
     ),
     "headers-too-large": (431, "The headers are too large", "Send fewer or shorter headers, or a shorter address."),
+    "session-limit": (
+        429,
+        "There are as many sessions as are kept",
+        "Delete one with DELETE /v1/sessions/{key}, or come back after the seconds in the header Retry-After.",
+    ),
     "internal": (500, "The service failed", "This is a defect of the service; its log tells more."),
     "worker-lost": (
         500,
@@ -54,6 +65,11 @@ CATALOGUE: dict[str, tuple[int, str, str]] = {
     ),
     "busy": (503, "All workers are busy", "Come back after the seconds in the header Retry-After."),
     "shutting-down": (503, "The service is shutting down", "Start it again and repeat the request."),
+    "not-stored": (
+        507,
+        "It could not be stored",
+        "Nothing was changed. Make room on the disk, or mend it, and repeat the request.",
+    ),
     "out-of-time": (
         504,
         "Not done in time",

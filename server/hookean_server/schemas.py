@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from hookean.files.compas_json import ACCEPTED
+from hookean.result import Status
 from hookean_server.operations import OPERATIONS
 
 _NUMBER = {"type": "number"}
@@ -88,6 +89,41 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         report=_object(merged={"type": "integer"}, unmatched={"type": "array"}, warnings={"type": "array"}),
         units={"$ref": "#/components/schemas/Units"},
     ),
+}
+SCHEMAS["Session"] = {
+    "type": "object",
+    "description": "How a session stands",
+    "properties": {
+        "key": {"type": "string"},
+        "label": {"type": "string"},
+        "revision": {"type": "integer", "description": "Counts edits; the ETag"},
+        "iteration": {"type": "integer"},
+        "time": {**_NUMBER, "description": "[time]"},
+        "residual": {**_NUMBER, "description": "[-]"},
+        "status": {"enum": [str(status) for status in Status]},
+        "message": {"type": "string", "description": "One sentence about it"},
+        "particles": {"type": "integer"},
+        "playing": {"type": "boolean"},
+        "undo": {"type": "integer", "description": "Edits that can be taken back"},
+        "redo": {"type": "integer"},
+        "awake": {"type": "boolean", "description": "Whether it has a process"},
+        "created": _NUMBER,
+    },
+    "required": ["key", "label", "revision", "status", "message", "particles", "playing", "awake"],
+}
+SCHEMAS["Sessions"] = _object(sessions={"type": "array", "items": {"$ref": "#/components/schemas/Session"}})
+SCHEMAS["Edit"] = {
+    "type": "object",
+    "description": "A change of a running session, all of it or nothing",
+    "properties": {
+        "pin": {"type": "array", "items": {"type": "object"}, "description": "Anchors by particles"},
+        "release": {"type": "array", "items": {"type": "integer", "minimum": 0}},
+        "move": {"type": "array", "items": {"type": "object"}, "description": "Anchors and their targets"},
+        "forces": {"type": "object", "description": "By a force's name or number, values of its columns"},
+        "settings": {"type": "object"},
+        "gesture": {"type": "string", "maxLength": 80, "description": "Edits of one gesture are undone as one"},
+    },
+    "additionalProperties": False,
 }
 SCHEMAS["Buffer"]["properties"]["base64"] = {"type": "string"}
 SCHEMAS["Buffer"]["required"].append("base64")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from pathlib import Path
 
 MIB = 2**20
 
@@ -35,6 +36,18 @@ class Settings:
     """Memory one worker may allocate, where the system can limit it."""
     largest_count: int = 1_000_000
     """Most points, pieces or faces an operation may be asked to make."""
+    state: Path | None = None
+    """The file that sessions and jobs are kept in; none: they end with the server."""
+    sessions: int = 200
+    """Most sessions kept."""
+    awake: int = 16
+    """Most sessions that have a process, which is what it takes to run, to be edited or watched."""
+    sleep_seconds: float = 60.0
+    """A session that rests and is not watched for so long is put to sleep: it stays in the store only."""
+    session_seconds: float = 24 * 3600.0
+    """A session that nobody used for so long, while the server ran, is forgotten."""
+    message_limit: int = 64 * 1024
+    """Longest message of a client over a WebSocket."""
     hosts: tuple[str, ...] = ()
     """Further names the service answers to, besides 127.0.0.1, localhost and [::1]."""
 

@@ -71,7 +71,12 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
 def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
     from hookean_server import files, operations, solve
 
-    return {"relax": solve.relax_scene, "discretize": operations.discretize, "file": files.relax_upload}
+    return {
+        "relax": solve.relax_scene,
+        "discretize": operations.discretize,
+        "file": files.relax_upload,
+        "scene": files.scene_upload,
+    }
 
 
 def _failed(problem: Problem) -> dict[str, Any]:

@@ -1,0 +1,128 @@
+"""A session in the formats that other programs read. Runs in the session's process."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hookean.simulation import Simulation
+from hookean_server import answers
+from hookean_server.problems import Problem
+from hookean_server.sessions import parts
+
+FORMATS = {
+    "json": "application/json",
+    "npz": "application/octet-stream",
+    "3dm": "model/vnd.3dm",
+    "obj": "model/obj",
+    "compas": "application/json",
+}
+"""Formats of a session's state, with their media types."""
+
+
+def export(simulation: Simulation, form: str, arrays: str) -> tuple[str, bytes]:
+    """Media type and bytes. `form` is one of FORMATS, or scene, topology or anchors."""
+    if form == "scene":
+        return "application/json", simulation.scene.canonical.encode()
+    if form == "topology":
+        return "application/json", answers.dump(topology(simulation), arrays)
+    if form == "anchors":
+        return "application/json", answers.dump({"anchors": anchors(simulation)}, arrays)
+    made: bytes = globals()[f"_{'threedm' if form == '3dm' else form}"](simulation, arrays)
+    return FORMATS[form], made
+
+
+def topology(simulation: Simulation) -> dict[str, Any]:
+    """What stays while a session runs: springs, meshes, geometry and forces by particles, and the units."""
+    system = simulation.system
+    pairs, numbers = parts.spring_ends(simulation)
+    scene = simulation.scene
+    geometry = []
+    for item, particles in zip(scene.geometry, system.carried, strict=True):
+        entry: dict[str, Any] = {"name": item.name, "kind": item.kind, "particles": particles}
+        if item.mesh is not None:
+            entry["faces"] = scene.meshes[item.mesh].faces
+        geometry.append(entry)
+    return {
+        "particles": len(system.x),
+        "start": system.x,
+        "springs": pairs,
+        "spring_forces": numbers,
+        "forces": [
+            {"kind": type(f).model_fields["kind"].default, "name": f.name, "role": type(f).role} for f in scene.forces
+        ],
+        "meshes": {name: {"faces": system.places.faces(name)} for name in scene.meshes},
+        "geometry": geometry,
+        "loads": loads(simulation),
+        "units": scene.units.model_dump(),
+    }
+
+
+def loads(simulation: Simulation) -> list[dict[str, Any]]:
+    """Particles and vectors of the loads, by the number of their force."""
+    found = []
+    system, state = simulation.system, simulation.state
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        if group.cls.role == "load" and group.block.indices.shape[1] == 1:
+            vectors = system.element_forces(group, state, memory)[:, 0]
+            for part in group.parts:
+                particles = group.block.indices[part.rows, 0]
+                found.append({"force": part.number, "particles": particles, "vectors": vectors[part.rows]})
+    return found
+
+
+def anchors(simulation: Simulation) -> list[dict[str, Any]]:
+    """The anchors as they are now. `number` is the place in the scene, -1 for one pinned while running."""
+    return [
+        {
+            "number": h.number,
+            "name": h.name,
+            "particles": h.particles,
+            "targets": h.targets,
+            "axes": "".join(axis for axis, free in zip("xyz", h.free, strict=True) if not free),
+        }
+        for h in simulation.system.held
+    ]
+
+
+def _json(simulation: Simulation, arrays: str) -> bytes:
+    return answers.encode(simulation.result(), simulation.scene, arrays, None)
+
+
+def _npz(simulation: Simulation, arrays: str) -> bytes:
+    return parts.saved(simulation)
+
+
+def _threedm(simulation: Simulation, arrays: str) -> bytes:
+    from hookean.files.relax_file import Source, conclude
+
+    read = Source(simulation.scene, [], unit=simulation.scene.units.length)
+    with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
+        target = Path(folder) / "session.3dm"
+        conclude(read, Path("session.json"), simulation.system, simulation.result(), target)
+        return target.read_bytes()
+
+
+def _obj(simulation: Simulation, arrays: str) -> bytes:
+    from hookean.files import obj
+
+    return obj.text(simulation.system, simulation.state).encode()
+
+
+def _compas(simulation: Simulation, arrays: str) -> bytes:
+    """A COMPAS Mesh of the scene's first mesh, else a Graph of its springs."""
+    from hookean.files import compas_json
+
+    system, x = simulation.system, simulation.state.x
+    for name in simulation.scene.meshes:
+        faces = system.places.faces(name)
+        used, renumbered = np.unique(faces, return_inverse=True)
+        return json.dumps(compas_json.mesh(x[used], renumbered.reshape(faces.shape), name=name)).encode()
+    pairs, _ = parts.spring_ends(simulation)
+    if not len(pairs):
+        raise Problem("invalid-input", "This session has neither meshes nor springs; take json, npz or obj.")
+    return json.dumps(compas_json.graph(x, pairs)).encode()

@@ -1,0 +1,170 @@
+"""Frames of a session over a WebSocket: binary frames out, acknowledgements, edits and commands in.
+
+The newest frame wins: at most two are on their way to a client, and one that is slow skips those in between; it holds
+up neither the session nor other clients. Text messages are JSON. Out: `hello` first, `state` when anything but the
+particles changed, and the answer to each message that has an `id`. In: `{"ack": n}` for each frame received,
+`{"id": 1, "edit": {...}}`, `{"id": 2, "do": "play" | "pause" | "step" | "reset" | "undo" | "redo", ...}`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from contextlib import suppress
+from typing import Any
+
+from fastapi import APIRouter
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from hookean.errors import InputError
+from hookean.files.scene_json import parse
+from hookean_server.problems import Problem
+from hookean_server.sessions.manager import Live, Manager, summary
+from hookean_server.sessions.wire import VERSION
+
+router = APIRouter()
+
+IN_FLIGHT = 2
+CLOSED = {"not-found": 4404, "busy": 4429, "shutting-down": 1012}
+
+
+@router.websocket("/v1/sessions/{key}/frames")
+async def frames(socket: WebSocket, key: str) -> None:
+    """One client that watches one session."""
+    sessions: Manager = socket.app.state.sessions
+    try:
+        live = await sessions.watch(key)
+    except Problem as problem:
+        await socket.accept()
+        await socket.close(CLOSED.get(problem.slug, 1011), problem.detail[:120])
+        return
+    await socket.accept()
+    live.watchers += 1
+    client = _Client(socket, sessions, live)
+    tasks = [asyncio.create_task(client.send()), asyncio.create_task(client.receive())]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        live.watchers -= 1
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        code = 1012 if sessions.closing else 4404 if live.key not in sessions.sessions else client.code
+        with suppress(RuntimeError, OSError, WebSocketDisconnect):
+            await socket.close(code, client.reason[:120])
+
+
+class _Client:
+    def __init__(self, socket: WebSocket, sessions: Manager, live: Live) -> None:
+        self.socket, self.sessions, self.live = socket, sessions, live
+        self.sent = 0  # number of the last frame sent, as the server counts them
+        self.on_their_way: list[int] = []
+        self.code, self.reason = 1000, ""
+        self.room = asyncio.Event()
+        self.lock = asyncio.Lock()
+
+    async def send(self) -> None:
+        """Frames as they come and the client has room, and what else is new."""
+        live, told = self.live, ""
+        hello = {"hello": VERSION, "topology": live.topology, "session": summary(live)}
+        await self._text(hello)
+        while not self.sessions.closing and live.key in self.sessions.sessions:
+            news = live.news
+            now = json.dumps([live.topology, live.described.get("status"), live.described.get("playing"),
+                              live.described.get("message") if not live.playing else "", live.process is None,
+                              live.described.get("undo"), live.described.get("redo")])  # fmt: skip
+            if now != told:
+                told = now
+                await self._text({"state": summary(live), "topology": live.topology})
+            if len(self.on_their_way) < IN_FLIGHT:
+                self.room.clear()
+                if live.frame and live.frame_number != self.sent:
+                    await self._frame()
+                    continue
+                live.want_frame()
+                await news.wait()
+            else:
+                await _either(self.room, news)
+
+    async def _frame(self) -> None:
+        live = self.live
+        skipped = live.frame_number - self.sent - 1 if self.sent else 0
+        self.sent = live.frame_number
+        number = int.from_bytes(live.frame[12:16], "little")
+        self.on_their_way.append(number)
+        self.sessions.frames_sent += 1
+        self.sessions.frames_skipped += max(0, skipped)
+        async with self.lock:
+            await self.socket.send_bytes(live.frame)
+
+    async def receive(self) -> None:
+        """Acknowledgements at once; edits and commands in their order."""
+        orders: asyncio.Queue[dict[str, Any]] = asyncio.Queue(64)
+        worker = asyncio.create_task(self._obey(orders))
+        try:
+            while True:
+                message = await self.socket.receive()
+                if message["type"] == "websocket.disconnect":
+                    return
+                value = _message(message.get("text"))
+                if "ack" in value:
+                    self.on_their_way = [n for n in self.on_their_way if n > value["ack"]]
+                    self.room.set()
+                else:
+                    await orders.put(value)
+        except Problem as problem:
+            self.code, self.reason = 1003, problem.detail
+        finally:
+            worker.cancel()
+
+    async def _obey(self, orders: asyncio.Queue[dict[str, Any]]) -> None:
+        while True:
+            order = await orders.get()
+            answer: dict[str, Any] = {"id": order.get("id")}
+            try:
+                answer["session"] = await self._done(order)
+            except Problem as problem:
+                answer["problem"] = json.loads(problem.body(f"{self.live.key}"))
+            await self._text(answer)
+
+    async def _done(self, order: dict[str, Any]) -> dict[str, Any]:
+        key, do = self.live.key, order.get("do")
+        if "edit" in order:
+            await self.sessions.edit(key, json.dumps(order["edit"]).encode(), order.get("revision"))
+        elif do in ("reset", "undo", "redo"):
+            await self.sessions.edit(key, json.dumps({do: True}).encode())
+        elif do == "step" and isinstance(order.get("frames", 1), int) and 1 <= order.get("frames", 1) <= 100_000:
+            await self.sessions.command(key, "step", frames=order.get("frames", 1))
+        elif do == "play":
+            await self.sessions.command(key, "play", fast=order.get("fast") is True)
+        elif do == "pause":
+            await self.sessions.command(key, "pause")
+        else:
+            raise Problem("invalid-input", "A message is an ack, an edit, or do: play, pause, step, reset, undo, redo.")
+        return summary(self.live)
+
+    async def _text(self, value: dict[str, Any]) -> None:
+        async with self.lock:
+            await self.socket.send_text(json.dumps(value))
+
+
+async def _either(one: asyncio.Event, other: asyncio.Event) -> None:
+    tasks = [asyncio.ensure_future(one.wait()), asyncio.ensure_future(other.wait())]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+
+
+def _message(text: str | None) -> dict[str, Any]:
+    """A message of a client; Problem where it is none."""
+    try:
+        value = parse(text) if text is not None else None
+    except InputError as error:
+        raise Problem("bad-request", f"A message that is no JSON: {error.sentence}") from None
+    whole = isinstance(value, dict) and (isinstance(value["ack"], int) if "ack" in value else True)
+    if not whole:
+        raise Problem("bad-request", "Messages are JSON objects in text; ack is the number of a frame.")
+    assert isinstance(value, dict)
+    return value

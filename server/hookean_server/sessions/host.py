@@ -1,0 +1,281 @@
+"""The process of one session: steps its simulation, takes edits between slices of a few milliseconds, sends frames.
+
+Messages are raw bytes, a JSON head and a body, each way. Commands have an `id` and are answered in order, but for
+`step`, which is answered when it is done. Events have none: frames, checkpoints and a sign of life twice a second.
+It may be killed any time: what is acknowledged is in the store, progress at most a second old in a checkpoint.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import signal
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from hookean.errors import InputError
+from hookean.result import Status
+from hookean.scene import faults
+from hookean.simulation import Simulation
+from hookean_server.problems import Problem, faulty
+from hookean_server.sessions import parts, wire
+
+log = logging.getLogger("hookean.session")
+
+FRAME = 1.0 / 60.0  # seconds from frame to frame while it plays
+SLICE = 0.009  # seconds of solving between looks at the commands
+BEAT = 0.5
+CHECKPOINT = 0.8
+
+Reply = tuple[dict[str, Any], bytes]
+
+
+def host(connection: Connection, memory: int, forked: bool) -> None:
+    """Serve one session until the server closes its end, dies or kills us."""
+    from hookean_server.workers import _die_with_parent, _limit_memory
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _die_with_parent(forked)
+    _limit_memory(memory)
+    with suppress(EOFError, OSError):
+        Host(connection).run()
+    os._exit(0)  # threads of libraries would hold a normal exit up
+
+
+class Host:
+    """A simulation and the connection to the server."""
+
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+        self.simulation: Simulation | None = None
+        self.playing = False
+        self.fast = False
+        self.left = 0  # iterations that a `step` still has to do
+        self.stepping: Any = None  # its id
+        self.credit = 0
+        self.number = 0
+        self.changed = self.stored = 0  # counts of changes: shown, and in a checkpoint
+        self.now = 0
+        self.shown, self.shown_at = -1, 0.0  # revision and moment of the last frame
+        self.due = 0.0  # when the next frame's iterations are due
+        self.owed = 0  # iterations until the next frame
+        self.each = 1  # iterations that fit into a slice
+        self.saved_at = self.beat_at = time.monotonic()
+
+    def run(self) -> None:
+        """Until the connection ends."""
+        while True:
+            while self.connection.poll(self._rest()):
+                self._take()
+            if self.simulation is not None and (self.playing or self.left):
+                self._advance(self.simulation)
+            self._show()
+            self._keep()
+
+    def _rest(self) -> float:
+        """How long there is nothing to do."""
+        now = time.monotonic()
+        if self.left or (self.playing and self.fast):
+            return 0.0
+        wait = min(self.beat_at + BEAT, self.saved_at + CHECKPOINT if self.now != self.stored else np.inf) - now
+        if self.playing:
+            wait = min(wait, 0.0 if self.owed else self.due - now)
+        return max(0.0, float(wait))
+
+    def _take(self) -> None:
+        head = json.loads(self.connection.recv_bytes())
+        body = self.connection.recv_bytes()
+        if head["do"] == "credit":
+            self.credit = 1
+            return
+        answer = self._do(head, body)
+        if answer is not None:
+            self._send({"id": head["id"], **answer[0]}, answer[1])
+
+    def _do(self, head: dict[str, Any], body: bytes) -> Reply | None:
+        """The answer to a command; faults become problems."""
+        try:
+            action: Callable[[dict[str, Any], bytes], Reply | None] = getattr(self, f"do_{head['do']}")
+            return action(head, body)
+        except Problem as problem:
+            return _failed(problem), b""
+        except InputError as error:
+            return _failed(faulty(head.get("slug", "invalid-input"), [error])), b""
+        except ValidationError as error:
+            return _failed(faulty("invalid-scene", faults(error))), b""
+        except RecursionError:
+            return _failed(faulty("invalid-scene", [InputError("/", "nested too deeply")])), b""
+        except UnicodeError:
+            return _failed(faulty("invalid-scene", [InputError("/", "a text has characters that are no Unicode")])), b""
+        except MemoryError:
+            return _failed(Problem("too-large", "This needs more memory than one session may use.")), b""
+        except Exception:
+            log.exception("%s failed", head["do"])
+            return _failed(Problem("internal", "The session failed on this input; the log tells more.")), b""
+
+    # commands
+
+    def do_create(self, head: dict[str, Any], body: bytes) -> Reply:
+        """A new session from a scene; answers with what to store."""
+        self.simulation = Simulation(parts.scene_of(body))
+        self._mark()
+        return self._described(), parts.saved(self.simulation)
+
+    def do_restore(self, head: dict[str, Any], body: bytes) -> Reply:
+        """A session from the store: its base, the edits since, and the last checkpoint of its state."""
+        base, state, *edits = parts.split(body, head["sizes"])
+        self.simulation = parts.restored(base, state, edits, head["revisions"])
+        self._mark()
+        self.stored = self.now
+        return self._described(), b""
+
+    def do_replace(self, head: dict[str, Any], body: bytes) -> Reply:
+        """Another scene, in which particles keep where they are."""
+        simulation = self._simulation()
+        scene = parts.scene_of(body)
+        if scene.canonical == simulation.scene.canonical:
+            return {**self._described(), "same": True}, b""
+        self.simulation = simulation.succeed(scene)
+        self._mark()
+        return self._described(), parts.saved(self.simulation)
+
+    def do_edit(self, head: dict[str, Any], body: bytes) -> Reply:
+        """A patch, an undo, a redo or a reset; answers with what to store so that it can be made again exactly."""
+        simulation = self._simulation()
+        wanted = head.get("revision")
+        if wanted is not None and wanted != simulation.state.revision:
+            said = f"The session is at revision {simulation.state.revision}, not {wanted}; look and edit again."
+            raise Problem("stale-revision", said, headers={"etag": f'"{simulation.state.revision}"'})
+        resolved, sets = parts.make(simulation, body)
+        self._mark()
+        return {**self._described(), "sets": sets}, resolved
+
+    def do_revert(self, head: dict[str, Any], body: bytes) -> Reply:
+        """Take back an edit that could not be stored."""
+        simulation = self._simulation()
+        with suppress(InputError):
+            simulation.undo()
+            simulation.history.after.clear()
+        self._mark()
+        return self._described(), b""
+
+    def do_play(self, head: dict[str, Any], body: bytes) -> Reply:
+        """Step on by itself; `fast` as quickly as it can, else `sub_iterations` for each of 60 frames a second."""
+        simulation = self._simulation()
+        self.playing, self.fast = True, bool(head.get("fast"))
+        if simulation.status is Status.DIVERGED:
+            self.playing = False
+        self.due = time.monotonic()
+        self._mark()
+        return self._described(), b""
+
+    def do_pause(self, head: dict[str, Any], body: bytes) -> Reply:
+        """Stand still; a `step` under way ends."""
+        self.playing = False
+        self.left = 0
+        self._stepped()
+        self._mark()
+        return self._described(), b""
+
+    def do_step(self, head: dict[str, Any], body: bytes) -> Reply | None:
+        """Step `frames` frames on and pause; answered when done."""
+        simulation = self._simulation()
+        self._stepped()
+        self.playing = False
+        self.left = int(head["frames"]) * simulation.scene.settings.sub_iterations
+        self.stepping = head["id"]
+        return None
+
+    def do_describe(self, head: dict[str, Any], body: bytes) -> Reply:
+        """How the session stands."""
+        return self._described(), b""
+
+    def do_checkpoint(self, head: dict[str, Any], body: bytes) -> Reply:
+        """The state as it is now."""
+        self.stored = self.now
+        return self._described(), parts.state_bytes(self._simulation())
+
+    def do_save(self, head: dict[str, Any], body: bytes) -> Reply:
+        """All of it: scene, anchors and state."""
+        return self._described(), parts.saved(self._simulation())
+
+    def do_export(self, head: dict[str, Any], body: bytes) -> Reply:
+        """The session as a file of some format, or its topology."""
+        from hookean_server.sessions import exports
+
+        media_type, data = exports.export(self._simulation(), head["format"], head.get("arrays", "list"))
+        return {**self._described(), "type": media_type}, data
+
+    # running
+
+    def _advance(self, simulation: Simulation) -> None:
+        """One slice of iterations."""
+        began = time.monotonic()
+        if not self.owed:
+            self.owed = simulation.scene.settings.sub_iterations
+            self.due = max(self.due + FRAME, began)
+        count = min(self.each, self.left or (self.each if self.fast else self.owed))
+        status = simulation.iterate(count)
+        spent = time.monotonic() - began
+        self.each = max(1, min(2 * self.each, int(count * SLICE / max(spent, 1e-6)), 100_000))
+        self.left = max(0, self.left - count)
+        self.owed = max(0, self.owed - count)
+        if status is not Status.RUNNING:
+            self.playing, self.left = False, 0
+        if not self.left:
+            self._stepped()
+        self._mark()
+
+    def _stepped(self) -> None:
+        """Answer the `step` that has ended."""
+        if self.stepping is not None:
+            self._send({"id": self.stepping, **self._described()}, b"")
+            self.stepping = None
+
+    def _mark(self) -> None:
+        self.now += 1
+
+    def _show(self) -> None:
+        """Send a frame, if one is wanted and there is anything new in it."""
+        if not self.credit or self.simulation is None or self.changed == self.now:
+            return
+        now = time.monotonic()
+        revision = self.simulation.state.revision
+        if not (self.playing or self.left) or revision != self.shown or now >= self.shown_at + 0.9 * FRAME:
+            self.credit, self.changed, self.shown, self.shown_at = 0, self.now, revision, now
+            self.number += 1
+            frame = parts.frame(self.simulation, self.number, self.playing or bool(self.left))
+            self._send({"event": "frame", "number": self.number}, wire.encode(frame))
+
+    def _keep(self) -> None:
+        """A checkpoint or a sign of life, when one is due."""
+        now = time.monotonic()
+        if self.simulation is not None and self.now != self.stored and now >= self.saved_at + CHECKPOINT:
+            self.saved_at, self.stored = now, self.now
+            self._send({"event": "checkpoint", **self._described()}, parts.state_bytes(self.simulation))
+        if now >= self.beat_at + BEAT:
+            self.beat_at = now
+            self._send({"event": "beat", **(self._described() if self.simulation else {})}, b"")
+
+    def _described(self) -> dict[str, Any]:
+        return {**parts.describe(self._simulation()), "playing": self.playing}
+
+    def _simulation(self) -> Simulation:
+        if self.simulation is None:
+            raise Problem("internal", "The session is not open yet.")
+        return self.simulation
+
+    def _send(self, head: dict[str, Any], body: bytes) -> None:
+        self.connection.send_bytes(json.dumps(head).encode())
+        self.connection.send_bytes(body)
+
+
+def _failed(problem: Problem) -> dict[str, Any]:
+    return {"problem": problem.slug, "detail": problem.detail, "errors": problem.errors}

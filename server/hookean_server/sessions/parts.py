@@ -1,0 +1,177 @@
+"""What a session's process does with its simulation: made from a scene or the store, edited, described, shown."""
+
+from __future__ import annotations
+
+import io
+import json
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.errors import InputError
+from hookean.files import compas_json
+from hookean.files.scene_json import parse
+from hookean.patch import Patch
+from hookean.result import Status
+from hookean.scene import Scene
+from hookean.simulation import Simulation
+from hookean.state import State
+from hookean.system import hold
+from hookean_server.sessions.wire import Shown
+
+EDITS = ("undo", "redo", "reset")
+
+
+def scene_of(body: bytes) -> Scene:
+    """The scene in a JSON body; meshes may be COMPAS documents. InputError and ValidationError as `Scene` has them."""
+    return Scene.model_validate(compas_json.plain_scene(parse(body))[0])
+
+
+def split(body: bytes, sizes: list[int]) -> list[bytes]:
+    """Several bodies that were sent as one."""
+    ends = np.cumsum([0, *sizes])
+    return [body[a:b] for a, b in pairwise(ends)]
+
+
+def saved(simulation: Simulation) -> bytes:
+    """A whole simulation, for the store."""
+    stream = io.BytesIO()
+    simulation.save(stream)
+    return stream.getvalue()
+
+
+def state_bytes(simulation: Simulation) -> bytes:
+    """What moves of a simulation, for a checkpoint."""
+    stream = io.BytesIO()
+    arrays: dict[str, Any] = simulation.state.arrays()
+    np.savez(stream, allow_pickle=False, status=np.array(str(simulation.status)), **arrays)
+    return stream.getvalue()
+
+
+def restored(base: bytes, state: bytes, edits: list[bytes], revisions: list[int]) -> Simulation:
+    """The simulation of the store: `edits` made again on `base`, each leading to its revision, and the particles where
+    the checkpoint `state` has them. Edits later than the checkpoint act on them once more."""
+    simulation = Simulation.load(io.BytesIO(base))
+    arrays: dict[str, NDArray[Any]] = {}
+    if state:
+        with np.load(io.BytesIO(state), allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+    status = Status(str(arrays.pop("status"))) if arrays else simulation.status
+    kept = State.of(arrays) if arrays else None
+    for edit, revision in zip(edits, revisions, strict=True):
+        if kept is not None and revision > kept.revision:
+            simulation = _put(simulation, kept, status)
+            kept = None
+        make(simulation, edit)
+        simulation.state.revision = revision
+    return simulation if kept is None else _put(simulation, kept, status)
+
+
+def _put(simulation: Simulation, state: State, status: Status) -> Simulation:
+    if state.fits(simulation.state):
+        state.free[:] = 1.0  # the anchors are those of the edits, whatever the checkpoint saw
+        for anchor in simulation.system.held:
+            hold(state, anchor)
+        simulation.take_up(state, status)
+    return simulation
+
+
+def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
+    """Make an edit: `{"undo": true}`, `redo`, `reset`, or a patch with or without a `gesture`.
+
+    Returns it as it can be made again exactly, and what it sets in words: an edit of the same gesture that sets the
+    same replaces it in the store; "" for one that nothing replaces.
+    """
+    value = parse(body)
+    if not isinstance(value, dict):
+        raise InputError("/", "an edit is an object with pin, release, move, forces or settings")
+    gesture = str(value.pop("gesture", ""))[:80]
+    for name in EDITS:
+        if name in value:
+            if value != {name: True}:
+                raise InputError(f"/{name}", f"stands alone: {{{name!r}: true}}".replace("'", '"'))
+            getattr(simulation, name)()
+            simulation.state.revision += name == "reset"
+            return json.dumps(value).encode(), ""
+    patch = Patch.read(value)
+    for pin, read in zip(value.get("pin") or [], patch.pin, strict=True):
+        if read.targets is None and read.particles is not None and len(read.particles):
+            _check(read.particles, simulation)
+            pin["targets"] = simulation.state.x[read.particles].tolist()
+    simulation.patch(Patch.read(value), gesture=gesture)
+    if not gesture:
+        return json.dumps(value).encode(), ""
+    return json.dumps({**value, "gesture": gesture}).encode(), _sets(value, patch, gesture)
+
+
+def _sets(value: dict[str, Any], patch: Patch, gesture: str) -> str:
+    if patch.pin or len(patch.release):
+        return ""
+    columns = sorted(f"{force}.{column}" for force, given in patch.forces.items() for column in given)
+    return json.dumps([gesture, sorted(str(m.anchor) for m in patch.move), columns, sorted(patch.settings)])
+
+
+def _check(particles: NDArray[np.int64], simulation: Simulation) -> None:
+    count = len(simulation.state.x)
+    if int(particles.max()) >= count:
+        raise InputError("/pin", f"particle {int(particles.max())} does not exist; there are {count}, counted from 0")
+
+
+def describe(simulation: Simulation) -> dict[str, Any]:
+    """How a simulation stands, in plain values."""
+    state = simulation.state
+    return {
+        "revision": state.revision,
+        "iteration": state.iteration,
+        "time": state.time,
+        "residual": simulation.balance.residual,
+        "status": str(simulation.status),
+        "message": simulation.message,
+        "particles": len(state.x),
+        "undo": len(simulation.history.before),
+        "redo": len(simulation.history.after),
+    }
+
+
+def frame(simulation: Simulation, number: int, playing: bool) -> Shown:
+    """What clients are shown of a simulation now."""
+    system, state = simulation.system, simulation.state
+    stand = simulation.balance
+    held = np.flatnonzero((state.free == 0).any(axis=1))
+    kinetic = float(0.5 * (system.mass[:, None] * state.v**2 * state.free).sum()) if simulation.solver.physical else 0.0
+    return Shown(
+        number, state.revision, state.iteration, state.time, float(stand.residual), str(simulation.status), playing,
+        kinetic, state.x, spring_forces(simulation), stand.reactions[held],
+    )  # fmt: skip
+
+
+def spring_forces(simulation: Simulation) -> NDArray[np.float64]:
+    """The force (m,) in every element with two ends, tension +, in the order of `spring_ends`."""
+    system, state = simulation.system, simulation.state
+    found = [np.zeros(0)]
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        if _pulls(group):
+            pulls = system.element_forces(group, state, memory)[:, 0]
+            along = np.subtract(*state.x[group.block.indices.T[::-1]])
+            length = np.linalg.norm(along, axis=1)
+            found.append((pulls * along).sum(axis=1) / np.where(length > 0.0, length, 1.0))
+    return np.concatenate(found)
+
+
+def spring_ends(simulation: Simulation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Particles (m, 2) and number of the force in the scene (m,) of every element with two ends."""
+    pairs, numbers = [np.zeros((0, 2), np.int64)], [np.zeros(0, np.int64)]
+    for group in simulation.system.groups:
+        if _pulls(group):
+            pairs.append(group.block.indices)
+            number = np.zeros(len(group.block.indices), np.int64)
+            for part in group.parts:
+                number[part.rows] = part.number
+            numbers.append(number)
+    return np.concatenate(pairs), np.concatenate(numbers)
+
+
+def _pulls(group: Any) -> bool:
+    return bool(group.cls.role == "internal" and group.block.indices.shape[1] == 2)

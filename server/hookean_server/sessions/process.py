@@ -1,0 +1,103 @@
+"""The server's side of a session's process: commands out, answers and events in, on one thread for each process."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import json
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from contextlib import suppress
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from typing import Any
+
+from hookean_server.pool import FORKED, context
+from hookean_server.problems import Problem
+from hookean_server.sessions.host import host
+
+Event = Callable[[dict[str, Any], bytes], None]
+
+
+class SessionProcess:
+    """One process that holds one simulation. `on_event` hears of its events, and with {"event": "lost"} of its end; it
+    is called on a thread of ours."""
+
+    def __init__(self, memory: int, on_event: Event) -> None:
+        self.on_event = on_event
+        self.lost = False
+        self.heard = 0.0
+        self._ids = itertools.count(1)
+        self._waiting: dict[int, Future[tuple[dict[str, Any], bytes]]] = {}
+        self._lock = threading.Lock()
+        ours, theirs = Pipe()
+        process: BaseProcess = context().Process(  # type: ignore[attr-defined]
+            target=host, args=(theirs, memory, FORKED), daemon=True, name="hookean-session"
+        )
+        process.start()
+        theirs.close()
+        self.process, self._connection = process, ours
+        threading.Thread(target=self._listen, args=(ours,), name="hookean-session", daemon=True).start()
+
+    async def call(self, do: str, body: bytes = b"", *, seconds: float, **head: Any) -> tuple[dict[str, Any], bytes]:
+        """What the process answers. A process silent for `seconds` is killed; raises Problem."""
+        future: Future[tuple[dict[str, Any], bytes]] = Future()
+        number = next(self._ids)
+        self._waiting[number] = future
+        if self.lost:
+            self._fail()
+        await asyncio.to_thread(self._send, {"id": number, "do": do, **head}, body)
+        try:
+            answer, data = await asyncio.wait_for(asyncio.wrap_future(future), seconds)
+        except TimeoutError:
+            self.kill()
+            raise Problem("worker-lost", f"The session did not answer in {seconds:g} s; it is brought back.") from None
+        finally:
+            self._waiting.pop(number, None)
+        if "problem" in answer:
+            raise Problem(answer["problem"], answer["detail"], [(p, d) for p, d in answer["errors"]])
+        return answer, data
+
+    def credit(self) -> None:
+        """One more frame is wanted. Small enough to never wait for the process."""
+        self._send({"do": "credit"}, b"")
+
+    def kill(self) -> None:
+        """End the process now; whoever waits for it gets a problem."""
+        with suppress(OSError, ValueError, AttributeError):
+            self.process.kill()
+
+    def join(self, seconds: float) -> None:
+        """Wait until the process has ended."""
+        with suppress(OSError, ValueError, AssertionError):
+            self.process.join(seconds)
+
+    def _send(self, head: dict[str, Any], body: bytes) -> None:
+        with self._lock, suppress(OSError, ValueError):
+            self._connection.send_bytes(json.dumps(head).encode())
+            self._connection.send_bytes(body)
+
+    def _listen(self, connection: Connection) -> None:
+        with suppress(OSError, EOFError, ValueError):
+            while True:
+                head = json.loads(connection.recv_bytes())
+                body = connection.recv_bytes()
+                if "id" not in head:
+                    self.on_event(head, body)
+                elif (future := self._waiting.get(head["id"])) is not None and not future.done():
+                    future.set_result((head, body))
+        self.lost = True
+        self.kill()
+        self._fail()
+        self.on_event({"event": "lost"}, b"")
+        self.join(1.0)
+        with self._lock:
+            connection.close()
+
+    def _fail(self) -> None:
+        gone = {"problem": "worker-lost", "detail": "The process of this session ended.", "errors": []}
+        for future in list(self._waiting.values()):
+            if not future.done():
+                future.set_result((gone, b""))

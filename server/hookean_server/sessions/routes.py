@@ -1,0 +1,174 @@
+"""Sessions over HTTP: made, edited, played, taken out in the formats of other programs, forgotten."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Header, Path, Query, Request
+from starlette.responses import JSONResponse, Response
+
+from hookean_server import openapi
+from hookean_server.handling import read_json, uploaded_scene
+from hookean_server.limits import media_type
+from hookean_server.problems import Problem
+from hookean_server.sessions.exports import FORMATS
+from hookean_server.sessions.manager import Live, Manager, summary
+
+router = APIRouter(tags=["sessions"])
+
+KEY = r"^[A-Za-z0-9._:~-]{1,160}$"
+Key = Annotated[str, Path(pattern=KEY, description="Key of a session: letters, digits and . _ : ~ -")]
+Label = Annotated[str, Query(max_length=200, description="A name for people")]
+Arrays = Annotated[Literal["list", "buffer"], Query(description="Arrays as lists, or as base64 of their bytes")]
+IfMatch = Annotated[str | None, Header(description='The revision the edit is for, such as "7"; none: whatever it is')]
+
+
+def manager(request: Request) -> Manager:
+    """The sessions of the server."""
+    found: Manager = request.app.state.sessions
+    return found
+
+
+async def _body(request: Request) -> bytes:
+    """A scene as JSON; from a form with a .3dm file it is read in a worker that is then replaced."""
+    if media_type(request.headers) == "multipart/form-data":
+        return await uploaded_scene(request)
+    return await read_json(request)
+
+
+def _answer(live: Live, status: int = 200) -> Response:
+    headers = {"etag": f'"{live.described["revision"]}"', "cache-control": "no-store"}
+    if status == 201:
+        headers["location"] = f"/v1/sessions/{live.key}"
+    return JSONResponse(summary(live), status, headers)
+
+
+@router.post(
+    "/v1/sessions", status_code=201, summary="A session of a scene or a .3dm file", **openapi.session_body(201)
+)
+async def create(request: Request, label: Label = "") -> Response:
+    """A new session under a random key, paused."""
+    live, _ = await manager(request).put(None, await _body(request), label)
+    return _answer(live, 201)
+
+
+@router.put("/v1/sessions/{key}", summary="The session of a key, with this scene", **openapi.session_body(200, 201))
+async def put(request: Request, key: Key, label: Label = "") -> Response:
+    """Makes the session, or gives the one that exists this scene: particles that start where one of the old scene did
+    stay where they are now, and it goes on. The same scene again changes nothing."""
+    live, new = await manager(request).put(key, await _body(request), label)
+    return _answer(live, 201 if new else 200)
+
+
+@router.get("/v1/sessions", summary="All sessions", responses=openapi.problems(openapi.SESSIONS))
+async def listing(request: Request) -> dict[str, Any]:
+    """Every session with its state and the sentence on it."""
+    return {"sessions": [summary(live) for live in manager(request).sessions.values()]}
+
+
+@router.get("/v1/sessions/{key}", summary="How a session stands", responses=openapi.problems(openapi.SESSION, 404))
+async def read(request: Request, key: Key) -> Response:
+    """Revision, iteration, time, residual, status and the sentence on it."""
+    return _answer(manager(request).find(key))
+
+
+@router.delete("/v1/sessions/{key}", status_code=204, summary="Forget a session", responses=openapi.problems(None, 404))
+async def delete(request: Request, key: Key) -> Response:
+    """It is gone, for its watchers too."""
+    await manager(request).delete(key)
+    return Response(status_code=204)
+
+
+@router.patch("/v1/sessions/{key}", summary="Edit a running session", **openapi.edit())
+async def edit(request: Request, key: Key, if_match: IfMatch = None) -> Response:
+    """A patch: `pin`, `release`, `move`, `forces`, `settings`, all of it or nothing; those of one `gesture` are undone
+    as one. It is stored when this is answered, and in every frame of this revision or a later one."""
+    body = await read_json(request)
+    await manager(request).edit(key, body, _revision(if_match))
+    return _answer(manager(request).find(key))
+
+
+@router.post("/v1/sessions/{key}/{action}", summary="Play, pause, step, reset, undo or redo", responses=openapi.acted())
+async def act(
+    request: Request,
+    key: Key,
+    action: Literal["play", "pause", "step", "reset", "undo", "redo"],
+    frames: Annotated[int, Query(ge=1, le=100_000, description="Of `step`: how many frames")] = 1,
+    fast: Annotated[bool, Query(description="Of `play`: as quickly as it can, not 60 frames a second")] = False,
+) -> Response:
+    """`step` is answered when its frames are done; the others at once."""
+    sessions = manager(request)
+    if action in ("reset", "undo", "redo"):
+        await sessions.edit(key, json.dumps({action: True}).encode())
+    else:
+        options: dict[str, Any] = {"frames": frames} if action == "step" else {"fast": fast} if action == "play" else {}
+        await sessions.command(key, action, **options)
+    return _answer(sessions.find(key))
+
+
+@router.post("/v1/sessions/{key}/branches", status_code=201, summary="Branch a session", **openapi.branched())
+async def branch(
+    request: Request,
+    key: Key,
+    to: Annotated[str | None, Query(pattern=KEY, description="Key of the branch; none: a random one")] = None,
+    label: Label = "",
+) -> Response:
+    """Another session that goes on from here, paused; it can take back nothing from before."""
+    return _answer(await manager(request).branch(key, to, label), 201)
+
+
+@router.get("/v1/sessions/{key}/scene", summary="The scene as edits have left it", responses=openapi.exported(304))
+async def scene(request: Request, key: Key) -> Response:
+    """The whole scene as canonical JSON; anchors as they were given."""
+    return await _exported(request, key, "scene")
+
+
+@router.get("/v1/sessions/{key}/topology", summary="What stays while it runs", responses=openapi.exported(304))
+async def topology(request: Request, key: Key, arrays: Arrays = "list") -> Response:
+    """Springs, meshes and geometry by particles, and the units. Its ETag changes with the scene, not with edits."""
+    live = manager(request).find(key)
+    tag = f'"{live.topology}"'
+    if live.topology and request.headers.get("if-none-match") == tag:
+        return Response(status_code=304, headers={"etag": tag})
+    answer = await _exported(request, key, "topology", arrays)
+    answer.headers["etag"] = f'"{live.topology}"'
+    return answer
+
+
+@router.get("/v1/sessions/{key}/anchors", summary="The anchors as they are now", responses=openapi.exported())
+async def anchors(request: Request, key: Key, arrays: Arrays = "list") -> Response:
+    """Particles, targets and axes of every anchor, pinned ones included."""
+    return await _exported(request, key, "anchors", arrays)
+
+
+@router.get("/v1/sessions/{key}/state", summary="The present shape and its forces", responses=openapi.exported())
+async def state(
+    request: Request,
+    key: Key,
+    form: Annotated[Literal["json", "npz", "3dm", "obj", "compas"], Query(alias="format")] = "json",
+    arrays: Arrays = "list",
+) -> Response:
+    """A result as JSON; or a file: .npz of Simulation.save, .3dm, .obj, COMPAS Mesh or Graph."""
+    answer = await _exported(request, key, form, arrays)
+    if form in ("npz", "3dm", "obj"):
+        answer.headers["content-disposition"] = f'attachment; filename="session.{form}"'
+    return answer
+
+
+async def _exported(request: Request, key: str, form: str, arrays: str = "list") -> Response:
+    head, data = await manager(request).export(key, form, arrays)
+    headers = {"etag": f'"{head["revision"]}-{head["iteration"]}"', "cache-control": "no-cache"}
+    if request.headers.get("if-none-match") == headers["etag"]:
+        return Response(status_code=304, headers=headers)
+    return Response(data, media_type=FORMATS.get(form, "application/json"), headers=headers)
+
+
+def _revision(if_match: str | None) -> int | None:
+    if if_match is None or if_match.strip() == "*":
+        return None
+    found = re.fullmatch(r'"?(\d{1,18})"?', if_match.strip())
+    if found is None:
+        raise Problem("stale-revision", 'If-Match takes a revision, such as "7", or *.')
+    return int(found[1])

@@ -1,0 +1,63 @@
+"""Frames as bytes: what is read is what was written, and what is no frame is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hookean_server.sessions.wire import HEADER, SIZE, STATUSES, Shown, decode, encode
+
+
+def shown(n: int = 3, m: int = 2, k: int = 1) -> Shown:
+    grid = np.arange(3.0 * n).reshape(n, 3)
+    return Shown(7, 5, 9, 0.25, 1e-3, "converged", True, 2.0, grid, np.arange(1.0, m + 1), np.ones((k, 3)))
+
+
+@given(st.integers(1, 40), st.integers(0, 40), st.integers(0, 5), st.sampled_from(STATUSES))
+def test_a_frame_is_read_as_it_was_written(n: int, m: int, k: int, status: str) -> None:
+    """Header of 64 bytes, then float32: whole numbers below 2^24 come back exactly."""
+    given = shown(n, m, k)
+    given.status = status
+    data = encode(given)
+    assert HEADER.size == SIZE == 64 and len(data) == 64 + 4 * (3 * n + m + 3 * k)
+    read = decode(data)
+    assert (read.number, read.revision, read.iteration, read.time, read.status, read.playing) == (
+        7,
+        5,
+        9,
+        0.25,
+        status,
+        True,
+    )
+    for one, other in (
+        (read.particles, given.particles),
+        (read.scalars, given.scalars),
+        (read.reactions, given.reactions),
+    ):
+        assert np.array_equal(one, other)
+
+
+def test_numbers_beyond_float32_stay_finite() -> None:
+    """A reader never meets a number that is not finite."""
+    given = shown()
+    given.particles[0, 0], given.scalars[0] = 1e300, -1e300
+    read = decode(encode(given))
+    assert np.isfinite(read.particles).all() and np.isfinite(read.scalars).all()
+
+
+@pytest.mark.parametrize(
+    "change", [(0, b"XXXX"), (4, b"\x02\x00"), (8, b"\x09\x00\x00\x00"), (48, b"\xff\xff"), (56, b"\x63")]
+)
+def test_other_versions_flags_and_lengths_are_refused(change: tuple[int, bytes]) -> None:
+    place, new = change
+    data = encode(shown())
+    with pytest.raises(ValueError):
+        decode(data[:place] + new + data[place + len(new) :])
+
+
+@given(st.binary(max_size=200))
+def test_bytes_that_are_no_frame_are_refused(data: bytes) -> None:
+    with pytest.raises(ValueError):
+        decode(data)
