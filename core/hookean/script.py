@@ -24,6 +24,7 @@ path: springs are damped by how fast they stretch, not by how fast their support
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -75,21 +76,24 @@ class AnchorPath(Model):
     def _one_way(self) -> Self:
         if (self.shifts is None) == (self.targets is None):
             raise fault("give exactly one of shifts, targets")
-        rows = self.shifts if self.targets is None else self.targets
-        name = "shifts" if self.targets is None else "targets"
-        assert rows is not None
+        name, rows = "shifts" if self.targets is None else "targets", self.rows
         if rows.shape[:1] != self.times.shape:
             raise fault(f"{len(np.atleast_1d(rows))} {name} for {len(self.times)} times; give one for each", f"/{name}")
         if self.targets is not None and (rows.ndim != 3 or rows.shape[2] != 3):
             raise fault("for each time a list of x, y, z expected, one for each particle of the anchor", "/targets")
         return self
 
+    @property
+    def rows(self) -> Floats:
+        """Shifts or targets, whichever are given."""
+        rows = self.shifts if self.targets is None else self.targets
+        assert rows is not None
+        return rows
+
     def move(self, time: float) -> Move:
         """The anchor's place at a time."""
-        if self.shifts is not None:
-            return Move(anchor=self.anchor, shift=between(self.times, self.shifts, time))
-        assert self.targets is not None
-        return Move(anchor=self.anchor, targets=between(self.times, self.targets, time))
+        place = between(self.times, self.rows, time)
+        return Move(anchor=self.anchor, **{"shift" if self.targets is None else "targets": place})
 
 
 class ForcePath(Model):
@@ -99,6 +103,11 @@ class ForcePath(Model):
     column: StrictStr = Field(description="Its column")
     times: Times = Field(description="Growing times (k,) [time]")
     values: Rows = Field(description="(k,) or (k, ...) values, each as the column takes it [its unit]")
+
+    @property
+    def rows(self) -> Floats:
+        """The values."""
+        return self.values
 
     @model_validator(mode="after")
     def _one_each(self) -> Self:
@@ -157,8 +166,11 @@ class Script(Model):
     @property
     def end(self) -> float:
         """When the last path ends [time]; drives have no end of their own."""
-        paths: tuple[AnchorPath | ForcePath, ...] = (*self.anchors, *self.forces)
-        return max((float(path.times[-1]) for path in paths), default=0.0)
+        return max((float(path.times[-1]) for path in self._paths), default=0.0)
+
+    @property
+    def _paths(self) -> tuple[AnchorPath | ForcePath, ...]:
+        return (*self.anchors, *self.forces)
 
     def at(self, time: float, since: float | None = None) -> Patch | None:
         """The patch that puts everything where it is at `time`; None if there is nothing, or no change `since` then."""
@@ -166,6 +178,16 @@ class Script(Model):
         patch = Patch(move=tuple(path.move(time) for path in self.anchors), forces=columns)
         before = None if since is None else self.at(since)
         return None if patch == before or not (patch.move or patch.forces) else patch
+
+    def quiet_until(self, time: float) -> float:
+        """Until when nothing moves from `time` on; `time` itself where something does now."""
+        due = np.inf
+        for path in self._paths:
+            i = int(np.searchsorted(path.times, time, side="right"))
+            if 0 < i < len(path.times) and not np.array_equal(path.rows[i - 1], path.rows[i]):
+                return time
+            due = min(due, float(path.times[i]) if i < len(path.times) else np.inf)
+        return due
 
     def columns(self, time: float) -> dict[str, dict[str, Any]]:
         """Values by force and column at a time."""
@@ -263,6 +285,13 @@ class Playing:
                 here, there = led.targets(now, held), led.targets(now + step, held)
                 _put(state, held, here, (there - here) / step)
         return stiffer
+
+    def quiet(self, now: float, step: float) -> int:
+        """For how many steps from `now` nothing changes, one less than known; 1 at least."""
+        if self._stream is not None and self._next is None and not self._ended:
+            return 1
+        due = min(self.script.quiet_until(now), np.inf if self._next is None else self._next.time)
+        return max(1, math.ceil(min((due - now) / step, 1e9)) - 1)
 
     def after(self, system: System, state: State) -> None:
         """Anchors exactly on their paths, and at rest for all who look between steps."""

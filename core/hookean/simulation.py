@@ -151,11 +151,13 @@ class Simulation:
     def _advance(self, count: int) -> None:
         playing = self._playing
         while count and playing is not None and not playing.finished:
-            if playing.before(self.system, self.state, self.scene.settings.time_step):
+            step = self.scene.settings.time_step
+            if playing.before(self.system, self.state, step):
                 self._warn()
-            self.solver.advance(self.system, self.state, 1, 0.0)
+            several = min(count, playing.quiet(self.state.time, step))
+            self.solver.advance(self.system, self.state, several, 0.0)
             playing.after(self.system, self.state)
-            count -= 1
+            count -= several
         if count:
             goal = 0.0 if self.solver.physical else self._watch.goal
             self.solver.advance(self.system, self.state, count, goal)
