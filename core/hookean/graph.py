@@ -56,9 +56,9 @@ def entries(graph: Graph) -> list[Entry]:
     """The legend; dots of a line's label have its colour and share its entry."""
     styles: dict[str, dict[str, Any]] = {}
     for label in graph.lines:
-        styles[label] = {"linewidth": 2.2}
+        styles[str(label)] = {"linewidth": 2.2}
     for label in graph.dots:
-        styles.setdefault(label, {"linestyle": ""}).update(marker="o", markersize=7, markeredgecolor="white")
+        styles.setdefault(str(label), {"linestyle": ""}).update(marker="o", markersize=7, markeredgecolor="white")
     for i, style in enumerate(styles.values()):
         style["color"] = LINES[i % len(LINES)]
     return [Entry(label, style) for label, style in styles.items()]
@@ -69,9 +69,9 @@ def paint(page: Page, box: Box, graph: Graph) -> None:
     axes = page.axes(Box(box.x + 0.85, box.y + 0.62, box.width - 1.0, box.height - 0.72))
     styles = {entry.label: entry.style for entry in entries(graph)}
     for label, (x, y) in graph.lines.items():
-        axes.plot(x, y, color=styles[label]["color"], linewidth=2.2, zorder=3)
+        axes.plot(x, y, color=styles[str(label)]["color"], linewidth=2.2, zorder=3)
     for label, (x, y) in graph.dots.items():
-        axes.plot(x, y, "o", color=styles[label]["color"], markersize=7, markeredgecolor="white", zorder=4)
+        axes.plot(x, y, "o", color=styles[str(label)]["color"], markersize=7, markeredgecolor="white", zorder=4)
     if graph.x_log:
         axes.set_xscale("log")
     if graph.y_log:

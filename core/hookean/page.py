@@ -17,8 +17,8 @@ LARGE, MEDIUM, SMALL = 21.0, 15.0, 12.0
 """Sizes of text in points: of the page, of a panel, of all else."""
 ROW = 0.29
 """Height of a row of a legend in inches."""
-MANY = 4096
-"""Colours from which on a picture is saved with a palette."""
+LARGE_FILE = 160_000
+"""Bytes from which on a picture is saved with a palette."""
 
 
 class Box(NamedTuple):
@@ -80,27 +80,29 @@ class Page:
                 x += _span(entry, box.width)
 
     def png(self) -> bytes:
-        """The page as a PNG file; one of very many colours with a palette of 256, where that shows no difference."""
+        """The page as a PNG file; a large one with a palette of 256 colours, where that shows no difference."""
         from PIL import Image
 
         self.canvas.draw()
         pixels = np.asarray(self.canvas.buffer_rgba())[..., :3]
-        image = _few(pixels, self.colours) or Image.fromarray(pixels.copy())
-        buffer = io.BytesIO()
-        image.save(buffer, format="png", compress_level=9)
-        return buffer.getvalue()
+        full = _saved(Image.fromarray(pixels.copy()), 6)
+        few = None if len(full) <= LARGE_FILE else _few(pixels, self.colours)
+        return full if few is None else _saved(few, 9)
+
+
+def _saved(image: Any, level: int) -> bytes:
+    buffer = io.BytesIO()
+    image.save(buffer, format="png", compress_level=level)
+    return buffer.getvalue()
 
 
 def _few(pixels: Any, kept: list[tuple[int, ...]]) -> Any:
-    """The same image with a palette that has white and the colours `kept`; None where it has few colours already, or
-    a palette would show."""
+    """The same image with a palette that has white and the colours `kept`; None where it would show."""
     from PIL import Image
     from scipy.spatial import cKDTree
 
     packed = pixels.astype(np.uint32) @ np.array([65536, 256, 1], np.uint32)
     values, places, counts = np.unique(packed, return_inverse=True, return_counts=True)
-    if len(values) <= MANY:
-        return None
     colours = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=-1).astype(np.uint8)
     palette = _palette(colours, counts, np.array([(255, 255, 255), *kept], np.uint8))
     off, nearest = cKDTree(palette.astype(float)).query(colours.astype(float))

@@ -78,7 +78,7 @@ def collect(
 
     InputError where frames or curves have the wrong shape, or nothing is to be seen.
     """
-    lines = {label: _points(f"curve {label!r}", given, None) for label, given in (curves or {}).items()}
+    lines = {str(label): _points(f"curve {label!r}", given, None) for label, given in (curves or {}).items()}
     if result is None:
         if frames:
             raise InputError(
@@ -90,7 +90,7 @@ def collect(
         things = _of_result(result, scene)
         count, mesh = len(result.particles), _Meshes(result, scene)
         for label, given in (frames or {}).items():
-            things.frames[label] = mesh.shape(_points(f"frame {label!r}", given, count), things.shape.springs)
+            things.frames[str(label)] = mesh.shape(_points(f"frame {label!r}", given, count), things.shape.springs)
         things.curves = lines
     if not len(things.body):
         raise InputError("panel", "has nothing to draw; give it a result with particles, or a curve")
