@@ -231,8 +231,8 @@ class Simulation:
         try:
             change()
             same = self.scene.settings.solver == undo.scene.settings.solver
-            if not same:
-                self.state.v[:] = 0.0  # what one solver calls velocity means nothing to another
+            if not same or self.status is Status.DIVERGED:
+                self.state.v[:] = 0.0  # what one solver calls velocity means nothing to another, or it flew apart
             self._begin(start=not (same and before.physical), warn=warn)
         except InputError:
             undo.put_back(self.system, self.state)

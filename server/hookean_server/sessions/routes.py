@@ -90,6 +90,17 @@ async def edit(request: Request, key: Key, if_match: IfMatch = None) -> Response
     return _answer(manager(request).find(key))
 
 
+@router.post("/v1/sessions/{key}/branches", status_code=201, summary="Branch a session", **openapi.branched())
+async def branch(
+    request: Request,
+    key: Key,
+    to: Annotated[str | None, Query(pattern=KEY, description="Key of the branch; none: a random one")] = None,
+    label: Label = "",
+) -> Response:
+    """Another session that goes on from here, paused; it can take back nothing from before."""
+    return _answer(await manager(request).branch(key, to, label), 201)
+
+
 @router.post("/v1/sessions/{key}/{action}", summary="Play, pause, step, reset, undo or redo", responses=openapi.acted())
 async def act(
     request: Request,
@@ -106,17 +117,6 @@ async def act(
         options: dict[str, Any] = {"frames": frames} if action == "step" else {"fast": fast} if action == "play" else {}
         await sessions.command(key, action, **options)
     return _answer(sessions.find(key))
-
-
-@router.post("/v1/sessions/{key}/branches", status_code=201, summary="Branch a session", **openapi.branched())
-async def branch(
-    request: Request,
-    key: Key,
-    to: Annotated[str | None, Query(pattern=KEY, description="Key of the branch; none: a random one")] = None,
-    label: Label = "",
-) -> Response:
-    """Another session that goes on from here, paused; it can take back nothing from before."""
-    return _answer(await manager(request).branch(key, to, label), 201)
 
 
 @router.get("/v1/sessions/{key}/scene", summary="The scene as edits have left it", responses=openapi.exported(304))

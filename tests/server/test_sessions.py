@@ -1,0 +1,315 @@
+"""Sessions over HTTP and WebSocket: what a designer, a canvas or another program does with them."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+from websockets.sync.client import ClientConnection, connect
+
+from hookean import Scene, Simulation, relax
+from hookean_server.sessions.wire import Shown, decode
+
+from .conftest import CABLE, Served, wait_for
+
+
+@pytest.fixture(scope="module")
+def served() -> Iterator[Served]:
+    server = Served()
+    yield server.ready()
+    server.end()
+
+
+@pytest.fixture
+def client(served: Served) -> Iterator[httpx.Client]:
+    yield served.client
+    for session in served.client.get("/v1/sessions").json()["sessions"]:
+        served.client.delete(f"/v1/sessions/{session['key']}")
+
+
+def put(client: httpx.Client, key: str = "a", scene: dict[str, Any] = CABLE) -> dict[str, Any]:
+    answer = client.put(f"/v1/sessions/{key}", json=scene)
+    assert answer.status_code in (200, 201), answer.text
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+def watch(served: Served, key: str = "a") -> ClientConnection:
+    headers = {k: v for k, v in served.client.headers.items() if k.lower() == "authorization"}
+    return connect(f"{served.url.replace('http', 'ws')}/v1/sessions/{key}/frames", additional_headers=headers)
+
+
+def frame(socket: ClientConnection, fits: Any = lambda f: True) -> Shown:
+    """The next frame that fits; every one is acknowledged."""
+    while True:
+        message = socket.recv(timeout=60)
+        if isinstance(message, bytes):
+            found = decode(message)
+            socket.send(json.dumps({"ack": found.number}))
+            if fits(found):
+                return found
+
+
+def test_put_makes_a_session_once_and_the_same_scene_changes_nothing(client: httpx.Client) -> None:
+    first = client.put("/v1/sessions/doc:canvas-1", json=CABLE)
+    assert first.status_code == 201 and first.headers["location"] == "/v1/sessions/doc:canvas-1"
+    again = client.put("/v1/sessions/doc:canvas-1", json=CABLE)
+    assert again.status_code == 200 and again.json()["revision"] == first.json()["revision"] == 0
+    assert [s["key"] for s in client.get("/v1/sessions").json()["sessions"]] == ["doc:canvas-1"]
+
+
+def test_post_makes_a_session_under_a_random_key(client: httpx.Client) -> None:
+    one, other = (client.post("/v1/sessions", json=CABLE, params={"label": "roof"}) for _ in range(2))
+    assert one.status_code == 201 and one.json()["key"] != other.json()["key"]
+    assert len(one.json()["key"]) == 32 and one.json()["label"] == "roof"
+
+
+def test_steps_are_those_of_a_simulation(client: httpx.Client) -> None:
+    """Ten frames over HTTP are ten frames of the core, bit for bit."""
+    put(client)
+    client.post("/v1/sessions/a/step", params={"frames": 10})
+    running = Simulation(Scene.read(CABLE))
+    running.step(10)
+    state = client.get("/v1/sessions/a/state").json()
+    assert np.array_equal(state["particles"], running.state.x)
+    assert state["iterations"] == 200
+
+
+def test_playing_ends_at_the_equilibrium_that_python_gives(client: httpx.Client) -> None:
+    put(client)
+    client.post("/v1/sessions/a/play", params={"fast": True})
+    wait_for(lambda: client.get("/v1/sessions/a").json()["status"] == "converged", 60.0)
+    wanted = relax(Scene.read(CABLE)).particles
+    assert np.allclose(client.get("/v1/sessions/a/state").json()["particles"], wanted, atol=1e-4)
+    assert not client.get("/v1/sessions/a").json()["playing"]
+
+
+def test_edits_carry_a_revision_and_can_be_taken_back(client: httpx.Client) -> None:
+    put(client)
+    answer = client.patch("/v1/sessions/a", json={"forces": {"1": {"vector": [0, 0, -5]}}})
+    assert answer.json()["revision"] == 1 and answer.headers["etag"] == '"1"'
+    assert client.get("/v1/sessions/a/scene").json()["forces"][1]["vector"] == [0, 0, -5]
+    assert client.post("/v1/sessions/a/undo").json()["revision"] == 2
+    assert client.get("/v1/sessions/a/scene").json()["forces"][1]["vector"] == [0, 0, -20]
+    assert client.post("/v1/sessions/a/redo").json()["revision"] == 3
+    assert client.get("/v1/sessions/a/scene").json()["forces"][1]["vector"] == [0, 0, -5]
+    answer = client.post("/v1/sessions/a/redo")
+    assert answer.status_code == 422 and "no edit" in answer.json()["detail"]
+
+
+def test_two_editors_cannot_overwrite_each_other_unseen(client: httpx.Client) -> None:
+    put(client)
+    first = client.patch("/v1/sessions/a", json={"release": [0]}, headers={"if-match": '"0"'})
+    assert first.status_code == 200
+    second = client.patch("/v1/sessions/a", json={"release": [5]}, headers={"if-match": '"0"'})
+    assert second.status_code == 412 and second.json()["type"] == "/problems/stale-revision"
+    assert client.get("/v1/sessions/a").json()["revision"] == 1
+
+
+@pytest.mark.parametrize(
+    ("edit", "pointer"),
+    [
+        ({"pin": [{"particles": [99]}]}, "/pin"),
+        ({"forces": {"9": {"vector": [0, 0, 1]}}}, "/forces/9"),
+        ({"forces": {"1": {"vector": "down"}}}, "/forces/1/vector"),
+        ({"move": [{"anchor": "nobody", "targets": []}]}, "/move/0"),
+        ({"undo": True, "release": [0]}, "/undo"),
+        ({"geometry": []}, "/geometry"),
+        ([], "/"),
+    ],
+)
+def test_a_faulty_edit_changes_nothing(client: httpx.Client, edit: Any, pointer: str) -> None:
+    put(client)
+    answer = client.patch("/v1/sessions/a", json=edit)
+    assert answer.status_code == 422, answer.text
+    assert answer.json()["errors"][0]["pointer"].startswith(pointer)
+    assert client.get("/v1/sessions/a").json()["revision"] == 0
+
+
+def test_reset_goes_back_to_the_start_and_keeps_the_supports(client: httpx.Client) -> None:
+    """The chapter's trap: anchors that were moved still hold their particles after a reset."""
+    put(client)
+    client.patch("/v1/sessions/a", json={"move": [{"anchor": 0, "targets": [[0, 0, 3], [10, 0, 0]]}]})
+    client.post("/v1/sessions/a/step", params={"frames": 5})
+    answer = client.post("/v1/sessions/a/reset").json()
+    assert answer["iteration"] == 0 and answer["revision"] == 2
+    state = np.array(client.get("/v1/sessions/a/state").json()["particles"])
+    assert np.array_equal(state[1:5, 2], np.zeros(4)) and np.array_equal(state[0], [0, 0, 3])
+    (anchor,) = client.get("/v1/sessions/a/anchors").json()["anchors"]
+    assert anchor["particles"] == [0, 5]
+
+
+def test_a_new_scene_keeps_particles_that_kept_their_identity(client: httpx.Client) -> None:
+    put(client)
+    client.post("/v1/sessions/a/step", params={"frames": 5})
+    before = np.array(client.get("/v1/sessions/a/state").json()["particles"])
+    stiffer = json.loads(json.dumps(CABLE))
+    stiffer["forces"][0]["stiffness"] = 2000
+    assert put(client, scene=stiffer)["revision"] == 1
+    assert np.array_equal(client.get("/v1/sessions/a/state").json()["particles"], before)
+
+
+def test_a_branch_goes_its_own_way(client: httpx.Client) -> None:
+    put(client)
+    client.post("/v1/sessions/a/step", params={"frames": 3})
+    answer = client.post("/v1/sessions/a/branches", params={"to": "b"})
+    assert answer.status_code == 201 and answer.json()["key"] == "b"
+    for key in "ab":
+        client.post(f"/v1/sessions/{key}/step", params={"frames": 2})
+    one, other = (client.get(f"/v1/sessions/{key}/state").json()["particles"] for key in "ab")
+    assert one == other
+    client.patch("/v1/sessions/b", json={"release": [5]})
+    client.post("/v1/sessions/b/step")
+    assert client.get("/v1/sessions/a").json()["revision"] == 0
+    assert client.post("/v1/sessions/a/branches", params={"to": "b"}).status_code == 409
+
+
+def test_every_format_is_read_back(client: httpx.Client, tmp_path: Any) -> None:
+    """JSON, npz, .3dm, OBJ and COMPAS JSON hold the same particles."""
+    import compas
+    import rhino3dm
+
+    put(client)
+    client.post("/v1/sessions/a/step", params={"frames": 4})
+
+    def get(form: str) -> bytes:
+        answer = client.get("/v1/sessions/a/state", params={"format": form})
+        assert answer.status_code == 200, answer.text
+        return answer.content
+
+    wanted = np.array(json.loads(get("json"))["particles"])
+    again = Simulation.load(io.BytesIO(get("npz")))
+    assert np.array_equal(again.state.x, wanted)
+    vertices = [line.split()[1:] for line in get("obj").decode().splitlines() if line.startswith("v ")]
+    assert np.array_equal(np.array(vertices, float), wanted)
+    graph = compas.json_loads(get("compas").decode())
+    assert np.allclose([graph.node_coordinates(n) for n in graph.nodes()], wanted, atol=0)
+    path = tmp_path / "session.3dm"
+    path.write_bytes(get("3dm"))
+    curves = [o.Geometry for o in rhino3dm.File3dm.Read(str(path)).Objects if "hookean" in _layer(path, o)]
+    ends = {
+        tuple(np.round([p.X, p.Y, p.Z], 9)) for c in curves if hasattr(c, "PointAtStart") for p in (c.PointAtStart,)
+    }
+    assert {tuple(np.round(x, 9)) for x in wanted[:-1]} <= ends
+
+
+def _layer(path: Any, item: Any) -> str:
+    import rhino3dm
+
+    model = rhino3dm.File3dm.Read(str(path))
+    return str(model.Layers[item.Attributes.LayerIndex].FullPath)
+
+
+def test_topology_has_an_etag_that_edits_keep_and_scenes_change(client: httpx.Client) -> None:
+    put(client)
+    first = client.get("/v1/sessions/a/topology")
+    assert first.json()["springs"] == [[i, i + 1] for i in range(5)] and first.json()["units"]["force"] == "N"
+    tag = first.headers["etag"]
+    client.patch("/v1/sessions/a", json={"release": [5]})
+    assert client.get("/v1/sessions/a/topology", headers={"if-none-match": tag}).status_code == 304
+    longer = {**CABLE, "particles": [*CABLE["particles"], [12, 0, 0]]}
+    put(client, scene=longer)
+    assert client.get("/v1/sessions/a/topology", headers={"if-none-match": tag}).status_code == 200
+
+
+def test_an_edit_over_the_socket_is_in_the_frames_that_follow(served: Served, client: httpx.Client) -> None:
+    put(client)
+    with watch(served) as socket:
+        assert json.loads(socket.recv())["hello"] == 1
+        socket.send(json.dumps({"id": 1, "do": "play"}))
+        first = frame(socket, lambda f: f.playing)
+        assert first.scalars.shape == (5,) and first.reactions.shape == (2, 3)
+        edit = {"move": [{"anchor": 0, "targets": [[0, 0, 2], [10, 0, 0]]}], "gesture": "drag"}
+        socket.send(json.dumps({"id": 2, "edit": edit}))
+        seen = frame(socket, lambda f: f.revision == 1)
+        assert seen.particles[0].tolist() == [0, 0, 2]
+
+
+def test_a_slow_client_gets_two_frames_and_holds_nobody_up(served: Served, client: httpx.Client) -> None:
+    """Two frames are on their way to a client that acknowledges none; another one goes on seeing new ones."""
+    swinging = json.loads(json.dumps(CABLE))
+    swinging["settings"] = {"drag": 0}
+    swinging["forces"][0]["damping"] = 0
+    put(client, scene=swinging)
+    client.post("/v1/sessions/a/play")
+    with watch(served) as slow, watch(served) as quick:
+        for _ in range(30):
+            frame(quick)
+        got = 0
+        while True:
+            try:
+                got += isinstance(slow.recv(timeout=0.5), bytes)
+            except TimeoutError:
+                break
+        assert got == 2
+        newest = frame(quick)
+        slow.send(json.dumps({"ack": 2**31}))
+        assert frame(slow).iteration >= newest.iteration - 400
+
+
+@pytest.mark.parametrize(
+    "message", ["nonsense", "[]", '{"ack": "x"}', '{"do": "fly", "id": 3}', '{"edit": 7, "id": 3}']
+)
+def test_a_message_that_is_none_is_told_so(served: Served, client: httpx.Client, message: str) -> None:
+    from websockets.exceptions import ConnectionClosed
+
+    put(client)
+    with watch(served) as socket:
+        socket.send(message)
+        try:
+            while True:
+                said = socket.recv(timeout=30)
+                if isinstance(said, str) and json.loads(said).get("id") == 3:
+                    assert json.loads(said)["problem"]["status"] == 422
+                    break
+        except ConnectionClosed as closed:
+            assert closed.rcvd is not None and closed.rcvd.code == 1003
+    assert client.get("/v1/sessions/a").status_code == 200
+
+
+def test_a_session_that_diverges_says_so_and_takes_the_next_edit(client: httpx.Client) -> None:
+    explosive = json.loads(json.dumps(CABLE))
+    explosive["forces"][0].update(stiffness=1e9, damping=0)
+    put(client, scene=explosive)
+    client.post("/v1/sessions/a/play", params={"fast": True})
+    wait_for(lambda: client.get("/v1/sessions/a").json()["status"] == "diverged", 60.0)
+    said = client.get("/v1/sessions/a").json()
+    assert "Diverged" in said["message"] and not said["playing"]
+    assert np.isfinite(np.array(client.get("/v1/sessions/a/state").json()["particles"])).all()
+    client.patch("/v1/sessions/a", json={"forces": {"0": {"stiffness": 1000}}})
+    client.post("/v1/sessions/a/step")
+    assert client.get("/v1/sessions/a").json()["status"] == "running"
+
+
+def test_a_deleted_session_is_gone_for_its_watchers_too(served: Served, client: httpx.Client) -> None:
+    from websockets.exceptions import ConnectionClosed
+
+    put(client)
+    with watch(served) as socket:
+        client.delete("/v1/sessions/a")
+        with pytest.raises(ConnectionClosed) as closed:
+            while True:
+                socket.recv(timeout=30)
+        assert closed.value.rcvd is not None and closed.value.rcvd.code == 4404
+    assert client.get("/v1/sessions/a").status_code == 404
+    assert client.delete("/v1/sessions/a").status_code == 404
+
+
+def test_there_is_a_most_of_sessions_and_the_next_is_told_when_to_come_back() -> None:
+    server = Served(sessions=2, awake=1)
+    try:
+        server.ready()
+        put(server.client, "a"), put(server.client, "b")
+        answer = server.client.put("/v1/sessions/c", json=CABLE)
+        assert answer.status_code == 429 and int(answer.headers["retry-after"]) > 0
+        # one process for two sessions: each wakes the other's place
+        for key in "abab":
+            assert server.client.post(f"/v1/sessions/{key}/step").status_code == 200
+        assert server.client.get("/v1/sessions/a/state").json()["iterations"] == 40
+    finally:
+        server.end()
