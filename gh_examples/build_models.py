@@ -15,8 +15,8 @@ from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
 HERE = Path(__file__).parent
 
 
-def membrane() -> None:
-    """Figure 9.24: a flat square NURBS surface of 10 m."""
+def square() -> rhino3dm.NurbsSurface:
+    """A flat square of degree 3, 10 m wide, with even parameters: divided, its faces are squares."""
     surface = rhino3dm.NurbsSurface.Create(3, False, 4, 4, 4, 4)
     for i in range(4):
         for j in range(4):
@@ -24,11 +24,16 @@ def membrane() -> None:
     for k, value in enumerate([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]):
         surface.KnotsU[k] = value
         surface.KnotsV[k] = value
+    return surface
+
+
+def membrane() -> None:
+    """Figure 9.24: the square alone."""
     write_new(
         HERE / "9.24-membrane" / "model.3dm",
         Additions(
             layers=(NewLayer("membrane", colour=(40, 90, 160, 255)),),
-            objects=(NewObject(surface, layer="membrane", name="roof"),),
+            objects=(NewObject(square(), layer="membrane", name="roof"),),
         ),
         own=False,
     )
