@@ -20,7 +20,8 @@ Floats = NDArray[np.float64]
 MOST_ARROWS = 600
 ARROWS = {"load": (LOAD, 0.06), "reaction": (REACTION, 0.1)}
 """Colour of arrows and the length of the longest as a part of the model's extent."""
-DASHES = ((0, (5, 2.2)), (0, (1.4, 1.6)), (0, (7, 2, 1.4, 2)))
+DASHES = ((0, (6, 4)), (0, (2, 2.4)), (0, (9, 3, 2, 3)))
+"""In widths of the line; a spring under a curve shows beside it and in its gaps."""
 
 
 class Drawing:
@@ -104,7 +105,7 @@ class Drawing:
         found: dict[str, dict[str, Any]] = {}
         alone = not len(self.things.shape.body)
         for i, (label, curve) in enumerate(self.things.curves.items()):
-            found[label] = {"color": LINES[i % len(LINES)], "linewidth": 2.0}
+            found[label] = {"color": LINES[i % len(LINES)], "linewidth": 2.0 if alone else 1.4}
             if len(curve) == 1:
                 found[label].update(marker="o", markersize=7.0, linestyle="", markeredgecolor="white")
             else:
@@ -158,24 +159,17 @@ def _paint_floor(axes: Any, corners: Floats, lines: Floats) -> None:
     axes.add_collection(LineCollection(list(lines), colors="#cfd5db", linewidths=0.9, zorder=1), autolim=False)
 
 
-def _paint_frame(axes: Any, shape: Shape, eye: Floats, colour: Any, zorder: float, boldness: float) -> None:
-    from matplotlib.collections import LineCollection, PolyCollection
-
+def _paint_frame(axes: Any, shape: Shape, eye: Floats, shade: Any, zorder: float, boldness: float) -> None:
+    """A shape in one colour, its faces as a pale film of it."""
+    colour = np.array([*shade, 1.0])
     width = _width(len(shape.springs), boldness) * (0.75 if len(shape.springs) <= 60 else 0.45)
-    if len(shape.faces):
-        edges = np.where(shape.edged, _edge_width(len(shape.faces), boldness), 0.0)
-        polygons = PolyCollection(
-            list(shape.faces @ eye[:2].T), facecolors=(*colour, 0.16), edgecolors=(*colour, 0.45), linewidths=edges,
-            zorder=zorder,
-        )  # fmt: skip
-        axes.add_collection(polygons, autolim=False)
-    lines = [*(shape.points[shape.springs] @ eye[:2].T), *(stroke @ eye[:2].T for stroke in shape.strokes)]
-    if lines:
-        axes.add_collection(
-            LineCollection(lines, colors=[colour], linewidths=width, capstyle="round", zorder=zorder), autolim=False
-        )
-    elif not len(shape.faces):
-        axes.scatter(*(shape.points @ eye[:2].T).T, s=30.0 * boldness, color=[colour], linewidths=0, zorder=zorder)
+    film = np.append(1.0 - 0.22 * (1.0 - colour[:3]), 0.6)
+    widths, edge = np.full(len(shape.springs), width), colour * [1, 1, 1, 0.5]
+    _paint_shape(axes, shape, eye, colour[None], widths, film[None], edge, boldness, zorder)
+    for stroke in shape.strokes:
+        axes.plot(*(stroke @ eye[:2].T).T, color=shade, linewidth=1.6 * boldness, zorder=zorder)
+    if not len(shape.springs) and not len(shape.faces) and not shape.strokes:
+        axes.scatter(*(shape.points @ eye[:2].T).T, s=30.0 * boldness, color=[shade], linewidths=0, zorder=zorder)
 
 
 def _width(springs: int, boldness: float) -> float:
@@ -190,32 +184,41 @@ def _edge_width(faces: int, boldness: float) -> float:
 def _paint_body(
     axes: Any, things: Things, eye: Floats, scale: Scale, slack: NDArray[np.bool_], boldness: float
 ) -> None:
-    """Faces and springs in one pass from back to front."""
-    from matplotlib.collections import PolyCollection
+    """Springs in the colours of their forces, faces lit."""
     from matplotlib.colors import to_rgba
 
-    shape, forces = things.shape, things.forces
-    lines = shape.points[shape.springs]
-    colours = scale.colours(forces)
+    colours = scale.colours(things.forces)
     colours[slack] = to_rgba(SLACK)
+    width = _width(len(slack), boldness)
+    widths = np.where(slack, max(0.7 * width, 1.2 * boldness), width)
+    light = _light(things.shape.faces, eye)
+    _paint_shape(axes, things.shape, eye, colours, widths, light, np.array(to_rgba("#4d6275", 0.75)), boldness, 2.0)
+
+
+def _paint_shape(
+    axes: Any, shape: Shape, eye: Floats, colours: Floats, widths: Floats, fill: Floats, thin: Floats,
+    boldness: float, zorder: float,
+) -> None:  # fmt: skip
+    """Faces (m) of the colours `fill` and edges `thin`, and springs (k) of `colours` and `widths`, in one pass from
+    back to front; (1, 4) colours are for all."""
+    from matplotlib.collections import PolyCollection
+
+    lines = shape.points[shape.springs]
+    count = len(shape.faces)
     # springs on the edges of faces lie on top of them: the faces step back by a part of their size
-    reach = np.linalg.norm(np.ptp(shape.faces, axis=1), axis=1).mean() if len(shape.faces) else 0.0
+    reach = np.linalg.norm(np.ptp(shape.faces, axis=1), axis=1).mean() if count else 0.0
     depth = np.concatenate([(shape.faces @ eye[2]).mean(axis=1) - 0.6 * reach, (lines @ eye[2]).mean(axis=1)])
     faces = np.concatenate([shape.faces, shape.faces[:, :1]], axis=1) @ eye[:2].T
     order = np.argsort(depth, kind="stable")
     shapes = [*faces, *(lines @ eye[:2].T)]
-    fill = np.concatenate([_light(shape.faces, eye), np.zeros((len(lines), 4))])
-    thin = np.where(shape.edged[:, None], to_rgba("#4d6275", 0.75), 0.0)
-    edge = np.concatenate([thin, colours])
-    width = _width(len(lines), boldness)
-    widths = np.concatenate(
-        [shape.edged * _edge_width(len(faces), boldness), np.where(slack, max(0.7 * width, 1.2 * boldness), width)]
-    )
+    inside = np.concatenate([np.broadcast_to(fill, (count, 4)), np.zeros((len(lines), 4))])
+    outline = np.concatenate([shape.edged[:, None] * thin, np.broadcast_to(colours, (len(lines), 4))])
+    thickness = np.concatenate([shape.edged * _edge_width(count, boldness), widths])
     antialiased = np.concatenate([shape.edged, np.ones(len(lines), bool)])
     axes.add_collection(
         PolyCollection(
-            [shapes[i] for i in order], closed=False, facecolors=fill[order], edgecolors=edge[order],
-            linewidths=widths[order], antialiaseds=antialiased[order], capstyle="round", zorder=2,
+            [shapes[i] for i in order], closed=False, facecolors=inside[order], edgecolors=outline[order],
+            linewidths=thickness[order], antialiaseds=antialiased[order], capstyle="round", zorder=zorder,
         ),
         autolim=False,
     )  # fmt: skip
@@ -239,7 +242,7 @@ def _paint_points(axes: Any, things: Things, eye: Floats, boldness: float) -> No
     """Held particles, and free ones where nothing else shows them."""
     shape = things.shape
     if not len(shape.springs) and not len(shape.faces) or len(shape.points) <= 60:
-        area = (26.0 if len(shape.points) > 3 else 90.0) * boldness**2
+        area = (26.0 * min(1.0, 15.0 / len(shape.points)) if len(shape.points) > 3 else 90.0) * boldness**2
         axes.scatter(*(shape.points @ eye[:2].T).T, s=area, color="white", edgecolors=INK,
                      linewidths=1.2 * boldness, zorder=4)  # fmt: skip
     if len(things.held):

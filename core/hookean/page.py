@@ -106,8 +106,8 @@ def _few(pixels: Any, kept: list[tuple[int, ...]]) -> Any:
     colours = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=-1).astype(np.uint8)
     palette = _palette(colours, counts, np.array([(255, 255, 255), *kept], np.uint8))
     off, nearest = cKDTree(palette.astype(float)).query(colours.astype(float))
-    # areas keep their colour; only pixels on the edges of lines may be a little off
-    if off.max() > 30.0 or (off * counts).sum() > 1.5 * counts.sum():
+    # areas keep their colour; only a few pixels on the edges of lines may be off
+    if counts[off > 24.0].sum() > 1e-4 * counts.sum() or (off * counts).sum() > 1.5 * counts.sum():
         return None
     image = Image.fromarray(nearest.astype(np.uint8)[places].reshape(packed.shape))
     image.putpalette(palette.ravel().tolist())

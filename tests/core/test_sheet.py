@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rhino3dm
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.image import imread
 
@@ -201,7 +201,8 @@ def test_curves_are_drawn_and_named(tmp_path: Path, words: list[str]) -> None:
     bare = drawn([Panel(result, scene)], tmp_path)
     pixels = drawn([Panel(result, scene, curves={"parabola": curve})], tmp_path)
     assert "parabola" in words
-    assert near(pixels, LINES[0]).sum() > 1500 and near(bare, LINES[0]).sum() < 50
+    # some 1200 pixels long, six in ten of them dashes, at least one pixel of the full colour across
+    assert near(pixels, LINES[0]).sum() > 700 and near(bare, LINES[0]).sum() < 50
     # dashed: there are gaps along it
     columns = near(pixels[150:600, 200:1100], LINES[0]).any(axis=0)
     assert 0.3 < columns.mean() < 0.95
@@ -268,9 +269,10 @@ def test_equal_input_gives_equal_bytes_and_small_files(tmp_path: Path) -> None:
     assert b"tEXt" not in made[0]
 
 
+@settings(derandomize=True, deadline=None, max_examples=50, database=None)
 @given(st.integers(0, 2**32 - 1))
 def test_a_palette_keeps_white_what_is_kept_and_areas(seed: int) -> None:
-    """White and the colours of a legend to the bit; areas to within 3 of 255 in the mean, anything to within 30."""
+    """White and the colours of a legend to the bit; 1.5 of 255 off in the mean, 24 but for one pixel in 10,000."""
     random = np.random.default_rng(seed)
     pixels = np.full((120, 160, 3), 255, np.uint8)
     ends = random.integers(0, 256, (2, 3))
@@ -283,7 +285,8 @@ def test_a_palette_keeps_white_what_is_kept_and_areas(seed: int) -> None:
     if image is None:  # a palette would spoil it: then full colour is kept
         return
     off = np.abs(np.asarray(image.convert("RGB")).astype(int) - pixels)
-    assert off.max() <= 30 and off.mean() <= 3.0
+    far = np.linalg.norm(off, axis=2)
+    assert (far > 24).mean() <= 1e-4 and far.mean() <= 1.5
     assert not off[(pixels == 255).all(axis=2)].any() and not off[2:4].any()
 
 
@@ -317,6 +320,7 @@ def test_a_line_and_dots_of_one_label_share_colour_and_entry(tmp_path: Path, wor
     assert words.count("both") == 1
 
 
+@settings(derandomize=True, deadline=None, max_examples=50, database=None)
 @given(st.integers(0, 2**32 - 1), st.integers(2, 5), st.integers(0, 6), st.booleans())
 def test_carried_curves_are_rhinos_own(seed: int, degree: int, more: int, weighted: bool) -> None:
     """Against rhino3dm's evaluation. Tolerance: rounding of some ten products of numbers up to 10."""
