@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from hookean.example import Example, examples
+from hookean.example import Example, examples, gallery, home
 
 ALL = examples()
 
@@ -56,3 +56,9 @@ def test_a_folder_has_all_that_the_gallery_shows(example: Example) -> None:
     assert {"example.py", "expected.json", "README.md", "picture.png"} <= inside
     assert "scene.json" in inside or {"model.3dm", "recipe.toml"} <= inside
     assert (example.folder / "picture.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_gallery_shows_every_example():
+    """gh_examples/README.md is what `make figures` would write now."""
+    same = (home() / "README.md").read_text(encoding="utf-8") == gallery(ALL)
+    assert same, "gh_examples/README.md is not what the examples say: run make figures"

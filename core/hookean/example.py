@@ -127,6 +127,40 @@ def examples() -> list[Example]:
                                         e.name))  # fmt: skip
 
 
+INTRODUCTION = """# Gallery
+
+The figures of the chapter that hookean implements, each a folder with its input, its script, the numbers it is held
+to and where they come from. `hookean example` lists them, `hookean example 9.11` runs one, and `make figures` draws all
+and writes this page.
+
+To make one your own, copy its folder and give it your file:
+
+```sh
+hookean example 9.24 --copy roof
+hookean relax mine.3dm --recipe roof/recipe.toml --explain       # what the recipe finds in your file
+hookean relax mine.3dm --recipe roof/recipe.toml -o relaxed.3dm --picture relaxed.png
+```
+
+In the recipe, change the layers it names to yours; [rhino-files.md](../docs/rhino-files.md) has everything it can say.
+
+"""
+
+
+def gallery(known: Sequence[Example]) -> str:
+    """The page of pictures, in Markdown."""
+    parts = []
+    for example in known:
+        expected = example.expected
+        first = expected.figures[0]
+        what = f"Figure {first}" if first[0].isdigit() else first.capitalize()
+        what = "The essay" if expected.kind == "essay" else what
+        parts.append(
+            f"## {what}: {expected.title}\n\n[{example.name}]({example.name})\n\n"
+            f'<a href="{example.name}"><img src="{example.name}/picture.png" width="640" alt="{expected.title}"></a>\n'
+        )
+    return INTRODUCTION + "\n".join(parts)
+
+
 def find(wanted: str) -> Example:
     """The example of a folder's name, or of a figure's number; InputError names the ones there are."""
     known = examples()

@@ -39,27 +39,28 @@ def run(wanted: str, picture: Path | None, copy: Path | None) -> int:
     except InputError as error:
         typer.echo(f"hookean: {error}", err=True)
         return BAD_INPUT
-    table = Table("number", "value", "unit", "expected", "source", box=None, pad_edge=False)
+    typer.echo(f"{example.name}: {example.expected.title}\n")
     missed = 0
+    wide = max(len(name) for name in example.expected.numbers)
     for name, expected in example.expected.numbers.items():
         held = expected.holds(outcome.numbers[name])
         missed += not held
-        table.add_row(
-            name, f"{outcome.numbers[name]:.9g}", expected.unit, ("" if held else "not ") + str(expected),
-            expected.source,
-        )  # fmt: skip
-    typer.echo(f"{example.name}: {example.expected.title}")
-    Console().print(table)
-    typer.echo(f"input, picture and README: {example.folder}")
+        wanted = f"{'as expected' if held else 'NOT as expected'}: {expected}"
+        typer.echo(f"  {name:<{wide}}  {outcome.numbers[name]:.9g} {expected.unit}  ({wanted})")
+        typer.echo(typer.style(f"  {'':<{wide}}  {expected.source}", dim=True))
+    typer.echo(f"\ninput, picture and README: {example.folder}")
     return MISSED if missed else FULFILLED
 
 
 def figures(target: Path) -> int:
-    """Run all examples, check their numbers and draw each to `target/NAME/picture.png`; 1 where a number is off."""
-    from hookean.example import examples
+    """Run all examples, check their numbers, draw each to `target/NAME/picture.png` and write the gallery; 1 where a
+    number is off."""
+    from hookean.example import examples, gallery
 
     missed = 0
-    for example in examples():
+    known = examples()
+    (target / "README.md").write_text(gallery(known), encoding="utf-8")
+    for example in known:
         outcome = example.run()
         wrong = [name for name, e in example.expected.numbers.items() if not e.holds(outcome.numbers[name])]
         missed += len(wrong)
