@@ -5,6 +5,8 @@ gravity, and parts V, V + p, V + 2p ... along it; each link is rest + T / k long
 those for which the links lead from A to B. No energy, no iteration over particles. Only numpy and scipy.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.optimize import brentq, root
 
@@ -52,8 +54,8 @@ def chain(start, end, rest, stiffness, weight, gravity=(0, 0, -1)):
     for _ in range(3):  # the last digits, by Newton's method with differences
         off = links(found).sum(axis=0) - (span, rise)
         h = 1e-6 * np.linalg.norm(found)
-        slope = np.stack([(links(found + d).sum(axis=0) - links(found - d).sum(axis=0)) / (2 * h) for d in h * np.eye(2)])
-        found = found - np.linalg.solve(slope.T, off)
+        slopes = [(links(found + d) - links(found - d)).sum(axis=0) / (2 * h) for d in h * np.eye(2)]
+        found = found - np.linalg.solve(np.stack(slopes, axis=1), off)
     assert np.abs(links(found).sum(axis=0) - (span, rise)).max() < 1e-12 * rest.sum()
     joints = np.vstack([[0.0, 0.0], np.cumsum(links(found), axis=0)])
     return start + joints @ np.array([across, up]), np.hypot(found[0], found[1] + steps)
@@ -81,7 +83,7 @@ def divided(curve, count):
         t = 0.5 * (a + b) + 0.5 * (b - a) * nodes
         return 0.5 * (b - a) * sum(w * np.linalg.norm(_derivative(curve, v)) for w, v in zip(weights, t, strict=True))
 
-    upto = np.concatenate([[0.0], np.cumsum([length(a, b) for a, b in zip(knots, knots[1:], strict=False)])])
+    upto = np.concatenate([[0.0], np.cumsum([length(a, b) for a, b in pairwise(knots)])])
     at = [knots[0]]
     for target in upto[-1] * np.arange(1, count) / count:
         i = int(np.clip(np.searchsorted(upto, target) - 1, 0, len(knots) - 2))

@@ -1,4 +1,4 @@
-"""Numbers of figure 9.14 for the chain, a row of links by statics. Prints them as JSON by the names of expected.json."""
+"""Numbers of figure 9.14 for the chain, a row of links by statics. Prints them as JSON."""
 
 import json
 import sys

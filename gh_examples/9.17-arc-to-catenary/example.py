@@ -31,16 +31,18 @@ def run(folder: Path) -> Outcome:
         numbers[f"{name}: off the catenary"] = np.abs(off(result, of(name, segments[name]))).max()
     numbers["arc: shortest segment"] = segments["arc"].min()
     numbers["arc: longest segment"] = segments["arc"].max()
-    numbers["arc: largest change of a segment"] = np.abs(segments["arc"] - ARC / 50).max()
+    numbers["arc: largest change of a segment"] = np.abs(segments["arc"] - ARC / len(segments["arc"])).max()
     titles = {"line": "A line of 10 m that stretches", "arc": "An arc of 20 m that hardly does"}
     panels = [shown(results[n], scenes[n], title, of(n, segments[n])) for n, title in titles.items()]
-    heights = {n: (results[n].particles[:, 0], off(results[n], of(n, segments[n]))) for n in ("line", "arc", "wide arc")}
-    counted = np.arange(1, 51)
+    heights = {
+        n: (results[n].particles[:, 0], off(results[n], of(n, segments[n]))) for n in ("line", "arc", "wide arc")
+    }
+    counted = {n: np.arange(1, len(lengths) + 1) for n, lengths in segments.items()}
     graphs = [
         Graph("How far it is from the catenary", "x [m]", "height over the catenary [m]", dots=heights),
         Graph("Segments stay near 0.4 m", "segment, from A to B", "length [m]",
-              lines={"at the start": (counted, np.full(50, ARC / 50))},
-              dots={n: (counted, segments[n]) for n in ("arc", "wide arc")}),
+              lines={"at the start": (counted["arc"], np.full(len(segments["arc"]), ARC / len(segments["arc"])))},
+              dots={n: (counted[n], segments[n]) for n in ("arc", "wide arc")}),
     ]  # fmt: skip
     return Outcome(numbers, [*panels, *graphs], columns=2)
 
