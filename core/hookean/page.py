@@ -105,6 +105,8 @@ def _few(pixels: Any, kept: list[tuple[int, ...]]) -> Any:
     values, places, counts = np.unique(packed, return_inverse=True, return_counts=True)
     colours = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=-1).astype(np.uint8)
     palette = _palette(colours, counts, np.array([(255, 255, 255), *kept], np.uint8))
+    if palette is None:
+        return None
     off, nearest = cKDTree(palette.astype(float)).query(colours.astype(float))
     # areas keep their colour; only a few pixels on the edges of lines may be off
     if counts[off > 24.0].sum() > 1e-4 * counts.sum() or (off * counts).sum() > 1.5 * counts.sum():
@@ -115,11 +117,15 @@ def _few(pixels: Any, kept: list[tuple[int, ...]]) -> Any:
 
 
 def _palette(colours: Any, counts: Any, kept: Any) -> Any:
-    """256 colours: those `kept`, and others spread over all there are and moved to where most pixels are."""
+    """256 colours: those `kept`, and others spread over all there are and moved to where most pixels are; None
+    where too many are kept."""
     from PIL import Image
     from scipy.spatial import cKDTree
 
+    kept = np.unique(kept, axis=0)
     room = 256 - len(kept)
+    if room < 64:
+        return None  # many colour bars; full colour then
     spread = Image.fromarray(colours[None]).quantize(room // 2, method=Image.Quantize.MAXCOVERAGE)
     wide = np.array(spread.getpalette(), float).reshape(-1, 3)[: room // 2]
     often = colours[np.argsort(-counts, kind="stable")[: room - len(wide)]]

@@ -159,10 +159,13 @@ class Welded:
         own = np.array([first[int(p)] for p in vertices], dtype=np.int64)
         plain = Mesh(data.vertices, own[data.faces] if len(data.faces) else data.faces)
         choice = getattr(force, "edges", "all")
-        if choice in ("warp", "weft"):
-            pairs = warpweft.warp_weft(plain)[choice == "weft"]
+        which, _, pattern = choice.partition("_")
+        if which in ("warp", "weft"):
+            pairs = warpweft.warp_weft(plain)[which == "weft"]
+        elif which == "diagonals":
+            pairs = meshes.diagonals(plain, pattern or "both")
         else:
-            pairs = {"all": meshes.edges, "naked": meshes.naked_edges, "diagonals": meshes.diagonals}[choice](plain)
+            pairs = {"all": meshes.edges, "naked": meshes.naked_edges}[which](plain)
         return np.ascontiguousarray(vertices[np.asarray(pairs, dtype=np.int64).reshape(-1, 2)])
 
     def vertices(self, mesh: str) -> Ints:

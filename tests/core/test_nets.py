@@ -81,3 +81,13 @@ def test_pressed_net_approaches_the_continuum_with_order_two():
         errors.append(abs(result.particles[((count + 1) ** 2) // 2, 2] - 0.07367135))
     slopes = np.log2(np.array(errors[:-1]) / errors[1:])
     assert slopes == pytest.approx(np.full(3, 2.0), abs=0.15)
+
+
+def test_diagonals_come_both_or_one_to_a_face():
+    """Figure 9.31: on a quad a-b-c-d the diagonals are a-c ("one") and b-d ("other"), or both."""
+    mesh = {"quad": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "faces": [[0, 1, 2, 3]]}}
+    found = {}
+    for edges in ("diagonals", "diagonals_one", "diagonals_other"):
+        scene = Scene.read({"meshes": mesh, "forces": [{"kind": "springs", "mesh": "quad", "edges": edges}]})
+        found[edges] = relax(scene).force("springs")["particles"].tolist()
+    assert found == {"diagonals": [[0, 2], [1, 3]], "diagonals_one": [[0, 2]], "diagonals_other": [[1, 3]]}

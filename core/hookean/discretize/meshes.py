@@ -39,6 +39,8 @@ def as_mesh(obj: Any) -> Mesh:
         vertices, faces = obj.to_vertices_and_faces()
     elif isinstance(obj, (tuple, list)) and len(obj) == 2:
         vertices, faces = obj
+    elif isinstance(getattr(obj, "vertices", None), np.ndarray) and hasattr(obj, "faces"):
+        vertices, faces = obj.vertices, obj.faces
     else:
         raise InputError(
             "mesh", f"{type(obj).__name__} is not a mesh; give a rhino3dm or COMPAS Mesh or (vertices, faces)"
@@ -131,13 +133,13 @@ def diagonals(mesh: Any, pattern: str = "both") -> Index:
 def triangles(mesh: Any) -> Index:
     """Triangles `(t, 3)` in face order, each quad `(a, b, c, d)` split along its shorter diagonal.
 
-    Equal diagonals (to 1e-12 relative) split along a-c.
+    Equal diagonals split along a-c; equal to 1e-5, for meshes of Rhino have single precision.
     """
     m = as_mesh(mesh)
     a, b, c, d = m.faces.T
     one = np.linalg.norm(m.vertices[c] - m.vertices[a], axis=1)
     other = np.linalg.norm(m.vertices[d] - m.vertices[b], axis=1)
-    first = one <= other * (1 + 1e-12)
+    first = one <= other * (1 + 1e-5)
     two = np.stack([np.stack([a, b, np.where(first, c, d)], 1), np.stack([np.where(first, a, b), c, d], 1)], 1)
     two[c == d, 0] = np.stack([a, b, c], axis=1)[c == d]
     keep = np.ones((len(m.faces), 2), bool)

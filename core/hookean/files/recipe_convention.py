@@ -28,7 +28,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -40,6 +40,7 @@ from hookean.files.recipe_build import Built, build
 from hookean.files.recipe_drawing import Drawing, Item, above, layers_of
 from hookean.files.recipe_select import count, listed
 from hookean.files.threedm_model import SEPARATOR
+from hookean.forces.springs import Edges
 
 ROLES = {
     "springs": ("spring", "springs"),
@@ -180,7 +181,7 @@ def _elastic(item: Item, role: str, reading: _Reading) -> None:
 
 def _edges(item: Item) -> str:
     given = item.text["edges"].strip().lower()
-    allowed = ("all", "warp", "weft", "naked", "diagonals")
+    allowed = get_args(Edges)
     if given not in allowed:
         raise InputError(f"{item.label}, user text edges", f'"{given}" given; give one of {", ".join(allowed)}')
     return given

@@ -10,6 +10,8 @@ from pydantic import Field
 from hookean.columns import IndexRows, Lines, NonNegatives
 from hookean.forces.base import Block, Floats, Force, Places
 
+Edges = Literal["all", "warp", "weft", "naked", "diagonals", "diagonals_one", "diagonals_other"]
+
 
 def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
@@ -118,9 +120,7 @@ class Springs(Force):
     particles: IndexRows | None = Field(default=None, description="Pairs of particles")
     lines: Lines | None = Field(default=None, description="Straight lines; their ends become particles")
     mesh: str | None = Field(default=None, description="Name of a mesh whose edges become springs")
-    edges: Literal["all", "warp", "weft", "naked", "diagonals"] = Field(
-        default="all", description="Which edges of the mesh"
-    )
+    edges: Edges = Field(default="all", description="Which edges of the mesh; diagonals of quads both, or one a face")
     stiffness: NonNegatives = Field(default=1000.0, description="k [force/length]")
     damping: NonNegatives = Field(default=10.0, description="c along the spring [force time/length]")
     rest_length: NonNegatives | None = Field(default=None, description="L0 [length]; none: the start length")
