@@ -189,7 +189,10 @@ class Simulation:
         )
 
     def result(self) -> Result:
-        """Everything about the present state."""
+        """Everything about the present state; a time step that holds at the start but not here is told."""
+        warnings = self.system.report.warnings
+        if self.status is Status.RUNNING and not any(w.startswith("/settings/time_step") for w in warnings):
+            self._warn()
         found = balance(self.system, self.state)
         return gather(
             self.system, self.state, found, self.status, self.message, self.solver.name, moving=self.solver.physical

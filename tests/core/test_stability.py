@@ -87,3 +87,19 @@ def test_critical_step_of_one_spring():
     system = compile(scene)
     assert stable_time_step(system, system.start()) == pytest.approx(2.0 / np.sqrt(2 * 100 / 2.0), rel=1e-9)
     assert critical_time_step(0.0) == np.inf
+
+
+def test_a_step_that_holds_at_the_start_only_is_told_in_the_result():
+    """A spring with a lower cutoff is no stiffness until it is that long: then 2/omega = 2 sqrt(m/k) falls below dt."""
+    scene = Scene(
+        particles=[[0, 0, 0], [1, 0, 0]],
+        velocities=[[0, 0, 0], [1, 0, 0]],
+        forces=[{"kind": "springs", "particles": [[0, 1]], "stiffness": 1e5, "damping": 0, "lower_cutoff": 1.05}],
+        anchors=[{"particles": [0]}],
+        settings={"drag": 0, "sub_iterations": 1},
+    )
+    running = Simulation(scene)
+    assert not running.result().report.warnings
+    while running.state.x[1, 0] < 1.06:
+        running.step()
+    assert any(w.startswith("/settings/time_step") for w in running.result().report.warnings)
