@@ -66,6 +66,7 @@ class Welded:
         self._patched: dict[int, Force] = {}  # rows are found by identity, so these must live as long as they do
         self._rows: dict[int, Ints] = {}
         self._meshes: dict[str, Ints] = {}
+        self._edges: dict[tuple[str, str], Ints] = {}
         self._pointer: dict[int, str] = {id(f): f"/forces/{i}" for i, f in enumerate(scene.forces)}
         self._weld()
         self._tree = cKDTree(self.x) if len(self.x) else None
@@ -148,17 +149,21 @@ class Welded:
 
     def _of_mesh(self, force: Force, mesh: str, arity: int) -> Ints:
         """Vertices of a mesh, or the edges that `force.edges` names."""
+        if arity == 1:
+            return self.vertices(mesh).reshape(-1, 1)
+        choice = str(getattr(force, "edges", "all"))
+        if (mesh, choice) not in self._edges:
+            self._edges[mesh, choice] = self._edges_of(mesh, choice)
+        return self._edges[mesh, choice]
+
+    def _edges_of(self, mesh: str, choice: str) -> Ints:
         from hookean.discretize import meshes, warpweft
 
-        vertices = self.vertices(mesh)
-        if arity == 1:
-            return vertices.reshape(-1, 1)
-        data = self.scene.meshes[mesh]
+        vertices, data = self.vertices(mesh), self.scene.meshes[mesh]
         # edges of the welded mesh: vertices that became one particle share their edges
         first = {int(p): i for i, p in reversed(list(enumerate(vertices)))}
         own = np.array([first[int(p)] for p in vertices], dtype=np.int64)
         plain = Mesh(data.vertices, own[data.faces] if len(data.faces) else data.faces)
-        choice = getattr(force, "edges", "all")
         which, _, pattern = choice.partition("_")
         if which in ("warp", "weft"):
             pairs = warpweft.warp_weft(plain)[which == "weft"]

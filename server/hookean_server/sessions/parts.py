@@ -154,9 +154,10 @@ def spring_forces(simulation: Simulation) -> NDArray[np.float64]:
     for group, memory in zip(system.groups, state.memory, strict=True):
         if _pulls(group):
             pulls = system.element_forces(group, state, memory)[:, 0]
-            along = np.subtract(*state.x[group.block.indices.T[::-1]])
-            length = np.linalg.norm(along, axis=1)
-            found.append((pulls * along).sum(axis=1) / np.where(length > 0.0, length, 1.0))
+            start, end = group.block.indices.T
+            along = state.x.take(end, axis=0) - state.x.take(start, axis=0)
+            length = np.sqrt(np.einsum("ij,ij->i", along, along))
+            found.append(np.einsum("ij,ij->i", pulls, along) / np.where(length > 0.0, length, 1.0))
     return np.concatenate(found)
 
 
