@@ -165,7 +165,7 @@ class System:
         """Force of each element on each of its particles `(m, arity, 3)`: the kernel run on private copies."""
         b = group.block
         count, arity = b.indices.shape
-        private = np.ascontiguousarray(state.x[b.indices].reshape(-1, 3))
+        private = state.x.take(b.indices.ravel(), axis=0)  # many times quicker than an index
         index = np.arange(count * arity, dtype=np.int64).reshape(count, arity)
         f, w = np.zeros_like(private), np.zeros(len(private))
         kernel = kernels.compiled(group.cls.kernel, "force")
@@ -180,7 +180,7 @@ class System:
         if group.cls.hessian is not None:
             kernels.compiled(group.cls.hessian, "hessian")(state.x, b.indices, b.parameters, memory, blocks)
             return blocks
-        private = np.ascontiguousarray(state.x[b.indices].reshape(-1, 3))
+        private = state.x.take(b.indices.ravel(), axis=0)  # many times quicker than an index
         index = np.arange(count * arity, dtype=np.int64).reshape(count, arity)
         kernel = kernels.compiled(group.cls.kernel, "force")
         still, w = np.zeros_like(private), np.zeros(len(private))
