@@ -336,3 +336,55 @@ def test_no_odd_value_anywhere_gets_past_as_anything_but_a_sentence(draw: Callab
                 refusals += 1
                 assert error.sentence and "\n" not in str(error), place
     assert refusals > 500
+
+
+def test_points_may_be_asked_to_lie_on_curves(draw: Callable[..., Any]) -> None:
+    edge = np.array([[0.0, 0, 0], [0, 2, 0]])
+    model = draw(NewObject(SQUARE, "net"), NewObject(edge, "beam"), NewObject(edge + [9, 0, 0], "far"))
+
+    def points(selector: str, on: Any) -> Any:
+        recipe = {**springs(mesh="layer:net"), "anchors": [{"points": selector, "on": on}]}
+        return scene_of(model, recipe).anchors[0].points.tolist()
+
+    assert points("vertices:layer:net", "layer:beam") == [[0, 0, 0], [0, 1, 0], [0, 2, 0]]
+    assert points("naked:layer:net", ["layer:beam", "layer:far"]) == [[0, 0, 0], [0, 1, 0], [0, 2, 0]]
+    net = springs(mesh="layer:net")
+    error = refused(model, {**net, "anchors": [{"points": "vertices:layer:net", "on": "layer:far"}]})
+    assert error.pointer == "/anchors/0/on" and "the nearest is 7 away" in error.sentence
+    for wrong in ("layer:net", "ends:layer:beam", "layer:rope", 3):
+        assert refused(model, {**net, "anchors": [{"points": "vertices:layer:net", "on": wrong}]}).pointer.endswith(
+            "on"
+        )
+    assert refused(model, springs(mesh="layer:net", on="layer:beam")).pointer == "/forces/0/on"
+
+
+def test_a_pull_names_its_curve_and_several_share_the_points(draw: Callable[..., Any]) -> None:
+    edge = np.array([[0.0, 0, 0], [0, 2, 0]])
+    ring = rhino.Circle(rhino.Point3d(1, 1, 0), 5.0).ToNurbsCurve()
+    model = draw(
+        NewObject(SQUARE, "net"),
+        NewObject(edge, "beams"),
+        NewObject(edge + [2, 0, 0], "beams"),
+        NewObject(ring, "ring"),
+    )
+
+    def pulls(**table: Any) -> dict[str, Any]:
+        pull = {"kind": "pull_to_curve", "points": "naked:layer:net", **table}
+        net = {"kind": "springs", "mesh": "layer:net"}
+        return {"forces": [pull, net]}
+
+    one = scene_of(model, pulls(curve="layer:ring", curve_divide=100)).forces[0]
+    assert one.closed and len(one.points) == 8 and len(one.curve) >= 100
+    assert np.allclose(np.linalg.norm(one.curve - [1, 1, 0], axis=1), 5.0, rtol=1e-14)
+    # a point between two beams goes to the first of those equally near; tables after it keep their numbers
+    first, net, second = scene_of(model, pulls(curve="layer:beams", name="edges")).forces
+    assert (first.name, net.kind, second.name) == ("edges", "springs", "edges/2")
+    assert first.points[:, 0].max() == 1 and second.points.tolist() == [[2, 0, 0], [2, 1, 0], [2, 2, 0]]
+    assert first.curve.tolist() == edge.tolist() and second.curve.tolist() == (edge + [2, 0, 0]).tolist()
+    understood = understand(model, pulls(curve="layer:beams", name="edges"))
+    assert any('layer beams: 2 LineCurves -> curve of pull_to_curve "edges"' in line for line in understood.lines)
+    assert "curve_divide = N" in refused(model, pulls(curve="layer:ring")).sentence
+    assert refused(model, pulls(curve="layer:net")).pointer == "/forces/0/curve"
+    mesh = {"kind": "pull_to_curve", "mesh": "layer:net", "curve": "layer:beams"}
+    assert "points" in refused(model, {"forces": [mesh]}).sentence
+    assert refused(model, pulls(curve="layer:beams", strength=[1.0] * 8)).pointer == "/forces/0/strength"

@@ -32,6 +32,8 @@ stands for anything inside a name. Several are joined by commas or in a list.
 * `points`, of forces and anchors: points and point clouds; `start:`, `ends:` of curves; `vertices:`, `inner:` of
   curves and meshes; `naked:`, `corners:` of meshes and surfaces. How one table divides an object holds for all tables
   that do not say otherwise, and so does the user text `divide` of the object.
+* `on = "layer:beams"` keeps the points that lie on these curves. `pull_to_curve` selects its `curve`; bent ones with
+  `curve_divide = N`; of several each pulls the points nearest to it.
 * `[[geometry]]` rides along: kind `points`, `lines`, `mesh`, or `polyline` and `curve` with points = a curve.
 
 `tension_only = true` on springs along lines makes them slack below their rest length. `hidden = true` takes hidden

@@ -10,6 +10,7 @@ import numpy as np
 
 from hookean.errors import InputError
 from hookean.files import recipe_shapes as shapes
+from hookean.files.recipe_curves import Placed, lying_on, pulled
 from hookean.files.recipe_drawing import Drawing, Item
 from hookean.files.recipe_select import Term, count, is_selector, listed, select, terms
 from hookean.files.recipe_shapes import Shape, Split
@@ -70,6 +71,7 @@ class _Builder:
             for i, table in enumerate(given):
                 self._remember(table, f"/{group}/{i}")
         placed = {g: [self._place(g, i, t) for i, t in enumerate(tables[g])] for g in ("forces", "anchors")}
+        placed["forces"] = self._pulling(placed["forces"])
         carried = [entry for i, table in enumerate(tables["geometry"]) for entry in self._carry(i, table)]
         for group in placed:
             scene[group] = [table for table, _ in placed[group]]
@@ -140,6 +142,7 @@ class _Builder:
                 faces = 0 if used.faces is None else len(used.faces)
                 size = f"a mesh of {count(len(used.array), 'vertex', 'vertices')} and {count(faces, 'face')}"
             else:
+                used = self._on(used, name, table, pointer)
                 table[name] = used.array
                 size = count(len(used.array), name.removesuffix("s"))
             owners = [used.items[i] for i in np.unique(used.owner)]
@@ -149,6 +152,39 @@ class _Builder:
         if used is None and isinstance(table.get("points"), np.ndarray):
             self.notes.append(f"{group}[{number}] {said}: {count(len(table['points']), 'point')}")
         return (shapes.pulling_only(plain, pointer) if "tension_only" in plain else plain), used
+
+    def _on(self, shape: Shape, name: str, table: dict[str, Any], pointer: str) -> Shape:
+        """Of selected points those on the curves that the table asks them to lie on."""
+        if name != "points" or "on" not in table:
+            return shape
+        curves = self._curves(table.pop("on"), f"{pointer}/on")
+        return lying_on(shape, curves, self.drawing.factor, self.tolerance, f"{pointer}/on")
+
+    def _pulling(self, placed: Placed) -> Placed:
+        """Pulls to selected curves get polylines; the tables of further curves come last, for pointers count tables."""
+        first, more = [], []
+        for number, (table, shape) in enumerate(placed):
+            if table.get("kind") != "pull_to_curve" or not is_selector(table.get("curve")):
+                first.append((table, shape))
+                continue
+            pointer = f"/forces/{number}"
+            curves = self._curves(table["curve"], f"{pointer}/curve")
+            parts = pulled(table, shape, curves, self.drawing.factor, pointer)
+            first.append(parts[0])
+            more += parts[1:]
+            said = f'curve of pull_to_curve "{table["name"]}"' if table.get("name") else "curve of pull_to_curve"
+            self._use(curves, said)
+            self.notes.append(f"forces[{number}] pull_to_curve: to {shapes.counted(curves)}")
+        return first + more
+
+    def _curves(self, value: Any, pointer: str) -> list[Item]:
+        found: list[Item] = []
+        for term in terms(value, pointer):
+            _plain(term, pointer)
+            found += self._fitting(term, shapes.is_curve, "curves", pointer)
+        if not found:
+            raise InputError(pointer, "the file has no visible curve")
+        return list(dict.fromkeys(found))
 
     def _use(self, items: Sequence[Item], said: str) -> None:
         for item in items:
