@@ -1,4 +1,5 @@
-"""Draws the .3dm models of what moves while it runs, figures 9.7 and 9.26 and the sail, and makes the wind for it.
+"""Draws the .3dm models of cables and of what moves while it runs, figures 9.4, 9.6, 9.7 and 9.26 and the sail, and
+makes the wind for it.
 
 Run it from the project's root: `.venv/bin/python gh_examples/models_motion.py`. The same version of rhino3dm writes the
 same bytes.
@@ -17,9 +18,11 @@ from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
 HERE = Path(__file__).parent
 
 
-def cable() -> None:
-    """Figure 9.7: a straight line of 10 m and a point at each end."""
+def cables() -> None:
+    """Figures 9.4, 9.6 and 9.7: a straight line of 10 m; for 9.7 a point at each end as well."""
     line = rhino3dm.LineCurve(rhino3dm.Point3d(0, 0, 0), rhino3dm.Point3d(10, 0, 0)).ToNurbsCurve()
+    _write("9.4-cable", cable=[line])
+    _write("9.6-bouncing", cable=[line])
     _write("9.7-anchors-moved", cable=[line], left=[_point(0, 0, 0)], right=[_point(10, 0, 0)])
 
 
@@ -76,7 +79,7 @@ def _write(folder: str, **drawn: list[Any]) -> None:
 
 
 if __name__ == "__main__":
-    cable()
+    cables()
     membrane()
     sail()
     wind()

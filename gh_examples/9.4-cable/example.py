@@ -1,4 +1,4 @@
-"""Figures 9.4 and 9.5: a cable of five springs under its loads."""
+"""Figures 9.4 and 9.5: a line cut into ten springs, a cable under its loads."""
 
 from pathlib import Path
 
@@ -9,14 +9,18 @@ from hookean.sheet import Panel
 
 
 def run(folder: Path) -> Outcome:
-    scene = read_scene(folder / "scene.json")
+    scene = read_scene(folder / "model.3dm", folder / "recipe.toml")
     result = relax(scene)
     cable = result.force("cable")
+    lengths = cable["length"]
     numbers = {
-        "length": cable["length"].sum(),
-        "length of the first spring": cable["length"][0],
-        "length of the middle spring": cable["length"][2],
+        "springs": len(lengths),
+        "length": lengths.sum(),
+        "length of the first spring": lengths[0],
+        "length of a middle spring": lengths[4],
+        "first spring longer than a middle one": lengths[0] - lengths[4],
         "force in the first spring": cable["force"][0],
         "sag": -result.particles[:, 2].min(),
+        "lift of an anchor": result.reactions["force"][0, 2],
     }
-    return Outcome(numbers, [Panel(result, scene)])
+    return Outcome(numbers, [Panel(result, scene, view="front", frames={"start": scene.particles})])

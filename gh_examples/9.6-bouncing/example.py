@@ -11,7 +11,7 @@ from hookean.sheet import Graph, Panel
 
 
 def run(folder: Path) -> Outcome:
-    scene = read_scene(folder / "scene.json")
+    scene = read_scene(folder / "model.3dm", folder / "recipe.toml")
     running = Simulation(scene)  # frames of 50 steps of 1 ms
     frames = [running.frame()]
     while running.status == "running":
