@@ -4,7 +4,7 @@ PORT ?= 8765
 BIN = .venv/bin
 EXAMPLE = gh_examples/9.24-membrane
 
-.PHONY: run test soak bench figures docs lint clean
+.PHONY: run test soak bench bench-service figures docs lint clean
 
 run: .venv/run
 	@mkdir -p out
@@ -21,6 +21,9 @@ soak: .venv/test
 
 bench: .venv/test
 	$(BIN)/python benchmarks/run.py $(if $(wildcard ../shared/bench),--shared ../shared/bench)
+
+bench-service: .venv/test
+	$(BIN)/python benchmarks/service.py
 
 figures: .venv/run
 	$(BIN)/hookean example --figures gh_examples
