@@ -1,10 +1,10 @@
-"""The command line: relax, simulate, example, serve, forces. Starts light: a command imports what it needs."""
+"""The command line: relax, simulate, example, serve, token, forces. Starts light: a command imports what it needs."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -121,18 +121,43 @@ def example(
 @app.command()
 def serve(
     host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to listen on; 0: any free one", min=0, max=65535)] = 8765,
+    port: Annotated[
+        int | None, typer.Option(help="Port to listen on; 0: any free one; default 8765", min=0, max=65535)
+    ] = None,
+    any_port: Annotated[bool, typer.Option("--any-port", help="Take any free port where this one is taken")] = False,
+    no_keep: Annotated[bool, typer.Option("--no-keep", help="Keep no sessions when it ends")] = False,
+    stop: Annotated[bool, typer.Option("--stop", help="Stop the service that runs")] = False,
+    parent_pid: Annotated[int, typer.Option(help="End with this process", min=0)] = 0,
+    idle_exit: Annotated[float, typer.Option(help="End after so many minutes without use; 0: never", min=0)] = 0.0,
 ) -> None:
-    """Start the local service: the same over HTTP, until Ctrl-C."""
+    """Start the local service: the same over HTTP, until Ctrl-C. There is one for each user, which keeps the sessions.
+
+    Where it runs already, that is said, with its address. HOOKEAN_STATE moves the folder it is found in.
+    """
+    service = _service()
+    if stop:
+        raise typer.Exit(service.stop())
+    options = service.Options(host, port, any_port, not no_keep, parent_pid, idle_exit)
+    raise typer.Exit(service.run(options) or 0)
+
+
+@app.command()
+def token(
+    url: Annotated[bool, typer.Option("--url", help="The address that lets a browser in, instead")] = False,
+) -> None:
+    """Print the token of the service: what HOOKEAN_TOKEN says, else that of the service that runs."""
+    raise typer.Exit(_service().token(url))
+
+
+def _service() -> Any:
     import importlib
 
     try:
-        service = importlib.import_module("hookean_server.main")
+        return importlib.import_module("hookean_server.command")
     except ModuleNotFoundError as error:
         if not (error.name or "").startswith("hookean_server"):
             raise
         fail(InputError("serve", "the service (hookean_server) is not installed; install hookean with it"))
-    raise typer.Exit(service.serve(host, port) or 0)
 
 
 @app.command()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -13,15 +14,24 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 import hookean
-from hookean_server import openapi, routes_about, routes_discretize, routes_relax
-from hookean_server.limits import BodyLimit, Guard, Problems
+from hookean_server import ending, openapi, routes_about, routes_discretize, routes_hops, routes_relax
+from hookean_server.guard import Guard, Origins
+from hookean_server.jobs import routes as job_routes
+from hookean_server.jobs.manager import Jobs
+from hookean_server.limits import BodyLimit
+from hookean_server.logs import Seen
+from hookean_server.metrics import Metrics
 from hookean_server.pool import Pool
 from hookean_server.problems import Problem
+from hookean_server.refusals import Problems
 from hookean_server.sessions import frames
 from hookean_server.sessions import routes as session_routes
 from hookean_server.sessions.manager import Manager
 from hookean_server.settings import Settings
 from hookean_server.store import Store
+from hookean_server.tokens import Tokens, chosen
+
+log = logging.getLogger("hookean.server")
 
 _SLUGS = {404: "not-found", 405: "method-not-allowed", 413: "too-large", 415: "unsupported-media"}
 
@@ -31,15 +41,21 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     settings = settings or Settings()
     pool, store = Pool(settings), Store(settings.state)
     sessions = Manager(settings, store)
+    jobs = Jobs(settings, store, pool)
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         pool.start()
         store.start()
         await sessions.start()
+        about = {"version": hookean.__version__, "instance": app.state.instance, "port": settings.port}
+        log.info("started", extra={"fields": about})
+        await jobs.start()
         try:
             yield
         finally:
+            log.info("stopping")
+            await jobs.close()
             await sessions.close()
             pool.close()
             store.close()
@@ -55,13 +71,25 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         exception_handlers={HTTPException: _refused, RequestValidationError: _faulty},
     )
     app.state.settings, app.state.pool, app.state.instance = settings, pool, secrets.token_hex(16)
-    app.state.store, app.state.sessions = store, sessions
-    for part in (routes_about, routes_relax, routes_discretize, session_routes, frames):
+    app.state.store, app.state.sessions, app.state.jobs = store, sessions, jobs
+    app.state.tokens, app.state.metrics = Tokens(settings.token or chosen()), Metrics(app.state)
+    for part in (
+        routes_about,
+        ending,
+        routes_relax,
+        routes_discretize,
+        routes_hops,
+        session_routes,
+        frames,
+        job_routes,
+    ):
         app.include_router(part.router)
     # the last one added is the outermost
     app.add_middleware(BodyLimit, settings=settings)
-    app.add_middleware(Guard, settings=settings)
+    app.add_middleware(Guard, settings=settings, tokens=app.state.tokens)
     app.add_middleware(Problems)
+    app.add_middleware(Origins, settings=settings)
+    app.add_middleware(Seen, metrics=app.state.metrics)
     openapi.install(app)
     return app
 

@@ -16,13 +16,18 @@ HEALTH = {"application/json": {"schema": {"$ref": "#/components/schemas/Health"}
 SESSION = {"application/json": {"schema": {"$ref": "#/components/schemas/Session"}}}
 SESSIONS = {"application/json": {"schema": {"$ref": "#/components/schemas/Sessions"}}}
 FORCES = {"application/json": {"schema": {"$ref": "#/components/schemas/Catalogue"}}}
-_ALWAYS = (403, 404, 405, 431, 500)
+METRICS = {"text/plain": {"schema": {"type": "string"}}}
+_ALWAYS = (401, 403, 404, 405, 431, 500)
 _COMPUTED = (*_ALWAYS, 408, 413, 415, 422, 503, 504)
 _LIVE = (*_COMPUTED, 409, 412, 429, 507)
 
 
 def problems(
-    success: dict[str, Any] | None = None, *codes: int, computed: bool = False, live: bool = False
+    success: dict[str, Any] | None = None,
+    *codes: int,
+    computed: bool = False,
+    live: bool = False,
+    open_to_all: bool = False,
 ) -> dict[int | str, dict[str, Any]]:
     """`responses` of an operation: its success and every problem it can give."""
     found: dict[int | str, dict[str, Any]] = {}
@@ -32,6 +37,8 @@ def problems(
         found[code] = {"description": "As before"} if code == 304 else {"description": "Done", "content": success or {}}
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
     for status in _LIVE if live else _COMPUTED if computed else _ALWAYS:
+        if status == 401 and open_to_all:
+            continue
         titles = [f"{title} (`{slug}`)" for slug, (code, title, _) in CATALOGUE.items() if code == status]
         found[status] = {"description": "; ".join(titles), "content": content}
     return found
@@ -120,6 +127,36 @@ def exported(*codes: int) -> dict[int | str, dict[str, Any]]:
     """Responses of what is taken out of a session."""
     return problems({"application/json": {"schema": {"type": "object"}}, "application/octet-stream": {}}, *codes,
                     live=True)  # fmt: skip
+
+
+def shutdown() -> dict[str, Any]:
+    """What the route of `/v1/shutdown` says of itself."""
+    success = {"schema": {"type": "object", "properties": {"status": {"const": "stopping"}}, "required": ["status"]}}
+    told = {202: {"description": "It ends", "content": {"application/json": success}}}
+    return {"responses": {**problems(None, computed=True), **told}}
+
+
+def hops_list() -> dict[str, Any]:
+    """What GET / says of itself."""
+    listed = {"type": "array", "items": {"$ref": "#/components/schemas/HopsFunction"}}
+    page = {"schema": {"type": "string"}}
+    return {"responses": problems({"application/json": {"schema": listed}, "text/html": page}, open_to_all=True)}
+
+
+def hops_description() -> dict[str, Any]:
+    """What GET /<name> says of itself."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsFunction"}}}
+    return {"responses": problems(success, open_to_all=True)}
+
+
+def hops_solve() -> dict[str, Any]:
+    """What POST /solve says of itself: its problems have what Hops shows, as sentences."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsAnswer"}}}
+    found = problems(success, computed=True, open_to_all=True)
+    for status, response in found.items():
+        if status != 200:
+            response["content"] = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/HopsProblem"}}}
+    return {"responses": found, "openapi_extra": _takes({"$ref": "#/components/schemas/HopsRequest"}, EXAMPLES["hops"])}
 
 
 def install(app: FastAPI) -> None:

@@ -154,20 +154,20 @@ def _curve(value: Any, pointer: str) -> Any:
             raise InputError(f"{pointer}/dtype", f"a {document.kind} is no curve; give a Line, Polyline or Polygon")
         closing = document.points[:1] if document.kind == "polygon" else document.points[:0]
         return np.concatenate([document.points, closing])
-    return _rhino(value, pointer) if _encoded(value) else _points(value, pointer)
+    return decode(value, pointer) if _encoded(value) else _points(value, pointer)
 
 
 def _surface(value: Any, pointer: str) -> Any:
     if not _encoded(value):
         raise InputError(pointer, "give a Rhino surface, Brep or extrusion as rhino3dm's Encode writes it")
-    return _rhino(value, pointer)
+    return decode(value, pointer)
 
 
 def _mesh(value: Any, pointer: str) -> Any:
     if compas_json.is_document(value):
         value = compas_json.plain_mesh(value, pointer)[1]
     elif _encoded(value):
-        return _rhino(value, pointer)
+        return decode(value, pointer)
     if not isinstance(value, dict) or set(value) != {"vertices", "faces"}:
         raise InputError(pointer, "give vertices and faces, a COMPAS Mesh document or an encoded Rhino mesh")
     vertices = _checked(_POINTS, value["vertices"], f"{pointer}/vertices")
@@ -209,7 +209,7 @@ def _encoded(value: Any) -> bool:
     return isinstance(value, dict) and {"archive3dm", "opennurbs", "data"} <= set(value)
 
 
-def _rhino(value: Any, pointer: str) -> Any:
+def decode(value: Any, pointer: str) -> Any:
     """Rhino geometry from what rhino3dm's `Encode` writes."""
     import rhino3dm
 

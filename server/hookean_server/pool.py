@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import multiprocessing
 import os
 import queue
@@ -14,7 +15,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -23,11 +24,15 @@ from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from hookean_server.problems import Problem
+from hookean.errors import InputError
+from hookean_server.problems import Problem, faulty
 from hookean_server.settings import Settings
-from hookean_server.workers import STOP, work
+from hookean_server.workers import STOP, ended, work
+
+log = logging.getLogger("hookean.pool")
 
 FORKED = sys.platform != "win32" and "forkserver" in multiprocessing.get_all_start_methods()
+UPLOADS = ("file", "scene")
 LOOK = 0.05  # seconds between looks at whether a client has left
 
 
@@ -41,22 +46,28 @@ class Reply:
 
 @dataclass
 class Job:
-    """One request to a worker. `seconds`: when it is stopped by force; `once`: the worker is not used again."""
+    """One request to a worker. `seconds`: when it is stopped by force, from its start or from the last time it was
+    heard of; `once`: the worker is not used again; `heard`: called on the lane's thread with what the worker says on
+    the way; `notice`: seconds it may take to stop, none: those of the settings."""
 
     task: str
     options: dict[str, Any]
     body: bytes
     seconds: float
     once: bool = False
+    heard: Callable[[dict[str, Any], bytes], None] | None = None
+    notice: float | None = None
     left: threading.Event = field(default_factory=threading.Event)
     future: Future[Reply] = field(default_factory=Future)
 
 
 class Pool:
-    """Worker processes for one server. Made idle; `start` or the first job starts the workers."""
+    """Worker processes for one server. Made idle; `start` or the first job starts the workers: `lanes` of them, or as
+    many as the settings say; with `nice` they give way to others (in the system's steps, 0 to 19)."""
 
-    def __init__(self, settings: Settings) -> None:
-        self.settings = settings
+    def __init__(self, settings: Settings, lanes: int = 0, nice: int = 0) -> None:
+        self.settings, self.nice = settings, nice
+        self.count = lanes or settings.lanes
         self.stopping = threading.Event()
         self.restarts = 0
         self.taken = 0
@@ -68,7 +79,7 @@ class Pool:
         """Start the workers, each in its thread; returns at once."""
         with self._lock:
             if not self.lanes and not self.stopping.is_set():
-                self.lanes = [Lane(self, context()) for _ in range(self.settings.lanes)]
+                self.lanes = [Lane(self, context()) for _ in range(self.count)]
                 for lane in self.lanes:
                     lane.start()
 
@@ -147,6 +158,7 @@ class Lane(threading.Thread):
             self._serve(job)
             if self.process is None and not self.pool.stopping.is_set():
                 self.pool.restarts += 1
+                log.info("worker replaced")
                 self._begin()
         self.kill()
         self._refuse_the_rest()
@@ -157,7 +169,10 @@ class Lane(threading.Thread):
         with suppress(OSError, EOFError, RuntimeError):
             ours, theirs = multiprocessing.Pipe()
             process = self.context.Process(  # type: ignore[attr-defined]
-                target=work, args=(theirs, self.pool.settings.worker_memory, FORKED), daemon=True, name="hookean-worker"
+                target=work,
+                args=(theirs, self.pool.settings.worker_memory, FORKED, self.pool.nice),
+                daemon=True,
+                name="hookean-worker",
             )
             process.start()
             theirs.close()
@@ -178,14 +193,20 @@ class Lane(threading.Thread):
             self.kill()
             job.future.set_exception(problem)
         except Exception:
+            job.future.set_exception(self._lost(job))
             self.kill()
-            job.future.set_exception(
-                Problem("worker-lost", "The process that worked on this request ended; try again.")
-            )
         else:
             if job.once:
                 self.kill()
             job.future.set_result(reply)
+
+    def _lost(self, job: Job) -> Problem:
+        """Why the worker ended: foreign geometry that it could not digest, or something of ours."""
+        if job.once and self.process is not None:
+            self.process.join(1.0)
+            if why := ended(self.process.exitcode):
+                return faulty("invalid-input", [InputError("/file" if job.task in UPLOADS else "/", why)])
+        return Problem("worker-lost", "The process that worked on this request ended; try again.")
 
     def _exchange(self, job: Job) -> Reply:
         """Hand the job over and wait for the answer, the client's leaving, the deadline or the end of the service."""
@@ -193,15 +214,16 @@ class Lane(threading.Thread):
             raise EOFError
         talk = _Talk(self.connection, job)
         talk.start()
-        until, asked = time.monotonic() + job.seconds, False
+        notice = self.pool.settings.cancel_seconds if job.notice is None else job.notice
+        asked = 0.0
         while not talk.done.wait(LOOK):
             if self.pool.stopping.is_set():
                 raise Problem("shutting-down", "The service stopped before this was done.")
             if job.left.is_set() and not asked:
-                asked, until = True, time.monotonic() + self.pool.settings.cancel_seconds
+                asked = time.monotonic()
                 if talk.sent:
                     self.connection.send_bytes(STOP)
-            if time.monotonic() > until:
+            if time.monotonic() > (asked + notice if asked else talk.heard + job.seconds):
                 raise Problem("out-of-time", f"This was not done in {job.seconds:g} s and has been stopped.")
         if talk.reply is None:
             raise EOFError
@@ -233,6 +255,7 @@ class _Talk(threading.Thread):
         super().__init__(name="hookean-talk", daemon=True)
         self.connection, self.job = connection, job
         self.sent = False
+        self.heard = time.monotonic()
         self.reply: Reply | None = None
         self.done = threading.Event()
 
@@ -243,7 +266,12 @@ class _Talk(threading.Thread):
             self.connection.send_bytes(json.dumps({"task": job.task, "options": job.options}).encode())
             self.connection.send_bytes(job.body)
             self.sent = True
-            self.reply = Reply(json.loads(self.connection.recv_bytes()), self.connection.recv_bytes())
+            while "said" in (head := json.loads(self.connection.recv_bytes())):
+                body = self.connection.recv_bytes()
+                self.heard = time.monotonic()
+                if job.heard is not None:
+                    job.heard(head["said"], body)
+            self.reply = Reply(head, self.connection.recv_bytes())
         except (OSError, EOFError, ValueError):
             pass
         finally:

@@ -7,7 +7,9 @@ signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 from contextlib import suppress  # noqa: E402
 
+from hookean_server import logs  # noqa: E402
 from hookean_server.workers import warm  # noqa: E402
 
+logs.begin()
 with suppress(Exception):
     warm()

@@ -15,6 +15,12 @@ LONGEST_POINTER = 200
 
 CATALOGUE: dict[str, tuple[int, str, str]] = {
     "bad-request": (400, "The request cannot be understood", "Send it as the API's description says."),
+    "unauthorized": (
+        401,
+        "The token is missing or wrong",
+        "Send the header Authorization: Bearer with the token of this start of the service; the command "
+        "`hookean token` prints it.",
+    ),
     "forbidden-host": (
         403,
         "This host name is not served",
@@ -56,6 +62,16 @@ CATALOGUE: dict[str, tuple[int, str, str]] = {
         429,
         "There are as many sessions as are kept",
         "Delete one with DELETE /v1/sessions/{key}, or come back after the seconds in the header Retry-After.",
+    ),
+    "job-limit": (
+        429,
+        "There are as many jobs as are taken",
+        "Cancel one with DELETE /v1/jobs/{id}, or come back after the seconds in the header Retry-After.",
+    ),
+    "key-reused": (
+        422,
+        "This Idempotency-Key belongs to another request",
+        "A key stands for one request and its body. Take another key for another body.",
     ),
     "internal": (500, "The service failed", "This is a defect of the service; its log tells more."),
     "worker-lost": (
@@ -100,8 +116,8 @@ class Problem(Exception):
         """The HTTP status."""
         return CATALOGUE[self.slug][0]
 
-    def body(self, instance: str) -> bytes:
-        """The problem document; `instance` names the request it is about."""
+    def body(self, instance: str, *, hops: bool = False) -> bytes:
+        """The problem document; `instance` names the request it is about. Hops takes errors as plain sentences."""
         status, title, _ = CATALOGUE[self.slug]
         document: dict[str, Any] = {
             "type": f"/problems/{self.slug}",
@@ -110,7 +126,9 @@ class Problem(Exception):
             "detail": self.detail,
             "instance": instance,
         }
-        if self.errors:
+        if hops:
+            document.update(values=[], errors=[self.detail], warnings=[])
+        elif self.errors:
             document["errors"] = [{"pointer": p, "detail": d} for p, d in self.errors[:MOST]]
         return json.dumps(document).encode()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
+from pathlib import Path
 from typing import Any
 
 from fastapi import APIRouter, Request
@@ -12,12 +13,18 @@ from starlette.responses import PlainTextResponse, Response
 
 import hookean
 from hookean_server import openapi
+from hookean_server.metrics import TYPE, Metrics
 from hookean_server.problems import CATALOGUE, Problem, page
+from hookean_server.tokens import cookie_name, cookies, set_cookie
 
 router = APIRouter(tags=["about"])
 
+PAGE = {"index.html": "text/html", "login.js": "text/javascript"}
 
-@router.get("/v1/health", summary="Whether the service is well", responses=openapi.problems(openapi.HEALTH))
+
+@router.get(
+    "/v1/health", summary="Whether the service is well", responses=openapi.problems(openapi.HEALTH, open_to_all=True)
+)
 async def health(request: Request) -> dict[str, Any]:
     """Answers at once, whatever is being solved. `status`: `starting`, `ok`, `full` or `stopping`."""
     state = request.app.state
@@ -51,13 +58,62 @@ async def forces(request: Request) -> Response:
 
 
 @router.get(
-    "/problems/{slug}", summary="What a problem means", responses=openapi.problems(), response_class=PlainTextResponse
+    "/problems/{slug}",
+    summary="What a problem means",
+    responses=openapi.problems(open_to_all=True),
+    response_class=PlainTextResponse,
 )
 async def problem(slug: str) -> Response:
     """The page that a problem's `type` names."""
     if slug not in CATALOGUE:
         raise Problem("not-found", f"There is no such problem; there are {', '.join(CATALOGUE)}.")
     return PlainTextResponse(page(slug))
+
+
+@router.get("/metrics", summary="Figures for Prometheus", responses=openapi.problems(openapi.METRICS))
+async def metrics(request: Request) -> Response:
+    """Requests, sessions, workers, frames, the queue and the store."""
+    found: Metrics = request.app.state.metrics
+    return Response(found.text(), headers={"content-type": TYPE, "cache-control": "no-store"})
+
+
+@router.post("/v1/login", status_code=204, summary="A cookie for a page", responses=openapi.problems())
+async def login(request: Request) -> Response:
+    """For the page that was opened with the token behind the # of its address: it sends the token as programs do, once,
+    and its browser keeps a cookie that scripts cannot read and other sites' pages cannot use."""
+    value = request.app.state.tokens.login()
+    return Response(status_code=204, headers={"set-cookie": set_cookie(_cookie(request), value)})
+
+
+@router.delete("/v1/login", status_code=204, summary="Take the cookie back", responses=openapi.problems())
+async def logout(request: Request) -> Response:
+    """The cookie is worth nothing from now on, wherever it is kept."""
+    name = _cookie(request)
+    request.app.state.tokens.logout(cookies(request.headers.get("cookie", ""), name))
+    return Response(status_code=204, headers={"set-cookie": set_cookie(name, "")})
+
+
+@router.get("/page/{name}", include_in_schema=False)
+async def page_file(name: str) -> Response:
+    """A file of the page."""
+    if name not in PAGE:
+        raise Problem("not-found", "There is no such file.")
+    return page_response(name)
+
+
+def page_response(name: str) -> Response:
+    """A file of the page, which loads nothing from elsewhere and is shown in no other page."""
+    headers = {
+        "content-security-policy": "default-src 'self'; img-src data:; frame-ancestors 'none'; base-uri 'none'",
+        "referrer-policy": "no-referrer",
+        "x-content-type-options": "nosniff",
+        "cache-control": "no-cache",
+    }
+    return Response((Path(__file__).parent / "page" / name).read_bytes(), media_type=PAGE[name], headers=headers)
+
+
+def _cookie(request: Request) -> str:
+    return cookie_name(request.scope["server"][1])
 
 
 _made: tuple[bytes, str] | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from hookean.files.compas_json import ACCEPTED
@@ -25,6 +26,9 @@ def _object(**properties: Any) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": list(properties)}
 
 
+_TEXT = {"type": "string"}
+_SENTENCES = {"type": "array", "items": _TEXT}
+_TREES = {"type": "array", "items": _object(ParamName=_TEXT, InnerTree={"type": "object"})}
 _AT = _object(particles=_ARRAY, force=_ARRAY)
 
 SCHEMAS: dict[str, dict[str, Any]] = {
@@ -56,6 +60,28 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             },
         },
         "required": ["type", "title", "status", "detail", "instance"],
+    },
+    "HopsFunction": {
+        **_object(Uri=_TEXT, Name=_TEXT, Inputs={"type": "array"}, Outputs={"type": "array"}),
+        "description": "A function as Grasshopper's Hops component reads it",
+    },
+    "HopsRequest": {
+        **_object(pointer=_TEXT, values=_TREES),
+        "description": "Inputs as Hops sends them; data is JSON as text, geometry as rhino3dm's Encode writes it",
+    },
+    "HopsAnswer": _object(values=_TREES, errors=_SENTENCES, warnings=_SENTENCES),
+    "HopsProblem": {
+        **_object(
+            type=_TEXT,
+            title=_TEXT,
+            status={"type": "integer"},
+            detail=_TEXT,
+            instance=_TEXT,
+            values=_TREES,
+            errors=_SENTENCES,
+            warnings=_SENTENCES,
+        ),
+        "description": "RFC 9457, with errors as Hops shows them",
     },
     "Health": _object(
         service={"const": "hookean"},
@@ -108,6 +134,7 @@ SCHEMAS["Session"] = {
         "redo": {"type": "integer"},
         "awake": {"type": "boolean", "description": "Whether it has a process"},
         "created": _NUMBER,
+        "warnings": {"type": "array", "items": {"type": "string"}, "description": "On the file it was made of"},
     },
     "required": ["key", "label", "revision", "status", "message", "particles", "playing", "awake"],
 }
@@ -190,8 +217,34 @@ _NET = {
     "anchors": [{"points": [[0.0, 0.0, 0.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0]]}],
     "geometry": [{"kind": "mesh", "mesh": "net"}],
 }
+
+
+def _tree(kind: str, *values: Any) -> dict[str, Any]:
+    return {"{0}": [{"type": kind, "data": json.dumps(value)} for value in values]}
+
+
+def _xyz(x: float, z: float = 0.0) -> dict[str, float]:
+    return {"X": x, "Y": 0.0, "Z": z}
+
+
+_HOPS = {
+    "pointer": "relax",
+    "absolutetolerance": 0.001,
+    "modelunits": "Meters",
+    "values": [
+        {
+            "ParamName": "Lines",
+            "InnerTree": _tree(
+                "Rhino.Geometry.Line", *({"From": _xyz(i), "To": _xyz(i + 1.0)} for i in (0.0, 1.0, 2.0))
+            ),
+        },
+        {"ParamName": "Anchors", "InnerTree": _tree("Rhino.Geometry.Point3d", _xyz(0.0), _xyz(3.0))},
+        {"ParamName": "Load", "InnerTree": _tree("Rhino.Geometry.Vector3d", _xyz(0.0, -9.0))},
+    ],
+}
 EXAMPLES: dict[str, dict[str, Any]] = {
     "relax": {"hanging cable": _CABLE, "pulled net": _NET},
+    "hops": {"hanging cable": _HOPS},
     "discretize": {
         name: {
             o.takes: _SMALL[o.takes],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 MIB = 2**20
@@ -28,6 +28,8 @@ class Settings:
     """Longest solve; a scene with a longer or no `time_limit` ends here with the status `time_limit`."""
     file_seconds: float = 180.0
     """Longest time for reading, solving and writing one file."""
+    read_seconds: float = 60.0
+    """Longest time for reading one file: of computing, and twice that by the clock."""
     grace_seconds: float = 10.0
     """What a worker may take beyond these before it is stopped by force."""
     cancel_seconds: float = 2.0
@@ -36,7 +38,7 @@ class Settings:
     """Memory one worker may allocate, where the system can limit it."""
     largest_count: int = 1_000_000
     """Most points, pieces or faces an operation may be asked to make."""
-    state: Path | None = None
+    state: Path | str | None = None
     """The file that sessions and jobs are kept in; none: they end with the server."""
     sessions: int = 200
     """Most sessions kept."""
@@ -46,8 +48,26 @@ class Settings:
     """A session that rests and is not watched for so long is put to sleep: it stays in the store only."""
     session_seconds: float = 24 * 3600.0
     """A session that nobody used for so long, while the server ran, is forgotten."""
+    jobs: int = 100
+    """Most jobs that wait or run."""
+    kept_jobs: int = 1000
+    """Most jobs kept that have ended; they are forgotten like sessions, too."""
+    items: int = 100_000
+    """Most items of one sweep; each may take `solve_seconds`."""
+    job_seconds: float = 24 * 3600.0
+    """Longest relaxation of a job; a scene with a longer or no `time_limit` ends here."""
+    dask: str = field(default_factory=lambda: os.environ.get("HOOKEAN_DASK", ""))
+    """Address of a Dask scheduler that sweeps are sent to, by default that of HOOKEAN_DASK; none: they stay here."""
     message_limit: int = 64 * 1024
     """Longest message of a client over a WebSocket."""
+    token: str = field(default="", repr=False)
+    """What programs show to be let in; none: that of HOOKEAN_TOKEN, or a random one for each start."""
+    log: str = ""
+    """`json`: a line of JSON for each request and event, as with HOOKEAN_LOG=json; else only what is wrong."""
+    origins: tuple[str, ...] = ()
+    """Origins, such as http://localhost:3000, whose pages may use the service, with the token."""
+    header_seconds: float = 30.0
+    """Time a client has to send the headers of a request."""
     hosts: tuple[str, ...] = ()
     """Further names the service answers to, besides 127.0.0.1, localhost and [::1]."""
 

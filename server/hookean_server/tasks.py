@@ -69,13 +69,20 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
 
 
 def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
-    from hookean_server import files, operations, solve
+    from hookean_server import files, hops, operations, solve
+    from hookean_server.jobs import work
 
     return {
         "relax": solve.relax_scene,
         "discretize": operations.discretize,
+        "hops": hops.solve,
         "file": files.relax_upload,
         "scene": files.scene_upload,
+        "job": work.check,
+        "batch": work.batch,
+        "item": work.item,
+        "relaxation": work.relaxation,
+        "shape": work.shape,
     }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import secrets
 import signal
 import subprocess
 import sys
@@ -43,6 +44,10 @@ class Served:
     """One running server."""
 
     def __init__(self, **settings: Any) -> None:
+        settings.setdefault("token", secrets.token_urlsafe(32))
+        self.token: str = settings["token"]
+        self.known = {"authorization": f"Bearer {self.token}"}
+        self.head = f"Authorization: Bearer {self.token}\r\n"  # for requests written by hand
         code = (
             "import sys; from hookean_server.main import serve; from hookean_server.settings import Settings;"
             f"sys.exit(serve(port=0, settings=Settings(**{settings!r})))"
@@ -55,7 +60,7 @@ class Served:
         found = re.search(r"http://127\.0\.0\.1:(\d+)", self.said)
         assert found, self.process.communicate(timeout=10)
         self.url, self.port = found.group(0), int(found.group(1))
-        self.client = httpx.Client(base_url=self.url, timeout=60.0)
+        self.client = httpx.Client(base_url=self.url, timeout=60.0, headers=self.known)
 
     def ready(self) -> Served:
         """Wait until a worker is idle."""

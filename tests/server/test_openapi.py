@@ -12,6 +12,7 @@ from fastapi.openapi.models import OpenAPI
 
 from hookean.forces import KINDS
 from hookean_server.app import create_app
+from hookean_server.guard import needs_token
 from hookean_server.problems import CATALOGUE
 
 from .conftest import CABLE
@@ -66,11 +67,13 @@ def test_every_operation_documents_its_problems(path: str, method: str, operatio
         int(s) for s, r in operation["responses"].items() if "application/problem+json" in r.get("content", {})
     }
     possible = {status for status, _, _ in CATALOGUE.values()} - {400}
+    if not needs_token(method.upper(), path.replace("{slug}", "busy")):
+        possible -= {401}
     if path.startswith(("/v1/sessions", "/v1/jobs")):
         assert {403, 404, 405, 431, 500} <= documented <= possible, path
         return
     possible -= {409, 412, 429, 507}  # of what is kept
-    if method == "get":
+    if method == "get" or path == "/v1/login":  # no body is read
         possible -= {408, 413, 415, 422, 503, 504}
     assert documented == possible, path
 
@@ -82,6 +85,8 @@ def test_forces_are_told_by_their_kind() -> None:
 
 @pytest.mark.parametrize(("path", "name", "example"), EXAMPLES)
 def test_examples_run_and_fit(client: httpx.Client, path: str, name: str, example: Any) -> None:
+    if path.startswith("/v1/sessions"):
+        pytest.skip("of what is kept: tested with sessions")
     content = DOCUMENT["paths"][path]["post"]
     validator(content["requestBody"]["content"]["application/json"]["schema"]).validate(example)
     for arrays in ("list", "buffer"):

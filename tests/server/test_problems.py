@@ -15,6 +15,7 @@ import pytest
 from hookean_server.app import create_app
 from hookean_server.operations import OPERATIONS
 from hookean_server.problems import CATALOGUE
+from hookean_server.settings import Settings
 
 from .conftest import CABLE, Served, problem
 
@@ -26,6 +27,10 @@ PATHS = {
     "/v1/relax/3dm": "POST",
     "/problems/busy": "GET",
     "/v1/openapi.json": "GET",
+    "/metrics": "GET",
+    "/": "GET",
+    "/relax": "GET",
+    "/relax_mesh": "GET",
     **{f"/v1/discretize/{name}": "POST" for name in OPERATIONS},
 }
 METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE")
@@ -33,7 +38,8 @@ JSON = {"content-type": "application/json"}
 
 
 def test_every_path_is_in_the_list() -> None:
-    described = set(create_app().openapi()["paths"])
+    kept = ("/v1/sessions", "/v1/jobs", "/v1/login", "/v1/shutdown", "/solve")  # tested where they are told of
+    described = {path for path in create_app().openapi()["paths"] if not path.startswith(kept)}
     assert {re.sub(r"^/problems/.*", "/problems/{slug}", p) for p in PATHS} - {"/v1/openapi.json"} == described
 
 
@@ -63,9 +69,7 @@ def test_posts_without_a_body_of_the_right_kind(client: httpx.Client, path: str)
     problem(client.post(path, content=b"{}", headers={**JSON, "content-encoding": "gzip"}), 415, "unsupported-media")
 
 
-@pytest.mark.parametrize(
-    "path", ["/", "/v1", "/v1/relax/", "/v1/nothing", "/v1/relax/3dm/x", "//", "/%00", "/v1/%2e%2e"]
-)
+@pytest.mark.parametrize("path", ["/v1", "/v1/relax/", "/v1/nothing", "/v1/relax/3dm/x", "/%00", "/v1/%2e%2e"])
 def test_other_addresses(client: httpx.Client, path: str) -> None:
     problem(client.get(path), 404, "not-found")
 
@@ -118,7 +122,7 @@ def test_our_own_page_may(served: Served) -> None:
 
 
 def test_sockets_are_guarded_too(served: Served) -> None:
-    """Nothing listens on a socket yet; whatever will, stands behind the same guard."""
+    """Addresses where nothing listens too; those of sessions are in test_guard.py."""
     key = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
     key += "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA=="
     for extra in ("Origin: http://evil.example\r\n", ""):
@@ -134,7 +138,8 @@ def raw(served: Served, data: bytes) -> bytes:
 
 
 def test_large_bodies_are_refused_by_their_stated_length_alone(served: Served) -> None:
-    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\nContent-Type: application/json\r\n"
+    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\n{served.head}"
+    head += "Content-Type: application/json\r\n"
     started = time.monotonic()
     found = raw(served, f"{head}Content-Length: 99999999999\r\n\r\n".encode())
     assert found.startswith(b"HTTP/1.1 413") and time.monotonic() - started < 1.0
@@ -185,7 +190,8 @@ def test_what_a_sentence_may_quote_is_short(client: httpx.Client) -> None:
 def test_a_failure_of_the_service_itself() -> None:
     import asyncio
 
-    app = create_app()
+    app = create_app(Settings(token="token-of-this-test"))
+    known = {"authorization": "Bearer token-of-this-test"}
 
     @app.get("/broken")
     async def broken() -> None:
@@ -193,7 +199,7 @@ def test_a_failure_of_the_service_itself() -> None:
 
     async def ask() -> httpx.Response:
         transport = httpx.ASGITransport(app=app)
-        async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8765") as client:
+        async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8765", headers=known) as client:
             return await client.get("/broken")
 
     response = asyncio.run(ask())

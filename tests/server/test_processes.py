@@ -53,7 +53,7 @@ def post_later(served: Served, scene: dict[str, Any], path: str = "/v1/relax") -
 
     def post() -> None:
         try:
-            future.set_result(httpx.post(served.url + path, json=scene, timeout=60))
+            future.set_result(httpx.post(served.url + path, json=scene, timeout=60, headers=served.known))
         except Exception as error:
             future.set_exception(error)
 
@@ -91,7 +91,7 @@ def test_the_servers_own_limit_ends_a_solve_with_an_answer(strict: Served) -> No
 def test_a_client_that_leaves_frees_the_worker(alone: Served) -> None:
     worker = alone.workers()
     with pytest.raises(httpx.ReadTimeout):
-        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.5)
+        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.5, headers=alone.known)
     wait_for(lambda: alone.health()["workers"]["idle"] == 1, 4.0)
     assert alone.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
     assert alone.health()["requests"]["taken"] == 0
@@ -102,7 +102,7 @@ def test_a_client_that_leaves_the_queue_is_forgotten(alone: Served) -> None:
     running = post_later(alone, endless(2.0))
     busy(alone)
     with pytest.raises(httpx.ReadTimeout):
-        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3)
+        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3, headers=alone.known)
     wait_for(lambda: alone.health()["requests"]["taken"] == 1)
     assert running.result().json()["status"] == "time_limit"
     assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
@@ -124,7 +124,7 @@ def test_a_suspended_worker_whose_client_leaves_is_killed_after_two_seconds(alon
     worker.suspend()
     started = time.monotonic()
     with pytest.raises(httpx.ReadTimeout):
-        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3)
+        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3, headers=alone.known)
     wait_for(lambda: alone.health()["workers"]["restarts"] > before, 5.0)
     assert 1.5 < time.monotonic() - started < 5.0
     assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
@@ -172,7 +172,7 @@ def test_a_full_service_says_so_before_it_reads(alone: Served) -> None:
 
 
 def test_a_body_that_does_not_come(strict: Served) -> None:
-    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{strict.port}\r\n"
+    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{strict.port}\r\n{strict.head}"
     head += "Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
     with socket.create_connection(("127.0.0.1", strict.port), timeout=10) as sock:
         sock.sendall(head.encode())
@@ -181,7 +181,7 @@ def test_a_body_that_does_not_come(strict: Served) -> None:
 
 
 def test_a_client_that_leaves_in_the_middle_of_its_body(alone: Served) -> None:
-    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{alone.port}\r\n"
+    head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{alone.port}\r\n{alone.head}"
     head += "Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
     with socket.create_connection(("127.0.0.1", alone.port), timeout=10) as sock:
         sock.sendall(head.encode())
@@ -211,7 +211,7 @@ def test_a_clean_end(what: str, number: int) -> None:
         busy(served)
     if what == "reading":
         sock = socket.create_connection(("127.0.0.1", served.port))
-        sock.sendall(f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\n".encode())
+        sock.sendall(f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\n{served.head}".encode())
         sock.sendall(b"Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{")
         wait_for(lambda: served.health()["requests"]["taken"] == 1)
     family = served.family()
@@ -284,7 +284,9 @@ def test_ctrl_c_soon_after_the_start(seconds: float) -> None:
 def test_it_says_where_it_is_and_what_to_try(served: Served) -> None:
     assert served.said.startswith(f"hookean serves at {served.url}")
     line = served.process.stdout.readline()  # type: ignore[union-attr]
-    done = subprocess.run(line, shell=True, capture_output=True, text=True, timeout=30)
+    assert served.token not in line
+    known = {**os.environ, "HOOKEAN_TOKEN": served.token}
+    done = subprocess.run(line, shell=True, capture_output=True, text=True, timeout=60, env=known)
     assert '"status": "converged"' in done.stdout, (line, done.stderr)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import secrets
 import time
 from collections.abc import Iterator
@@ -10,11 +11,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
+from hookean_server.logs import short_hash
 from hookean_server.problems import Problem
 from hookean_server.sessions import rows
 from hookean_server.sessions.process import SessionProcess
 from hookean_server.settings import Settings
 from hookean_server.store import Store
+
+log = logging.getLogger("hookean.sessions")
 
 ANSWER = 60.0  # seconds a process may take to answer; compiling a force for the first time takes a few
 PAUSE = 2.0  # seconds it may take to pause, before it is killed and brought back paused
@@ -251,6 +255,7 @@ class Manager:
     async def _bring_back(self, live: Live) -> None:
         """A new process for a session that lost its own, if somebody is using it."""
         self.restarts += 1
+        log.info("process of a session ended", extra={"fields": {"session": short_hash(live.key)}})
         now = time.monotonic()
         live.losses = [t for t in live.losses if now - t < WITHIN] + [now]
         if len(live.losses) > LOSSES:
