@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import importlib
+import json
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +13,11 @@ from hookean.errors import InputError
 from hookean_server import answers
 from hookean_server.problems import Problem
 from hookean_server.tasks import Cancelled, Clock, Done
+from hookean_server.workers import limited
 
 MODEL = "model/vnd.3dm"
 RECIPE_LIMIT = 2**20
+TOLD = 20  # warnings told in a header
 
 
 def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
@@ -30,18 +34,19 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         source.write_bytes(data)
         report = options["answer"] == "report"
         try:
-            done = _relax_file()(source, None if report else target, recipe, cancelled=cancelled)
+            reading = limited(options["read_seconds"])
+            done = _relax_file()(source, None if report else target, recipe, cancelled=cancelled, reading=reading)
         except InputError as error:
             raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
         clock.lap("solve")
         if report:
             return Done(answers.dump(done.to_dict(), "list"), timing=clock.parts)
-        named = {"content-disposition": 'attachment; filename="relaxed.3dm"'}
+        named = {"content-disposition": 'attachment; filename="relaxed.3dm"', **_told(done.warnings)}
         return Done(target.read_bytes(), MODEL, named, clock.parts)
 
 
 def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
-    """The scene that an uploaded file holds, as JSON; options and faults as `relax_upload`."""
+    """The scene that an uploaded file holds, as JSON, warnings in a header; options and faults as `relax_upload`."""
     from hookean.files.relax_file import open_file
 
     data, recipe = parts(Path(options["path"]), options["content_type"])
@@ -49,10 +54,11 @@ def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         source = Path(folder) / "upload.3dm"
         source.write_bytes(data)
         try:
-            read = open_file(source, recipe, "recipe" if recipe is not None else "")
+            with limited(options["read_seconds"]):
+                read = open_file(source, recipe, "recipe" if recipe is not None else "")
         except InputError as error:
             raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
-    return Done(read.scene.canonical.encode())
+    return Done(read.scene.canonical.encode(), headers=_told(read.warnings))
 
 
 def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:
@@ -89,6 +95,11 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:
         return found["file"], recipe.decode("utf-8") if recipe else None
     except UnicodeDecodeError:
         raise InputError("/recipe", "the text is not UTF-8") from None
+
+
+def _told(warnings: Sequence[str]) -> dict[str, str]:
+    """What a person should know of a file, in a header: a JSON list of sentences in ASCII."""
+    return {"hookean-warnings": json.dumps([w[:200] for w in warnings[:TOLD]])} if warnings else {}
 
 
 def _place(pointer: str, recipe: str | None) -> str:

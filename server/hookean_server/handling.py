@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import shutil
 import tempfile
 from contextlib import suppress
@@ -34,7 +35,7 @@ async def compute(request: Request, task: str, options: dict[str, Any], *, once:
         body = await read_json(request)
         single = once(body) if callable(once) else bool(once)
         job = Job(task, options, body, settings.solve_seconds + settings.grace_seconds, single)
-        return _response(await _answered(request, pool, job))
+        return _response(await answered(request, pool, job))
 
 
 async def compute_upload(request: Request, task: str, options: dict[str, Any]) -> Response:
@@ -42,9 +43,10 @@ async def compute_upload(request: Request, task: str, options: dict[str, Any]) -
     return _response(await _uploaded(request, task, options))
 
 
-async def uploaded_scene(request: Request) -> bytes:
-    """The scene, as JSON, of the .3dm file in a form."""
-    return (await _uploaded(request, "scene", {})).body
+async def uploaded_scene(request: Request) -> tuple[bytes, list[str]]:
+    """The scene, as JSON, of the .3dm file in a form, and what a person should know of the file."""
+    reply = await _uploaded(request, "scene", {})
+    return reply.body, json.loads(reply.head["headers"].get("hookean-warnings", "[]"))
 
 
 async def _uploaded(request: Request, task: str, options: dict[str, Any]) -> Reply:
@@ -58,9 +60,10 @@ async def _uploaded(request: Request, task: str, options: dict[str, Any]) -> Rep
             with path.open("wb") as file:
                 async for chunk in request.stream():
                     file.write(chunk)
-            given = {**options, "path": str(path), "content_type": request.headers["content-type"]}
+            told = {"content_type": request.headers["content-type"], "read_seconds": settings.read_seconds}
+            given = {**options, "path": str(path), **told}
             job = Job(task, given, b"", settings.file_seconds + settings.grace_seconds, once=True)
-            return await _answered(request, pool, job)
+            return await answered(request, pool, job)
         finally:
             await asyncio.to_thread(shutil.rmtree, folder, ignore_errors=True)
 
@@ -69,7 +72,7 @@ def _service(request: Request) -> tuple[Pool, Settings]:
     return request.app.state.pool, request.app.state.settings
 
 
-async def _answered(request: Request, pool: Pool, job: Job) -> Reply:
+async def answered(request: Request, pool: Pool, job: Job) -> Reply:
     """The worker's answer; a client that leaves stops the worker."""
     work = asyncio.ensure_future(pool.run(job))
     gone = asyncio.ensure_future(_left(request))

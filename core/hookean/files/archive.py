@@ -8,13 +8,13 @@ without decoding any geometry is cheap, cannot hang, and shows objects that rhin
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 from uuid import UUID
 
 from hookean.errors import InputError
+from hookean.files.checksums import Checksums
 
 MAGIC = b"3D Geometry File Format "
 HEADER_SIZE = 32
@@ -26,6 +26,7 @@ OBJECT_TABLE = 0x10000013
 LAYER_RECORD = 0x20008050
 OBJECT_RECORD = 0x20008070
 LIGHT_RECORD = 0x20008060
+UNITS_RECORD = 0x20008031
 CURRENT_LAYER = 0xA0000038
 END_OF_TABLE = 0xFFFFFFFF
 END_OF_FILE = 0x00007FFF
@@ -38,6 +39,13 @@ _CLASS_DATA = 0x0002FFFC
 _OBJECT_TYPE = 0x82000071
 _OBJECT_ATTRIBUTES = 0x02008072
 _RECORD_END = 0x8200007F
+_OTHER_PARTS = (0x02000073, 0x02008074)  # user data of the attributes, history
+_WORDS = {
+    OBJECT_RECORD: "objects do",
+    LAYER_RECORD: "layers do",
+    LIGHT_RECORD: "lights do",
+    UNITS_RECORD: "settings of units do",
+}
 _MAX_TOP_LEVEL = 4096  # a file has about 20: one per table and one per plug-in
 
 
@@ -185,7 +193,9 @@ class _Scan:
         self.objects: list[ObjectRecord] = []
         self.lights = 0
         self.current_layer: int | None = None
-        self.bad_checksums = 0
+        self.strange = self.units = 0
+        self.checksums = Checksums(data, self.size)
+        self.damaged = {LAYER_RECORD: 0, OBJECT_RECORD: 0, LIGHT_RECORD: 0, UNITS_RECORD: 0}
 
     def run(self) -> Archive:
         end_mark = self._top_level()
@@ -233,6 +243,12 @@ class _Scan:
                 self.lights += 1
             elif record.typecode == CURRENT_LAYER and chunk.typecode == SETTINGS_TABLE:
                 self.current_layer = record.value
+            elif record.typecode == UNITS_RECORD and chunk.typecode == SETTINGS_TABLE:
+                self.units += 1
+            elif chunk.typecode in (OBJECT_TABLE, LAYER_TABLE):
+                self.strange += 1
+            if record.typecode in self.damaged and not self._holds(record):
+                self.damaged[record.typecode] += 1
         if tail is None:
             raise _Damage(f"the table at byte {chunk.start} has no end")
         self.tables.append(Table(chunk.typecode, chunk.start, chunk.body, tail, chunk.end))
@@ -251,6 +267,8 @@ class _Scan:
                 attributes = self._attributes(part)
             elif part.typecode == _RECORD_END:
                 ended = True
+            elif part.typecode not in _OTHER_PARTS:
+                self.strange += 1
         if class_id is None or not ended:
             raise _Damage(f"the object record at byte {record.start} has no class or no end")
         return ObjectRecord(record.start, record.end, class_id, kind, *attributes)
@@ -273,10 +291,13 @@ class _Scan:
         first = next(chunks(self.data, wrapper.body, wrapper.end, self.size), None)
         if first is None or first.typecode != _CLASS_UUID or first.end - first.body != 20:
             raise _Damage(f"the object at byte {wrapper.start} does not name its class")
-        raw = self.data[first.body : first.body + 16]
-        if zlib.crc32(raw) != int.from_bytes(self.data[first.body + 16 : first.end], "little"):
-            self.bad_checksums += 1
-        return UUID(bytes_le=raw)
+        return UUID(bytes_le=self.data[first.body : first.body + 16])
+
+    def _holds(self, record: Chunk) -> bool:
+        """Whether the checksums in a record agree with its bytes."""
+        if record.typecode == UNITS_RECORD:
+            return self.checksums.hold(record.typecode, record.body, record.end)
+        return all(self.checksums.hold(part.typecode, part.body, part.end) for part in self._parts(record))
 
     def _attributes(self, part: Chunk) -> tuple[UUID | None, int | None]:
         # a version byte whose high four bits are 1 or 2 (before and from Rhino 5), then id and layer number
@@ -294,6 +315,11 @@ class _Scan:
             notes.append(f"the end mark states {stated} bytes, the file has {end_mark.end}.")
         if len(self.data) > end_mark.end:
             notes.append(f"{len(self.data) - end_mark.end} bytes after the end mark are ignored.")
-        if self.bad_checksums:
-            notes.append(f"{self.bad_checksums} objects fail the checksum of their class: the file is damaged.")
+        if self.units != 1:
+            notes.append("the unit of length is not where it should be: the file is damaged, look at the result.")
+        if self.strange:
+            notes.append(f"{self.strange} records among objects and layers are of no known kind and are left out.")
+        for typecode, what in _WORDS.items():
+            if count := self.damaged[typecode]:
+                notes.append(f"{count} {what} not agree with their checksums: the file is damaged, look at the result.")
         return tuple(notes)

@@ -114,13 +114,14 @@ def relax_file(
     limits_name: str = "limits",
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
+    reading: contextlib.AbstractContextManager[None] | None = None,
 ) -> FileResult:
     """Relax what `source` holds and write it to `target` (None: nowhere), replaced in one step or not at all.
 
     A .3dm target is a copy of a .3dm source with results below the layer `hookean`, or a new file; a .json target is
     the result (of a COMPAS document the document with its new shape). A shape short of equilibrium is written too, a
     cancelled one is not. `limits` as `tables.read_limits` gives them; pointers into the recipe are told behind
-    `recipe_name`. The source is never written.
+    `recipe_name`. The source is never written. `reading` is entered while the source is read.
 
     Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written; LimitsError,
     with everything written, where limits name what the file does not have.
@@ -130,7 +131,8 @@ def relax_file(
     from hookean.system import compile
 
     check_output(target, source)
-    read = open_file(Path(source), recipe_text, recipe_name)
+    with reading or contextlib.nullcontext():
+        read = open_file(Path(source), recipe_text, recipe_name)
     with about(recipe_name):
         system = compile(read.scene)
         result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)

@@ -63,7 +63,7 @@ def parse(data: bytes, name: str, oldest: int = 2) -> Loaded:
         file = rhino.File3dm.FromByteArray(data)
         if file is not None and archive.version < OLDEST_SPLICED:
             clean_layer_names(file)
-        model = None if file is None else _Reader(archive, file, name).model()
+        model = None if file is None else _Reader(data, archive, file, name).model()
     except (ValueError, RuntimeError, IndexError, AttributeError, TypeError, MemoryError) as error:
         raise _unreadable(archive, name) from error
     if model is None:
@@ -103,7 +103,8 @@ def _unreadable(archive: Archive, name: str) -> InputError:
 class _Reader:
     """Makes a Model of a scanned archive and rhino3dm's file."""
 
-    def __init__(self, archive: Archive, file: Any, name: str) -> None:
+    def __init__(self, data: bytes, archive: Archive, file: Any, name: str) -> None:
+        self.data = data
         self.archive = archive
         self.file = file
         self.name = name
@@ -207,6 +208,12 @@ class _Reader:
             classes.setdefault(record.class_id, []).append(record.id)
         return tuple(Lost(class_id, tuple(ids)) for class_id, ids in classes.items())
 
+    def _renamed(self) -> int:
+        """How many layers have a name that is not in their record: the file misleads rhino3dm on how to read them."""
+        records = [self.data[record.start : record.end] for record in self.archive.layers]
+        named = [layer.name.encode("utf-16-le", "surrogatepass") for layer in self.layers]
+        return sum(name not in record for name, record in zip(named, records, strict=False))
+
     def _warn(self, unit: str, lost: tuple[Lost, ...], lights: int, free: tuple[Object, ...]) -> None:
         if unit not in METRES:
             self.warnings.append(f"the file's unit system is {unit}, so its lengths in metres are not known.")
@@ -215,6 +222,10 @@ class _Reader:
                 f"{group.count} objects of class {group.class_id} cannot be read and are left out of the model; "
                 "they stay in the file."
             )
+        if len(self.layers) < len(self.archive.layers):
+            self.warnings.append(f"{len(self.archive.layers) - len(self.layers)} layers cannot be read.")
+        if renamed := self._renamed():
+            self.warnings.append(f"{renamed} layers are named otherwise in the file than they are read; look at them.")
         if lights < self.archive.lights:
             self.warnings.append(f"{self.archive.lights - lights} lights cannot be read; they stay in the file.")
         drawn = sum(item.own and not item.marked for item in free)

@@ -31,18 +31,18 @@ def manager(request: Request) -> Manager:
     return found
 
 
-async def _body(request: Request) -> bytes:
-    """A scene as JSON; from a form with a .3dm file it is read in a worker that is then replaced."""
+async def _body(request: Request) -> tuple[bytes, list[str]]:
+    """A scene as JSON; from a form with a .3dm file it is read in a worker that is then replaced, with warnings."""
     if media_type(request.headers) == "multipart/form-data":
         return await uploaded_scene(request)
-    return await read_json(request)
+    return await read_json(request), []
 
 
-def _answer(live: Live, status: int = 200) -> Response:
+def _answer(live: Live, status: int = 200, warnings: list[str] | None = None) -> Response:
     headers = {"etag": f'"{live.described["revision"]}"', "cache-control": "no-store"}
     if status == 201:
         headers["location"] = f"/v1/sessions/{live.key}"
-    return JSONResponse(summary(live), status, headers)
+    return JSONResponse({**summary(live), **({"warnings": warnings} if warnings else {})}, status, headers)
 
 
 @router.post(
@@ -50,16 +50,18 @@ def _answer(live: Live, status: int = 200) -> Response:
 )
 async def create(request: Request, label: Label = "") -> Response:
     """A new session under a random key, paused."""
-    live, _ = await manager(request).put(None, await _body(request), label)
-    return _answer(live, 201)
+    body, warnings = await _body(request)
+    live, _ = await manager(request).put(None, body, label)
+    return _answer(live, 201, warnings)
 
 
 @router.put("/v1/sessions/{key}", summary="The session of a key, with this scene", **openapi.session_body(200, 201))
 async def put(request: Request, key: Key, label: Label = "") -> Response:
     """Makes the session, or gives the one that exists this scene: particles that start where one of the old scene did
     stay where they are now, and it goes on. The same scene again changes nothing."""
-    live, new = await manager(request).put(key, await _body(request), label)
-    return _answer(live, 201 if new else 200)
+    body, warnings = await _body(request)
+    live, new = await manager(request).put(key, body, label)
+    return _answer(live, 201 if new else 200, warnings)
 
 
 @router.get("/v1/sessions", summary="All sessions", responses=openapi.problems(openapi.SESSIONS))
