@@ -101,7 +101,7 @@ def catenary() -> dict[str, Any]:
 async def watched(server: Server, key: str, seconds: float, *, drag: bool = False) -> tuple[float, list[float]]:
     """Frames a second one client gets, and the milliseconds from its edits to the first frame with each."""
     base = int(server.client.get(f"/v1/sessions/{key}").json()["revision"])
-    targets = [a["targets"] for a in server.client.get(f"/v1/sessions/{key}/anchors").json()["anchors"]][0]
+    targets = next(a["targets"] for a in server.client.get(f"/v1/sessions/{key}/anchors").json()["anchors"])
     waits: list[float] = []
     sent: dict[int, float] = {}
     async with server.socket(key) as socket:
