@@ -13,6 +13,8 @@ import zlib
 _CHECKED = 0x8000
 _SHORT = 0x80000000
 _CLASS = 0x00027FFA
+_ATTACHED = 0x02000073  # user data of an object's attributes
+_HEAD, _UNNAMED = 0x0002FFF9, 0x40008000
 _ID, _DATA, _USER_DATA, _CLASS_END = 0x0002FFFB, 0x0002FFFC, 0x00027FFD, 0x80027FFF
 # what nests inside objects: a class, its user data, their heads, its id, its data, and chunks without a name
 _NESTED = re.compile(rb"[\xfa\xfd]\x7f\x02\x00|[\xf9\xfb\xfc]\xff\x02\x00|\x00\x80\x00\x40")
@@ -32,10 +34,14 @@ class Checksums:
             return True
         if depth > _DEEPEST:
             return False
-        return self._row(body, end, depth) if typecode == _CLASS else self._own(body, end, typecode & _CHECKED, depth)
+        if typecode in (_CLASS, _ATTACHED):
+            return self._row(typecode, body, end, depth)
+        if typecode == _USER_DATA and body < end and self.data[body] >> 4 == 2:  # before: its head is not a chunk
+            return self._row(typecode, body + 1, end, depth)
+        return self._own(body, end, typecode & _CHECKED, depth)
 
-    def _row(self, body: int, end: int, depth: int) -> bool:
-        """A class: chunks that begin with its id, hold its data and have an end."""
+    def _row(self, typecode: int, body: int, end: int, depth: int) -> bool:
+        """Chunks only: a class has its id, its data and an end; user data have a head and a chunk without a name."""
         found = []
         while body < end:
             inner = self._chunk(body, end)
@@ -43,6 +49,10 @@ class Checksums:
                 return False
             found.append(inner[0])
             body = inner[2]
+        if typecode == _ATTACHED:
+            return set(found) <= {_USER_DATA, _CLASS_END}
+        if typecode == _USER_DATA:
+            return found == [_HEAD, _UNNAMED]
         return found[:1] == [_ID] and found[-1:] == [_CLASS_END] and set(found[1:-1]) <= {_DATA, _USER_DATA}
 
     def _own(self, body: int, end: int, checked: int, depth: int) -> bool:
