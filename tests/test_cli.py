@@ -234,13 +234,16 @@ def test_version_forces_and_help() -> None:
 def test_serve_hands_over_to_the_service(monkeypatch: pytest.MonkeyPatch) -> None:
     from types import ModuleType
 
-    seen: list[tuple[str, int]] = []
-    main = ModuleType("hookean_server.main")
-    main.serve = lambda host, port: seen.append((host, port)) or 3  # type: ignore[attr-defined,func-returns-value]
-    monkeypatch.setitem(sys.modules, "hookean_server.main", main)
-    assert run("serve", "--host", "127.0.0.2", "--port", "1234").exit_code == 3
-    assert seen == [("127.0.0.2", 1234)]
-    monkeypatch.setitem(sys.modules, "hookean_server.main", None)
+    seen: list[object] = []
+    command = ModuleType("hookean_server.command")
+    command.Options = lambda *given: given  # type: ignore[attr-defined]
+    command.run = lambda options: seen.append(options) or 3  # type: ignore[attr-defined,func-returns-value]
+    command.stop = lambda: 4  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "hookean_server.command", command)
+    assert run("serve", "--host", "127.0.0.2", "--port", "1234", "--no-keep").exit_code == 3
+    assert seen == [("127.0.0.2", 1234, False, False, 0, 0.0)]
+    assert run("serve", "--stop").exit_code == 4 and len(seen) == 1
+    monkeypatch.setitem(sys.modules, "hookean_server.command", None)
     refused = run("serve")
     assert refused.exit_code == 2 and "not installed" in refused.stderr
 

@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 import sys
 from contextlib import suppress
 from pathlib import Path
+
+_IN_USE = (errno.EADDRINUSE, getattr(errno, "WSAEADDRINUSE", errno.EADDRINUSE))
 
 
 class Taken(OSError):
     """The port cannot be had; the sentence says why."""
 
 
-def take(host: str, port: int) -> socket.socket:
-    """A listening socket's address, bound; port 0 takes any. Raises Taken with one sentence."""
+def take(host: str, port: int, *, or_any: bool = False) -> socket.socket:
+    """A listening socket; port 0 takes any, and with `or_any` any where this one is taken. Raises Taken with one
+    sentence."""
+    try:
+        return _take(host, port)
+    except (OSError, OverflowError) as error:
+        if or_any and getattr(error, "errno", None) in _IN_USE:
+            return take(host, 0)
+        raise Taken(_why(host, port, error)) from None
+
+
+def _take(host: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     # named as TCP, or asyncio would not switch off the delay of small writes
     sock = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
@@ -24,16 +37,14 @@ def take(host: str, port: int) -> socket.socket:
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         sock.bind((host, port))
         sock.listen(128)
-    except (OSError, OverflowError) as error:
+    except BaseException:
         sock.close()
-        raise Taken(_why(host, port, error)) from None
+        raise
     return sock
 
 
 def _why(host: str, port: int, error: Exception) -> str:
-    import errno
-
-    if getattr(error, "errno", None) in (errno.EADDRINUSE, getattr(errno, "WSAEADDRINUSE", errno.EADDRINUSE)):
+    if getattr(error, "errno", None) in _IN_USE:
         holder = owner(port)
         return (
             f"Port {port} is taken by {holder or 'another program'}; stop it, or choose another with --port "
