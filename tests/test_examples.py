@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+from matplotlib.image import imread
 
 from hookean.example import Example, examples, gallery, home
 
@@ -55,7 +56,11 @@ def test_a_folder_has_all_that_the_gallery_shows(example: Example) -> None:
     inside = {path.name for path in example.folder.iterdir()}
     assert {"example.py", "expected.json", "README.md", "picture.png"} <= inside
     assert "scene.json" in inside or {"model.3dm", "recipe.toml"} <= inside
-    assert (example.folder / "picture.png").read_bytes().startswith(b"\x89PNG")
+    pixels = imread(example.folder / "picture.png")[..., :3]
+    assert pixels.shape[1] >= 1500
+    drawn = (pixels < 0.95).any(axis=2)
+    assert 0.01 < drawn.mean() < 0.5, "blank, or filled"
+    assert not drawn[[0, -1]].any() and not drawn[:, [0, -1]].any(), "cut off at its edge"
 
 
 def test_the_gallery_shows_every_example():

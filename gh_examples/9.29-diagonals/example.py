@@ -11,7 +11,7 @@ from hookean.files.relax_file import read_scene
 from hookean.sheet import Panel
 
 RECIPES = {"none": "recipe-edges.toml", "one": "recipe-one.toml", "both": "recipe.toml"}
-TITLES = {"none": "No diagonals", "one": "One diagonal", "both": "Both diagonals"}
+TITLES = {"none": "No diagonals", "one": "One diagonal", "both": "Both"}
 
 
 def run(folder: Path) -> Outcome:

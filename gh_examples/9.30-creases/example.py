@@ -14,7 +14,7 @@ RECIPES = {"1": "recipe.toml", "0.95": "recipe-creased.toml", "0.9": "recipe-sha
 
 
 def run(folder: Path) -> Outcome:
-    numbers, panels = {}, []
+    numbers, sheets, springs = {}, [], []
     for factor, recipe in RECIPES.items():
         scene = read_scene(folder / "model.3dm", folder / recipe)
         result = relax(scene)
@@ -29,8 +29,9 @@ def run(folder: Path) -> Outcome:
         # halves of the faces, without springs in front of them, show the folds
         shown = replace(result, forces=[], geometry=[{**mesh, "faces": halves(mesh["faces"])}])
         title = f"Rest factor {factor}: folds of {fold.mean():.0f}°"
-        panels.append(Panel(shown, scene, title=title, view=(-70.0, 35.0)))
-    return Outcome(numbers, panels, columns=3)
+        sheets.append(Panel(shown, scene, title=title, view=(-70.0, 35.0)))
+        springs.append(Panel(replace(result, geometry=[]), scene, title="Its springs, from above", view="top"))
+    return Outcome(numbers, sheets + springs, columns=3)
 
 
 def halves(faces: np.ndarray) -> np.ndarray:

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from hookean import relax
 from hookean.example import Outcome
 from hookean.files.relax_file import read_scene
@@ -13,6 +15,8 @@ def run(folder: Path) -> Outcome:
     result = relax(scene)
     cable = result.force("cable")
     lengths = cable["length"]
+    lines = scene.forces[0].lines
+    start = np.vstack([lines[:, 0], lines[-1:, 1]])
     numbers = {
         "springs": len(lengths),
         "length": lengths.sum(),
@@ -23,4 +27,4 @@ def run(folder: Path) -> Outcome:
         "sag": -result.particles[:, 2].min(),
         "lift of an anchor": result.reactions["force"][0, 2],
     }
-    return Outcome(numbers, [Panel(result, scene, view="front", frames={"start": scene.particles})])
+    return Outcome(numbers, [Panel(result, scene, view="front", frames={"start": start})])

@@ -20,15 +20,17 @@ def run(folder: Path) -> Outcome:
     times = np.array([frame.time for frame in frames])
     lengths = np.array([length(frame.particles) for frame in frames])
     sags = np.array([-frame.particles[:, 2].min() for frame in frames])
-    numbers = {f"length at {times[i]:.1f} s": lengths[i] for i in (12, 16, 20, 24)}
-    numbers |= {"sag at 0.6 s": sags[12], "length at rest": lengths[-1], "sag at rest": sags[-1]}
-    seen = {f"{times[i]:.1f} s": frames[i].particles for i in range(0, 25, 4)}
+    numbers = {f"length at {times[i]:.1f} s": lengths[i] for i in (6, 12, 18, 24, 36)}
+    numbers |= {"sag at 0.9 s": sags[18], "length at rest": lengths[-1], "sag at rest": sags[-1]}
+    seen = {f"{times[i]:.1f} s": frames[i].particles for i in range(0, 37, 6)}
     graph = Graph(
         "It bounces", "time [s]", "sag [m]",
         lines={"sag": (times[:201], sags[:201]), "at rest": (times[[0, 200]], sags[[-1, -1]])},
     )  # fmt: skip
     return Outcome(
-        numbers, [Panel(running.result(), scene, "The first 1.2 s, and at rest", frames=seen), graph], columns=1
+        numbers,
+        [Panel(running.result(), scene, "The first 1.8 s, and at rest", view="front", frames=seen), graph],
+        columns=1,
     )
 
 
