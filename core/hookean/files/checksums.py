@@ -36,7 +36,7 @@ class Checksums:
             return False
         if typecode in (_CLASS, _ATTACHED):
             return self._row(typecode, body, end, depth)
-        if typecode == _USER_DATA and body < end and self.data[body] >> 4 == 2:  # before: its head is not a chunk
+        if typecode == _USER_DATA and body < end and self.data[body] >> 4 != 1:  # 1: its head is not a chunk
             return self._row(typecode, body + 1, end, depth)
         return self._own(body, end, typecode & _CHECKED, depth)
 

@@ -55,6 +55,7 @@ class Host:
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
         self.simulation: Simulation | None = None
+        self.before: parts.Before | None = None
         self.playing = False
         self.fast = False
         self.left = 0  # iterations that a `step` still has to do
@@ -94,6 +95,9 @@ class Host:
         body = self.connection.recv_bytes()
         if head["do"] == "credit":
             self.credit = 1
+            return
+        if head["do"] == "unstored":
+            self.stored = -1  # the last checkpoint: another one is due
             return
         answer = self._do(head, body)
         if answer is not None:
@@ -142,6 +146,7 @@ class Host:
         scene = parts.scene_of(body)
         if scene.canonical == simulation.scene.canonical:
             return {**self._described(), "same": True}, b""
+        self.before = parts.Before(simulation)
         self.simulation = simulation.succeed(scene)
         self._mark()
         return self._described(), parts.saved(self.simulation)
@@ -153,16 +158,15 @@ class Host:
         if wanted is not None and wanted != simulation.state.revision:
             said = f"The session is at revision {simulation.state.revision}, not {wanted}; look and edit again."
             raise Problem("stale-revision", said, headers={"etag": f'"{simulation.state.revision}"'})
+        self.before = parts.Before(simulation)
         resolved, sets = parts.make(simulation, body)
         self._mark()
         return {**self._described(), "sets": sets}, resolved
 
     def do_revert(self, head: dict[str, Any], body: bytes) -> Reply:
-        """Take back an edit that could not be stored."""
-        simulation = self._simulation()
-        with suppress(InputError):
-            simulation.undo()
-            simulation.history.after.clear()
+        """Take back an edit, or another scene, that could not be stored: as if it had never been made."""
+        if self.before is not None:
+            self.simulation, self.before = self.before.put_back(), None
         self._mark()
         return self._described(), b""
 

@@ -6,8 +6,8 @@ import asyncio
 import logging
 import secrets
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Coroutine, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -125,21 +125,27 @@ class Manager:
             return live, True
 
     async def edit(self, key: str, body: bytes, revision: int | None = None) -> dict[str, Any]:
-        """Make an edit; it is in the store when this returns. Raises Problem."""
-        live = self.find(key)
+        """Make an edit; it is in the store when this returns. Raises Problem.
+
+        A client that leaves meanwhile does not stop it: an edit that was made is stored, or taken back.
+        """
+        work = self._spawn(self._edit(self.find(key), body, revision))
+        return await asyncio.shield(work)
+
+    async def _edit(self, live: Live, body: bytes, revision: int | None) -> dict[str, Any]:
         async with live.lock:
             process = await self._awake(live)
             described, made = await process.call("edit", body, seconds=ANSWER, revision=revision, slug="invalid-input")
             sets = described.pop("sets", "")
             try:
-                live.edits = await self.store.run(rows.edit(key, described["revision"], sets, made))
+                live.edits = await self.store.run(rows.edit(live.key, described["revision"], sets, made))
             except Problem:
-                described, _ = await process.call("revert", seconds=ANSWER)
-                self._heard(live, described)
+                await self._revert(live, process)
                 raise
             self._heard(live, described)
             if live.edits > MANY_EDITS:
-                await self._rebase(live, process)
+                with suppress(Problem):  # the edit is stored; the next one tries again
+                    await self._rebase(live, process)
         return live.described
 
     async def command(self, key: str, do: str, **options: Any) -> dict[str, Any]:
@@ -224,7 +230,7 @@ class Manager:
             if not resting:
                 said = f"{len(awake)} sessions are running or being watched; pause one, or come back later."
                 raise Problem("busy", said, headers={"retry-after": "5"})
-            await self._sleep(min(resting, key=lambda o: o.used), PAUSE)
+            await self._sleep(min(resting, key=lambda o: o.used), PAUSE, unsaved=False)
         loop = asyncio.get_running_loop()
 
         def on_event(head: dict[str, Any], body: bytes) -> None:
@@ -250,7 +256,8 @@ class Manager:
         else:
             self._heard(live, head)
             if event == "checkpoint":
-                self.store.submit(rows.checkpoint(live.key, head, body)).add_done_callback(_quiet)
+                stored = self.store.submit(rows.checkpoint(live.key, head, body))
+                stored.add_done_callback(lambda done: process.unstored() if done.exception() else None)
 
     async def _bring_back(self, live: Live) -> None:
         """A new process for a session that lost its own, if somebody is using it."""
@@ -286,8 +293,9 @@ class Manager:
                 live.described = {**live.described, "playing": False}
         return live.described
 
-    async def _sleep(self, live: Live, seconds: float) -> None:
-        """Checkpoint a session and end its process."""
+    async def _sleep(self, live: Live, seconds: float, *, unsaved: bool = True) -> None:
+        """Checkpoint a session and end its process. Where it cannot be stored, `unsaved` says whether to end it all the
+        same; else raises Problem."""
         process = live.process
         if process is None:
             return
@@ -295,8 +303,9 @@ class Manager:
             described, state = await process.call("checkpoint", seconds=seconds)
             await self.store.run(rows.checkpoint(live.key, described, state))
             self._heard(live, {**described, "playing": False})
-        except Problem:
-            pass
+        except Problem as problem:
+            if problem.slug == "not-stored" and not unsaved:
+                raise
         self._end(live)
 
     def _end(self, live: Live) -> None:
@@ -313,13 +322,21 @@ class Manager:
                 try:
                     await self.store.run(rows.put(live.key, label or live.label, base, described))
                 except Problem:
-                    self._end(live)  # the store has the scene before; the session comes back with it
+                    await self._revert(live, process)
                     raise
                 live.topology = secrets.token_hex(8)
                 live.edits = 0
             live.label = label or live.label
             self._heard(live, described)
         return live
+
+    async def _revert(self, live: Live, process: SessionProcess) -> None:
+        """What was done last could not be stored: the session goes on as if it had never been asked."""
+        try:
+            described, _ = await process.call("revert", seconds=ANSWER)
+            self._heard(live, described)
+        except Problem:
+            self._end(live)  # it comes back as the store has it
 
     async def _rebase(self, live: Live, process: SessionProcess) -> None:
         described, base = await process.call("save", seconds=ANSWER)
@@ -334,8 +351,8 @@ class Manager:
             return
         said = {name: live.described.get(name) for name in ("status", "playing", "revision")}
         live.described = {**live.described, **described}
-        if not live.described.get("playing"):
-            live.playing = False
+        if not live.described.get("playing") and live.described.get("status") != "running":
+            live.playing = False  # it came to an end; one that was just brought back is about to play on
         if any(live.described.get(name) != value for name, value in said.items()):
             live.tell()
 
@@ -346,10 +363,16 @@ class Manager:
             raise Problem("session-limit", said, headers={"retry-after": "60"})
         yield
 
-    def _spawn(self, work: Any) -> None:
+    def _spawn(self, work: Coroutine[Any, Any, Any]) -> asyncio.Task[Any]:
         task = asyncio.create_task(work)
         self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        task.add_done_callback(self._done)
+        return task
+
+    def _done(self, task: asyncio.Task[Any]) -> None:
+        self._tasks.discard(task)
+        if not task.cancelled():
+            task.exception()  # whoever waits for it hears of it
 
     async def _tick(self) -> None:
         """Put to sleep what nobody uses, forget what nobody used for long."""
@@ -361,7 +384,8 @@ class Manager:
                 unused = not live.playing and not live.watchers and not live.lock.locked()
                 if unused and now - live.used > self.settings.sleep_seconds:
                     async with live.lock:
-                        await self._sleep(live, PAUSE)
+                        with suppress(Problem):
+                            await self._sleep(live, PAUSE, unsaved=False)
             used = [live.key for live in awake if live.playing or live.watchers or now - live.used < TICK]
             try:
                 gone = await self.store.run(rows.age(TICK, self.settings.session_seconds, used))
@@ -374,10 +398,6 @@ class Manager:
 
 _DESCRIBED = ("revision", "iteration", "time", "residual", "status", "message", "particles", "undo", "redo", "playing")
 _KEPT = ("revision", "iteration", "status", "message", "particles", "created")
-
-
-def _quiet(future: Any) -> None:
-    future.exception()  # a checkpoint that fails is told by health; the next one may succeed
 
 
 def summary(live: Live) -> dict[str, Any]:

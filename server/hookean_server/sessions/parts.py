@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from hookean.errors import InputError
 from hookean.files import compas_json
 from hookean.files.scene_json import parse
-from hookean.patch import Patch
+from hookean.patch import Patch, Undo
 from hookean.result import Status
 from hookean.scene import Scene
 from hookean.simulation import Simulation
@@ -111,6 +111,24 @@ def _sets(value: dict[str, Any], patch: Patch, gesture: str) -> str:
         return ""
     columns = sorted(f"{force}.{column}" for force, given in patch.forces.items() for column in given)
     return json.dumps([gesture, sorted(str(m.anchor) for m in patch.move), columns, sorted(patch.settings)])
+
+
+class Before:
+    """A simulation as it is now, to be put back where what is done next cannot be stored."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self.simulation, self.state, self.status = simulation, simulation.state, simulation.status
+        self.undo = Undo(simulation.system, simulation.state)
+        history = simulation.history
+        self.history = (list(history.before), list(history.after), history.gesture)
+
+    def put_back(self) -> Simulation:
+        """The simulation as it was, history and revision included."""
+        simulation, history = self.simulation, self.simulation.history
+        self.undo.put_back(simulation.system, self.state)
+        history.before, history.after, history.gesture = self.history
+        simulation.take_up(self.state, self.status)
+        return simulation
 
 
 def _check(particles: NDArray[np.int64], simulation: Simulation) -> None:

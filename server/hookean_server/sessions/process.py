@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import itertools
 import json
+import queue
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -31,15 +32,16 @@ class SessionProcess:
         self.heard = 0.0
         self._ids = itertools.count(1)
         self._waiting: dict[int, Future[tuple[dict[str, Any], bytes]]] = {}
-        self._lock = threading.Lock()
+        self._orders: queue.SimpleQueue[tuple[dict[str, Any], bytes] | None] = queue.SimpleQueue()
         ours, theirs = Pipe()
         process: BaseProcess = context().Process(  # type: ignore[attr-defined]
             target=host, args=(theirs, memory, FORKED), daemon=True, name="hookean-session"
         )
         process.start()
         theirs.close()
-        self.process, self._connection = process, ours
-        threading.Thread(target=self._listen, args=(ours,), name="hookean-session", daemon=True).start()
+        self.process = process
+        for side in (self._listen, self._speak):
+            threading.Thread(target=side, args=(ours,), name="hookean-session", daemon=True).start()
 
     async def call(self, do: str, body: bytes = b"", *, seconds: float, **head: Any) -> tuple[dict[str, Any], bytes]:
         """What the process answers. A process silent for `seconds` is killed; raises Problem."""
@@ -48,7 +50,7 @@ class SessionProcess:
         self._waiting[number] = future
         if self.lost:
             self._fail()
-        await asyncio.to_thread(self._send, {"id": number, "do": do, **head}, body)
+        self._send({"id": number, "do": do, **head}, body)
         try:
             answer, data = await asyncio.wait_for(asyncio.wrap_future(future), seconds)
         except TimeoutError:
@@ -61,8 +63,12 @@ class SessionProcess:
         return answer, data
 
     def credit(self) -> None:
-        """One more frame is wanted. Small enough to never wait for the process."""
+        """One more frame is wanted."""
         self._send({"do": "credit"}, b"")
+
+    def unstored(self) -> None:
+        """The last checkpoint could not be stored; another one is wanted."""
+        self._send({"do": "unstored"}, b"")
 
     def kill(self) -> None:
         """End the process now; whoever waits for it gets a problem."""
@@ -75,9 +81,14 @@ class SessionProcess:
             self.process.join(seconds)
 
     def _send(self, head: dict[str, Any], body: bytes) -> None:
-        with self._lock, suppress(OSError, ValueError):
-            self._connection.send_bytes(json.dumps(head).encode())
-            self._connection.send_bytes(body)
+        self._orders.put((head, body))
+
+    def _speak(self, connection: Connection) -> None:
+        """Send what is asked for, in its order; a process that hangs blocks this thread only."""
+        with suppress(OSError, ValueError):
+            while (order := self._orders.get()) is not None:
+                connection.send_bytes(json.dumps(order[0]).encode())
+                connection.send_bytes(order[1])
 
     def _listen(self, connection: Connection) -> None:
         with suppress(OSError, EOFError, ValueError):
@@ -93,8 +104,8 @@ class SessionProcess:
         self._fail()
         self.on_event({"event": "lost"}, b"")
         self.join(1.0)
-        with self._lock:
-            connection.close()
+        self._orders.put(None)
+        connection.close()
 
     def _fail(self) -> None:
         gone = {"problem": "worker-lost", "detail": "The process of this session ended.", "errors": []}
