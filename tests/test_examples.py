@@ -4,11 +4,15 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from matplotlib.image import imread
+from typer.testing import CliRunner
 
-from hookean.example import Example, examples, gallery, home
+from hookean.cli import app
+from hookean.commands import example as command
+from hookean.example import Example, examples, find, gallery, home
 
 ALL = examples()
 
@@ -67,3 +71,66 @@ def test_the_gallery_shows_every_example():
     """gh_examples/README.md is what `make figures` would write now."""
     same = (home() / "README.md").read_text(encoding="utf-8") == gallery(ALL)
     assert same, "gh_examples/README.md is not what the examples say: run make figures"
+
+
+def test_without_a_figure_all_are_listed():
+    told = CliRunner().invoke(app, ["example"], env={"COLUMNS": "200"})
+    assert told.exit_code == 0
+    assert all(example.name in told.stdout and example.expected.title in told.stdout for example in ALL)
+
+
+def test_a_figure_is_found_by_its_number_its_name_and_its_folder():
+    """Every figure of every example is one to ask for; of two that show one, the folder of that number comes first."""
+    for example in ALL:
+        assert find(example.name) == example
+        assert find(example.name.partition("-")[2] or example.name).expected.title == example.expected.title
+        assert all(figure in find(figure).expected.figures for figure in example.expected.figures)
+    assert find("9.13").name == "9.12-hooke"
+
+
+def test_one_runs_and_says_its_numbers_with_their_sources(tmp_path: Path):
+    picture = tmp_path / "extension.png"
+    told = CliRunner().invoke(app, ["example", "9.11", "--picture", str(picture)])
+    assert told.exit_code == 0
+    assert "10.4679155 m  (as expected: 10.46 ± 0.01)" in told.stdout and "closed form: F = k X" in told.stdout
+    assert picture.read_bytes() == (find("9.11").folder / "picture.png").read_bytes(), "run make figures"
+
+
+def test_a_number_that_is_off_ends_with_1(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    folder = tmp_path / "9.11"
+    assert command.run("9.11", None, folder) == 0
+    expected = (find("9.11").folder / "expected.json").read_text(encoding="utf-8").replace("10.46,", "10.4,")
+    (folder / "expected.json").write_text(expected, encoding="utf-8")
+    monkeypatch.setattr("hookean.example.home", lambda: tmp_path)
+    told = CliRunner().invoke(app, ["example", "9.11"])
+    assert told.exit_code == 1 and "(NOT as expected: 10.4 ± 0.01)" in told.stdout
+    told = CliRunner().invoke(app, ["example", "--figures", str(tmp_path / "new" / "drawn")])
+    assert told.exit_code == 1 and "9.11: not as expected: length" in told.stdout
+    assert (tmp_path / "new" / "drawn" / "9.11" / "picture.png").is_file()
+    assert (tmp_path / "new" / "drawn" / "README.md").is_file()
+
+
+def test_a_copy_relaxes_by_itself_and_is_not_written_over(tmp_path: Path):
+    """`--copy` takes model and recipe along; into a folder that is there it goes under its own name, once."""
+    told = CliRunner().invoke(app, ["example", "9.24", "--copy", str(tmp_path)])
+    folder = tmp_path / "9.24-membrane"
+    assert told.exit_code == 0 and f"copied to {folder}" in told.stdout.replace("\n", "")
+    assert {path.name for path in folder.iterdir()} >= {"model.3dm", "recipe.toml", "README.md"}
+    ran = ["relax", str(folder / "model.3dm"), "-r", str(folder / "recipe.toml"), "-o", str(tmp_path / "out.3dm")]
+    assert CliRunner().invoke(app, ran).exit_code == 0
+    again = CliRunner().invoke(app, ["example", "9.24", "--copy", str(tmp_path)])
+    assert again.exit_code == 2 and "is there already" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["9.99"], "no example has this figure or name; there are 9.1-square-membrane"),
+        (["9.11", "--picture", "no such folder/a.png"], "no such folder"),
+        (["--figures", os.devnull], "cannot be written"),
+    ],
+)
+def test_what_cannot_be_done_gets_one_sentence_and_exit_2(arguments: list[str], said: str):
+    told = CliRunner().invoke(app, ["example", *arguments])
+    assert told.exit_code == 2 and said in told.stderr
+    assert len(told.stderr.strip().splitlines()) == 1

@@ -45,8 +45,8 @@ def run(wanted: str, picture: Path | None, copy: Path | None) -> int:
     for name, expected in example.expected.numbers.items():
         held = expected.holds(outcome.numbers[name])
         missed += not held
-        wanted = f"{'as expected' if held else 'NOT as expected'}: {expected}"
-        typer.echo(f"  {name:<{wide}}  {outcome.numbers[name]:.9g} {expected.unit}  ({wanted})")
+        verdict = f"{'as expected' if held else 'NOT as expected'}: {expected}"
+        typer.echo(f"  {name:<{wide}}  {outcome.numbers[name]:.9g} {expected.unit}  ({verdict})")
         typer.echo(typer.style(f"  {'':<{wide}}  {expected.source}", dim=True))
     typer.echo(f"\ninput, picture and README: {example.folder}")
     return MISSED if missed else FULFILLED
@@ -59,12 +59,17 @@ def figures(target: Path) -> int:
 
     missed = 0
     known = examples()
-    (target / "README.md").write_text(gallery(known), encoding="utf-8")
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        (target / "README.md").write_text(gallery(known), encoding="utf-8")
+    except OSError as error:
+        typer.echo(f"hookean: {target}: cannot be written ({error.strerror})", err=True)
+        return BAD_INPUT
     for example in known:
         outcome = example.run()
         wrong = [name for name, e in example.expected.numbers.items() if not e.holds(outcome.numbers[name])]
         missed += len(wrong)
-        (target / example.name).mkdir(parents=True, exist_ok=True)
+        (target / example.name).mkdir(exist_ok=True)
         example.draw(outcome, target / example.name / "picture.png")
         said = f"not as expected: {', '.join(wrong)}" if wrong else f"{len(example.expected.numbers)} numbers hold"
         typer.echo(f"{example.name}: {said}")
