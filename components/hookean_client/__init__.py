@@ -1,0 +1,481 @@
+"""Client of the hookean service: finds this user's server, or starts it once, and speaks with it.
+
+    session = hookean_client.connect().session("document:component")
+    session.put(scene)
+    frames = session.frames()
+    session.play()
+    frame = frames.latest()  # the newest, at once; None before the first
+
+For Python 2.7 to 3.13. What fails raises `Problem`; nothing waits longer than its `timeout` [s]; a server is asked
+nothing before it has shown that it is the one in this user's file.
+"""
+
+import base64
+import errno
+import hashlib
+import json
+import os
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+
+try:
+    import http.client as httplib
+    from urllib.parse import quote, urlencode
+except ImportError:  # Python 2
+    import httplib
+    from urllib import quote, urlencode
+
+__version__ = "0.1.0"
+WIRE = 1  # version of the frames
+REACH, ANSWER = 0.2, 2.0  # seconds to reach a server, for it to say who it is
+PATIENCE, STARTING = 60.0, 30.0  # seconds a socket may be silent, a start may take
+STATUSES = "running converged stalled diverged max_iterations time_limit cancelled".split()
+HEADER = struct.Struct("<4sHHIIQQddIIBBHf")
+FIELDS = "magic version size flags number revision iteration time residual n m status playing _ kinetic".split()
+FAILURES = (EnvironmentError, httplib.HTTPException, EOFError, ValueError, TypeError, AttributeError, KeyError)
+_now = getattr(time, "monotonic", time.time)
+_lock = threading.Lock()
+_children = {}  # servers started from here, by folder
+
+
+class Problem(Exception):
+    """`slug`, `status` (0: no answer), `detail`, `errors`: pairs of pointer and sentence."""
+
+    def __init__(self, slug, detail, status=0, errors=()):
+        Exception.__init__(self, detail.encode("ascii", "replace").decode("ascii"))
+        self.slug, self.detail, self.status, self.errors = slug, detail, status, errors
+
+
+def connect(start=True, python=None, timeout=15.0, folder=None, parent=None, idle=30.0):
+    """The client of this user's server, started where none runs, by `python`, HOOKEAN_PYTHON or what `hookean serve`
+    recorded; it ends with the process `parent` (None: this one; 0: none) and after `idle` minutes without use. A start
+    that takes longer than `timeout` goes on."""
+    place = folder or state_folder()
+
+    def find(start, until):
+        found = _found(place)
+        while not found:
+            if not start:
+                raise Problem("no-server", "No hookean server is running; `hookean serve` starts it.")
+            _start(place, python, os.getpid() if parent is None else parent, idle)
+            if _now() > until:
+                raise Problem("starting", "The hookean server is starting; try again in a moment.")
+            time.sleep(0.02)
+            found = _found(place)
+        return found
+
+    client = Client(find, start)
+    client.renew(timeout)
+    return client
+
+
+class Client(object):
+    """One server. `get`, `post`, `put`, `patch` and `delete` take what `request` does."""
+
+    def __init__(self, find, start=False):
+        self.url = self.token = self.instance = ""
+        self._find, self._start, self._idle = find, start, []
+
+    def renew(self, timeout=15.0, start=None):
+        """Find the server again, or start it."""
+        found = self._find(self._start if start is None else start, _now() + timeout)
+        self.url, self.token, self.instance = [str(found[name]) for name in ("url", "token", "instance")]
+
+    def relax(self, scene, **options):
+        """The scene in equilibrium."""
+        return self.post("/v1/relax", scene, **options)
+
+    def session(self, key):
+        """The session of a key, made or not."""
+        return Session(self, key)
+
+    def request(self, method, path, body=None, query=None, headers=None, timeout=60.0):
+        """JSON, or bytes. GET, PUT and DELETE are repeated where the connection is lost."""
+        until = _now() + timeout
+        path = str(path) + "?" + urlencode([(k, v) for k, v in (query or {}).items() if v is not None])
+        if body is not None and not isinstance(body, (bytes, bytearray)):
+            body = json.dumps(body).encode("utf-8")
+        for more in (method in ("GET", "PUT", "DELETE"), False):
+            connection = self._connection(until)
+            sent = {"authorization": "Bearer " + self.token, "content-type": "application/json"}
+            try:
+                connection.sock.settimeout(max(0.01, until - _now()))
+                connection.request(method, path, body, dict(sent, **(headers or {})))
+                answer = connection.getresponse()
+                data = answer.read()
+                break
+            except FAILURES:
+                connection.close()
+                if not more or _now() > until:
+                    raise Problem("lost", "No answer to %s; it may be done." % method)
+        if connection.sock is not None:
+            self._idle.append((self.instance, _now(), connection))
+        if answer.status >= 400:
+            raise _refusal(answer.status, data)
+        if (answer.getheader("content-type") or "").startswith("application/json"):
+            return json.loads(data.decode("utf-8"))
+        return data or None
+
+    def _connection(self, until, start=None):
+        try:
+            while True:
+                instance, since, connection = self._idle.pop()
+                if instance == self.instance and _now() - since < 3.0:
+                    return connection
+                connection.close()
+        except IndexError:
+            connection = _open(self.url, self.instance, until)
+        while connection is None:
+            if _now() > until:
+                raise Problem("no-answer", "The hookean server does not answer.")
+            self.renew(max(0.0, until - _now()), start)
+            connection = _open(self.url, self.instance, until)
+        return connection
+
+
+def _method(name):
+    return lambda self, path, body=None, query=None, **more: self.request(name.upper(), path, body, query, **more)
+
+
+for _name in ("get", "post", "put", "patch", "delete"):
+    setattr(Client, _name, _method(_name))
+
+
+class Session(object):
+    """A session. `play(fast="true")`, `pause`, `step(frames=3)`, `reset`, `undo`, `redo`, `branches(to=key)`."""
+
+    def __init__(self, client, key):
+        self.client, self.key, self.path = client, key, "/v1/sessions/" + quote(key, safe=":~")
+
+    def put(self, scene, **options):
+        """Make it, or give it this scene."""
+        return self.client.put(self.path, scene, **options)
+
+    def edit(self, patch, **options):
+        """Edit it: pin, release, move, forces, settings, gesture."""
+        return self.client.patch(self.path, patch, **options)
+
+    def read(self, part="", **query):
+        """How it stands, or its scene, topology, anchors."""
+        return self.client.get(self.path + ("/" + part if part else ""), None, query)
+
+    def state(self, format="json", **query):
+        """The present shape: json, compas, or the bytes of npz, 3dm, obj."""
+        return self.read("state", format=format, **query)
+
+    def delete(self):
+        """Forget it."""
+        return self.client.delete(self.path)
+
+    def frames(self):
+        """Its frames as they come."""
+        return Frames(self)
+
+
+def _action(name):
+    return lambda self, timeout=60.0, **query: self.client.post(self.path + "/" + name, None, query, timeout=timeout)
+
+
+for _name in ("play", "pause", "step", "reset", "undo", "redo", "branches"):
+    setattr(Session, _name, _action(_name))
+
+
+class Frames(object):
+    """Frames of a session, received in a thread. `session`: how it stands; `topology` changes with the scene;
+    `message`: why there are none; `lost`: a sentence for each lost connection; `ended`: it does not come back."""
+
+    def __init__(self, session):
+        self.session, self.topology, self.message, self.lost = {}, "", "", []
+        self.ended, self.received = False, 0
+        self._of, self._frame, self._link, self._since = session, None, None, None
+        self._news = threading.Condition()
+        thread = threading.Thread(target=self._run, name="hookean-frames")
+        thread.daemon = True
+        thread.start()
+
+    def latest(self):
+        """The newest frame (see `decode`) or None."""
+        return self._frame
+
+    def wait(self, fits=bool, timeout=10.0):
+        """The newest frame once `fits(frame)`, or None."""
+        until = _now() + timeout
+        with self._news:
+            while not (self._frame and fits(self._frame)):
+                if self.ended or _now() >= until:
+                    return None
+                self._news.wait(max(0.0, until - _now()))
+            return self._frame
+
+    def close(self):
+        """No more frames."""
+        self.ended, link = True, self._link
+        if link is not None:
+            link.end()
+        with self._news:
+            self._news.notify_all()
+
+    def _run(self):
+        pause, client = 0.25, self._of.client
+        while not self.ended:
+            before = self.received
+            try:
+                self._link = Link(client._connection(_now() + ANSWER, False), self._of.path + "/frames", client.token)
+                while not self.ended:
+                    self._take(*self._link.receive())
+            except Problem as problem:
+                self.message = problem.detail
+                self.ended |= problem.slug in ("not-found", "wrong-version")
+            except FAILURES as error:
+                self.message = "The connection was lost: %s." % error
+            if self._link is not None:
+                self._link.end()
+            pause = 0.25 if self.received > before else min(4.0, 2 * pause)
+            self._since = _now() if self.received > before else self._since
+            with self._news:
+                self._news.notify_all()
+                if not self.ended:
+                    self._news.wait(pause)
+
+    def _take(self, kind, data):
+        frame, value = (decode(data), {}) if kind == 2 else (None, json.loads(data.decode("utf-8")))
+        if "hello" in value:
+            _check(value["hello"])
+            self.message = ""
+            if self._since is not None:
+                seen, now = [(s.get("revision"), s.get("iteration")) for s in (self._frame or {}, value["session"])]
+                said = "Not connected for %.1f s: from revision %s, iteration %s to %s, %s."
+                self.lost = self.lost[-19:] + [said % ((_now() - self._since,) + seen + now)]
+        with self._news:
+            self.received += 1
+            self._frame = frame or self._frame
+            self.session = value.get("session") or value.get("state") or self.session
+            self.topology = value.get("topology", self.topology)
+            self._news.notify_all()
+        if frame is not None:
+            self._link.send(1, ('{"ack": %d}' % frame["number"]).encode("ascii"))
+
+
+class Link(object):
+    """A WebSocket (RFC 6455) on an open connection."""
+
+    def __init__(self, connection, path, token):
+        self._connection, self._sending = connection, threading.Lock()
+        connection.sock.settimeout(PATIENCE)
+        key = base64.b64encode(os.urandom(16)).decode("ascii")
+        headers = {"upgrade": "websocket", "connection": "upgrade", "authorization": "Bearer " + token}
+        headers.update({"sec-websocket-key": key, "sec-websocket-version": "13"})
+        connection.request("GET", path, headers=headers)
+        self._answer = connection.getresponse()
+        if self._answer.status != 101:
+            problem = _refusal(self._answer.status, self._answer.read())
+            connection.close()
+            raise problem
+        digest = hashlib.sha1((key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode("ascii")).digest()
+        if self._answer.getheader("sec-websocket-accept") != base64.b64encode(digest).decode("ascii"):
+            raise ValueError("no WebSocket")
+
+    def send(self, kind, data):
+        """Send a message of less than 64 kB: 1 text, 8 close, 10 pong."""
+        data, mask, size = _octets(data), _octets(os.urandom(4)), len(data)
+        head = bytearray([0x80 | kind, 0x80 | min(size, 126)] + ([size >> 8, size & 255] if size > 125 else []))
+        data = bytearray([octet ^ mask[i & 3] for i, octet in enumerate(data)])
+        with self._sending:
+            self._connection.sock.sendall(bytes(head + mask + data))
+
+    def receive(self):
+        """Kind and bytes of the next message."""
+        kind, whole = 0, bytearray()
+        while True:
+            first, second = self._exactly(2)
+            code, last, size = first & 15, first & 0x80, second & 127
+            if size > 125:
+                wide, size = self._exactly(2 if size == 126 else 8), 0
+                for octet in wide:
+                    size = size << 8 | octet
+            wrong = (code == 0) != bool(kind) if code < 3 else code not in (8, 9, 10) or size > 125 or not last
+            if wrong or first & 0x70 or second & 0x80 or len(whole) + size > 1 << 28:
+                raise ValueError("a part of no message")
+            data = self._exactly(size)
+            if code == 8:
+                code = data[0] << 8 | data[1] if size > 1 else 1005
+                said = bytes(data[2:]).decode("utf-8", "replace") or "Closed with %d." % code
+                raise Problem("not-found" if code == 4404 else "closed", said, code)
+            if code == 9:
+                self.send(10, data)
+            if code < 3:
+                kind = kind or code
+                whole.extend(data)
+                if last:
+                    return kind, bytes(whole)
+
+    def end(self):
+        """Close it."""
+        try:
+            self._connection.sock.settimeout(REACH)
+            self.send(8, b"\x03\xe8")
+            self._connection.sock.shutdown(socket.SHUT_RDWR)  # wakes who receives
+        except FAILURES:
+            pass
+        self._connection.close()
+
+    def _exactly(self, size):
+        data = self._answer.fp.read(size) if size else b""
+        if len(data) < size:
+            raise EOFError("the server has gone")
+        return _octets(data)
+
+
+def decode(data):
+    """A frame: FIELDS and flat x y z of `particles` and `reactions`; `scalars`: the force of each spring."""
+    if data[:4] != b"HKFR" or len(data) < HEADER.size:
+        raise ValueError("no frame")
+    frame = dict(zip(FIELDS, HEADER.unpack(data[: HEADER.size])))
+    _check(frame["version"])
+    end, last, count = 3 * frame["n"], 3 * frame["n"] + frame["m"], len(data) // 4 - 16
+    if frame["flags"] & ~7 or frame["size"] != HEADER.size or len(data) % 4 or count < last or (count - last) % 3:
+        raise ValueError("no frame")
+    floats = struct.unpack("<%df" % count, data[HEADER.size :])
+    frame.update(status=STATUSES[frame["status"]], playing=bool(frame["playing"]))
+    return dict(frame, particles=floats[:end], scalars=floats[end:last], reactions=floats[last:])
+
+
+def buffer(values, code="d"):
+    """An array as base64 for a scene: numbers, or rows of them; code: d decimal, q whole."""
+    flat = list(values)
+    shape = [len(flat)]
+    while flat and hasattr(flat[0], "__len__"):
+        shape.append(len(flat[0]))
+        flat = [value for row in flat for value in row]
+    raw = base64.b64encode(struct.pack("<%d%s" % (len(flat), code), *flat)).decode("ascii")
+    return {"dtype": "<f8" if code == "d" else "<i8", "shape": shape, "base64": raw}
+
+
+def state_folder():
+    """Where this user's server is found; HOOKEAN_STATE moves it."""
+    if os.name == "nt":
+        given, top = "LOCALAPPDATA", "~/AppData/Local"
+    elif os.path.isdir("/System/Library"):
+        given, top = "", "~/Library/Application Support"
+    else:
+        given, top = "XDG_STATE_HOME", "~/.local/state"
+    top = os.environ.get(given, "").strip() or os.path.expanduser(top)
+    return os.environ.get("HOOKEAN_STATE") or os.path.join(top, "hookean")
+
+
+def _found(place):
+    told = _told(place, "server.json")
+    connection = _open(told["url"], told["instance"], _now() + ANSWER) if _alive(told.get("pid")) else None
+    if connection is None:
+        return None
+    connection.close()
+    _check(told.get("wire"))
+    _unlink(os.path.join(place, "starting"))
+    return told
+
+
+def _open(url, instance, until):
+    host, _, port = url.split("//")[-1].rpartition(":")
+    connection = httplib.HTTPConnection(host.strip("[]"), int(port or 0), timeout=REACH)
+    try:
+        connection.connect()
+        connection.sock.settimeout(max(0.01, min(ANSWER, until - _now())))
+        connection.request("GET", "/v1/health")
+        if json.loads(connection.getresponse().read().decode("utf-8"))["instance"] == instance:
+            return connection
+    except FAILURES:
+        pass
+    connection.close()
+    return None
+
+
+def _told(place, name):
+    try:
+        with open(os.path.join(place, name)) as file:
+            return dict(json.load(file))
+    except FAILURES:
+        return {}
+
+
+def _start(place, python, parent, idle):
+    path, log = os.path.join(place, "starting"), os.path.join(place, "start.log")
+    with _lock:
+        child = _children.get(place)
+        if child is not None:
+            if child.poll() is None:
+                return
+            del _children[place]
+            _unlink(path)
+            if child.returncode > 0:
+                with open(log) as file:
+                    raise Problem("not-started", "It did not start: " + file.read().strip().split("\n")[-1][:300])
+        python = python or os.environ.get("HOOKEAN_PYTHON") or _told(place, "python.json").get("python")
+        if not python:
+            raise Problem("no-python", "Set HOOKEAN_PYTHON to the Python with hookean, or run `hookean serve` once.")
+        command = [str(python), "-m", "hookean.cli", "serve", "--any-port"]
+        command += ["--parent-pid", str(parent), "--idle-exit", str(idle)]
+        ours = False
+        try:
+            if not os.path.isdir(place):
+                os.makedirs(place, 0o700)
+            if os.path.exists(path) and time.time() - os.stat(path).st_mtime > STARTING:
+                _unlink(path)
+            os.close(os.open(path, os.O_CREAT | os.O_EXCL, 0o600))
+            ours = True
+            _children[place] = _spawn(command, place, log)
+        except EnvironmentError as error:
+            if ours or error.errno not in (errno.EEXIST, errno.ENOENT):
+                _unlink(path)
+                raise Problem("not-started", "%s cannot be started (%s)." % (python, error))
+
+
+def _spawn(command, place, log):
+    kept = dict(os.environ, HOOKEAN_STATE=place)
+    for name in ("PYTHONHOME", "PYTHONPATH", "PYTHONSTARTUP"):
+        kept.pop(name, None)
+    options = {"cwd": place, "env": kept, "close_fds": True}
+    if os.name == "nt":
+        options["creationflags"] = 0x08000000 | 0x00000200  # no window, own group
+    else:
+        options.update({"start_new_session": True} if sys.version_info > (3,) else {"preexec_fn": os.setsid})
+    with open(log, "w+b") as file:
+        if os.name != "nt" or sys.version_info > (3, 7):  # before, not both
+            options.update(stdin=file, stdout=file, stderr=file)
+        return subprocess.Popen(command, **options)
+
+
+def _alive(pid):
+    try:
+        return bool(pid) and (os.name == "nt" or os.kill(pid, 0) is None)
+    except FAILURES:
+        return False
+
+
+def _refusal(status, data):
+    try:
+        said = json.loads(data.decode("utf-8"))
+        errors = [(e["pointer"], e["detail"]) for e in said.get("errors", [])]
+        return Problem(said["type"].split("/")[-1], said["detail"], status, errors)
+    except FAILURES:
+        return Problem("unknown", "The server answered with %d." % status, status)
+
+
+def _check(wire):
+    if wire != WIRE:
+        said = "Its frames are of version %s, not %d; `hookean serve --stop` stops it." % (wire, WIRE)
+        raise Problem("wrong-version", said)
+
+
+def _octets(data):
+    return bytearray(data if isinstance(data, (bytes, bytearray)) else map(ord, data))  # IronPython's are text
+
+
+def _unlink(path):
+    try:
+        os.unlink(path)
+    except OSError:
+        pass
