@@ -9,7 +9,7 @@ from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 
 NICE = 10  # how far jobs give way to requests and sessions
-NOTICE = 1.2  # seconds a worker may take to notice that its job is cancelled
+NOTICE = 1.5  # seconds a worker may take to notice that its job is cancelled
 
 
 class Executor(Protocol):

@@ -191,7 +191,8 @@ class Jobs:
             live.kept.done, live.kept.failed = found.done, found.failed
             live.event = max(live.event, found.event)
         if status == "cancelled":
-            message = message or f"Cancelled; {live.kept.done} of {live.kept.total} items are done."
+            done = f"{live.kept.done} of {live.kept.total} items are done"
+            message = message or f"Cancelled; {done if live.kept.kind == 'sweep' else 'its last shape is kept'}."
         await self._runner.stored(rows.status(live.kept.id, status, message))
         live.kept.status, live.kept.message = status, message
         live.ended, live.task = True, None

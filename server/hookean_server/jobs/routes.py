@@ -131,7 +131,7 @@ async def result(
         raise Problem("not-found", f"Item {number} is not done; there are {live.kept.total}, counted from 0.")
     if row.status == "failed":
         return Response(tables.line_of(row), headers=_KEEP, media_type="application/json")
-    if row.status == rows.PARTIAL:
+    if row.status in (rows.PARTIAL, rows.STOPPED):
         return Response(await _partial(request, live, row), headers=_KEEP, media_type="application/json")
     if live.kept.kind == "relaxation":
         return Response(row.body.partition(b"\n")[2], headers=_KEEP, media_type="application/json")
@@ -143,12 +143,12 @@ async def result(
 
 
 async def _partial(request: Request, live: Live, row: rows.Row) -> bytes:
-    """The shape of a relaxation's last checkpoint."""
+    """The shape of a relaxation that is not done, as it was last kept."""
     said, _, state = row.body.partition(b"\n")
     _, body = await _jobs(request).about(live)
     values = json.loads(said)
     status = "cancelled" if live.cancelled else "running" if not live.ended else "stalled"
-    message = f"The shape after {values['iteration']} iterations, residual {values['residual']:.3g}."
+    message = values.get("message") or f"The shape after {values['iteration']} iterations."
     options = {"size": len(body), "status": status, "message": message}
     reply = await _worked(request, Job("shape", options, body + state, request.app.state.settings.solve_seconds))
     return reply.body.partition(b"\n")[2]

@@ -12,7 +12,9 @@ from hookean_server.store import Work
 
 UNFINISHED = ("waiting", "running")
 PARTIAL = "running"
-"""Status of the item of a relaxation that is not done: its body is a checkpoint."""
+"""Status of the item of a relaxation that is not done: its body is a checkpoint, a line on it and the state."""
+STOPPED = "cancelled"
+"""Status of the item of a relaxation that was cancelled: a row and the state."""
 
 
 @dataclass

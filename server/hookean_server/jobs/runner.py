@@ -205,7 +205,7 @@ class Runner:
             live.solving = None
         line, _ = _cut(body)
         row = json.loads(line)
-        status = "cancelled" if row["status"] == "cancelled" else "done"
+        status = rows.STOPPED if row["status"] == "cancelled" else "done"
         await self._keep(live, [(0, status, body)])
         return status, row["message"]
 

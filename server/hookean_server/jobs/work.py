@@ -189,7 +189,7 @@ def item(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
 def relaxation(options: dict[str, Any], body: bytes, link: Any) -> Done:
     """Relax the scene of a request, from the state behind it where there is one; tells of progress on the way.
 
-    The answer is a row, a line feed and the whole result.
+    The answer is a row, a line feed and the whole result; of one that was cancelled, which is in a hurry, its state.
     """
     request, kept = body[: options["size"]], body[options["size"] :]
     scene = bounded(Scene.model_validate(parse(request)["scene"]), options["seconds"])
@@ -201,6 +201,8 @@ def relaxation(options: dict[str, Any], body: bytes, link: Any) -> Done:
     _look_often(method, system)
     teller = _Teller(state, getattr(link, "say", None))
     result = relax_state(system, state, method, teller.progress, link)
+    if result.status is Status.CANCELLED:
+        return Done(_line(result, system) + _state_bytes(state))
     return Done(_relaxed(result, system))
 
 
@@ -236,10 +238,13 @@ def shape(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
     return Done(_relaxed(result, system))
 
 
-def _relaxed(result: Result, system: System) -> bytes:
+def _line(result: Result, system: System) -> bytes:
     row = {"number": 0, "parameters": {}, **figures(result, system)}
-    line = json.dumps(row, separators=(",", ":"), allow_nan=False).encode()
-    return line + b"\n" + answers.encode(result, system.scene, "list", None)
+    return json.dumps(row, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+
+
+def _relaxed(result: Result, system: System) -> bytes:
+    return _line(result, system) + answers.encode(result, system.scene, "list", None)
 
 
 def _look_often(method: Solver, system: System) -> None:
