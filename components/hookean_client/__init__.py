@@ -4,7 +4,7 @@
     session.put(scene)
     frames = session.frames()
     session.play()
-    frame = frames.latest()  # the newest, at once; None before the first
+    frame = frames.latest()  # the newest; None before the first
 
 For Python 2.7 to 3.13. What fails raises `Problem`; nothing waits longer than its `timeout` [s]; a server is asked
 nothing before it has shown that it is the one in this user's file.
@@ -36,10 +36,10 @@ PATIENCE, STARTING = 60.0, 30.0  # seconds a socket may be silent, a start may t
 STATUSES = "running converged stalled diverged max_iterations time_limit cancelled".split()
 HEADER = struct.Struct("<4sHHIIQQddIIBBHf")
 FIELDS = "magic version size flags number revision iteration time residual n m status playing _ kinetic".split()
-FAILURES = (EnvironmentError, httplib.HTTPException, EOFError, ValueError, TypeError, AttributeError, KeyError)
+FAILURES = (EnvironmentError, httplib.HTTPException, EOFError, ValueError, TypeError, AttributeError, LookupError)
 _now = getattr(time, "monotonic", time.time)
 _lock = threading.Lock()
-_children = {}  # servers started from here, by folder
+_children = {}  # started from here, by folder
 
 
 class Problem(Exception):
@@ -248,7 +248,7 @@ class Frames(object):
             self.message = ""
             if self._since is not None:
                 seen, now = [(s.get("revision"), s.get("iteration")) for s in (self._frame or {}, value["session"])]
-                said = "Not connected for %.1f s: from revision %s, iteration %s to %s, %s."
+                said = "Lost for %.1f s: from revision %s, iteration %s to %s, %s."
                 self.lost = self.lost[-19:] + [said % ((_now() - self._since,) + seen + now)]
         with self._news:
             self.received += 1
@@ -337,7 +337,7 @@ def decode(data):
     frame = dict(zip(FIELDS, HEADER.unpack(data[: HEADER.size])))
     _check(frame["version"])
     end, last, count = 3 * frame["n"], 3 * frame["n"] + frame["m"], len(data) // 4 - 16
-    if frame["flags"] & ~7 or frame["size"] != HEADER.size or len(data) % 4 or count < last or (count - last) % 3:
+    if frame["flags"] & ~7 or frame["size"] != 64 or len(data) % 4 or count < last or (count - last) % 3:
         raise ValueError("no frame")
     floats = struct.unpack("<%df" % count, data[HEADER.size :])
     frame.update(status=STATUSES[frame["status"]], playing=bool(frame["playing"]))

@@ -1,0 +1,116 @@
+"""A folder of a user's own in which `hookean serve` runs, is found and ends."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+CABLE: dict[str, Any] = {
+    "particles": [[0, 0, 0], [2, 0, 0], [4, 0, 0], [6, 0, 0], [8, 0, 0], [10, 0, 0]],
+    "forces": [
+        {"kind": "springs", "particles": [[0, 1], [1, 2], [2, 3], [3, 4], [4, 5]], "stiffness": 1000},
+        {"kind": "unary", "particles": [0, 1, 2, 3, 4, 5], "vector": [0, 0, -20]},
+    ],
+    "anchors": [{"particles": [0, 5]}],
+}
+SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
+
+
+def wait_for(true: Callable[[], Any], seconds: float = 60.0) -> Any:
+    """What `true()` is, once it is; fails after `seconds`."""
+    until = time.monotonic() + seconds
+    while not (found := true()):
+        assert time.monotonic() < until, "waited too long"
+        time.sleep(0.02)
+    return found
+
+
+def living(pid: int) -> bool:
+    """Whether a process runs; one that waits to be collected does not."""
+    try:
+        return bool(psutil.Process(pid).status() != psutil.STATUS_ZOMBIE)
+    except psutil.NoSuchProcess:
+        return False
+
+
+class Home:
+    """A state folder and the servers started in it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.environment = {**os.environ, "HOOKEAN_STATE": str(folder), "HOOKEAN_PYTHON": sys.executable}
+        self.environment.pop("HOOKEAN_TOKEN", None)
+        self.started: list[subprocess.Popen[str]] = []
+
+    def start(self, *options: str) -> subprocess.Popen[str]:
+        """`hookean serve` with any free port."""
+        command = [sys.executable, "-m", "hookean.cli", "serve", *(options or ("--port", "0"))]
+        pipes: Any = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        process = subprocess.Popen(command, env=self.environment, **pipes)
+        self.started.append(process)
+        return process
+
+    def serve(self, *options: str) -> subprocess.Popen[str]:
+        """The same, once it says that it serves."""
+        process = self.start("--port", "0", *options)
+        assert process.stdout is not None
+        said = process.stdout.readline()
+        assert said.startswith("hookean serves at"), (said, process.communicate(timeout=20))
+        return process
+
+    def command(self, *words: str) -> subprocess.CompletedProcess[str]:
+        """`hookean` with these words, to its end."""
+        command = [sys.executable, "-m", "hookean.cli", *words]
+        return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=120, check=False)
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What server.json says; empty where there is none."""
+        try:
+            found: dict[str, Any] = json.loads((self.folder / "server.json").read_text())
+        except FileNotFoundError:
+            return {}
+        return found
+
+    def serving(self) -> list[int]:
+        """The processes that hold the lock of this folder open: those that serve, or look whether one does."""
+        lock, found = self.folder / "server.lock", []
+        for process in psutil.process_iter():
+            with suppress(psutil.Error, OSError):
+                if any(Path(file.path) == lock for file in process.open_files()):
+                    found.append(process.pid)
+        return found
+
+    def kill(self) -> int:
+        """kill -9 of the server that is told of; its number."""
+        pid = int(self.told["pid"])
+        os.kill(pid, signal.SIGKILL)
+        wait_for(lambda: not living(pid))
+        return pid
+
+    def end(self) -> None:
+        """End all that was started here."""
+        if self.told and living(self.told["pid"]):
+            with suppress(OSError):
+                os.kill(self.told["pid"], signal.SIGCONT)
+                os.kill(self.told["pid"], signal.SIGTERM)
+        for process in self.started:
+            if process.poll() is None:
+                process.terminate()
+            try:
+                process.communicate(timeout=30)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.communicate()
+        if self.told:
+            wait_for(lambda: not (self.told and living(self.told["pid"])))
