@@ -15,7 +15,8 @@ def run(folder: Path) -> Outcome:
     drawn = scene.meshes["layer:membrane"]
     result = relax(scene)
     springs = result.force("membrane")
-    middle = len(result.particles) // 2  # of 21 x 21 particles
+    side = round(len(result.particles) ** 0.5)
+    middle = len(result.particles) // 2
     numbers = {
         "vertices of the mesh": len(drawn.vertices),
         "edges of the mesh": len(edges((drawn.vertices, drawn.faces))),
@@ -24,7 +25,7 @@ def run(folder: Path) -> Outcome:
         "least force": springs["force"].min(),
         "length of all springs": springs["length"].sum(),
         "upward reactions together": result.reactions["force"][:, 2].sum(),
-        "difference between mirror images": mirrored(result.particles[:, 2].reshape(21, 21)),
+        "difference between mirror images": mirrored(result.particles[:, 2].reshape(side, side)),
     }
     # the same result twice: without its carried mesh, and without its springs
     return Outcome(

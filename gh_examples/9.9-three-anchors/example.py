@@ -17,12 +17,14 @@ def run(folder: Path) -> Outcome:
     held, stray, free = relax(three), relax(between), relax(two)
     (unmatched,) = stray.report.unmatched
     z = held.particles[:, 2]
+    lift = dict(zip(held.reactions["particles"].tolist(), held.reactions["force"][:, 2], strict=True))
+    third = sorted(lift)[1]
     numbers = {
         "sag with two anchors": -free.particles[:, 2].min(),
-        "sag of the left part": -z[:5].min(),
-        "sag of the right part": -z[4:].min(),
-        "lift of the third anchor": held.reactions["force"][list(held.reactions["particles"]).index(4), 2],
-        "lift of all anchors": held.reactions["force"][:, 2].sum(),
+        "sag of the left part": -z[: third + 1].min(),
+        "sag of the right part": -z[third:].min(),
+        "lift of the third anchor": lift[third],
+        "lift of all anchors": sum(lift.values()),
         "sag with an anchor between particles": -stray.particles[:, 2].min(),
         "distance of that anchor from a particle": unmatched.distance,
     }
