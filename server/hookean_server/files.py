@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import json
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,9 +28,9 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
     has a part `file`, and may have a part `recipe` (JSON text). Raises InputError naming the part.
     """
     clock = Clock()
-    data, recipe = parts(Path(options["path"]), options["content_type"])
-    clock.lap("decode")
-    with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
+    with _beside(options["path"]) as folder:
+        data, recipe = parts(Path(options["path"]), options["content_type"])
+        clock.lap("decode")
         source, target = Path(folder) / "upload.3dm", Path(folder) / "relaxed.3dm"
         source.write_bytes(data)
         report = options["answer"] == "report"
@@ -37,6 +38,8 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
             reading = limited(options["read_seconds"])
             done = _relax_file()(source, None if report else target, recipe, cancelled=cancelled, reading=reading)
         except InputError as error:
+            if isinstance(error.__cause__, OSError):
+                raise error.__cause__ from None  # our disk is at fault, not the file
             raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
         clock.lap("solve")
         if report:
@@ -49,8 +52,8 @@ def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
     """The scene that an uploaded file holds, as JSON, warnings in a header; options and faults as `relax_upload`."""
     from hookean.files.relax_file import open_file
 
-    data, recipe = parts(Path(options["path"]), options["content_type"])
-    with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
+    with _beside(options["path"]) as folder:
+        data, recipe = parts(Path(options["path"]), options["content_type"])
         source = Path(folder) / "upload.3dm"
         source.write_bytes(data)
         try:
@@ -59,6 +62,19 @@ def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         except InputError as error:
             raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
     return Done(read.scene.canonical.encode(), headers=_told(read.warnings))
+
+
+@contextlib.contextmanager
+def _beside(path: str) -> Iterator[str]:
+    """A folder for what is written meanwhile, beside the body: the server takes both away, also where this process is
+    ended."""
+    before = tempfile.tempdir
+    try:
+        with tempfile.TemporaryDirectory(prefix="hookean-", dir=Path(path).parent) as folder:
+            tempfile.tempdir = folder
+            yield folder
+    finally:
+        tempfile.tempdir = before
 
 
 def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:

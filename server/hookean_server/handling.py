@@ -15,7 +15,7 @@ from starlette.responses import Response
 
 from hookean_server.limits import media_type
 from hookean_server.pool import Job, Pool, Reply
-from hookean_server.problems import Problem
+from hookean_server.problems import Problem, not_stored
 from hookean_server.settings import Settings
 
 
@@ -54,12 +54,16 @@ async def _uploaded(request: Request, task: str, options: dict[str, Any]) -> Rep
     if media_type(request.headers) != "multipart/form-data":
         raise Problem("unsupported-media", "Send the file as a form: Content-Type: multipart/form-data.")
     with pool.place():
-        folder = tempfile.mkdtemp(prefix="hookean-")
+        folder = ""
         try:
-            path = Path(folder) / "body"
-            with path.open("wb") as file:
-                async for chunk in request.stream():
-                    file.write(chunk)
+            try:
+                folder = tempfile.mkdtemp(prefix="hookean-")
+                path = Path(folder) / "body"
+                with path.open("wb") as file:
+                    async for chunk in request.stream():
+                        file.write(chunk)
+            except OSError as error:
+                raise not_stored(error) from None
             told = {"content_type": request.headers["content-type"], "read_seconds": settings.read_seconds}
             given = {**options, "path": str(path), **told}
             job = Job(task, given, b"", settings.file_seconds + settings.grace_seconds, once=True)

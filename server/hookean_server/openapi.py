@@ -18,8 +18,8 @@ SESSIONS = {"application/json": {"schema": {"$ref": "#/components/schemas/Sessio
 FORCES = {"application/json": {"schema": {"$ref": "#/components/schemas/Catalogue"}}}
 METRICS = {"text/plain": {"schema": {"type": "string"}}}
 _ALWAYS = (401, 403, 404, 405, 431, 500)
-_COMPUTED = (*_ALWAYS, 408, 413, 415, 422, 503, 504)
-_LIVE = (*_COMPUTED, 409, 412, 429, 507)
+_COMPUTED = (*_ALWAYS, 408, 413, 415, 422, 503, 504, 507)
+_LIVE = (*_COMPUTED, 409, 412, 429)
 
 
 def problems(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 from collections.abc import Iterable
 from typing import Any
@@ -131,6 +132,15 @@ class Problem(Exception):
         elif self.errors:
             document["errors"] = [{"pointer": p, "detail": d} for p, d in self.errors[:MOST]]
         return json.dumps(document).encode()
+
+
+def not_stored(error: BaseException) -> Problem:
+    """What a disk that is full or broken gives."""
+    full = "full" in str(error) or getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT)
+    why = "the disk is full" if full else "the disk or its file system refused the write"
+    return Problem(
+        "not-stored", f"Nothing was changed: {why}. Make room or mend it and repeat the request; nothing else is lost."
+    )
 
 
 def faulty(slug: str, faults: list[InputError]) -> Problem:

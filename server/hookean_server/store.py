@@ -20,7 +20,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from hookean_server.problems import Problem
+from hookean_server.problems import not_stored
 
 log = logging.getLogger("hookean.store")
 
@@ -81,8 +81,8 @@ Work = Callable[[sqlite3.Connection], Any]
 class Store:
     """The file at `path`; none: in memory, for a server that keeps nothing."""
 
-    def __init__(self, path: Path | None) -> None:
-        self.path = path
+    def __init__(self, path: Path | str | None) -> None:
+        self.path = None if path is None else Path(path)
         self.failing = ""
         self.seconds = 0.0  # that the last work took
         self._work: queue.SimpleQueue[tuple[Work, Future[Any]] | None] = queue.SimpleQueue()
@@ -127,7 +127,7 @@ class Store:
             except sqlite3.Error as error:
                 self.failing = str(error)
                 log.error("not stored: %s", error)
-                future.set_exception(_not_stored(error))
+                future.set_exception(not_stored(error))
             except BaseException as error:
                 future.set_exception(error)
             else:
@@ -148,13 +148,6 @@ def _transaction(connection: sqlite3.Connection, work: Work) -> Any:
         if connection.in_transaction:
             connection.execute("ROLLBACK")
         raise
-
-
-def _not_stored(error: sqlite3.Error) -> Problem:
-    why = "the disk is full" if "full" in str(error) else "the disk or its file system refused the write"
-    return Problem(
-        "not-stored", f"Nothing was changed: {why}. Make room or mend it and repeat the request; nothing else is lost."
-    )
 
 
 def _opened(path: Path | None) -> sqlite3.Connection:

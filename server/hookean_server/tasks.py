@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from hookean.errors import InputError
 from hookean.scene import faults
-from hookean_server.problems import Problem, faulty
+from hookean_server.problems import Problem, faulty, not_stored
 
 log = logging.getLogger("hookean.worker")
 Cancelled = Callable[[], bool]
@@ -58,6 +58,9 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
         return _failed(faulty(slug, [InputError("/", "nested too deeply")])), b""
     except UnicodeError:
         return _failed(faulty(slug, [InputError("/", "a text has characters that are no Unicode")])), b""
+    except OSError as error:
+        log.error("%s could not write: %s", request["task"], error.strerror)
+        return _failed(not_stored(error)), b""
     except MemoryError:
         return _failed(
             Problem("too-large", "This needs more memory than one request may use.", [("/", "too large")])
