@@ -14,7 +14,7 @@ from typing import Any
 from hookean_server.logs import short_hash
 from hookean_server.problems import Problem
 from hookean_server.sessions import rows
-from hookean_server.sessions.process import SessionProcess
+from hookean_server.sessions.process import Gone, SessionProcess
 from hookean_server.settings import Settings
 from hookean_server.store import Store
 
@@ -34,7 +34,8 @@ class Live:
     key: str
     label: str
     described: dict[str, Any]
-    lock: asyncio.Lock = field(default_factory=asyncio.Lock)
+    lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # of edits, which have an order
+    waking: asyncio.Lock = field(default_factory=asyncio.Lock)
     process: SessionProcess | None = None
     playing: bool = False
     fast: bool = False
@@ -111,7 +112,7 @@ class Manager:
             live = Live(key or secrets.token_hex(16), label, {})
             # its place is taken at once: a second request with the same key waits for the first
             self.sessions[live.key] = live
-            async with live.lock:
+            async with live.lock, live.waking:
                 try:
                     process = await self._process(live)
                     described, base = await process.call("create", body, seconds=ANSWER, slug="invalid-scene")
@@ -134,8 +135,10 @@ class Manager:
 
     async def _edit(self, live: Live, body: bytes, revision: int | None) -> dict[str, Any]:
         async with live.lock:
+            described, made = await self._ask(
+                live, "edit", body, seconds=ANSWER, revision=revision, slug="invalid-input"
+            )
             process = await self._awake(live)
-            described, made = await process.call("edit", body, seconds=ANSWER, revision=revision, slug="invalid-input")
             sets = described.pop("sets", "")
             try:
                 live.edits = await self.store.run(rows.edit(live.key, described["revision"], sets, made))
@@ -154,11 +157,11 @@ class Manager:
         if do == "pause":
             return await self._pause(live)
         async with live.lock:
-            process = await self._awake(live)
+            await self._awake(live)
             if do == "play":
                 live.playing, live.fast = True, bool(options.get("fast"))
         seconds = self.settings.solve_seconds if do == "step" else ANSWER
-        described, _ = await process.call(do, seconds=seconds, **options)
+        described, _ = await self._ask(live, do, seconds=seconds, **options)
         self._heard(live, described)
         live.playing = live.playing and do == "play" and described["playing"]
         return live.described
@@ -166,9 +169,7 @@ class Manager:
     async def export(self, key: str, form: str, arrays: str = "list") -> tuple[dict[str, Any], bytes]:
         """The session in some format; its head has the media `type`."""
         live = self.find(key)
-        async with live.lock:
-            process = await self._awake(live)
-        return await process.call("export", seconds=ANSWER, format=form, arrays=arrays)
+        return await self._ask(live, "export", seconds=ANSWER, format=form, arrays=arrays)
 
     async def branch(self, key: str, new: str | None, label: str) -> Live:
         """Another session that goes on from where this one is, paused."""
@@ -202,10 +203,27 @@ class Manager:
 
     # processes
 
+    async def _ask(
+        self, live: Live, do: str, body: bytes = b"", *, seconds: float, **head: Any
+    ) -> tuple[dict[str, Any], bytes]:
+        """What the session's process answers; one that ends meanwhile is brought back and asked once more."""
+        for last in (False, True):
+            process = await self._awake(live)
+            try:
+                return await process.call(do, body, seconds=seconds, **head)
+            except Gone:
+                if last:
+                    raise
+        raise AssertionError
+
     async def _awake(self, live: Live) -> SessionProcess:
-        """The session's process, started from the store where there is none. The lock is held."""
-        if live.process is not None and not live.process.lost:
-            return live.process
+        """The session's process, started from the store where there is none."""
+        async with live.waking:
+            if live.process is not None and not live.process.lost:
+                return live.process
+            return await self._restored(live)
+
+    async def _restored(self, live: Live) -> SessionProcess:
         if live.key not in self.sessions:
             raise Problem("not-found", "This session has been deleted.")
         found = await self.store.run(rows.load(live.key))

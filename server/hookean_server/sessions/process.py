@@ -22,6 +22,16 @@ from hookean_server.sessions.host import host
 Event = Callable[[dict[str, Any], bytes], None]
 
 
+class Gone(Problem):
+    """The process ended before it answered: nothing that was asked of it has happened."""
+
+    def __init__(self) -> None:
+        super().__init__("worker-lost", "The process of this session ended; it is brought back. Try again.")
+
+
+GONE: dict[str, Any] = {}
+
+
 class SessionProcess:
     """One process that holds one simulation. `on_event` hears of its events, and with {"event": "lost"} of its end; it
     is called on a thread of ours."""
@@ -58,6 +68,8 @@ class SessionProcess:
             raise Problem("worker-lost", f"The session did not answer in {seconds:g} s; it is brought back.") from None
         finally:
             self._waiting.pop(number, None)
+        if answer is GONE:
+            raise Gone
         if "problem" in answer:
             raise Problem(answer["problem"], answer["detail"], [(p, d) for p, d in answer["errors"]])
         return answer, data
@@ -108,7 +120,6 @@ class SessionProcess:
         connection.close()
 
     def _fail(self) -> None:
-        gone = {"problem": "worker-lost", "detail": "The process of this session ended.", "errors": []}
         for future in list(self._waiting.values()):
             if not future.done():
-                future.set_result((gone, b""))
+                future.set_result((GONE, b""))

@@ -67,7 +67,7 @@ async def put(request: Request, key: Key, label: Label = "") -> Response:
 @router.get("/v1/sessions", summary="All sessions", responses=openapi.problems(openapi.SESSIONS))
 async def listing(request: Request) -> dict[str, Any]:
     """Every session with its state and the sentence on it."""
-    return {"sessions": [summary(live) for live in manager(request).sessions.values()]}
+    return {"sessions": [summary(live) for live in manager(request).sessions.values() if live.described]}
 
 
 @router.get("/v1/sessions/{key}", summary="How a session stands", responses=openapi.problems(openapi.SESSION, 404))

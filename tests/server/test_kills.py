@@ -1,0 +1,148 @@
+"""Nothing acknowledged is lost: the server and its workers are killed at random moments and come back.
+
+A tenth of the kills in `make test`; HOOKEAN_SOAK=1 all hundred of each.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import sqlite3
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from .conftest import CABLE, Served, wait_for
+
+KILLS = 100 if os.environ.get("HOOKEAN_SOAK") == "1" else 10
+
+
+class Ledger(threading.Thread):
+    """A client that creates, edits and plays sessions, and notes what was acknowledged."""
+
+    def __init__(self, served: Served, number: int, seed: int) -> None:
+        super().__init__(daemon=True)
+        self.client = httpx.Client(base_url=served.url, headers=served.client.headers, timeout=20.0)
+        self.number, self.random = number, random.Random(seed)
+        self.acknowledged: dict[str, tuple[int, float]] = {}
+        self.answers = 0
+        self.stop = threading.Event()
+
+    def run(self) -> None:
+        """Until the server is gone."""
+        try:
+            while not self.stop.is_set():
+                key = f"{self.number}-{self.random.randrange(3)}"
+                if key not in self.acknowledged:
+                    answer = self.client.put(f"/v1/sessions/{key}", json=CABLE)
+                    if answer.status_code in (200, 201):
+                        self.acknowledged[key] = (answer.json()["revision"], -20.0)
+                    continue
+                load = -float(self.random.randrange(1, 10**6))
+                answer = self.client.patch(f"/v1/sessions/{key}", json={"forces": {"1": {"vector": [0, 0, load]}}})
+                self.answers += answer.status_code == 200
+                if answer.status_code == 200:
+                    self.acknowledged[key] = (answer.json()["revision"], load)
+                if self.random.random() < 0.3:
+                    self.client.post(f"/v1/sessions/{key}/{self.random.choice(['play', 'pause', 'step'])}")
+        except httpx.HTTPError:
+            return
+        finally:
+            self.client.close()
+
+
+def test_no_acknowledged_edit_is_lost_when_the_server_is_killed(tmp_path: Path) -> None:
+    """kill -9 under load, time and again: every acknowledged revision and value is there afterwards, the database is
+    whole, sessions have their keys and are paused."""
+    state, known = tmp_path / "sessions.db", {}  # type: Path, dict[str, tuple[int, float]]
+    chance = random.Random(11)
+    for kill in range(KILLS):
+        served = Served(state=str(state))
+        try:
+            _check(served, known)
+            ledgers = [Ledger(served, number, 100 * kill + number) for number in range(3)]
+            for ledger in ledgers:
+                ledger.acknowledged = {k: v for k, v in known.items() if k.startswith(f"{ledger.number}-")}
+                ledger.start()
+            wait_for(lambda ledgers=ledgers: any(ledger.answers for ledger in ledgers), 60.0)
+            time.sleep(chance.uniform(0.0, 1.0))
+            os.kill(served.process.pid, signal.SIGKILL)
+            for ledger in ledgers:
+                ledger.stop.set()
+                ledger.join(20)
+                known.update(ledger.acknowledged)
+        finally:
+            served.end(signal.SIGKILL)
+        with sqlite3.connect(state) as database:
+            assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        database.close()
+    assert len(known) >= 3 and sum(revision for revision, _ in known.values()) > KILLS
+    served = Served(state=str(state))
+    try:
+        _check(served, known)
+    finally:
+        served.end()
+
+
+def _check(served: Served, known: dict[str, tuple[int, float]]) -> None:
+    """An edit after the last acknowledged one may have been stored: then the revision is higher, never lower."""
+    sessions: dict[str, Any] = {s["key"]: s for s in served.client.get("/v1/sessions").json()["sessions"]}
+    for key, (revision, load) in known.items():
+        assert not sessions[key]["playing"]
+        scene = served.client.get(f"/v1/sessions/{key}/scene").json()
+        found = served.client.get(f"/v1/sessions/{key}").json()["revision"]
+        assert found >= revision
+        if found == revision:
+            assert scene["forces"][1]["vector"] == [0, 0, load]
+        known[key] = (found, scene["forces"][1]["vector"][2])
+
+
+@pytest.fixture
+def swinging() -> dict[str, Any]:
+    """A cable that never comes to rest."""
+    scene: dict[str, Any] = {**CABLE, "settings": {"drag": 0, "time_step": 0.001}}
+    scene["forces"] = [{**CABLE["forces"][0], "damping": 0}, CABLE["forces"][1]]
+    return scene
+
+
+def test_a_session_goes_on_when_its_process_is_killed(swinging: dict[str, Any]) -> None:
+    """The process of a playing session is killed: it goes on by itself, from a checkpoint less than the iterations of
+    a second old, with all edits; after a third kill within a minute it waits to be used."""
+    served = Served().ready()
+    try:
+        for number in range(max(2, KILLS // 3)):
+            key = f"s{number}"
+            served.client.put(f"/v1/sessions/{key}", json=swinging)
+            served.client.post(f"/v1/sessions/{key}/play", params={"fast": True})
+            for kill in range(3):
+                answer = served.client.patch(f"/v1/sessions/{key}", json={"settings": {"drag": 1e-6 * (kill + 1)}})
+                assert answer.status_code == 200 and answer.json()["revision"] == kill + 1, answer.text
+                wait_for(lambda key=key, kill=kill: _iteration(served, key) > 100 * (kill + 1), 20.0)
+                time.sleep(1.0)
+                before = _iteration(served, key)
+                for process in _hosts(served, key):
+                    os.kill(process, signal.SIGKILL)
+                # 60 frames a second of 20 iterations: what a checkpoint of a second ago lacks, and a beat
+                wait_for(lambda key=key, before=before: _iteration(served, key) > before, 20.0)
+                found = served.client.get(f"/v1/sessions/{key}").json()
+                assert found["revision"] == kill + 1
+                assert found["playing"]
+            served.client.delete(f"/v1/sessions/{key}")
+    finally:
+        served.end()
+
+
+def _iteration(served: Served, key: str) -> int:
+    return int(served.client.get(f"/v1/sessions/{key}").json()["iteration"])
+
+
+def _hosts(served: Served, key: str) -> list[int]:
+    """Processes of the server that are no idle workers: those that use the processor."""
+    found = [p for p in served.workers() if p.cpu_percent(0.2) > 3.0]
+    assert found, "no process is working"
+    return [p.pid for p in found]
