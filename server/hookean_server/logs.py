@@ -6,14 +6,18 @@ address as it was sent, a body or a coordinate.
 
 from __future__ import annotations
 
+import atexit
 import datetime
 import hashlib
 import json
 import logging
 import os
+import queue
 import sys
 import time
 import traceback
+from contextlib import suppress
+from logging.handlers import QueueHandler, QueueListener
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +26,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from hookean_server.metrics import Metrics
 
 VARIABLE = "HOOKEAN_LOG"
+MANY = 10_000  # lines that wait to be written
+PATIENCE = 1.0  # seconds for the last of them at the end
 LEFT = 499  # status of a request whose client left before the answer
 
 log = logging.getLogger("hookean.request")
@@ -47,13 +53,46 @@ class JsonLines(logging.Formatter):
         return json.dumps(line)
 
 
-def begin(given: str = "") -> bool:
+class Queued(QueueHandler):
+    """Hands lines to a thread that writes them: a stderr that nobody reads holds up no request. Where it is behind by
+    too many, lines are left out."""
+
+    def __init__(self, writer: logging.Handler) -> None:
+        super().__init__(queue.Queue(MANY))
+        self.writer = Writer(self.queue, writer)
+        self.writer.start()
+
+    def prepare(self, record: logging.LogRecord) -> logging.LogRecord:
+        """As it is: it stays in this process."""
+        return record
+
+    def enqueue(self, record: logging.LogRecord) -> None:
+        """Never waits."""
+        with suppress(queue.Full):
+            self.queue.put_nowait(record)
+
+
+class Writer(QueueListener):
+    """The thread that writes."""
+
+    def end(self) -> None:
+        """Write what is left, for a moment."""
+        if self._thread is not None:
+            with suppress(queue.Full):
+                self.enqueue_sentinel()
+            self._thread.join(PATIENCE)
+
+
+def begin(given: str = "", *, queued: bool = False) -> bool:
     """Log as JSON on stderr if that is asked for, here and in the processes started from here; whether it is."""
     if (given or os.environ.get(VARIABLE, "")) != "json":
         return False
     os.environ[VARIABLE] = "json"
-    handler = logging.StreamHandler(sys.stderr)
+    handler: logging.Handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(JsonLines())
+    if queued:
+        handler = Queued(handler)
+        atexit.register(handler.writer.end)
     root = logging.getLogger()
     root.handlers = [handler]
     logging.getLogger("hookean").setLevel(logging.INFO)

@@ -62,7 +62,7 @@ def serve(
             f"Warning: {host} can be reached from other machines, and nothing said to it is encrypted.", file=sys.stderr
         )
     Connection.header_seconds = settings.header_seconds
-    as_json = logs.begin(settings.log)
+    as_json = logs.begin(settings.log, queued=True)
     app = create_app(settings)
     activity = Activity(app)
     config = uvicorn.Config(

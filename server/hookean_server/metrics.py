@@ -1,4 +1,4 @@
-"""Figures of a running server for Prometheus: requests, sessions, workers, frames, the queue and the store."""
+"""Figures of a running server for Prometheus: requests, sessions, jobs, workers, frames, the queue and the store."""
 
 from __future__ import annotations
 
@@ -56,19 +56,23 @@ class _Present:
         self.state = state
 
     def collect(self) -> Iterable[Metric]:
-        """Sessions, workers, frames, the queue and the store."""
+        """Sessions, jobs, workers, frames, the queue and the store."""
         pool, sessions, store = self.state.pool, self.state.sessions, self.state.store
         live = list(sessions.sessions.values())
         yield _by_state("sessions", "Sessions by how they stand", Count(_standing(one) for one in live))
         awake = sum(one.process is not None for one in live)
-        yield _by_state("workers", "Processes by what they do", {**pool.states(), "session": awake})
+        sweeps = self.state.jobs.local.pool
+        workers = Count(pool.states()) + Count(sweeps.states())
+        states = dict.fromkeys(pool.states(), 0) | workers | {"session": awake}
+        yield _by_state("workers", "Processes by what they do", states)
+        yield _by_state("jobs", "Jobs by how they stand", self.state.jobs.states())
         yield _counted("frames_sent", "Frames sent to clients", sessions.frames_sent)
         yield _counted("frames_skipped", "Frames that slow clients did not get", sessions.frames_skipped)
         queue = max(0, pool.taken - pool.settings.lanes)
         yield GaugeMetricFamily("queue_depth", "Requests that wait for a worker", value=queue)
         yield GaugeMetricFamily("checkpoint_seconds", "Time of the last write to the store [s]", value=store.seconds)
         yield GaugeMetricFamily("store_failing", "1 while the disk refuses writes", value=float(bool(store.failing)))
-        yield _counted("worker_restarts", "Processes replaced", pool.restarts + sessions.restarts)
+        yield _counted("worker_restarts", "Processes replaced", pool.restarts + sweeps.restarts + sessions.restarts)
 
 
 def _standing(live: Any) -> str:

@@ -157,9 +157,7 @@ class Lane(threading.Thread):
             self.state = "busy"
             self._serve(job)
             if self.process is None and not self.pool.stopping.is_set():
-                self.pool.restarts += 1
-                log.info("worker replaced")
-                self._begin()
+                self._replace()
         self.kill()
         self._refuse_the_rest()
 
@@ -183,10 +181,16 @@ class Lane(threading.Thread):
                     return
         self.kill()
 
+    def _replace(self) -> None:
+        """A fresh worker for one that has ended."""
+        self.kill()
+        self.pool.restarts += 1
+        log.info("worker replaced")
+        self._begin()
+
     def _serve(self, job: Job) -> None:
         if self.process is None or not self.process.is_alive():
-            self.kill()
-            self._begin()
+            self._replace()
         try:
             reply = self._exchange(job)
         except Problem as problem:

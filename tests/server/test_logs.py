@@ -17,7 +17,7 @@ from hookean_server.logs import JsonLines, short_hash
 
 from .conftest import CABLE, Served, wait_for
 
-MARK = 1234.5678  # a coordinate that is found again wherever it is written
+MARK = 91827.36451827  # a coordinate that is found again wherever it is written
 MARKED: dict[str, Any] = {**CABLE, "particles": [*CABLE["particles"][:-1], [10.0, MARK, -MARK]]}
 FIELDS = {"time", "level", "logger", "event", "id", "method", "route", "status", "ms"}
 
@@ -33,7 +33,7 @@ def busy_run(served: Served) -> str:
     client.post("/solve", json={"pointer": f"secret{MARK}", "values": []})
     cookie = str(client.post("/v1/login").headers["set-cookie"]).split(";")[0].split("=")[1]
     client.get("/v1/sessions", headers={"cookie": f"hookean-{served.port}={cookie}", "authorization": ""})
-    with httpx.Client(base_url=served.url) as nobody:
+    with httpx.Client(base_url=served.url, timeout=60.0) as nobody:
         nobody.get("/v1/sessions", headers={"authorization": f"Bearer {served.token}x"})
         nobody.get(f"/v1/sessions?token={served.token}&at={MARK}")
         nobody.get("/v1/health", headers={"host": f"secret{MARK}"})
@@ -61,7 +61,7 @@ def test_a_busy_run_in_json() -> None:
     code, _, said = served.end()
     assert code == 0
     lines = [json.loads(line) for line in said.splitlines()]
-    for private in (served.token, cookie, f"{MARK}", "5678", "secret", "token="):
+    for private in (served.token, cookie, f"{MARK}", "36451827", "secret", "token="):
         assert private not in said, [line for line in said.splitlines() if private in line]
     assert {"started", "worker replaced", "stopping"} <= {line["event"] for line in lines}
     requests = [line for line in lines if line["event"] == "request"]
@@ -83,6 +83,16 @@ def test_a_busy_run_is_quiet_by_default() -> None:
     busy_run(served)
     code, _, said = served.end()
     assert (code, said) == (0, "")
+
+
+def test_a_log_that_nobody_reads_holds_nothing_up() -> None:
+    """Several times what a pipe holds: every request is answered, and what was waiting is written at the end."""
+    served = Served(workers=1, log="json").ready()
+    for _ in range(1500):
+        assert served.client.get("/v1/health").status_code == 200
+    code, _, said = served.end()
+    assert code == 0 and len(said) > 200_000
+    assert all(json.loads(line) for line in said.splitlines())
 
 
 def test_an_exception_is_told_by_its_type_and_places() -> None:

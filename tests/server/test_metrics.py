@@ -102,7 +102,8 @@ def test_sessions_workers_frames_and_the_store(served: Served) -> None:
         wait_for(lambda: one(served, "frames_sent_total") > before)
     found = figures(served)
     names = {name for name, _ in found}
-    assert {"frames_skipped_total", "queue_depth", "checkpoint_seconds", "worker_restarts_total"} <= names
+    assert sum(v for (n, _), v in found.items() if n == "jobs") == 0
+    assert {"jobs", "frames_skipped_total", "queue_depth", "checkpoint_seconds", "worker_restarts_total"} <= names
     assert one(served, "queue_depth") == 0 and one(served, "store_failing") == 0
     assert 0 < one(served, "checkpoint_seconds") < 60
     for key in ("a", "b"):
@@ -111,9 +112,10 @@ def test_sessions_workers_frames_and_the_store(served: Served) -> None:
 
 
 def test_a_worker_that_ends_is_counted(served: Served) -> None:
+    """Whether it dies idle or at work."""
     served.ready()
     before = one(served, "worker_restarts_total")
-    served.workers()[0].kill()
-    served.client.post("/v1/relax", json=CABLE)
+    for worker in served.workers():
+        worker.kill()
     served.client.post("/v1/relax", json=CABLE)
     wait_for(lambda: one(served, "worker_restarts_total") > before, 60.0)
