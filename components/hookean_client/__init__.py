@@ -6,8 +6,8 @@
     session.play()
     frame = frames.latest()  # the newest; None before the first
 
-For Python 2.7 to 3.13. What fails raises `Problem`; nothing waits longer than its `timeout` [s]; a server is asked
-nothing before it has shown that it is the one in this user's file.
+For Python 2.7 to 3.13. What fails raises `Problem`; nothing waits longer than its `timeout` [s]; a server first
+shows that it is this user's.
 """
 
 import base64
@@ -119,6 +119,11 @@ class Client(object):
         if (answer.getheader("content-type") or "").startswith("application/json"):
             return json.loads(data.decode("utf-8"))
         return data or None
+
+    def close(self):
+        """Close idle connections."""
+        while self._idle:
+            self._idle.pop()[2].close()
 
     def _connection(self, until, start=None):
         try:
@@ -415,7 +420,7 @@ def _start(place, python, parent, idle):
                     raise Problem("not-started", "It did not start: " + file.read().strip().split("\n")[-1][:300])
         python = python or os.environ.get("HOOKEAN_PYTHON") or _told(place, "python.json").get("python")
         if not python:
-            raise Problem("no-python", "Set HOOKEAN_PYTHON to the Python with hookean, or run `hookean serve` once.")
+            raise Problem("no-python", "Set HOOKEAN_PYTHON, or run `hookean serve` once.")
         command = [str(python), "-m", "hookean.cli", "serve", "--any-port"]
         command += ["--parent-pid", str(parent), "--idle-exit", str(idle)]
         ours = False
