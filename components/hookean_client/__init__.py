@@ -121,7 +121,7 @@ class Client(object):
         return data or None
 
     def close(self):
-        """Close idle connections."""
+        """Let go of connections."""
         while self._idle:
             self._idle.pop()[2].close()
 
@@ -417,7 +417,7 @@ def _start(place, python, parent, idle):
             _unlink(path)
             if child.returncode > 0:
                 with open(log) as file:
-                    raise Problem("not-started", "It did not start: " + file.read().strip().split("\n")[-1][:300])
+                    raise Problem("not-started", "Not started: " + file.read().strip().split("\n")[-1][:300])
         python = python or os.environ.get("HOOKEAN_PYTHON") or _told(place, "python.json").get("python")
         if not python:
             raise Problem("no-python", "Set HOOKEAN_PYTHON, or run `hookean serve` once.")
@@ -471,7 +471,7 @@ def _refusal(status, data):
 
 def _check(wire):
     if wire != WIRE:
-        said = "Its frames are of version %s, not %d; `hookean serve --stop` stops it." % (wire, WIRE)
+        said = "Its frames are of version %s, not %d; stop it." % (wire, WIRE)
         raise Problem("wrong-version", said)
 
 
