@@ -111,7 +111,7 @@ class Client(object):
             except FAILURES:
                 connection.close()
                 if not more or _now() > until:
-                    raise Problem("lost", "No answer to %s; it may be done." % method)
+                    raise Problem("lost", "No answer to %s." % method)
         if connection.sock is not None:
             self._idle.append((self.instance, _now(), connection))
         if answer.status >= 400:
@@ -121,7 +121,7 @@ class Client(object):
         return data or None
 
     def close(self):
-        """Let go of connections."""
+        """End connections."""
         while self._idle:
             self._idle.pop()[2].close()
 
