@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Literal
 
 from pydantic import Field
@@ -31,7 +32,8 @@ class Units(Model):
         return "kg" if abs(kilograms - 1.0) < 1e-12 else f"{kilograms:.9g} kg"
 
     def of(self, dimension: str) -> str:
-        """The unit of a quantity: `length`, `force`, `time`, `mass`, `moment`, `energy`, `stiffness`, `angle`."""
+        """The unit of a quantity: `length`, `force`, `time`, `mass`, `moment`, `energy`, `stiffness`, `angle`, and what
+        is made of the first three, such as `length^2` and `force/length`."""
         derived = {
             "": "",
             "angle": "rad",
@@ -40,7 +42,9 @@ class Units(Model):
             "energy": f"{self.force} {self.length}",
             "stiffness": f"{self.force}/{self.length}",
         }
-        return derived[dimension] if dimension in derived else str(getattr(self, dimension))
+        if dimension in derived:
+            return derived[dimension]
+        return re.sub(r"[a-z]+", lambda word: str(getattr(self, word[0])), dimension)
 
     def factor(self, dimension: str, to: Units) -> float:
         """What a number of this dimension is multiplied by to be in the units `to`."""
@@ -62,4 +66,6 @@ class Units(Model):
             "force length^2": force * length**2,
             "force time/length": force * time / length,
             "length/time": length / time,
+            "length^2": length**2,
+            "force/length^2": force / length**2,
         }[dimension]
