@@ -169,7 +169,10 @@ def test_bad_files_get_one_sentence_and_exit_2(folder: Path) -> None:
         ("--check", "missing.toml"),
         ("--check", "broken.toml"),
         ("-o", "cable.3dm"),
-        ("-o", "no/folder/out.3dm"),
+        ("-o", "recipe.toml/folder/out.3dm"),
+        ("-o", "new/out.dwg"),
+        ("-r", "broken.toml", "-o", "new/deep/out.3dm"),
+        ("-o", "new/../cable.3dm"),
         ("-o", "out.dwg"),
         ("-o", "out.3dm", "--csv", "out.3dm"),
         ("--csv", "cable.3dm"),
@@ -199,6 +202,26 @@ def test_many_files_go_to_a_folder_and_a_bad_one_stops_none(folder: Path) -> Non
     assert run("relax", "cable.3dm", "b.3dm", "-r", "recipe.toml", "-o", "one.3dm").exit_code == 2
     assert "would be written twice" in run("relax", "cable.3dm", "cable.3dm", "-o", "out").stderr
     assert "read from" in run("relax", "cable.3dm", "b.3dm", "-o", ".").stderr
+
+
+def test_folders_to_write_to_are_made(folder: Path) -> None:
+    """With a slash at its end a path is a folder, whatever is written and however many files there are."""
+    places = ("-o", "new/", "--csv", "new/", "--report", "deep/er/", "--picture", "deep/picture.png")
+    result = run("relax", "cable.3dm", "-r", "recipe.toml", *places)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert names(folder / "new") == ["cable.3dm", "cable.csv"]
+    assert names(folder / "deep") == ["er", "picture.png"] and names(folder / "deep/er") == ["cable.report.json"]
+    for path in ("new/cable.3dm", "new/cable.csv", "deep/er/cable.report.json", "deep/picture.png"):
+        assert str(Path(path)) in result.stdout
+    assert "nothing written" not in run("relax", "cable.3dm", "-r", "recipe.toml", "--csv", "a.csv").stdout
+    assert "(nothing written: give -o)" in run("relax", "cable.3dm", "-r", "recipe.toml").stdout
+
+
+def test_a_folder_made_for_nothing_is_taken_away(folder: Path) -> None:
+    before = names(folder)
+    (folder / "text.3dm").write_text("no model", encoding="utf-8")
+    assert run("relax", "text.3dm", "-o", "new/deep/out.3dm").exit_code == 2
+    assert names(folder) == sorted([*before, "text.3dm"])
 
 
 def test_ctrl_c_stops_cleanly(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -136,7 +136,9 @@ def test_a_wrong_row_says_its_line_and_leaves_the_frames_before_it(folder: Path)
         (["cable.json", "--picture", "a.jpg"], "is not a .png file"),
         (["cable.json", "-o", "a.obj"], "ends neither in .3dm nor in .json"),
         (["cable.json", "-o", "a.json", "--csv", "a.json"], "would be written twice"),
-        (["cable.json", "--csv", "none/a.csv"], "a folder that does not exist"),
+        (["cable.json", "--csv", "wind.csv/a.csv"], "the folder cannot be made"),
+        (["cable.json", "-o", "new/a.obj"], "ends neither in .3dm nor in .json"),
+        (["cable.json", "-o", "new/../cable.json"], "never written over"),
     ],
 )
 def test_bad_input_is_one_sentence_and_nothing_is_written(folder: Path, arguments: list[str], said: str):
@@ -147,6 +149,14 @@ def test_bad_input_is_one_sentence_and_nothing_is_written(folder: Path, argument
     assert said in done.stderr.replace("nix.json: ", "nix.json ")
     assert done.stderr.count("\n") == 1
     assert sorted(path.name for path in folder.iterdir()) == before
+
+
+def test_folders_to_write_to_are_made(folder: Path):
+    """A slash at the end says folder; files in it are named as the input, and the last line names them."""
+    done = run("cable.json", "--frames", "2", "-o", "new/", "--csv", "new/deep/", "--picture", "new/a.png")
+    assert done.exit_code == 0
+    for path in ("new/cable.json", "new/deep/cable.csv", "new/a.png"):
+        assert (folder / path).is_file() and str(Path(path)) in done.stdout
 
 
 def test_what_never_rests_ends_at_the_most_iterations_with_3(folder: Path):

@@ -38,17 +38,17 @@ def _options(
 def relax(
     files: Annotated[list[Path], typer.Argument(help=".3dm files, scenes or COMPAS documents in .json")],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help=".3dm or .json file to write; for many files a folder")
+        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm or .json file to write, or a folder/")
     ] = None,
     recipe: Annotated[
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
     ] = None,
     explain: Annotated[bool, typer.Option("--explain", help="Tell how the files are read; solve nothing")] = False,
     report: Annotated[
-        Path | None, typer.Option(help="Everything as JSON; for many files a folder, as for the next two")
+        str | None, typer.Option(metavar="PATH", help="Everything as JSON; a file or folder/, as for the next two")
     ] = None,
-    csv: Annotated[Path | None, typer.Option(help="A row for each element and reaction")] = None,
-    picture: Annotated[Path | None, typer.Option(help="A picture (PNG) of the result")] = None,
+    csv: Annotated[str | None, typer.Option(metavar="PATH", help="A row for each element and reaction")] = None,
+    picture: Annotated[str | None, typer.Option(metavar="PATH", help="A picture (PNG) of the result")] = None,
     check: Annotated[
         Path | None, typer.Option(help="Limits (TOML, JSON) of force, strain, displacement, reaction")
     ] = None,
@@ -61,7 +61,8 @@ def relax(
     Without a recipe, layers named springs, cables, membrane, anchors, loads, floor and geometry and the objects' user
     text (stiffness, rest_factor, divide, load, axes ...) say what is what; without such layers curves become springs
     and meshes membranes, held at loose ends and naked vertices. Numbers are in m, N and s.
-    --explain tells.
+    --explain tells. Folders to write to are made; where there are many files, or with a slash at its end, a path is a
+    folder, and the files in it are named as their input.
     """
     from hookean.commands.relax import Options, run
 
@@ -81,10 +82,14 @@ def simulate(
         str | None, typer.Option(help="Values over time for the drives (CSV); - is standard input")
     ] = None,
     frames: Annotated[int | None, typer.Option(help="Stop after so many frames", min=0)] = None,
-    csv: Annotated[str | None, typer.Option(help="A row for each frame, as it comes; - is standard output")] = None,
-    picture: Annotated[Path | None, typer.Option(help="A picture (PNG) of the frames over each other")] = None,
+    csv: Annotated[
+        str | None, typer.Option(metavar="PATH", help="A row for each frame, as it comes; - is standard output")
+    ] = None,
+    picture: Annotated[
+        str | None, typer.Option(metavar="PATH", help="A picture (PNG) of the frames over each other")
+    ] = None,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help=".3dm or .json file to write the last shape to")
+        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm or .json file for the last shape")
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say only what is wrong")] = False,
 ) -> None:

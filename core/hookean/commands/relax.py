@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from hookean.commands import outputs
 from hookean.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,12 +28,12 @@ class Options:
     """What the command was given."""
 
     files: list[Path]
-    output: Path | None
+    output: str | None  # this and the next three as typed: a slash at the end says folder
     recipe: Path | None
     explain: bool
-    report: Path | None
-    csv: Path | None
-    picture: Path | None
+    report: str | None
+    csv: str | None
+    picture: str | None
     check: Path | None
     quiet: bool
 
@@ -44,6 +45,10 @@ class _Job:
     report: Path | None
     csv: Path | None
     picture: Path | None
+
+    @property
+    def targets(self) -> tuple[Path | None, ...]:
+        return self.output, self.report, self.csv, self.picture
 
 
 def run(options: Options) -> int:
@@ -60,7 +65,8 @@ def run(options: Options) -> int:
         return bad(error)
     for job in jobs:
         try:
-            codes.append(_one(job, recipe, name, limits, options.quiet))
+            with outputs.folders(job.targets):
+                codes.append(_one(job, recipe, name, limits, options.quiet))
         except InputError as error:
             codes.append(bad(error))
         except KeyboardInterrupt:
@@ -102,8 +108,9 @@ def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] 
     if not found.result.converged:
         return NOT_CONVERGED
     if not quiet:
-        where = f" -> {job.output}" if job.output is not None else " (nothing written: give -o)"
-        typer.echo(f"{job.source.name}: {found.result.message}{where}")
+        written = ", ".join(str(target) for target in job.targets if target is not None)
+        where = f"-> {written}" if written else "(nothing written: give -o)"
+        typer.echo(f"{job.source.name}: {found.result.message} {where}")
         for line in _summary(found.result):
             typer.echo(f"  {line}")
     return EXCEEDED if found.exceeded else CONVERGED
@@ -160,47 +167,24 @@ def _jobs(options: Options) -> list[_Job]:
     jobs = [
         _Job(
             file,
-            _place(options.output, file, file.suffix or ".3dm", many),
-            _place(options.report, file, ".report.json", many),
-            _place(options.csv, file, ".csv", many),
-            _place(options.picture, file, ".png", many),
+            outputs.place(options.output, file, file.suffix or ".3dm", many=many),
+            outputs.place(options.report, file, ".report.json", many=many),
+            outputs.place(options.csv, file, ".csv", many=many),
+            outputs.place(options.picture, file, ".png", many=many),
         )
         for file in options.files
     ]
-    seen: set[Path] = set()
     for job in jobs:
-        if job.picture is not None and job.picture.suffix.lower() != ".png":
-            raise InputError(job.picture.name, "is not a .png file; pictures are PNG, end the name so")
-        for path in (job.output, job.report, job.csv, job.picture):
-            if path is None:
-                continue
-            _check(path, options)
-            if path.resolve() in seen:
-                raise InputError(str(path), "would be written twice; give files of different names")
-            seen.add(path.resolve())
+        check_picture(job.picture)
+    targets = [target for job in jobs for target in job.targets]
+    outputs.check(targets, (*options.files, options.recipe, options.check))
     return jobs
 
 
-def _place(given: Path | None, file: Path, ending: str, many: bool) -> Path | None:
-    """A file to write: what was given, or in a folder that was given the input's name with its ending."""
-    if given is None:
-        return None
-    if many and not given.is_dir():
-        if given.exists() or given.suffix:
-            raise InputError(str(given), "is no folder; for many files give one")
-        try:
-            given.mkdir(parents=True)
-        except OSError as error:
-            raise InputError(str(given), f"the folder cannot be made ({error.strerror})") from None
-    return given / f"{file.stem}{ending}" if given.is_dir() else given
-
-
-def _check(path: Path, options: Options) -> None:
-    from hookean.files.threedm_atomic import check_target
-
-    for read in (*options.files, options.recipe, options.check):
-        if read is not None:
-            check_target(path, read)
+def check_picture(path: Path | None) -> None:
+    """InputError where a picture is to be anything but a PNG."""
+    if path is not None and path.suffix.lower() != ".png":
+        raise InputError(path.name, "is not a .png file; pictures are PNG, end the name so")
 
 
 @contextlib.contextmanager

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import typer
 
+from hookean.commands import outputs
 from hookean.commands import relax as command
 from hookean.errors import InputError
-from hookean.files.threedm_atomic import check_target
 
 if TYPE_CHECKING:
     from hookean.files.relax_file import FileResult, Source
@@ -28,7 +28,7 @@ SHAPES = 8  # drawn over each other, at most twice as many
 
 @dataclass(frozen=True)
 class Options:
-    """What the command was given; `csv` and `stream` may be `-`."""
+    """What the command was given; `csv` and `stream` may be `-`, outputs end in a slash for a folder."""
 
     source: Path
     recipe: Path | None
@@ -36,9 +36,22 @@ class Options:
     stream: str | None
     frames: int | None
     csv: str | None
-    picture: Path | None
-    output: Path | None
+    picture: str | None
+    output: str | None
     quiet: bool
+
+
+@dataclass(frozen=True)
+class _Targets:
+    """Where it is written."""
+
+    output: Path | None
+    picture: Path | None
+    table: Path | None
+
+    @property
+    def files(self) -> tuple[Path | None, ...]:
+        return self.output, self.picture, self.table
 
 
 @dataclass
@@ -63,18 +76,19 @@ class _Seen:
 def run(options: Options) -> int:
     """Run the file in motion; what was seen before bad input or Ctrl-C is written all the same."""
     try:
-        _check(options)
+        to = _targets(options)
         read, running = _ready(options)
         seen = _Seen()
         fault: InputError | None = None
         code = STOPPED
-        with _table(options.csv) as write, contextlib.suppress(KeyboardInterrupt):
-            try:
-                code = _go(running, options.frames, seen, write)
-            except InputError as error:
-                fault, code = error, BAD_INPUT
-        if seen.result is not None:
-            _conclude(options, read, running, seen, code)
+        with outputs.folders(to.files):
+            with _table(options.csv, to.table) as write, contextlib.suppress(KeyboardInterrupt):
+                try:
+                    code = _go(running, options.frames, seen, write)
+                except InputError as error:
+                    fault, code = error, BAD_INPUT
+            if seen.result is not None:
+                _conclude(options, to, read, running, seen, code)
         return command.bad(fault) if fault is not None else code
     except InputError as error:
         return command.bad(error)
@@ -83,21 +97,20 @@ def run(options: Options) -> int:
         return STOPPED
 
 
-def _check(options: Options) -> None:
+def _targets(options: Options) -> _Targets:
     from hookean.files.relax_file import check_output
 
-    check_output(options.output, options.source)
-    if options.picture is not None and options.picture.suffix.lower() != ".png":
-        raise InputError(options.picture.name, "is not a .png file; pictures are PNG, end the name so")
+    source = options.source
+    to = _Targets(
+        outputs.place(options.output, source, source.suffix or ".3dm"),
+        outputs.place(options.picture, source, ".png"),
+        outputs.place(None if options.csv == "-" else options.csv, source, ".csv"),
+    )
     stream = None if options.stream in (None, "-") else Path(str(options.stream))
-    table = None if options.csv in (None, "-") else Path(str(options.csv))
-    targets = [target for target in (options.output, options.picture, table) if target is not None]
-    for target in targets:
-        for source in (options.source, options.recipe, options.script, stream):
-            if source is not None:
-                check_target(target, source)
-        if [t.resolve() for t in targets].count(target.resolve()) > 1:
-            raise InputError(str(target), "would be written twice; give files of different names")
+    command.check_picture(to.picture)
+    outputs.check(to.files, (source, options.recipe, options.script, stream))
+    check_output(to.output, source, folder=False)
+    return to
 
 
 def _ready(options: Options) -> tuple[Source, Simulation]:
@@ -174,17 +187,17 @@ def _forces(result: Result) -> list[tuple[str, str, float]]:
 
 
 @contextlib.contextmanager
-def _table(target: str | None) -> Iterator[Callable[[list[Any]], None]]:
+def _table(given: str | None, target: Path | None) -> Iterator[Callable[[list[Any]], None]]:
     """Writes rows as they come, so that nothing is lost and a pipe sees each at once."""
-    if target is None:
+    if given is None:
         yield lambda row: None
         return
     try:
         whole: Any = contextlib.nullcontext(sys.stdout)
-        if target != "-":
+        if target is not None:
             whole = open(target, "w", encoding="utf-8", newline="")  # noqa: SIM115
     except OSError as error:
-        raise InputError(target, f"cannot be written ({error.strerror}); check the path") from None
+        raise InputError(given, f"cannot be written ({error.strerror}); check the path") from None
     with whole as file:
         lines = csv.writer(file, lineterminator="\n")
 
@@ -195,21 +208,21 @@ def _table(target: str | None) -> Iterator[Callable[[list[Any]], None]]:
         yield write
 
 
-def _conclude(options: Options, read: Source, running: Simulation, seen: _Seen, code: int) -> None:
+def _conclude(options: Options, to: _Targets, read: Source, running: Simulation, seen: _Seen, code: int) -> None:
     from hookean.files.relax_file import conclude
 
     result = seen.result
     assert result is not None
-    found = conclude(read, options.source, running.system, result, options.output)
-    if options.picture is not None:
+    found = conclude(read, options.source, running.system, result, to.output)
+    if to.picture is not None:
         from hookean.sheet import Panel, sheet
 
         frames = {f"{time:.4g} {result.units.time}": x for time, x in seen.shapes if time < result.time}
-        sheet([Panel(result, read.scene, frames=frames)], options.picture, title=options.source.stem)
-    _tell(options, found, seen, code)
+        sheet([Panel(result, read.scene, frames=frames)], to.picture, title=options.source.stem)
+    _tell(options, to, found, seen, code)
 
 
-def _tell(options: Options, found: FileResult, seen: _Seen, code: int) -> None:
+def _tell(options: Options, to: _Targets, found: FileResult, seen: _Seen, code: int) -> None:
     result, name = found.result, options.source.name
     for sentence in found.warnings:
         typer.echo(f"hookean: {name}: note: {sentence}", err=True)
@@ -218,7 +231,8 @@ def _tell(options: Options, found: FileResult, seen: _Seen, code: int) -> None:
     if how:
         typer.echo(f"hookean: {name}: {how} after {said}", err=True)
     elif not options.quiet:
-        to = options.csv == "-"  # which has standard output to itself
-        typer.echo(f"{name}: {said}", err=to)
+        aside = options.csv == "-"  # which has standard output to itself
+        written = ", ".join(str(target) for target in to.files if target is not None)
+        typer.echo(f"{name}: {said}{f' -> {written}' if written else ''}", err=aside)
         for line in result.summary():
-            typer.echo(f"  {line}", err=to)
+            typer.echo(f"  {line}", err=aside)

@@ -139,10 +139,10 @@ def relax_file(
     return conclude(read, Path(source), system, result, target, limits=limits, limits_name=limits_name)
 
 
-def check_output(target: Path | None, source: Path) -> None:
-    """InputError where a result cannot be written to `target`."""
+def check_output(target: Path | None, source: Path, *, folder: bool = True) -> None:
+    """InputError where a result cannot be written to `target`; its folder may be missing where `folder` is False."""
     if target is not None:
-        check_target(target, source)
+        check_target(target, source, folder=folder)
         if target.suffix.lower() not in (".3dm", ".json"):
             raise InputError(target.name, "ends neither in .3dm nor in .json; name the output so.")
 

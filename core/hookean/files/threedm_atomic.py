@@ -14,8 +14,9 @@ from hookean.errors import InputError
 StrPath = str | os.PathLike[str]
 
 
-def check_target(target: StrPath, source: StrPath | None = None) -> None:
-    """InputError if `target` cannot be a file to write, or is `source` itself by whatever path or link."""
+def check_target(target: StrPath, source: StrPath | None = None, *, folder: bool = True) -> None:
+    """InputError if `target` cannot be a file to write, or is `source` itself by whatever path or link; its folder may
+    be missing where `folder` is False."""
     path = Path(target)
     name = path.name or str(target)
     try:
@@ -23,9 +24,9 @@ def check_target(target: StrPath, source: StrPath | None = None) -> None:
             raise InputError(name, "the file read from is never written over; give another path.")
         if path.is_dir():
             raise InputError(name, "is a folder; give the path of the file to write.")
-        if not path.parent.is_dir():
-            folder = path.parent.as_posix()
-            raise InputError(name, f"is to be written to {folder}, a folder that does not exist; make it first.")
+        if folder and not path.parent.is_dir():
+            where = path.parent.as_posix()
+            raise InputError(name, f"is to be written to {where}, a folder that does not exist; make it first.")
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise

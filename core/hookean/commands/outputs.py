@@ -1,0 +1,67 @@
+"""Where commands write: files, folders named with a slash at their end, folders that are not there yet."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from hookean.errors import InputError
+
+
+def place(given: str | None, source: Path, ending: str, *, many: bool = False) -> Path | None:
+    """A file to write: what was given, or in a folder that was given the source's name with another ending.
+
+    A folder is what is one, or ends in a slash; for `many` sources it must be one, and a name without ending becomes
+    one. InputError where it cannot.
+    """
+    if given is None:
+        return None
+    path = Path(given)
+    if given.endswith(("/", os.sep)) or path.is_dir():
+        return path / f"{source.stem}{ending}"
+    if many and (path.exists() or path.suffix):
+        raise InputError(given, "is no folder; for many files give one")
+    return path / f"{source.stem}{ending}" if many else path
+
+
+def check(targets: Iterable[Path | None], sources: Iterable[Path | None]) -> None:
+    """InputError where a target is no possible file, is one of the sources, or another target."""
+    from hookean.files.threedm_atomic import check_target
+
+    read, seen = [source for source in sources if source is not None], set[Path]()
+    for target in targets:
+        if target is None:
+            continue
+        for source in (*read, None):
+            check_target(target, source, folder=False)
+        if target.resolve() in seen:
+            raise InputError(str(target), "would be written twice; give files of different names")
+        seen.add(target.resolve())
+
+
+@contextlib.contextmanager
+def folders(targets: Iterable[Path | None]) -> Iterator[None]:
+    """Makes the folders that targets lie in; takes those that stay empty away again where the work fails."""
+    made: list[Path] = []
+    try:
+        for target in targets:
+            if target is not None:
+                _make(target.parent, made)
+        yield
+    except BaseException:
+        for folder in reversed(made):
+            with contextlib.suppress(OSError):
+                folder.rmdir()  # refuses where something was written
+        raise
+
+
+def _make(folder: Path, made: list[Path]) -> None:
+    missing = [f for f in (folder, *folder.parents) if not f.is_dir()]
+    try:
+        for one in reversed(missing):
+            one.mkdir(exist_ok=True)
+            made.append(one)
+    except OSError as error:
+        raise InputError(str(folder), f"the folder cannot be made ({error.strerror})") from None
