@@ -6,8 +6,9 @@ import asyncio
 import hashlib
 import logging
 import uuid
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError as FutureCancelled
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import hookean
@@ -16,6 +17,8 @@ from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 
 log = logging.getLogger("hookean.jobs")
+LOST = "The connection to the Dask cluster was lost; the job waits for it."
+LOOK = 0.5  # seconds between looks at whether the cluster is still there
 CONNECT = 5.0  # seconds a scheduler may take to answer
 SLOTS = 16  # batches at once at most
 EACH = 2  # batches for each thread of the cluster, so that none waits for the next
@@ -32,6 +35,10 @@ class Cluster:
 
     async def ready(self) -> None:
         """Wait for the scheduler and one worker; raises Problem where there are none."""
+        with _own_cancels():
+            await self._ready()
+
+    async def _ready(self) -> None:
         async with self._finding:
             if self.client is not None and self.client.status != "running":
                 await self._leave()
@@ -71,7 +78,11 @@ class Cluster:
             await asyncio.sleep(0.02)
         self._flying += 1
         try:
-            found = await self._batch(self.client, request, numbers, seconds)
+            client = self.client
+            if client is None or client.status != "running":  # it was lost meanwhile
+                raise Problem("busy", LOST)
+            with _own_cancels():
+                found = await self._batch(client, request, numbers, seconds)
         finally:
             self._flying -= 1
         if not found:
@@ -84,23 +95,22 @@ class Cluster:
         held = client.submit(_same, request, key=f"hookean-request-{digest}")
         key = f"hookean-batch-{uuid.uuid4().hex}"
         future = client.submit(_solve, held, numbers, seconds, hookean.__version__, key=key, pure=False)
+        result = asyncio.ensure_future(_result(future))
         try:
-            async with asyncio.timeout(2.0 * (seconds + self.settings.grace_seconds)):
-                found: list[bytes] = await future
-                return found
-        except TimeoutError:
-            await self._end_worker(client, key)
-            raise Problem("out-of-time", f"This was not done in {seconds:g} s and has been stopped.") from None
-        except BaseException as error:
-            task = asyncio.current_task()
-            if isinstance(error, asyncio.CancelledError) and task is not None and task.cancelling():
-                with suppress(Exception):
-                    future.cancel()
-                raise
-            if not isinstance(error, Exception | asyncio.CancelledError):
-                raise
-            raise _problem(error, client) from None
+            until = asyncio.get_running_loop().time() + 2.0 * (seconds + self.settings.grace_seconds)
+            while not (await asyncio.wait({result}, timeout=LOOK))[0]:
+                if client.status != "running":  # then nobody would tell us
+                    raise Problem("busy", LOST)
+                if asyncio.get_running_loop().time() > until:
+                    await self._end_worker(client, key)
+                    raise Problem("out-of-time", f"This was not done in {seconds:g} s and has been stopped.")
+            return _rows(result, client)
+        except asyncio.CancelledError:
+            with suppress(Exception):
+                await asyncio.wait_for(client.cancel([future]), LOOK)
+            raise
         finally:
+            result.cancel()
             future.release()
             held.release()
 
@@ -121,15 +131,37 @@ class Cluster:
         await self._leave()
 
 
-def _problem(error: BaseException, client: Any) -> Problem:
-    """What went wrong: `busy` where the cluster must be mended first, else whoever worked on it was lost."""
+@contextmanager
+def _own_cancels() -> Iterator[None]:
+    """A client that loses its scheduler cancels whatever waits for it: only what we cancelled ourselves is one."""
+    try:
+        yield
+    except asyncio.CancelledError:
+        task = asyncio.current_task()
+        if task is None or task.cancelling():
+            raise
+        raise Problem("busy", LOST) from None
+
+
+async def _result(future: Any) -> list[bytes]:
+    found: list[bytes] = await future
+    return found
+
+
+def _rows(result: asyncio.Future[list[bytes]], client: Any) -> list[bytes]:
+    """What was found; `busy` where the cluster must be mended first, else whoever worked on it was lost."""
+    if result.cancelled():
+        raise Problem("busy", LOST)
+    error = result.exception()
+    if error is None:
+        return result.result()
     if isinstance(error, Problem):
-        return error
+        raise error
     if isinstance(error, ImportError):
-        return Problem("busy", "The workers of the Dask cluster have no hookean; install the service's version there.")
-    if client.status != "running" or isinstance(error, OSError | asyncio.CancelledError):
-        return Problem("busy", "The connection to the Dask cluster was lost; the job waits for it.")
-    return Problem("worker-lost", "The workers of the cluster that worked on this ended.")
+        raise Problem("busy", "The workers of the Dask cluster have no hookean; install the service's version there.")
+    if client.status != "running" or isinstance(error, OSError | FutureCancelled):
+        raise Problem("busy", LOST)
+    raise Problem("worker-lost", "The workers of the cluster that worked on this ended.")
 
 
 def _same(request: bytes) -> bytes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
+import logging
 import secrets
 import time
 from collections import Counter, OrderedDict
@@ -21,6 +22,7 @@ from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 from hookean_server.store import Store
 
+log = logging.getLogger("hookean.jobs")
 TICK = 15.0  # seconds between looks at what to forget
 FINAL = ("done", "failed", "cancelled")
 
@@ -173,10 +175,13 @@ class Jobs:
             if not live.cancelled:
                 raise  # the server ends, the job does not
             status, message = "cancelled", ""
-        except Problem as problem:
-            if problem.slug == "shutting-down" or self.pool.stopping.is_set():
+        except Exception as error:
+            if isinstance(error, Problem) and (error.slug == "shutting-down" or self.pool.stopping.is_set()):
                 return
-            status, message = "failed", problem.detail
+            if not isinstance(error, Problem):
+                log.exception("a job failed")
+            said = error.detail if isinstance(error, Problem) else "The service failed on this job; its log tells more."
+            status, message = "failed", said
         live.ending = True
         if live.cancelled:
             status = "cancelled"

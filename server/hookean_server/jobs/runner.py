@@ -79,15 +79,16 @@ class Runner:
     async def _sweep(self, live: Live) -> tuple[str, str]:
         kept = live.kept
         _, request = await self.stored(rows.request(kept.id))
-        done: set[int] = await self.stored(rows.finished(kept.id))
-        pending, tries = Pending(n for n in range(kept.total) if n not in done), Counter[int]()
-        await self._reach(live)
-        try:
-            async with asyncio.TaskGroup() as group:
-                for _ in range(self.executor.slots):
-                    group.create_task(self._pull(live, request, pending, tries))
-        except BaseExceptionGroup as several:
-            raise several.exceptions[0] from None
+        tries = Counter[int]()
+        while len(done := await self.stored(rows.finished(kept.id))) < kept.total:
+            pending = Pending(n for n in range(kept.total) if n not in done)
+            await self._reach(live)
+            try:
+                async with asyncio.TaskGroup() as group:
+                    for _ in range(self.executor.slots):
+                        group.create_task(self._pull(live, request, pending, tries))
+            except BaseExceptionGroup as several:
+                raise several.exceptions[0] from None
         if kept.failed == kept.total:
             return "failed", "None of the items could be solved; each row says why."
         return "done", f"{kept.done} of {kept.total} items are solved" + (
