@@ -98,7 +98,7 @@ def test_one_runs_and_says_its_numbers_with_their_sources(tmp_path: Path):
 
 def test_a_number_that_is_off_ends_with_1(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     folder = tmp_path / "9.11"
-    assert command.run("9.11", None, folder) == 0
+    assert command.run("9.11", None, str(folder)) == 0
     expected = (find("9.11").folder / "expected.json").read_text(encoding="utf-8").replace("10.46,", "10.4,")
     (folder / "expected.json").write_text(expected, encoding="utf-8")
     monkeypatch.setattr("hookean.example.home", lambda: tmp_path)
@@ -122,11 +122,40 @@ def test_a_copy_relaxes_by_itself_and_is_not_written_over(tmp_path: Path):
     assert again.exit_code == 2 and "is there already" in again.stderr
 
 
+def test_a_copy_runs_with_its_numbers_beside_the_originals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Half the stiffness: other numbers, told with the ones before; that is no failure. A copy by any path."""
+    monkeypatch.chdir(tmp_path)
+    told = CliRunner().invoke(app, ["example", "9.11", "--picture", "new/p.png", "--copy", "mine"])
+    assert told.exit_code == 0 and (tmp_path / "new" / "p.png").is_file() and "as expected" in told.stdout
+    assert f"hookean example .{os.sep}mine" in told.stdout and "hookean relax mine" in told.stdout
+    scene = (tmp_path / "mine" / "scene.json").read_text(encoding="utf-8")
+    (tmp_path / "mine" / "scene.json").write_text(scene.replace("1000", "500"), encoding="utf-8")
+    for path in ("./mine", "mine", str(tmp_path / "mine")):
+        told = CliRunner().invoke(app, ["example", path])
+        assert told.exit_code == 0 and "(was 10.46 ± 0.01)" in told.stdout, told.stderr
+        assert "10.4679155" not in told.stdout and "expected" not in told.stdout
+    monkeypatch.chdir(tmp_path / "mine")
+    assert CliRunner().invoke(app, ["example", ".", "--picture", "drawn/"]).exit_code == 0
+    assert (tmp_path / "mine" / "drawn" / "mine.png").is_file()
+    (tmp_path / "mine" / "expected.json").unlink()
+    assert "copy the example again" in CliRunner().invoke(app, ["example", "."]).stderr
+
+
+@pytest.mark.parametrize("typed", ["Figure 9.24", "fig. 9.24", "fig9.24", " 9.24 ", "9.24-Membrane", "Membrane"])
+def test_a_figure_is_found_as_people_write_it(typed: str):
+    assert find(typed).name == "9.24-membrane"
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["9.99"], "no example has this figure or name; there are 9.1-square-membrane"),
-        (["9.11", "--picture", "no such folder/a.png"], "no such folder"),
+        (["9.99"], "no example has this figure or name; did you mean "),
+        (["bolt"], "no example has this figure or name; hookean example lists all"),
+        (["membran"], "did you mean 9.1-square-membrane or 9.24-membrane"),
+        (["9.11", "--picture", "a.jpg"], "is not a .png file"),
+        (["--copy", "nowhere"], "--copy needs a figure: hookean example 9.24 --copy nowhere"),
+        (["--picture", "a.png"], "--picture needs a figure: hookean example 9.24 --picture a.png"),
+        (["./nowhere"], "is no folder with an example.py"),
         (["--figures", os.devnull], "cannot be written"),
     ],
 )

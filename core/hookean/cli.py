@@ -106,21 +106,26 @@ def simulate(
 @app.command()
 def example(
     figure: Annotated[
-        str | None, typer.Argument(help="Figure or name, such as 9.11; without it all are listed")
+        str | None, typer.Argument(help="Figure or name, such as 9.11, or the folder of a copy; without it a list")
     ] = None,
-    picture: Annotated[Path | None, typer.Option(help="Draw it to this .png file")] = None,
-    copy: Annotated[Path | None, typer.Option(help="Copy its folder here, to change it")] = None,
+    picture: Annotated[str | None, typer.Option(metavar="PATH", help="Draw it to this .png file or folder/")] = None,
+    copy: Annotated[
+        str | None, typer.Option(metavar="FOLDER", help="Copy it to this new folder, or into one that is there")
+    ] = None,
     figures: Annotated[Path | None, typer.Option(help="Run and draw all, a folder for each in this one")] = None,
 ) -> None:
     """The figures of the chapter that hookean implements: list them, or run one and check its numbers.
 
-    Exits with 0 if all numbers are as expected, 1 if one is not, 2 for bad input.
+    Exits with 0 if all numbers are as expected, 1 if one is not, 2 for bad input. A copy may give other numbers: they
+    are told beside those it had.
     """
     from hookean.commands import example as command
 
     if figures is not None:
         raise typer.Exit(command.figures(figures))
-    raise typer.Exit(command.listing() if figure is None else command.run(figure, picture, copy))
+    if figure is None and picture is None and copy is None:
+        raise typer.Exit(command.listing())
+    raise typer.Exit(command.run(figure, picture, copy))
 
 
 @app.command()

@@ -7,8 +7,11 @@ A folder holds its input (`scene.json`, or `model.3dm` and `recipe.toml`), `exam
 
 from __future__ import annotations
 
+import difflib
 import importlib.util
 import json
+import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +19,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from hookean.errors import InputError
 from hookean.sheet import Graph, Panel, sheet
@@ -92,7 +95,16 @@ class Example:
 
     @cached_property
     def expected(self) -> Expectations:
-        return Expectations.model_validate(json.loads((self.folder / "expected.json").read_text(encoding="utf-8")))
+        path = self.folder / "expected.json"
+        try:
+            return Expectations.model_validate(json.loads(path.read_text(encoding="utf-8")))
+        except (OSError, ValueError, ValidationError):
+            raise InputError(str(path), "is missing or damaged; copy the example again") from None
+
+    @property
+    def original(self) -> bool:
+        """Whether it is one of the project's, not a copy that was made to be changed."""
+        return self.folder.resolve().parent == home().resolve()
 
     def run(self) -> Outcome:
         """Run the example afresh."""
@@ -162,16 +174,33 @@ def gallery(known: Sequence[Example]) -> str:
 
 
 def find(wanted: str) -> Example:
-    """The example of a folder's name, or of a figure's number; InputError names the ones there are."""
-    known = examples()
+    """The example of a folder's name, a figure's number, or in a folder such as a copy; InputError names near ones."""
+    if wanted in (".", "..") or "/" in wanted or os.sep in wanted:
+        return _beside(wanted)
+    known, named = examples(), re.sub(r"^fig(ure|\.)?s?\s*", "", wanted.strip().casefold())
     for fits in (
-        lambda e: e.name == wanted,
-        lambda e: e.name.partition("-")[2] == wanted,
-        lambda e: e.name.partition("-")[0] == wanted,
-        lambda e: wanted in e.expected.figures,
+        lambda e: e.name.casefold() == named,
+        lambda e: e.name.partition("-")[2].casefold() == named,
+        lambda e: e.name.partition("-")[0] == named,
+        lambda e: named in e.expected.figures,
     ):
         for example in known:
             if fits(example):
                 return example
-    names = ", ".join(e.name for e in known)
-    raise InputError(wanted, f"no example has this figure or name; there are {names}")
+    if (Path(wanted) / "example.py").is_file():
+        return Example(Path(wanted))
+    near = _near(named, [e.name for e in known])
+    meant = f"; did you mean {' or '.join(near)}?" if near else ";"
+    raise InputError(wanted, f"no example has this figure or name{meant} hookean example lists all")
+
+
+def _beside(wanted: str) -> Example:
+    if not (Path(wanted) / "example.py").is_file():
+        raise InputError(wanted, "is no folder with an example.py; hookean example 9.24 --copy FOLDER makes one")
+    return Example(Path(wanted).resolve())
+
+
+def _near(named: str, known: Sequence[str]) -> list[str]:
+    holding = [name for name in known if named and (named in name or name.partition("-")[0] == named.rstrip("0"))]
+    words = {word: name for name in known for word in (name.partition("-")[2] or name, name.partition("-")[0])}
+    return (holding or [words[word] for word in difflib.get_close_matches(named, words, 3, 0.6)])[:3]

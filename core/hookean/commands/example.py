@@ -2,54 +2,90 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
+from hookean.commands import outputs
+from hookean.commands.relax import bad, check_picture
 from hookean.errors import InputError
+
+if TYPE_CHECKING:
+    from hookean.example import Example, Outcome
 
 FULFILLED, MISSED, BAD_INPUT = 0, 1, 2
 
 
 def listing() -> int:
-    """All examples in a table."""
+    """All examples in a table; one line each where it goes to a file or a pipe."""
     from hookean.example import examples
 
-    table = Table("figure", "example", "what it shows", box=None, pad_edge=False)
-    for example in examples():
-        table.add_row(", ".join(example.expected.figures), example.name, example.expected.title)
-    Console().print(table)
+    rows = [(", ".join(e.expected.figures), e.name, e.expected.title) for e in examples()]
+    console = Console()
+    if console.is_terminal:
+        table = Table("figure", "example", "what it shows", box=None, pad_edge=False)
+        for row in rows:
+            table.add_row(*row)
+        console.print(table)
+    else:
+        wide = [max(len(row[column]) for row in rows) for column in (0, 1)]
+        for figure, name, title in rows:
+            typer.echo(f"{figure:<{wide[0]}}  {name:<{wide[1]}}  {title}")
     typer.echo("\nhookean example 9.11 runs one, --picture draws it, --copy takes its folder along to change it.")
     return FULFILLED
 
 
-def run(wanted: str, picture: Path | None, copy: Path | None) -> int:
-    """Run one example and print its numbers beside those expected; 1 where one is off."""
+def run(wanted: str | None, picture: str | None, copy: str | None) -> int:
+    """Run an example, or a copy of one that was changed: its numbers beside those expected; 1 where one of an example
+    that was not changed is off."""
     from hookean.example import find
 
     try:
+        if wanted is None:
+            option = f"--copy {copy}" if copy is not None else f"--picture {picture}"
+            raise InputError(option.split()[0], f"needs a figure: hookean example 9.24 {option}")
         example = find(wanted)
+        expected = example.expected
+        drawn = outputs.place(picture, Path(f"{example.name}.png"), ".png")
+        check_picture(drawn)
         if copy is not None:
-            return _copy(example.folder, copy)
-        outcome = example.run()
-        if picture is not None:
-            example.draw(outcome, picture)
+            _copy(example, Path(copy))
+            if drawn is None:
+                return FULFILLED
+        with outputs.folders([drawn]):
+            outcome = example.run()
+            if drawn is not None:
+                example.draw(outcome, drawn)
     except InputError as error:
-        typer.echo(f"hookean: {error}", err=True)
-        return BAD_INPUT
-    typer.echo(f"{example.name}: {example.expected.title}\n")
-    missed = 0
-    wide = max(len(name) for name in example.expected.numbers)
-    for name, expected in example.expected.numbers.items():
-        held = expected.holds(outcome.numbers[name])
+        return bad(error)
+    typer.echo(f"{example.name}: {expected.title}\n")
+    missed = _told(example, outcome)
+    typer.echo(f"\ninput, picture and README: {example.folder}" + (f"\npicture: {drawn}" if drawn is not None else ""))
+    return MISSED if missed and example.original else FULFILLED
+
+
+def _told(example: Example, outcome: Outcome) -> int:
+    """Print the numbers of a run; how many of them are off."""
+    numbers, known = outcome.numbers, example.expected.numbers
+    wide, missed = max(map(len, (*known, *numbers))), 0
+    for name, number in numbers.items():
+        expected = known.get(name)
+        if expected is None:
+            typer.echo(f"  {name:<{wide}}  {number:.9g}")
+            continue
+        held = expected.holds(number)
         missed += not held
-        verdict = f"{'as expected' if held else 'NOT as expected'}: {expected}"
-        typer.echo(f"  {name:<{wide}}  {outcome.numbers[name]:.9g} {expected.unit}  ({verdict})")
-        typer.echo(typer.style(f"  {'':<{wide}}  {expected.source}", dim=True))
-    typer.echo(f"\ninput, picture and README: {example.folder}")
-    return MISSED if missed else FULFILLED
+        verdict = f"as expected: {expected}" if held else f"NOT as expected: {expected}"
+        if not example.original:
+            verdict = f"was {expected}"
+        typer.echo(f"  {name:<{wide}}  {number:.9g} {expected.unit}  ({verdict})")
+        if example.original:
+            typer.echo(typer.style(f"  {'':<{wide}}  {expected.source}", dim=True))
+    return missed
 
 
 def figures(target: Path) -> int:
@@ -76,15 +112,19 @@ def figures(target: Path) -> int:
     return MISSED if missed else FULFILLED
 
 
-def _copy(folder: Path, target: Path) -> int:
+def _copy(example: Example, target: Path) -> None:
     import shutil
 
-    target = target / folder.name if target.is_dir() else target
+    target = target / example.name if target.is_dir() else target
     if target.exists():
         raise InputError(str(target), "is there already; give a folder that is not")
     try:
-        shutil.copytree(folder, target, ignore=shutil.ignore_patterns("__pycache__", "oracle.py", "expected.json"))
+        shutil.copytree(example.folder, target, ignore=shutil.ignore_patterns("__pycache__", "oracle.py"))
     except OSError as error:
         raise InputError(str(target), f"cannot be written ({error.strerror})") from None
-    typer.echo(f"copied to {target}")
-    return FULFILLED
+    typer.echo(f"copied to {target}; its README.md says what to try. Next, run it or relax its input:")
+    run = str(target) if target.is_absolute() else f"{os.curdir}{os.sep}{target}"
+    given = str(target / "scene.json")
+    if (target / "recipe.toml").is_file():
+        given = f"{target / 'model.3dm'} --recipe {target / 'recipe.toml'}"
+    typer.echo(f"  hookean example {run}\n  hookean relax {given} --picture {target / 'relaxed.png'}")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hookean.result import Result
 
 CONVERGED, EXCEEDED, BAD_INPUT, NOT_CONVERGED, STOPPED = 0, 1, 2, 3, 130
-_VERBS = ("is ", "has ", "holds ", "ends ", "cannot ", "would ")
+_VERBS = ("is ", "has ", "holds ", "ends ", "cannot ", "would ", "needs ")
 SHOW_AFTER = 0.5  # seconds of solving before a progress line appears
 
 
