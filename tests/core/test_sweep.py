@@ -57,9 +57,7 @@ def test_a_product_has_every_value_with_every_other_the_last_fastest(lists: list
 
 
 def test_zip_pairs_the_lists() -> None:
-    sweep = Sweep.read(
-        {"forces": {"net": {"stiffness": [1, 2]}}, "settings": {"tolerance": [0.1, 0.2]}, "mode": "zip"}
-    )
+    sweep = Sweep.read({"forces": {"net": {"stiffness": [1, 2]}}, "settings": {"tolerance": [0.1, 0.2]}, "mode": "zip"})
     assert [sweep.patch(i) for i in range(sweep.count)] == [
         {"forces": {"net": {"stiffness": 1}}, "settings": {"tolerance": 0.1}},
         {"forces": {"net": {"stiffness": 2}}, "settings": {"tolerance": 0.2}},

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -12,6 +13,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import httpx
+import psutil
 import pytest
 
 from .conftest import Served, wait_for
@@ -20,7 +22,7 @@ from .jobbing import NET, ended, events, post, product, rows_of, sweep, table
 if importlib.util.find_spec("distributed") is None:
     pytest.skip("distributed is not installed: pip install 'hookean[dask]'", allow_module_level=True)
 
-SOAK = bool(os.environ.get("HOOKEAN_SOAK"))
+SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 
 
 class Dask:
@@ -44,11 +46,11 @@ class Dask:
         self.drain = subprocess.Popen(["cat"], stdin=self.scheduler.stderr, stdout=subprocess.DEVNULL)
         self.workers: list[subprocess.Popen[str]] = []
 
-    def worker(self) -> subprocess.Popen[str]:
-        """One more worker, of one thread."""
+    def worker(self, *, nanny: bool = False) -> subprocess.Popen[str]:
+        """One more worker, of one thread; with a `nanny` that starts it anew when it is told to."""
         command = [sys.executable, "-m", "distributed.cli.dask_worker", self.address, "--host", "127.0.0.1"]
         process = subprocess.Popen(
-            [*command, "--nthreads", "1", "--no-nanny", "--no-dashboard"],
+            [*command, "--nthreads", "1", "--nanny" if nanny else "--no-nanny", "--no-dashboard"],
             stderr=subprocess.DEVNULL,
             text=True,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
@@ -58,6 +60,8 @@ class Dask:
 
     def end(self) -> None:
         for process in (*self.workers, self.scheduler, self.drain):
+            for child in psutil.Process(process.pid).children(recursive=True) if process.poll() is None else []:
+                child.kill()
             process.kill()
             process.wait()
         assert self.scheduler.stderr is not None
@@ -104,19 +108,20 @@ def rows_bytes(client: httpx.Client, address: str) -> bytes:
 
 
 def test_a_killed_worker_loses_nothing(dask: Dask, jobs: httpx.Client) -> None:
-    request = sweep(50, 20)
+    request = sweep(100, 100) if SOAK else sweep(50, 20)
+    count = product(request)
     address = post(jobs, request)
-    wait_for(lambda: jobs.get(address).json()["done"] > 100, 60.0)
+    wait_for(lambda: jobs.get(address).json()["done"] > count // 10, 120.0)
     for worker in list(dask.workers):  # all there are
         worker.kill()
         worker.wait()
         dask.workers.remove(worker)
     dask.worker()
-    job = ended(jobs, address, 120.0)
-    assert (job["status"], job["done"]) == ("done", 1000)
+    job = ended(jobs, address, 240.0)
+    assert (job["status"], job["done"]) == ("done", count)
     found = table(jobs, address)
-    assert [row["number"] for row in found] == list(range(1000))
-    some = list(range(0, 1000, 41))
+    assert [row["number"] for row in found] == list(range(count))
+    some = list(range(0, count, 41))
     assert [found[n] for n in some] == rows_of(request, some)
 
 
@@ -136,6 +141,26 @@ def test_a_cancelled_sweep_frees_the_cluster(jobs: httpx.Client) -> None:
     assert ended(jobs, address)["status"] == "cancelled"
     # its worker has one thread, which is free again
     assert ended(jobs, post(jobs, sweep(2, 2)))["status"] == "done"
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="a process cannot be stopped here")
+def test_a_worker_that_hangs_is_started_anew() -> None:
+    dask = Dask()
+    nanny = dask.worker(nanny=True)
+    served = Served(dask=dask.address, solve_seconds=1.0, grace_seconds=0.5)
+    try:
+        request = sweep(30, 10)
+        address = post(served.ready().client, request)
+        wait_for(lambda: served.client.get(address).json()["done"] > 20, 60.0)
+        hung = [p for p in psutil.Process(nanny.pid).children(recursive=True) if not p.children()]
+        for process in hung:
+            if "tracker" not in " ".join(process.cmdline()):
+                process.suspend()
+        job = ended(served.client, address, 120.0)
+        assert (job["status"], job["done"], job["failed"]) == ("done", 300, 0)
+    finally:
+        dask.end()
+        assert served.end()[0] == 0
 
 
 def test_a_cluster_that_is_away_is_waited_for() -> None:

@@ -52,6 +52,7 @@ class Cluster:
             from distributed import Client
         except ImportError:
             raise Problem("busy", "HOOKEAN_DASK is set, but distributed is not installed: hookean[dask].") from None
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what is lost is told by us
         client = Client(self.settings.dask, asynchronous=True, timeout=CONNECT, name="hookean", set_as_default=False)
         try:
             async with asyncio.timeout(2 * CONNECT):
