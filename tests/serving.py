@@ -23,6 +23,12 @@ CABLE: dict[str, Any] = {
     ],
     "anchors": [{"particles": [0, 5]}],
 }
+SWING: dict[str, Any] = {
+    **CABLE,
+    "forces": [{**CABLE["forces"][0], "damping": 0}, CABLE["forces"][1]],
+    "settings": {"solver": "verlet", "drag": 0, "time_step": 0.001, "max_iterations": 10**9, "tolerance": 0},
+}
+"""The same without damping: it never comes to rest."""
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 
 
@@ -99,18 +105,17 @@ class Home:
         return pid
 
     def end(self) -> None:
-        """End all that was started here."""
+        """End all that was started here, and what they started, whatever state it is in."""
+        pids = {process.pid for process in self.started if process.poll() is None}
         if self.told and living(self.told["pid"]):
-            with suppress(OSError):
-                os.kill(self.told["pid"], signal.SIGCONT)
-                os.kill(self.told["pid"], signal.SIGTERM)
-        for process in self.started:
-            if process.poll() is None:
-                process.terminate()
-            try:
-                process.communicate(timeout=30)
-            except subprocess.TimeoutExpired:
+            pids.add(self.told["pid"])
+        processes = []
+        for pid in pids:
+            with suppress(psutil.NoSuchProcess):
+                processes += [psutil.Process(pid), *psutil.Process(pid).children(recursive=True)]
+        for process in processes:
+            with suppress(psutil.NoSuchProcess):
                 process.kill()
-                process.communicate()
-        if self.told:
-            wait_for(lambda: not (self.told and living(self.told["pid"])))
+        for started in self.started:
+            started.communicate(timeout=30)
+        wait_for(lambda: not any(living(process.pid) for process in processes))
