@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -71,6 +72,8 @@ def test_relax_writes_everything_asked_for(folder: Path) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     assert "In equilibrium" in result.stdout and "-> out.3dm" in result.stdout
     assert "  4 points merged\n" in result.stdout
+    sag = re.search(r"moved by up to (\S+) m; z from -(\S+) to 0 m", result.stdout)
+    assert sag and 0 <= float(sag[1]) - float(sag[2]) < 0.01  # aside it goes by a part of the 0.47 m it stretches
     assert names(folder) == ["cable.3dm", "out.3dm", "out.csv", "out.json", "out.png", "recipe.toml"]
     assert (folder / "cable.3dm").read_bytes() == before
     rows = (folder / "out.csv").read_text(encoding="utf-8").splitlines()
@@ -86,7 +89,7 @@ def test_explain_solves_and_writes_nothing(folder: Path) -> None:
     result = run("relax", "cable.3dm", "--explain", "--recipe", "recipe.toml", "-o", "out.3dm")
     assert result.exit_code == 0
     assert "forces[0] springs: 5 lines from 1 LineCurve" in result.stdout
-    assert "layer cable: 1 LineCurve -> springs and unary and anchor" in result.stdout
+    assert 'layer cable: 1 LineCurve "main" -> springs and unary and anchor' in result.stdout
     assert names(folder) == ["cable.3dm", "recipe.toml"]
     bare = run("relax", "cable.3dm", "--explain")
     assert "layer names and user text; nothing is marked as an anchor" in bare.stdout
@@ -115,7 +118,10 @@ def test_a_limit_on_a_force_that_is_not_there_stops_no_output(folder: Path) -> N
 def test_notes_are_told_without_explain(folder: Path) -> None:
     result = run("relax", "cable.3dm", "-o", "out.3dm", "--report", "out.json")
     note = "nothing is marked as an anchor: loose ends are held (2 particles)"
-    assert result.stderr == f"hookean: cable.3dm: note: {note}\n"
+    beside = "recipe.toml lies beside it and is not used; give it with -r recipe.toml"
+    assert result.stderr == f"hookean: cable.3dm: note: {note}\nhookean: cable.3dm: note: {beside}\n"
+    assert beside in run("relax", "cable.3dm", "--explain").stderr
+    assert "lies beside it" not in run("relax", "cable.3dm", "--explain", "-r", "recipe.toml").stderr
     assert note in json.loads((folder / "out.json").read_text(encoding="utf-8"))["warnings"]
     recipe = run("relax", "recipe.toml")
     assert recipe.stderr.startswith("hookean: recipe.toml is a recipe; give it with -r")

@@ -165,7 +165,11 @@ def test_what_is_left_out_or_misspelt_is_noted(draw: Callable[..., Any]) -> None
     assert "nothing is marked as an anchor: loose ends are held (2 particles)" in notes
     assert "user text stifness" in notes and "did you mean stiffness?" in notes
     loop = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 0]])
-    assert "nothing is held at all" in understand(draw(NewObject(loop, "springs"))).notes
+    bare = understand(draw(NewObject(loop, "springs")))
+    assert "nothing is held at all" in bare.notes
+    assert "nothing is held" in bare.lines and "nothing is held" in bare.lines[0]
+    caught = understand(draw(NewObject(loop, "springs"), NewObject(LINE[0], "floor")))
+    assert not [note for note in caught.notes if "held" in note]
     assert understand(draw(NewObject(LINE, "springs"), NewObject(LINE[0], "anchors"))).notes == ()
 
 

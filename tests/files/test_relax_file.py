@@ -15,6 +15,7 @@ import rhino3dm as _rhino3dm
 
 from hookean import Scene
 from hookean import relax as relax_scene
+from hookean.colours import Scale
 from hookean.errors import InputError
 from hookean.files import recipe as recipes
 from hookean.files import tables, threedm
@@ -23,7 +24,7 @@ from hookean.files.recipe_output import Palette
 from hookean.files.relax_file import FileResult, LimitsError, explain_file, relax_file, report_json
 from hookean.files.threedm import Additions, NewObject
 from hookean.mesh import Mesh
-from hookean.picture import _colours, legend
+from hookean.picture import legend
 from hookean.result import Status
 from hookean.system import compile
 
@@ -467,10 +468,9 @@ def test_a_mesh_tells_the_range_of_its_elements_in_the_colours_of_the_picture(tm
         assert text[key] == f"{min(values):.6g} to {max(values):.6g}{unit}"
     parts = [p for p in tables.sections(compile(found.scene), found.result) if p.internal]
     palette = Palette(parts)
-    low, high, _ = legend(found.result)
-    cmap, first, last = _colours(low, high)
+    low, high, unit = legend(found.result)
     values = np.linspace(low + 0.01 * (high - low), high, 7)
-    expected = cmap((values - first) / (last - first))[:, :3] * 255
+    expected = Scale(low, high, unit).colours(values)[:, :3] * 255
     assert np.abs(palette(values) - expected).max() <= 2
 
 

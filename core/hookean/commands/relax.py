@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ from hookean.commands import outputs
 from hookean.errors import InputError
 
 if TYPE_CHECKING:
-    from hookean.result import Result
+    from hookean.files.relax_file import FileResult
 
 CONVERGED, EXCEEDED, BAD_INPUT, NOT_CONVERGED, STOPPED = 0, 1, 2, 3, 130
 _VERBS = ("is ", "has ", "holds ", "ends ", "cannot ", "would ", "needs ")
@@ -56,10 +56,10 @@ def run(options: Options) -> int:
     codes: list[int] = []
     try:
         recipe = None if options.recipe is None else text_of(options.recipe)
-        name = options.recipe.name if options.recipe is not None else ""
+        name = str(options.recipe) if options.recipe is not None else ""
         if options.explain:
             return max(_explained(file, recipe, name) for file in options.files)
-        limits = _limits(options.check), options.check.name if options.check is not None else ""
+        limits = _limits(options.check), str(options.check) if options.check is not None else ""
         jobs = _jobs(options)
     except InputError as error:
         return bad(error)
@@ -69,6 +69,8 @@ def run(options: Options) -> int:
                 codes.append(_one(job, recipe, name, limits, options.quiet))
         except InputError as error:
             codes.append(bad(error))
+            if "nothing to relax" in error.sentence:
+                tell(job.source, forgotten(job.source, options.recipe))
         except KeyboardInterrupt:
             typer.echo(f"hookean: {job.source.name}: stopped, nothing written", err=True)
             return STOPPED
@@ -96,8 +98,7 @@ def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] 
         from hookean.picture import render
 
         render(found.result, job.picture, scene=found.scene, title=job.source.stem)
-    for sentence in found.warnings:
-        typer.echo(f"hookean: {job.source.name}: note: {sentence}", err=True)
+    tell(job.source, [*found.warnings, *forgotten(job.source, recipe)])
     for sentence in found.exceeded:
         typer.echo(f"hookean: {job.source.name}: limit exceeded: {sentence}", err=True)
     if not found.result.converged:
@@ -111,15 +112,31 @@ def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] 
         written = ", ".join(str(target) for target in job.targets if target is not None)
         where = f"-> {written}" if written else "(nothing written: give -o)"
         typer.echo(f"{job.source.name}: {found.result.message} {where}")
-        for line in _summary(found.result):
+        for line in summary(found):
             typer.echo(f"  {line}")
     return EXCEEDED if found.exceeded else CONVERGED
 
 
-def _summary(result: Result) -> list[str]:
-    first, *more = result.summary()
-    merged = result.report.merged
-    return [first, *([f"{merged} point{'s' * (merged != 1)} merged"] if merged else []), *more]
+def summary(found: FileResult) -> list[str]:
+    """A few lines on a result: particles, how far they went, the forces of each table, reactions."""
+    first, *more = found.result.summary()
+    merged, unit, z = found.result.report.merged, found.result.units.length, found.result.particles[:, 2]
+    where = [f"moved by up to {found.moved:.4g} {unit}; z from {z.min():.4g} to {z.max():.4g} {unit}"] if len(z) else []
+    return [first, *([f"{merged} point{'s' * (merged != 1)} merged"] if merged else []), *where, *more]
+
+
+def tell(source: Path, notes: Sequence[str]) -> None:
+    """Notes on a file, on standard error."""
+    for sentence in notes:
+        typer.echo(f"hookean: {source.name}: note: {sentence}", err=True)
+
+
+def forgotten(source: Path, recipe: Path | str | None) -> list[str]:
+    """A note where recipes lie beside a model that is read without one."""
+    beside = sorted(source.parent.glob("recipe*.toml"), key=lambda p: (p.name != "recipe.toml", p.name))
+    if recipe is not None or source.suffix.lower() != ".3dm" or not beside:
+        return []
+    return [f"{beside[0].name} lies beside it and is not used; give it with -r {beside[0]}"]
 
 
 def _explained(file: Path, recipe: str | None, name: str) -> int:
@@ -127,6 +144,7 @@ def _explained(file: Path, recipe: str | None, name: str) -> int:
 
     try:
         typer.echo("\n".join(explain_file(file, recipe, recipe_name=name)))
+        tell(file, forgotten(file, recipe))
     except InputError as error:
         return bad(error)
     return CONVERGED
@@ -146,10 +164,10 @@ def text_of(path: Path) -> str:
     try:
         return path.read_bytes().decode("utf-8")
     except UnicodeDecodeError:
-        raise InputError(path.name, "is not text in UTF-8; save it so") from None
+        raise InputError(str(path), "is not text in UTF-8; save it so") from None
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or "no possible path"
-        raise InputError(path.name, f"cannot be read ({why}); check the path") from None
+        raise InputError(str(path), f"cannot be read ({why}); check the path") from None
 
 
 def _limits(path: Path | None) -> dict[str, Any] | None:

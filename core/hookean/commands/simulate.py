@@ -120,14 +120,14 @@ def _ready(options: Options) -> tuple[Source, Simulation]:
     from hookean.system import compile
 
     recipe = None if options.recipe is None else command.text_of(options.recipe)
-    name = options.recipe.name if options.recipe is not None else ""
+    name = str(options.recipe) if options.recipe is not None else ""
     read = open_file(options.source, recipe, name)
     with about(name):
         compile(read.scene)
     if options.script is None:
         return read, Simulation(read.scene, None, options.stream)
-    script = Script.read(command.text_of(options.script), options.script.name)
-    with about(options.script.name):
+    script = Script.read(command.text_of(options.script), str(options.script))
+    with about(str(options.script)):
         return read, Simulation(read.scene, script, options.stream)
 
 
@@ -224,8 +224,7 @@ def _conclude(options: Options, to: _Targets, read: Source, running: Simulation,
 
 def _tell(options: Options, to: _Targets, found: FileResult, seen: _Seen, code: int) -> None:
     result, name = found.result, options.source.name
-    for sentence in found.warnings:
-        typer.echo(f"hookean: {name}: note: {sentence}", err=True)
+    command.tell(options.source, [*found.warnings, *command.forgotten(options.source, options.recipe)])
     how = {STOPPED: "stopped", RESTLESS: "not at rest", BAD_INPUT: "broken off"}.get(code, "")
     said = f"{seen.frames} frames, {result.time:.6g} {result.units.time}. {result.message}"
     if how:
@@ -234,5 +233,5 @@ def _tell(options: Options, to: _Targets, found: FileResult, seen: _Seen, code: 
         aside = options.csv == "-"  # which has standard output to itself
         written = ", ".join(str(target) for target in to.files if target is not None)
         typer.echo(f"{name}: {said}{f' -> {written}' if written else ''}", err=aside)
-        for line in result.summary():
+        for line in command.summary(found):
             typer.echo(f"  {line}", err=aside)

@@ -111,6 +111,11 @@ def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Underst
         seen = drawing(model, recipe.get("units"), hidden=hidden)
         built, said = build(seen, recipe), "a recipe"
     lines = _told(seen, built, said)
+    if recipe is not None and "units" not in recipe:
+        length, force = built.scene.units.length, built.scene.units.force
+        lines.insert(
+            2, f"no units in the recipe: its lengths are {length}, its forces {force}, stiffness {force}/{length}"
+        )
     told = tuple(notes(seen, built, conventional=recipe is None))
     return Understood(built, [*lines, f"{model.name} {nothing}"] if nothing else lines, nothing, told)
 
@@ -124,7 +129,12 @@ def _told(seen: Drawing, built: Built, said: str) -> list[str]:
         f"points within {built.scene.weld_tolerance:.6g} {units.length} become one particle",
         _counts(seen),
     ]
+    if built.size:
+        solved = "" if seen.factor == 1.0 else f", 1 {seen.unit} taken as {seen.factor:.6g} {units.length}"
+        lines.append(f"size: {built.size}{solved}; stiffness and loads must fit it")
     lines += built.notes
+    if not built.scene.anchors:
+        lines.append("nothing is held")
     floor = built.scene.settings.floor
     if floor is not None:
         lines.append(f"floor through {', '.join(f'{c:.6g}' for c in floor.point)}")
@@ -169,7 +179,7 @@ def _layer(layer: str, items: list[Item], built: Built) -> list[str]:
     lines = []
     for fate, same in fates.items():
         names = [item.name for item in same if item.name]
-        called = f" {listed(names, 3)}" if names and fate.startswith("left out") else ""
+        called = f" {listed(names, 3)}" if names else ""
         lines.append(f"layer {layer}: {_kinds(same)}{called} -> {fate}")
     return lines
 

@@ -39,6 +39,14 @@ class Built:
     notes: list[str] = field(default_factory=list)
     guessed: bool = False  # anchors were not marked, so loose ends are held
 
+    @property
+    def size(self) -> str:
+        """How large what forces act on was drawn, in the file's unit, such as `2 x 4 x 0.5 mm`; "" for nothing."""
+        found = [s.array.reshape(-1, 3) for s in (*self.forces, *self.meshes.values()) if s is not None]
+        points = np.concatenate([np.zeros((0, 3)), *found]) / self.drawing.factor
+        sides = [f"{side:.4g}" for side in np.ptp(points, axis=0)] if len(points) else []
+        return f"{' x '.join(sides)} {self.drawing.unit}" if sides else ""
+
 
 def build(drawing: Drawing, recipe: Mapping[str, Any], *, lenient: bool = False) -> Built:
     """The scene a recipe describes; `lenient` leaves out what cannot be used instead of refusing it.

@@ -107,7 +107,8 @@ def by_convention(drawing: Drawing) -> tuple[Built, str, str]:
     marked = bool(reading.anchors)
     if not marked:
         _hold_loose(drawing, reading)
-        said += "; nothing is marked as an anchor: loose ends and naked vertices are held"
+        held = " and ".join(dict.fromkeys(str(table["name"]) for table in reading.anchors.values()))
+        said += f"; nothing is marked as an anchor: {held + ' are' if held else 'nothing is'} held"
     nothing = ""
     if not reading.elastic:
         why = next((f"; {item.label}: {why}" for item, why in reading.left.items()), "")

@@ -20,12 +20,14 @@ def notes(seen: Drawing, built: Built, *, conventional: bool) -> list[str]:
     text keys that are nearly those of the convention."""
     found = _left(seen, built)
     held = [a.points for a in built.scene.anchors if a.points is not None and len(a.points)]
-    if not built.scene.anchors:
+    # a floor, and what pulls to a place, hold as well
+    caught = built.scene.settings.floor is not None or any(type(f).role == "support" for f in built.scene.forces)
+    if not built.scene.anchors and not caught:
         found.append("nothing is held at all")
-    elif built.guessed:
+    elif built.guessed and held:
         kept, _ = unique_points(np.concatenate(held), built.scene.weld_tolerance)
-        ends = "nothing is marked as an anchor: loose ends are held"
-        found.append(f"{ends} ({count(len(kept), 'particle')})")
+        what = " and ".join(dict.fromkeys(anchor.name for anchor in built.scene.anchors))
+        found.append(f"nothing is marked as an anchor: {what} are held ({count(len(kept), 'particle')})")
     return [*found, *_layers(seen), *_keys(seen)] if conventional else found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from typing import Any
 from uuid import UUID
 
 from hookean.errors import InputError
-from hookean.files.recipe_drawing import Drawing, Item, above, layers_of
+from hookean.files.recipe_drawing import NO_LAYER, Drawing, Item, above, layers_of
 from hookean.files.threedm_model import SEPARATOR
 
 KEYS = ("layer", "name", "id", "text")
@@ -94,7 +95,7 @@ def select(drawing: Drawing, term: Term, pointer: str) -> list[Item]:
             raise InputError(
                 pointer, f'"{term}" finds only hidden objects ({unseen}); show them in Rhino or set hidden = true'
             )
-        raise InputError(pointer, f'"{term}" finds no object; {_has(drawing, term.key)}')
+        raise InputError(pointer, f'"{term}" finds no object; {_has(drawing, term)}')
     return found
 
 
@@ -133,14 +134,33 @@ def _pattern(text: str) -> re.Pattern[str]:
     return re.compile(".*".join(re.escape(part) for part in text.casefold().split("*")), re.DOTALL)
 
 
-def _has(drawing: Drawing, key: str) -> str:
-    if key == "layer":
-        return f"its layers with visible objects are {listed(layers_of(drawing.items))}"
-    if key == "name":
-        return f"its object names are {listed(n for item in drawing.items for n in item.names if n)}"
-    if key == "text":
-        return f"its user text keys are {listed(k for item in drawing.items for k in item.text)}"
+def _has(drawing: Drawing, term: Term) -> str:
+    """What the file has instead of what was looked for, and what to write."""
+    front = f"{term.feature}:" if term.feature else ""
+    if term.key == "layer":
+        paths = layers_of(drawing.items)
+        if not set(paths) - {NO_LAYER}:
+            return f'its objects lie on no layer: select them with "{front}*", {front}name:NAME or {front}id:UUID'
+        if len(paths) == 1:
+            return (
+                f'its only layer with visible objects is "{paths[0]}": write "{front}layer:{paths[0]}", or "{front}*"'
+            )
+        known = [name for path in paths for name in (path, path.rpartition(SEPARATOR)[2])]
+        return f"its layers with visible objects are {listed(paths)}{_nearly(term, known)}"
+    if term.key == "name":
+        names = [name for item in drawing.items for name in item.names if name]
+        return f"its object names are {listed(names)}{_nearly(term, names)}" if names else "its objects have no names"
+    if term.key == "text":
+        keys = [key for item in drawing.items for key in item.text]
+        return f"its user text keys are {listed(keys)}{_nearly(term, keys)}"
     return f"the file has {count(len(drawing.items), 'visible object')}"
+
+
+def _nearly(term: Term, known: Sequence[str]) -> str:
+    wanted, by_case = term.value.partition("=")[0].strip().casefold(), {name.casefold(): name for name in known}
+    near = difflib.get_close_matches(wanted, by_case, 1)
+    front = f"{term.feature}:" if term.feature else ""
+    return f"; did you mean {front}{term.key}:{by_case[near[0]]}?" if near else ""
 
 
 def count(number: int, one: str, many: str = "") -> str:

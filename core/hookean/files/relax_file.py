@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from hookean.result import Result
     from hookean.system import System
 
+TOO_LONG = 10.0  # times the rest length; rubber tears before
 Progress = Callable[[int, float], None]
 
 
@@ -37,7 +38,8 @@ Progress = Callable[[int, float], None]
 class FileResult:
     """A relaxed file. `result` in the scene's units; `understood` lines on how the file was read; `rows` one for each
     element and reaction (see `tables.rows`); `objects` sums for each object; `ids` of the objects written to a .3dm
-    file; `warnings` for a person; `exceeded` a sentence for each limit that does not hold."""
+    file; `warnings` for a person; `exceeded` a sentence for each limit that does not hold; `moved` how far a particle
+    went from where it was drawn, at most."""
 
     result: Result
     scene: Scene
@@ -47,6 +49,7 @@ class FileResult:
     ids: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     exceeded: list[str] = field(default_factory=list)
+    moved: float = 0.0
 
     @property
     def csv(self) -> str:
@@ -173,7 +176,9 @@ def conclude(
         result, read.scene, read.lines, tables.rows(parts, result), tables.per_object(parts, result.units)
     )
     report = result.report
-    found.warnings = [*read.warnings, *report.warnings, *(u.sentence for u in report.unmatched), *_doubled(parts)]
+    found.warnings = [*read.warnings, *report.warnings, *(u.sentence for u in report.unmatched)]
+    found.warnings += [*_doubled(parts), *_overstretched(parts, read.built), *_idle(parts, system)]
+    found.moved = float(np.linalg.norm(result.particles - system.x, axis=1).max(initial=0.0))
     fault: InputError | None = None
     if limits is not None:
         try:
@@ -291,6 +296,30 @@ def _doubled(parts: list[tables.Section]) -> list[str]:
                 elements = count(twice, "element")
                 said.append(f"{part.name}: {elements} {join} the same particles as another and {pull} twice")
     return said
+
+
+def _overstretched(parts: list[tables.Section], built: Built | None) -> list[str]:
+    """A note for each force whose springs become absurdly long: most likely size and numbers do not fit."""
+    said = []
+    for part in parts:
+        longest = 1.0 + float(part.columns["strain"].max(initial=0.0)) if "strain" in part.columns else 1.0
+        if longest > TOO_LONG:
+            size = ""
+            if built is not None and built.size:
+                counts = "its numbers count in"
+                size = f": the model measures {built.size}, and {counts} {built.scene.units.length} and "
+                size += str(built.scene.units.force)
+            told = f'springs of "{part.name}" stretch to {longest:.4g} times their rest length{size}'
+            said.append(f"{told}; make stiffness and loads fit the size")
+    return said
+
+
+def _idle(parts: list[tables.Section], system: System) -> list[str]:
+    """A note for each load that acts on held particles alone."""
+    held = (system.start().free == 0).all(axis=1)
+    forces = system.scene.forces
+    loads = [p for p in parts if p.number >= 0 and type(forces[p.number]).role == "load" and p.particles.size]
+    return [f'load "{p.name}" acts on held particles alone and moves nothing' for p in loads if held[p.particles].all()]
 
 
 def _write(
