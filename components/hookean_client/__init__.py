@@ -30,7 +30,7 @@ except ImportError:  # Python 2
     from urllib import quote, urlencode
 
 __version__ = "0.1.0"
-WIRE = 1  # version of the frames
+WIRE = 1
 REACH, ANSWER = 0.2, 2.0  # seconds to reach a server, for it to say who it is
 PATIENCE, STARTING = 60.0, 30.0  # seconds a socket may be silent, a start may take
 STATUSES = "running converged stalled diverged max_iterations time_limit cancelled".split()
@@ -111,7 +111,7 @@ class Client(object):
             except FAILURES:
                 connection.close()
                 if not more or _now() > until:
-                    raise Problem("lost", "No answer to %s." % method)
+                    raise Problem("lost", "No answer to %s; it may be done." % method)
         if connection.sock is not None:
             self._idle.append((self.instance, _now(), connection))
         if answer.status >= 400:
@@ -323,7 +323,7 @@ class Link(object):
         try:
             self._connection.sock.settimeout(REACH)
             self.send(8, b"\x03\xe8")
-            self._connection.sock.shutdown(socket.SHUT_RDWR)  # wakes who receives
+            self._connection.sock.shutdown(socket.SHUT_RDWR)
         except FAILURES:
             pass
         self._connection.close()
@@ -417,10 +417,10 @@ def _start(place, python, parent, idle):
             _unlink(path)
             if child.returncode > 0:
                 with open(log) as file:
-                    raise Problem("not-started", "Not started: " + file.read().strip().split("\n")[-1][:300])
+                    raise Problem("not-started", "It did not start: " + file.read().strip().split("\n")[-1][:300])
         python = python or os.environ.get("HOOKEAN_PYTHON") or _told(place, "python.json").get("python")
         if not python:
-            raise Problem("no-python", "Set HOOKEAN_PYTHON, or run `hookean serve` once.")
+            raise Problem("no-python", "Set HOOKEAN_PYTHON to the Python with hookean, or run `hookean serve` once.")
         command = [str(python), "-m", "hookean.cli", "serve", "--any-port"]
         command += ["--parent-pid", str(parent), "--idle-exit", str(idle)]
         ours = False
@@ -448,7 +448,7 @@ def _spawn(command, place, log):
     else:
         options.update({"start_new_session": True} if sys.version_info > (3,) else {"preexec_fn": os.setsid})
     with open(log, "w+b") as file:
-        if os.name != "nt" or sys.version_info > (3, 7):  # before, not both
+        if os.name != "nt" or sys.version_info > (3, 7):
             options.update(stdin=file, stdout=file, stderr=file)
         return subprocess.Popen(command, **options)
 
@@ -471,12 +471,12 @@ def _refusal(status, data):
 
 def _check(wire):
     if wire != WIRE:
-        said = "Its frames are of version %s, not %d; stop it." % (wire, WIRE)
+        said = "Its frames are of version %s, not %d; `hookean serve --stop` ends it." % (wire, WIRE)
         raise Problem("wrong-version", said)
 
 
 def _octets(data):
-    return bytearray(data if isinstance(data, (bytes, bytearray)) else map(ord, data))  # IronPython's are text
+    return bytearray(data if isinstance(data, (bytes, bytearray)) else map(ord, data))
 
 
 def _unlink(path):

@@ -1,0 +1,408 @@
+"""The client against real servers: found, started once, every method, frames, and what happens when a server dies."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from http.server import BaseHTTPRequestHandler, HTTPServer
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import hookean_client
+from hookean_client import Problem, buffer, connect
+from serving import CABLE, SOAK, SWING, Home, living, wait_for
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+
+
+CLIENTS: list[hookean_client.Client] = []
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
+    found = Home(tmp_path / "state")
+    monkeypatch.delenv("HOOKEAN_TOKEN", raising=False)
+    monkeypatch.delenv("HOOKEAN_PYTHON", raising=False)
+    yield found
+    for client in CLIENTS:
+        client.close()
+    CLIENTS.clear()
+    found.end()
+    for child in hookean_client._children.values():
+        child.wait(30)
+    hookean_client._children.clear()
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[hookean_client.Client]:
+    """A client of a server that runs, which it may not start."""
+    home = Home(tmp_path_factory.mktemp("client") / "state")
+    home.serve()
+    found = connect(start=False, folder=str(home.folder))
+    yield found
+    found.close()
+    home.end()
+
+
+def started(home: Home) -> hookean_client.Client:
+    CLIENTS.append(connect(folder=str(home.folder), python=sys.executable, timeout=120.0))
+    return CLIENTS[-1]
+
+
+# methods
+
+
+def test_relaxing_and_arrays(client: hookean_client.Client) -> None:
+    result = client.relax(CABLE)
+    assert result["status"] == "converged"
+    springs, load = CABLE["forces"]
+    scene = {
+        **CABLE,
+        "particles": buffer(CABLE["particles"]),
+        "forces": [{**springs, "particles": buffer(springs["particles"], "q")}, load],
+    }
+    assert scene["particles"]["shape"] == [6, 3]
+    assert client.relax(scene, query={"arrays": "list"})["particles"] == result["particles"]
+
+
+def test_every_method_of_a_session(client: hookean_client.Client) -> None:
+    session = client.session("a document:component ~1".replace(" ", "_"))
+    assert session.put(CABLE, query={"label": "Cable"})["revision"] == 0
+    assert session.read()["label"] == "Cable"
+    assert session.edit({"forces": {"1": {"vector": [0, 0, -30]}}, "gesture": "drag"})["revision"] == 1
+    assert session.edit({"pin": [{"particles": [2]}]}, headers={"if-match": '"1"'})["revision"] == 2
+    with pytest.raises(Problem) as stale:
+        session.edit({"release": [2]}, headers={"if-match": '"1"'})
+    assert (stale.value.slug, stale.value.status) == ("stale-revision", 412)
+    assert session.undo()["redo"] == 1 and session.redo()["redo"] == 0
+    assert session.step(frames=2)["iteration"] > 0
+    assert session.play(fast="true")["key"] == session.key
+    assert session.pause()["playing"] is False
+    assert session.reset()["iteration"] == 0
+    assert len(session.state()["particles"]) == 6
+    assert b"3D Geometry File Format" in session.state("3dm")[:64]
+    assert session.state("obj").startswith(b"#") or b"v " in session.state("obj")
+    assert session.read("topology")["springs"][0] == [0, 1]
+    assert [a["particles"] for a in session.read("anchors")["anchors"]] == [[0, 5], [2]]
+    assert session.read("scene")["forces"][1]["vector"] == [0, 0, -30]
+    other = client.session(session.branches(to="other")["key"])
+    assert {s["key"] for s in client.get("/v1/sessions")["sessions"]} >= {session.key, "other"}
+    assert other.delete() is None and session.delete() is None
+    with pytest.raises(Problem) as gone:
+        session.read()
+    assert (gone.value.slug, gone.value.status) == ("not-found", 404)
+
+
+def test_a_problem_points_and_says(client: hookean_client.Client) -> None:
+    with pytest.raises(Problem) as found:
+        client.relax({"particles": [[0, 0, "x"]]})
+    problem = found.value
+    assert (problem.slug, problem.status) == ("invalid-scene", 422)
+    [(pointer, sentence)] = problem.errors
+    assert pointer.startswith("/particles") and sentence and sentence in str(problem)
+
+
+def test_what_it_waits_for_ends_with_its_timeout(client: hookean_client.Client) -> None:
+    scene = {**SWING, "settings": {**SWING["settings"], "time_limit": 20.0}}
+    with pytest.raises(Problem) as found:
+        client.relax(scene, timeout=0.3)
+    assert (found.value.slug, found.value.status) == ("lost", 0)
+    assert client.get("/v1/health")["service"] == "hookean"
+
+
+def test_frames_show_each_edit(client: hookean_client.Client) -> None:
+    session = client.session("frames")
+    session.put(SWING)
+    frames = session.frames()
+    try:
+        session.play()
+        first = frames.wait()
+        assert first is not None and len(first["particles"]) == 18 and len(first["scalars"]) == 5
+        assert first["playing"] is True and first["status"] == "running"
+        for i in range(10):
+            revision = session.edit({"forces": {"1": {"vector": [0, 0, -20.0 - i]}}})["revision"]
+            shown = frames.wait(lambda frame, revision=revision: frame["revision"] >= revision)
+            assert shown is not None
+        assert frames.latest()["number"] >= shown["number"] > first["number"]
+        session.pause()
+        wait_for(lambda: frames.session.get("playing") is False)
+        state = session.state()
+        last = frames.wait(lambda frame: not frame["playing"])
+        assert last["particles"] == pytest.approx([x for row in state["particles"] for x in row], abs=1e-5)
+        assert frames.topology and frames.lost == [] and frames.message == ""
+        before = frames.topology
+        session.put({**CABLE, "particles": [*CABLE["particles"], [1, 1, 1]]})
+        wait_for(lambda: frames.topology != before)
+    finally:
+        frames.close()
+    session.delete()
+
+
+def test_frames_of_no_session_end_with_a_sentence(client: hookean_client.Client) -> None:
+    frames = client.session("nobody").frames()
+    wait_for(lambda: frames.ended)
+    assert "no session of this key" in frames.message and frames.latest() is None
+    assert frames.wait(timeout=5.0) is None
+
+
+def test_frames_end_when_the_session_is_forgotten(client: hookean_client.Client) -> None:
+    session = client.session("forgotten")
+    session.put(CABLE)
+    frames = session.frames()
+    assert frames.wait() is not None
+    session.delete()
+    wait_for(lambda: frames.ended)
+
+
+def test_threads_share_a_client(client: hookean_client.Client) -> None:
+    found: list[str] = []
+
+    def solve() -> None:
+        found.extend(client.relax(CABLE)["status"] for _ in range(5))
+
+    threads = [threading.Thread(target=solve) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == ["converged"] * 30
+
+
+# found and started
+
+RACER = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import hookean_client
+client = hookean_client.connect(folder=sys.argv[2], python=sys.argv[3], timeout=240.0, parent=int(sys.argv[4]))
+print(client.instance)
+sys.stdout.flush()
+"""
+
+
+@pytest.mark.parametrize("times", [50 if SOAK else 2])
+def test_eight_that_race_get_one_server(home: Home, times: int) -> None:
+    components = str(Path(hookean_client.__file__).parents[1])
+    for _ in range(times):
+        words = [components, str(home.folder), sys.executable, str(os.getpid())]
+        racers = [
+            subprocess.Popen([sys.executable, "-S", "-c", RACER, *words], stdout=subprocess.PIPE, text=True)
+            for _ in range(8)
+        ]
+        said = [racer.communicate(timeout=300)[0].strip() for racer in racers]
+        assert [racer.returncode for racer in racers] == [0] * 8
+        assert set(said) == {home.told["instance"]}
+        assert home.serving() == [home.told["pid"]]
+        assert home.command("serve", "--stop").returncode == 0
+        assert not home.told and home.serving() == []
+
+
+def test_threads_that_race_get_one_server(home: Home) -> None:
+    found: list[str] = []
+    threads = [threading.Thread(target=lambda: found.append(started(home).instance)) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == [home.told["instance"]] * 8
+    assert home.serving() == [home.told["pid"]]
+
+
+def test_a_start_goes_on_where_nobody_waits_for_it(home: Home) -> None:
+    with pytest.raises(Problem) as found:
+        connect(folder=str(home.folder), python=sys.executable, timeout=0.0)
+    assert found.value.slug == "starting"
+    wait_for(lambda: home.told)
+    client = connect(folder=str(home.folder), start=False)
+    assert client.instance == home.told["instance"]
+    assert not (home.folder / "starting").exists()
+
+
+def test_it_ends_with_the_process_that_asked(home: Home) -> None:
+    components = str(Path(hookean_client.__file__).parents[1])
+    code = RACER.replace(", parent=int(sys.argv[4])", "") + "sys.stdin.readline()\n"
+    pipes: Any = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    words = [components, str(home.folder), sys.executable]
+    with subprocess.Popen([sys.executable, "-c", code, *words], **pipes) as parent:
+        assert parent.stdout is not None and parent.stdout.readline()
+        pid = home.told["pid"]
+        parent.kill()
+    wait_for(lambda: not living(pid))
+    assert not home.told and (home.folder / "sessions.db").exists()
+
+
+def test_what_is_open_here_is_not_kept_open_there(home: Home, tmp_path: Path) -> None:
+    import psutil
+
+    with (tmp_path / "model.3dm").open("w") as file:
+        os.set_inheritable(file.fileno(), True)
+        started(home)
+        family = [psutil.Process(home.told["pid"]), *psutil.Process(home.told["pid"]).children(recursive=True)]
+        assert not any("model.3dm" in opened.path for process in family for opened in process.open_files())
+
+
+def test_none_is_started_where_none_is_wanted(home: Home) -> None:
+    with pytest.raises(Problem) as found:
+        connect(start=False, folder=str(home.folder))
+    assert found.value.slug == "no-server" and "hookean serve" in str(found.value)
+    assert not home.folder.exists()
+
+
+def test_which_python_starts_it(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The argument, else HOOKEAN_PYTHON, else what was recorded; a sentence where it is not known or does not do."""
+    folder = str(home.folder)
+    with pytest.raises(Problem) as found:
+        connect(folder=folder)
+    assert found.value.slug == "no-python" and "HOOKEAN_PYTHON" in str(found.value)
+    home.folder.mkdir(mode=0o700)
+    (home.folder / "python.json").write_text(json.dumps({"python": str(home.folder / "recorded")}))
+    with pytest.raises(Problem, match=r"recorded cannot be started") as found:
+        connect(folder=folder)
+    monkeypatch.setenv("HOOKEAN_PYTHON", str(home.folder / "named"))
+    with pytest.raises(Problem, match=r"named cannot be started") as found:
+        connect(folder=folder)
+    wrong = home.folder / "wrong"
+    wrong.write_text("#!/bin/sh\necho No module named hookean >&2\nexit 1\n")
+    wrong.chmod(0o700)
+    with pytest.raises(Problem, match=r"did not start: No module named hookean") as found:
+        connect(folder=folder, python=str(wrong))
+    assert found.value.slug == "not-started" and not (home.folder / "starting").exists()
+
+
+def test_the_first_serve_tells_the_client_which_python(home: Home) -> None:
+    process = home.serve()
+    process.terminate()
+    process.communicate(timeout=30)
+    CLIENTS.append(connect(folder=str(home.folder), timeout=120.0))
+    assert CLIENTS[-1].instance == home.told["instance"]
+
+
+def test_a_start_that_died_is_begun_again(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
+    home.folder.mkdir(mode=0o700)
+    lock = home.folder / "starting"
+    lock.write_text("")
+    with pytest.raises(Problem) as found:
+        connect(folder=str(home.folder), python=sys.executable, timeout=0.1)
+    assert found.value.slug == "starting" and lock.exists(), "somebody else is at it"
+    os.utime(lock, (1, 1))
+    assert started(home).instance == home.told["instance"]
+
+
+# strangers and versions
+
+
+def test_a_stranger_is_told_nothing(home: Home) -> None:
+    heard: list[Any] = []
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            heard.append((self.command, self.path, dict(self.headers)))
+            self.send_response(200)
+            self.send_header("content-length", "22")
+            self.end_headers()
+            self.wfile.write(b'{"instance": "0000000"}'[:22])
+
+        do_POST = do_PUT = do_GET
+
+        def log_message(self, *_: Any) -> None:
+            pass
+
+    client = started(home)
+    port = home.told["port"]
+    home.kill()
+    with HTTPServer(("127.0.0.1", port), Handler) as server:  # it has taken the port of the server that died
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        (home.folder / "server.json").write_text(json.dumps({**home.told, "pid": os.getpid()}))
+        client._start = False
+        with pytest.raises(Problem) as found:
+            client.post("/v1/relax", CABLE)
+        server.shutdown()
+    assert found.value.slug == "no-server"
+    assert heard and {(method, path) for method, path, _ in heard} == {("GET", "/v1/health")}
+    assert client.token not in str(heard)
+
+
+def test_a_server_of_other_frames_is_refused_with_a_sentence(home: Home) -> None:
+    home.serve()
+    file = home.folder / "server.json"
+    file.write_text(json.dumps({**home.told, "wire": 2}))
+    with pytest.raises(Problem) as found:
+        connect(folder=str(home.folder), start=False)
+    assert found.value.slug == "wrong-version" and "--stop" in str(found.value)
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "null", '{"pid": 1}', '{"pid": "x"}', '{"pid": -1, "url": 3}'])
+def test_a_file_that_is_none(home: Home, text: str) -> None:
+    home.folder.mkdir(mode=0o700)
+    (home.folder / "server.json").write_text(text)
+    with pytest.raises(Problem) as found:
+        connect(folder=str(home.folder), start=False)
+    assert found.value.slug == "no-server"
+
+
+def test_both_sides_mean_the_same_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    from hookean_server import discovery
+
+    for name, value in (("XDG_STATE_HOME", "/tmp/x"), ("HOOKEAN_STATE", "/tmp/y"), ("HOOKEAN_STATE", "")):
+        monkeypatch.setenv(name, value)
+        assert hookean_client.state_folder() == str(discovery.folder())
+    monkeypatch.delenv("XDG_STATE_HOME")
+    assert hookean_client.state_folder() == str(discovery.folder())
+
+
+# servers that die
+
+
+def test_a_server_killed_under_a_client_is_started_again(home: Home) -> None:
+    """Requests start it, frames come back by themselves and say what was lost; sessions have kept every edit."""
+    client = started(home)
+    session = client.session("a")
+    session.put(SWING)
+    revision = session.edit({"pin": [{"particles": [2]}]})["revision"]
+    frames = session.frames()
+    session.play()
+    assert frames.wait(lambda frame: frame["revision"] == revision) is not None
+    before = client.instance
+    home.kill()
+    wait_for(lambda: frames.message)
+    assert not frames.ended and frames.lost == []
+    found = session.read()
+    assert found["revision"] == revision and found["playing"] is False
+    assert client.instance == home.told["instance"] != before
+    wait_for(lambda: frames.lost)
+    assert "revision" in frames.lost[0] and frames.message == ""
+    session.play()
+    number = frames.received
+    wait_for(lambda: frames.received > number + 3)
+    frames.close()
+
+
+def test_frames_start_no_server(home: Home) -> None:
+    client = started(home)
+    client.session("a").put(CABLE)
+    frames = client.session("a").frames()
+    assert frames.wait() is not None
+    client.post("/v1/shutdown")
+    wait_for(lambda: not home.told)
+    wait_for(lambda: "No hookean server" in frames.message)
+    assert not home.told and not frames.ended
+    frames.close()
+
+
+def test_an_edit_that_may_have_been_made_is_not_made_twice(home: Home) -> None:
+    client = started(home)
+    session = client.session("a")
+    session.put(CABLE)
+    os.kill(home.told["pid"], signal.SIGSTOP)
+    with pytest.raises(Problem) as found:
+        session.edit({"pin": [{"particles": [2]}]}, timeout=0.5)
+    assert found.value.slug in ("lost", "no-answer", "starting")
+    os.kill(home.told["pid"], signal.SIGCONT)
+    wait_for(lambda: session.read()["revision"] <= 1)
