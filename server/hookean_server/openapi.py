@@ -125,8 +125,9 @@ def branched() -> dict[str, Any]:
 
 def exported(*codes: int) -> dict[int | str, dict[str, Any]]:
     """Responses of what is taken out of a session."""
-    return problems({"application/json": {"schema": {"type": "object"}}, "application/octet-stream": {}}, *codes,
-                    live=True)  # fmt: skip
+    files = ("application/octet-stream", "model/vnd.3dm", "model/obj")
+    content = {"application/json": {"schema": {"type": "object"}}, **{kind: {} for kind in files}}
+    return problems(content, *codes, live=True)
 
 
 def shutdown() -> dict[str, Any]:

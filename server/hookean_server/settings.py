@@ -32,7 +32,7 @@ class Settings:
     """Longest time for reading one file: of computing, and twice that by the clock."""
     grace_seconds: float = 10.0
     """What a worker may take beyond these before it is stopped by force."""
-    cancel_seconds: float = 2.0
+    cancel_seconds: float = 1.5
     """What a worker may take to notice that its client has left before it is stopped by force."""
     worker_memory: int = 4096 * MIB
     """Memory one worker may allocate, where the system can limit it."""

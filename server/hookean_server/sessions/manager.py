@@ -21,7 +21,7 @@ from hookean_server.store import Store
 log = logging.getLogger("hookean.sessions")
 
 ANSWER = 60.0  # seconds a process may take to answer; compiling a force for the first time takes a few
-PAUSE = 2.0  # seconds it may take to pause, before it is killed and brought back paused
+PAUSE = 1.5  # seconds it may take to pause, before it is killed and brought back paused
 TICK = 15.0  # seconds between looks at what to put to sleep and to forget
 LOSSES, WITHIN = 3, 60.0  # a session that loses its process so often in so many seconds stays down until it is used
 MANY_EDITS = 400  # after so many the store gets a new base
@@ -188,6 +188,8 @@ class Manager:
     async def delete(self, key: str) -> None:
         """Forget a session and end its process."""
         live = self.find(key)
+        if live.lock.locked():
+            await self._pause(live)  # what holds it may hang
         async with live.lock:
             await self.store.run(rows.delete(key))
             self.sessions.pop(key, None)

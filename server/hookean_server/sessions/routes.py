@@ -70,13 +70,15 @@ async def listing(request: Request) -> dict[str, Any]:
     return {"sessions": [summary(live) for live in manager(request).sessions.values() if live.described]}
 
 
-@router.get("/v1/sessions/{key}", summary="How a session stands", responses=openapi.problems(openapi.SESSION, 404))
+@router.get(
+    "/v1/sessions/{key}", summary="How a session stands", responses=openapi.problems(openapi.SESSION, live=True)
+)
 async def read(request: Request, key: Key) -> Response:
     """Revision, iteration, time, residual, status and the sentence on it."""
     return _answer(manager(request).find(key))
 
 
-@router.delete("/v1/sessions/{key}", status_code=204, summary="Forget a session", responses=openapi.problems(None, 404))
+@router.delete("/v1/sessions/{key}", status_code=204, summary="Forget a session", responses=openapi.problems(live=True))
 async def delete(request: Request, key: Key) -> Response:
     """It is gone, for its watchers too."""
     await manager(request).delete(key)

@@ -1,0 +1,130 @@
+"""Workers that hang, here by SIGSTOP, which no code of theirs can answer: what is asked of them ends all the same."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import psutil
+import pytest
+
+from server.conftest import CABLE, Served, endless, wait_for
+
+pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="this system cannot stop a process")
+SOON = 60.0  # seconds until a state is called never reached; the service itself waits two
+
+
+@pytest.fixture(scope="module")
+def running() -> Iterator[Served]:
+    found = Served(workers=1)
+    yield found.ready()
+    assert found.end()[0] == 0
+
+
+def _of_session(served: Served, before: set[int]) -> psutil.Process:
+    """The process of the session made last."""
+    (new,) = [process for process in served.workers() if process.pid not in before]
+    return new
+
+
+def _begun(served: Served, key: str) -> psutil.Process:
+    """A session that has taken a few steps; its process."""
+    before = {process.pid for process in served.workers()}
+    assert served.client.put(f"/v1/sessions/{key}", json=CABLE).status_code == 201
+    process = _of_session(served, before)
+    served.client.post(f"/v1/sessions/{key}/step", params={"frames": 5})
+    return process
+
+
+def _answered(served: Served, key: str, action: str, **options: Any) -> list[httpx.Response]:
+    """What an action is answered, in a thread, as a client waits for it."""
+    found: list[httpx.Response] = []
+
+    def ask() -> None:
+        with httpx.Client(base_url=served.url, headers=served.known, timeout=2 * SOON) as client:
+            found.append(client.post(f"/v1/sessions/{key}/{action}", **options))
+
+    threading.Thread(target=ask, daemon=True).start()
+    return found
+
+
+def test_pause_reaches_a_session_whose_process_hangs(running: Served) -> None:
+    """It is ended and comes back, paused, where its checkpoint was, with its edits, and goes on as any other."""
+    process = _begun(running, "a")
+    assert running.client.patch("/v1/sessions/a", json={"forces": {"1": {"vector": [0, 0, -7.0]}}}).status_code == 200
+    running.client.post("/v1/sessions/a/play", params={"fast": True})
+    process.send_signal(signal.SIGSTOP)
+    paused = _answered(running, "a", "pause")
+    wait_for(lambda: paused, SOON)
+    assert paused[0].status_code == 200 and paused[0].json()["playing"] is False
+    wait_for(lambda: not process.is_running() or process.status() == psutil.STATUS_ZOMBIE, SOON)
+    found = running.client.get("/v1/sessions/a/scene")
+    assert found.status_code == 200 and found.json()["forces"][1]["vector"] == [0, 0, -7.0]
+    stands = running.client.get("/v1/sessions/a").json()
+    assert (stands["playing"], stands["revision"], stands["awake"]) == (False, 1, True)
+    went = running.client.post("/v1/sessions/a/step", params={"frames": 2}).json()
+    assert went["iteration"] > stands["iteration"] or went["status"] != "running"
+    assert running.client.post("/v1/sessions/a/undo").json()["revision"] == 2
+
+
+def test_others_go_on_while_one_hangs(running: Served) -> None:
+    """Large messages wait for the stopped process: neither other sessions nor health wait with them."""
+    stopped = _begun(running, "stopped")
+    _begun(running, "other")
+    stopped.send_signal(signal.SIGSTOP)
+    large = json.dumps({"pin": [{"particles": [1], "name": "n" * 300_000}]}).encode()
+    stuck = [threading.Thread(target=_patched, args=(running, large), daemon=True) for _ in range(12)]
+    for thread in stuck:
+        thread.start()
+    for value in range(5):
+        done = running.client.patch("/v1/sessions/other", json={"forces": {"1": {"vector": [0, 0, -float(value)]}}})
+        assert done.status_code == 200
+        assert running.health()["status"] == "ok"
+    paused = _answered(running, "stopped", "pause")
+    wait_for(lambda: paused, SOON)
+    for thread in stuck:
+        thread.join(SOON)
+        assert not thread.is_alive()
+    assert running.client.get("/v1/sessions/stopped/state").status_code == 200
+
+
+def _patched(served: Served, body: bytes) -> None:
+    with httpx.Client(base_url=served.url, headers=served.known, timeout=2 * SOON) as client:
+        client.patch("/v1/sessions/stopped", content=body, headers={"content-type": "application/json"})
+
+
+def test_a_session_whose_process_hangs_is_deleted(running: Served) -> None:
+    process = _begun(running, "gone")
+    process.send_signal(signal.SIGSTOP)
+    assert running.client.delete("/v1/sessions/gone").status_code == 204
+    wait_for(lambda: not process.is_running() or process.status() == psutil.STATUS_ZOMBIE, SOON)
+    assert running.client.get("/v1/sessions/gone").status_code == 404
+
+
+def test_a_client_that_leaves_ends_a_worker_that_hangs(running: Served) -> None:
+    """Its place is free again and the next request is solved, by another process."""
+    worker = min(running.workers(), key=lambda process: process.create_time())  # it was there before any session
+    body = json.dumps(endless(600.0)).encode()
+    for listed in running.client.get("/v1/sessions").json()["sessions"]:
+        running.client.delete(f"/v1/sessions/{listed['key']}")
+    with httpx.Client(base_url=running.url, headers=running.known, timeout=httpx.Timeout(10.0, read=0.5)) as client:
+        os.kill(worker.pid, signal.SIGSTOP)
+        with pytest.raises(httpx.ReadTimeout):
+            client.post("/v1/relax", content=body, headers={"content-type": "application/json"})
+    wait_for(lambda: running.health()["workers"]["idle"] == 1, SOON)
+    assert worker.pid not in {process.pid for process in running.workers()}
+    assert running.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
+
+
+def test_the_service_ends_with_workers_that_hang() -> None:
+    served = Served(workers=1).ready()
+    processes = [_begun(served, "a"), *served.workers()]
+    for process in processes:
+        process.send_signal(signal.SIGSTOP)
+    assert served.end()[0] == 0
+    wait_for(lambda: not any(p.is_running() and p.status() != psutil.STATUS_ZOMBIE for p in processes), SOON)
