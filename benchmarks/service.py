@@ -27,7 +27,7 @@ from hookean_server.sessions.wire import HEADER
 
 SIDE = 100  # 10,000 particles, 19,800 springs
 SECONDS = 8.0
-TOKEN = "bench"
+TOKEN = "figures-of-the-live-service"
 
 
 class Server:
@@ -46,7 +46,10 @@ class Server:
         assert self.process.stdout is not None
         found = None
         while found is None:
-            found = re.search(r"http://127\.0\.0\.1:\d+", self.process.stdout.readline())
+            line = self.process.stdout.readline()
+            if not line:
+                raise SystemExit("the server did not start")
+            found = re.search(r"http://127\.0\.0\.1:\d+", line)
         self.url = found.group(0)
         self.headers = {"authorization": f"Bearer {TOKEN}"}
         self.client = httpx.Client(base_url=self.url, timeout=120.0, headers=self.headers)
