@@ -93,22 +93,20 @@ class Home:
         lock, found = self.folder / "server.lock", []
         for process in psutil.process_iter():
             with suppress(psutil.Error, OSError):
-                if any(Path(file.path) == lock for file in process.open_files()):
+                if process.pid != os.getpid() and any(Path(file.path) == lock for file in process.open_files()):
                     found.append(process.pid)
         return found
 
     def kill(self) -> int:
         """kill -9 of the server that is told of; its number."""
-        pid = int(self.told["pid"])
+        [pid] = self.serving()  # never by the number in a file, which may be anybody's
         os.kill(pid, signal.SIGKILL)
         wait_for(lambda: not living(pid))
         return pid
 
     def end(self) -> None:
         """End all that was started here, and what they started, whatever state it is in."""
-        pids = {process.pid for process in self.started if process.poll() is None}
-        if self.told and living(self.told["pid"]):
-            pids.add(self.told["pid"])
+        pids = {process.pid for process in self.started if process.poll() is None} | set(self.serving())
         processes = []
         for pid in pids:
             with suppress(psutil.NoSuchProcess):

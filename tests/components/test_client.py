@@ -110,7 +110,14 @@ def test_a_problem_points_and_says(client: hookean_client.Client) -> None:
 
 
 def test_what_it_waits_for_ends_with_its_timeout(client: hookean_client.Client) -> None:
-    scene = {**SWING, "settings": {**SWING["settings"], "time_limit": 20.0}}
+    count = 20_000  # far more than is solved in the time
+    springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(count - 1)], "damping": 0}
+    scene = {
+        "particles": [[float(i), 0.0, 0.0] for i in range(count)],
+        "forces": [springs, {"kind": "self_weight", "total": 20.0 * count}],
+        "anchors": [{"particles": [0, count - 1]}],
+        "settings": {**SWING["settings"], "time_limit": 60.0},
+    }
     with pytest.raises(Problem) as found:
         client.relax(scene, timeout=0.3)
     assert (found.value.slug, found.value.status) == ("lost", 0)
@@ -400,9 +407,10 @@ def test_an_edit_that_may_have_been_made_is_not_made_twice(home: Home) -> None:
     client = started(home)
     session = client.session("a")
     session.put(CABLE)
-    os.kill(home.told["pid"], signal.SIGSTOP)
+    [pid] = home.serving()
+    os.kill(pid, signal.SIGSTOP)
     with pytest.raises(Problem) as found:
         session.edit({"pin": [{"particles": [2]}]}, timeout=0.5)
     assert found.value.slug in ("lost", "no-answer", "starting")
-    os.kill(home.told["pid"], signal.SIGCONT)
+    os.kill(pid, signal.SIGCONT)
     wait_for(lambda: session.read()["revision"] <= 1)
