@@ -172,6 +172,7 @@ def test_bad_files_get_one_sentence_and_exit_2(folder: Path) -> None:
         ("--recipe", "broken.toml"),
         ("--recipe", "wrong.toml"),
         ("--recipe", "cable.3dm"),
+        ("--recipe", "notes.md"),
         ("--check", "missing.toml"),
         ("--check", "broken.toml"),
         ("-o", "cable.3dm"),
@@ -188,6 +189,7 @@ def test_bad_files_get_one_sentence_and_exit_2(folder: Path) -> None:
 )
 def test_bad_options_get_one_sentence_and_exit_2(folder: Path, arguments: tuple[str, ...]) -> None:
     (folder / "broken.toml").write_text("[[forces", encoding="utf-8")
+    (folder / "notes.md").write_text("# notes\n\nof mine", encoding="utf-8")
     (folder / "wrong.toml").write_text(CABLE.replace("layer:cable", "layer:rope"), encoding="utf-8")
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     result = run("relax", "cable.3dm", *arguments)

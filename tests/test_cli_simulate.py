@@ -130,7 +130,12 @@ def test_a_wrong_row_says_its_line_and_leaves_the_frames_before_it(folder: Path)
         (["cable.json", "--script", "nix.toml"], "nix.toml cannot be read"),
         (["cable.json", "--script", "wind.toml"], "wind.toml /drives: speed [m/s] comes from a stream; give one"),
         (["cable.json", "--stream", "wind.csv"], "no drive says which force it leads"),
-        (["cable.json", "--script", "recipe.toml"], "recipe.toml /anchors/0/anchor: anchor is needed"),
+        (
+            ["cable.json", "--script", "recipe.toml"],
+            "recipe.toml /forces/0/kind: belongs to a recipe; give this file with --recipe",
+        ),
+        (["cable.3dm", "-r", "lift.toml"], "lift.toml /anchors/0/times: belongs to the script of a run"),
+        (["cable.3dm", "-r", "wind.toml", "--script", "recipe.toml"], "wind.toml /drives: belongs to the script"),
         (["cable.json", "--script", "wind.toml", "--stream", "gone.csv"], "gone.csv cannot be read"),
         (["cable.json", "--csv", "cable.json"], "never written over"),
         (["cable.json", "--picture", "a.jpg"], "is not a .png file"),

@@ -115,3 +115,54 @@ def unlayered(path: Path) -> Path:
         model.Objects.AddCurve(item.Geometry)
     assert model.Write(str(path), 7)
     return path
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("rest_factor = 0,5", ": rest_factor = 0,5; decimals take a point: 0.5"),
+        ("rest_factor = 0,5 # soft", "decimals take a point: 0.5"),
+        ("stiffness 1000", "line 4"),
+        ("stiffness 1000", ": stiffness 1000"),
+        (
+            'rest_factor = "0.5"',
+            '/forces/0/rest_factor: the text "0.5" given; a number takes no quotes: rest_factor = 0.5',
+        ),
+        ('rest_factor = "0,5"', "a number takes no quotes: rest_factor = 0.5"),
+        ('surface = "layer:nowhere"', '/forces/0/surface: "surface" is no field of springs; did you mean mesh?'),
+        ("stifness = 3", '"stifness" is no field of springs; did you mean stiffness?'),
+        ("colour = 3", '"colour" is no field of springs; it has '),
+    ],
+)
+def test_values_and_names_that_mean_something_else(draw: Callable[..., Path], line: str, said: str):
+    """Told with the line or the field, before the selectors, which may be wrong as well."""
+    path = draw(NewObject(SQUARE, "net"))
+    assert said in refused(path, f'[[forces]]\nkind = "springs"\nmesh = "layer:none"\n{line}\n')
+
+
+@pytest.mark.parametrize(
+    ("recipe", "said"),
+    [
+        ('[[forces]]\nkind = "load"', 'kind "load" is none; did you mean unary (a load on each of its points)'),
+        ('[[forces]]\nkind = "Gravity"', "or self_weight?"),
+        ('[[forces]]\nkind = "unary"\npoints = "*"\nvector = -0.002', "such as vector = [0, 0, -0.002]"),
+        ('[forces]\nkind = "springs"', "/forces: give tables, in TOML each under [[forces]]"),
+        ('[[anchors]]\npoints = "ends:*"', "the file has 1 Brep; here go curves; for points of meshes and surfaces"),
+        ('[[anchors]]\npoints = "ends:layer:skin"', "finds 1 Brep; here go curves; for points of meshes and surfaces"),
+        ('[[forces]]\nkind = "springs"\nlines = "*"', "for the edges of a mesh or surface give mesh = instead of"),
+        ('[[anchors]]\npoints = "corners:*"\ndivide = [8, 8]', "closed meshes have none"),
+        ('[[anchors]]\npoints = "naked:layer:skin"\ndivide = [8, 8]', "closed meshes have none"),
+        ('[settings]\ntolerance = "1e-6"', "/settings/tolerance: the text"),
+    ],
+)
+def test_tables_that_mean_something_else(draw: Callable[..., Path], recipe: str, said: str):
+    """On a closed Brep, a sphere."""
+    import rhino3dm
+
+    ball = rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 2.0).ToBrep()
+    assert said in refused(draw(NewObject(ball, "skin")), recipe)
+
+
+def test_a_text_that_is_no_recipe_is_told_by_its_name():
+    with pytest.raises(InputError, match=r"README\.md: is no TOML or JSON; give a file that ends in \.toml or \.json"):
+        parse_recipe("# hookean\n\nform finding", "README.md")

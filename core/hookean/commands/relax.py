@@ -161,6 +161,8 @@ def bad(error: InputError) -> int:
 
 def text_of(path: Path) -> str:
     """The text in a file; InputError where there is none."""
+    if path.suffix.lower() == ".3dm":
+        raise InputError(str(path), "is a Rhino model; swap: give it as the file to read, the recipe (.toml) with -r")
     try:
         return path.read_bytes().decode("utf-8")
     except UnicodeDecodeError:

@@ -114,6 +114,8 @@ def _targets(options: Options) -> _Targets:
 
 
 def _ready(options: Options) -> tuple[Source, Simulation]:
+    from hookean.files.recipe import parse_recipe
+    from hookean.files.recipe_check import check_script
     from hookean.files.relax_file import about, open_file
     from hookean.script import Script
     from hookean.simulation import Simulation
@@ -126,7 +128,10 @@ def _ready(options: Options) -> tuple[Source, Simulation]:
         compile(read.scene)
     if options.script is None:
         return read, Simulation(read.scene, None, options.stream)
-    script = Script.read(command.text_of(options.script), str(options.script))
+    text = command.text_of(options.script)
+    with about(str(options.script)):
+        check_script(parse_recipe(text, str(options.script)))
+    script = Script.read(text, str(options.script))
     with about(str(options.script)):
         return read, Simulation(read.scene, script, options.stream)
 

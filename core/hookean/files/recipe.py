@@ -49,6 +49,7 @@ from typing import TYPE_CHECKING, Any
 
 from hookean.errors import InputError
 from hookean.files.recipe_build import Built, build
+from hookean.files.recipe_check import check, not_toml
 from hookean.files.recipe_drawing import NO_LAYER, Drawing, Item, drawing
 from hookean.files.recipe_notes import notes
 from hookean.files.recipe_select import count, listed
@@ -87,10 +88,11 @@ def parse_recipe(text: str, name: str = "recipe") -> dict[str, Any]:
         from hookean.files.scene_json import parse
 
         return dict(parse(text.lstrip("\ufeff"), name))
+    plain = text.lstrip("\ufeff").replace("\r\n", "\n")
     try:
-        return tomllib.loads(text.lstrip("\ufeff").replace("\r\n", "\n"))
+        return tomllib.loads(plain)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(name, f"not valid TOML: {error}") from None
+        raise not_toml(plain, name, str(error)) from None
 
 
 def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Understood:
@@ -105,6 +107,7 @@ def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Underst
         built, said, nothing = by_convention(seen)
     else:
         nothing = ""
+        check(recipe)
         hidden = recipe.get("hidden", False)
         if not isinstance(hidden, bool):
             raise InputError("/hidden", f"{hidden!r} given; give true or false")

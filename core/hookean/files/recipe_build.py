@@ -69,6 +69,7 @@ class _Builder:
         self.known: dict[tuple[Any, ...], str] = {}
         self.uses: dict[Item, list[str]] = {}
         self.left: dict[Item, str] = {}
+        self.misfits: list[str] = []
         self.notes: list[str] = []
 
     def built(self) -> Built:
@@ -202,10 +203,12 @@ class _Builder:
 
     def _shape(self, name: str, value: Any, own: Split | None, pointer: str) -> Shape:
         made = {"points": self._points, "lines": self._lines, "mesh": self._mesh}[name]
+        self.misfits = []
         found = [s for term in terms(value, pointer) for s in made(term, own, pointer)]
         if not sum(len(shape.array) for shape in found):
-            closed = "; closed meshes have none" if any(t.feature == "naked" for t in terms(value, pointer)) else ""
-            why = next((f": {w}" for w in self.left.values()), closed)
+            asked = {t.feature for t in terms(value, pointer)}
+            closed = "; closed meshes have none" if asked & {"naked", "corners"} else ""
+            why = next((f": {w}" for w in (*self.left.values(), *self.misfits)), closed)
             raise InputError(pointer, f"{listed([str(t) for t in terms(value, pointer)])} gives no {name}{why}")
         if name == "points":
             return shapes.unique(shapes.concatenated(found, 2), self.tolerance)
@@ -268,6 +271,8 @@ class _Builder:
         good = [item for item in items if fits(item)]
         if not good and not term.everything:
             raise InputError(pointer, f'"{term}" finds {shapes.counted(items)}; here go {what}')
+        if not good:
+            self.misfits.append(f"the file has {shapes.counted(items)}; here go {what}")
         return good
 
     def _try(self, item: Item, term: Term | None, make: Callable[..., Any], *arguments: Any) -> Any:

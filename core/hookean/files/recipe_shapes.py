@@ -63,12 +63,12 @@ def points_from(feature: str, *, divided: bool) -> tuple[Callable[[Item], bool],
         hint = "points; put ends: or vertices: in front for those of curves, naked:, corners: or vertices: for meshes"
         return (lambda item: is_point(item) or (divided and is_curve(item))), hint
     if feature in ("start", "ends"):
-        return is_curve, "curves"
+        return is_curve, "curves; for points of meshes and surfaces write corners:, naked: or vertices:"
     if feature == "vertices":
         return (lambda item: is_point(item) or is_curve(item) or is_mesh(item)), "points, curves, meshes or surfaces"
     if feature == "inner":
         return (lambda item: is_curve(item) or is_mesh(item)), "curves, meshes or surfaces"
-    return is_mesh, "meshes or surfaces"
+    return is_mesh, "meshes or surfaces; for points of curves write ends:, vertices: or inner:"
 
 
 def split_of(value: Any, pointer: str) -> Split | None:
