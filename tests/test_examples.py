@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from hookean.cli import app
 from hookean.commands import example as command
-from hookean.example import Example, examples, find, gallery, home
+from hookean.example import Example, _figures, examples, find, gallery, home
 
 ALL = examples()
 
@@ -71,6 +71,20 @@ def test_the_gallery_shows_every_example():
     """gh_examples/README.md is what `make figures` would write now."""
     same = (home() / "README.md").read_text(encoding="utf-8") == gallery(ALL)
     assert same, "gh_examples/README.md is not what the examples say: run make figures"
+
+
+@pytest.mark.parametrize(
+    ("figures", "said"),
+    [
+        (["9.4"], "Figure 9.4"),
+        (["9.7", "9.8"], "Figures 9.7 and 9.8"),
+        (["9.23", "9.24", "9.25"], "Figures 9.23 to 9.25"),
+        (["9.1", "9.3", "9.4"], "Figures 9.1, 9.3 and 9.4"),
+        (["section 9.7"], "Section 9.7"),
+    ],
+)
+def test_headings_name_all_figures(figures: list[str], said: str):
+    assert _figures(figures) == said
 
 
 def test_without_a_figure_all_are_listed():

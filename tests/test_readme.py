@@ -60,6 +60,26 @@ def test_the_file_line_writes_what_it_says(tmp_path):
         assert (tmp_path / name).stat().st_size > 1000
 
 
+def test_the_line_of_a_run_in_motion_writes_what_it_says(tmp_path):
+    """The command as printed, with its outputs in a folder that is not there yet; a row for each frame."""
+    words = shlex.split(block("sh", "hookean simulate"))
+    for option in ("--picture", "--csv"):
+        place = words.index(option) + 1
+        words[place] = str(tmp_path / words[place])
+    command = [sys.executable, "-m", "hookean.cli", *words[1:]]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "frames.csv").read_text(encoding="utf-8").count("\n") > 10
+    assert (tmp_path / "out" / "motion.png").stat().st_size > 1000
+
+
+def test_what_the_readme_links_is_there():
+    """Every link and picture within the project."""
+    found = re.findall(r"\]\(([^)#:]+)\)|src=\"([^\"]+)\"", TEXT)
+    assert len(found) > 8
+    assert [a or b for a, b in found if not (ROOT / (a or b)).exists()] == []
+
+
 def test_the_readmes_picture_is_the_example_and_not_blank():
     """docs/membrane.png: many colours, and the legend's ends are the result's extreme forces."""
     from matplotlib.image import imread

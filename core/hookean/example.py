@@ -145,15 +145,23 @@ The figures of the chapter that hookean implements, each a folder with its input
 to and where they come from. `hookean example` lists them, `hookean example 9.11` runs one, and `make figures` draws all
 and writes this page.
 
-To make one your own, copy its folder and give it your file:
+To make one your own, copy its folder, change its input and run the copy: its numbers stand beside those it had.
 
 ```sh
 hookean example 9.24 --copy roof
-hookean relax mine.3dm --recipe roof/recipe.toml --explain       # what the recipe finds in your file
+hookean example ./roof --picture roof/relaxed.png
+```
+
+Then give it your file. First see what it holds, change the layers that the recipe names to yours, and relax it:
+
+```sh
+hookean relax mine.3dm --recipe roof/recipe.toml --explain
 hookean relax mine.3dm --recipe roof/recipe.toml -o relaxed.3dm --picture relaxed.png
 ```
 
-In the recipe, change the layers it names to yours; [rhino-files.md](../docs/rhino-files.md) has everything it can say.
+Stiffness and loads of an example fit its size: 20 N that shape a roof of 10 m tear a model of 10 mm. `--explain` says
+how large your model is and in which units the recipe counts. [rhino-files.md](../docs/rhino-files.md) has everything a
+recipe can say.
 
 """
 
@@ -163,14 +171,23 @@ def gallery(known: Sequence[Example]) -> str:
     parts = []
     for example in known:
         expected = example.expected
-        first = expected.figures[0]
-        what = f"Figure {first}" if first[0].isdigit() else first.capitalize()
-        what = "The essay" if expected.kind == "essay" else what
+        what = "The essay" if expected.kind == "essay" else _figures(expected.figures)
         parts.append(
-            f"## {what}: {expected.title}\n\n[{example.name}]({example.name})\n\n"
+            f"## [{what}]({example.name}): {expected.title}\n\n"
             f'<a href="{example.name}"><img src="{example.name}/picture.png" width="640" alt="{expected.title}"></a>\n'
         )
     return INTRODUCTION + "\n".join(parts)
+
+
+def _figures(figures: Sequence[str]) -> str:
+    """Such as `Figure 9.4`, `Figures 9.4 and 9.6` or `Figures 9.23 to 9.25`; what is no number stays as it is."""
+    first, *more = figures
+    if not more or not all(re.fullmatch(r"\d+\.\d+", figure) for figure in figures):
+        return f"Figure {first}" if first[0].isdigit() else first.capitalize()
+    minor = [int(figure.partition(".")[2]) for figure in figures]
+    if len(minor) > 2 and minor == list(range(minor[0], minor[0] + len(minor))):
+        return f"Figures {first} to {more[-1]}"
+    return f"Figures {', '.join(figures[:-1])} and {more[-1]}"
 
 
 def find(wanted: str) -> Example:
