@@ -132,9 +132,9 @@ class Activity:
                 self.last = time.monotonic()
 
     def idle(self) -> float:
-        """Seconds since the last use; sessions that play and solves that run are use."""
+        """Seconds since the last use; sessions that play, solves that run and jobs are use."""
         playing = any(live.playing for live in list(self.state.sessions.sessions.values()))
-        if self.running or playing or self.state.pool.states()["busy"]:
+        if self.running or playing or self.state.jobs.busy or self.state.pool.states()["busy"]:
             self.last = time.monotonic()
         return time.monotonic() - self.last
 

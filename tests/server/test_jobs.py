@@ -6,6 +6,7 @@ import asyncio
 import json
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,8 +16,12 @@ import httpx
 import jsonschema
 import pytest
 
+from hookean_server.ending import Activity
 from hookean_server.jobs import rows, tables
+from hookean_server.jobs.manager import Jobs
 from hookean_server.jobs.runner import Live
+from hookean_server.pool import Pool
+from hookean_server.settings import Settings
 from hookean_server.store import Store
 
 from .conftest import CABLE, Served, problem, wait_for
@@ -287,3 +292,14 @@ def test_a_silent_stream_has_heartbeats(monkeypatch: pytest.MonkeyPatch) -> None
     assert seen.count(b": still here\n\n") == 3
     assert [(n, name) for n, name, _ in parsed(b"".join(seen).decode())] == [(1, "item"), (2, "done")]
     assert json.loads(seen[-1].split(b"data: ")[1])["status"] == "done"
+
+
+def test_a_job_is_use_of_the_service() -> None:
+    jobs = Jobs(Settings(), Store(None), Pool(Settings()))
+    pool, sessions = SimpleNamespace(states=lambda: {"busy": 0}), SimpleNamespace(sessions={})
+    app: Any = SimpleNamespace(state=SimpleNamespace(jobs=jobs, pool=pool, sessions=sessions))
+    activity = Activity(app)
+    for ended_, idle in ((True, True), (False, False)):
+        jobs.jobs["j"] = Live(rows.Kept("j", "sweep", 1, "running", "", 0.0), ended=ended_)
+        activity.last = time.monotonic() - 1000.0
+        assert (activity.idle() >= 1000.0) == idle

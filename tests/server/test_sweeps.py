@@ -235,18 +235,18 @@ def test_a_storm_of_one_key_makes_one_job(jobs: httpx.Client) -> None:
 
 
 def test_kill_9_of_the_server_in_the_middle(tmp_path: Path) -> None:
-    request, state = sweep(40, 10), str(tmp_path / "state.db")
+    request, state = sweep(20, 10), str(tmp_path / "state.db")
     first = Served(state=state)
     key = {"idempotency-key": "once"}
     address = post(first.client, request, **key)
-    cancelled = post(first.client, sweep(40, 10))
+    cancelled = post(first.client, sweep(20, 10))
     assert first.client.delete(cancelled).status_code == 204
-    wait_for(lambda: first.client.get(address).json()["done"] > 50, 60.0)
+    wait_for(lambda: first.client.get(address).json()["done"] > 20, 60.0)
     with first.client.stream("GET", f"{address}/events") as stream:
         text = ""
         for chunk in stream.iter_text():
             text += chunk
-            if text.count("\n\n") > 40:
+            if text.count("\n\n") > 20:
                 break
     seen = parsed(text[: text.rindex("\n\n") + 2])
     first.end(signal.SIGKILL)

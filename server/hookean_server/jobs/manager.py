@@ -76,9 +76,14 @@ class Jobs:
     def states(self) -> dict[str, int]:
         """How many jobs are in each state."""
         found = dict.fromkeys((*rows.UNFINISHED, *FINAL), 0)
-        for live in self.jobs.values():
+        for live in list(self.jobs.values()):
             found[live.kept.status] += 1
         return found
+
+    @property
+    def busy(self) -> bool:
+        """Whether any job is not at its end. From any thread."""
+        return any(not live.ended for live in list(self.jobs.values()))
 
     async def add(self, body: bytes, key: str) -> tuple[str, bytes, bool]:
         """A job of a request: its address, its description and whether both were given before, to the same request
