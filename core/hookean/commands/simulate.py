@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hookean.simulation import Simulation
 
 ENDED, BAD_INPUT, RESTLESS, STOPPED = command.CONVERGED, command.BAD_INPUT, command.NOT_CONVERGED, command.STOPPED
-SHAPES = 8  # drawn over each other, at most twice as many
+SHAPES = 4  # drawn over each other, at most twice as many: more would crowd the legend
 
 
 @dataclass(frozen=True)
