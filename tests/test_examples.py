@@ -67,6 +67,17 @@ def test_a_folder_has_all_that_the_gallery_shows(example: Example) -> None:
     assert not drawn[[0, -1]].any() and not drawn[:, [0, -1]].any(), "cut off at its edge"
 
 
+def test_a_run_that_found_no_equilibrium_is_told():
+    """An outcome names the runs behind its panels that ended otherwise, so that no number of theirs is taken for one."""
+    from hookean import Scene, relax
+    from hookean.example import Outcome
+    from hookean.sheet import Panel
+
+    scene = {"particles": [[0, 0, 0]], "forces": [{"kind": "unary", "particles": [0], "vector": [0, 0, -1]}]}
+    lost = relax(Scene.read({**scene, "settings": {"max_iterations": 10}}))
+    assert Outcome({}, [Panel(lost)]).failures == [lost.message]
+
+
 def test_the_gallery_shows_every_example():
     """gh_examples/README.md is what `make figures` would write now."""
     same = (home() / "README.md").read_text(encoding="utf-8") == gallery(ALL)

@@ -36,6 +36,12 @@ class Outcome:
     same_scale: bool = True
     size: tuple[int, int] | None = None
 
+    @property
+    def failures(self) -> list[str]:
+        """What the runs in its panels say that ended neither at rest nor while moving."""
+        results = [panel.result for panel in self.panels if isinstance(panel, Panel) and panel.result is not None]
+        return [result.message for result in results if result.status not in ("converged", "running")]
+
 
 class Expected(BaseModel):
     """A number an example is held to: `value` within `tolerance` (absolute, in `unit`), or bounds; and its `source`:

@@ -64,6 +64,8 @@ def run(wanted: str | None, picture: str | None, copy: str | None) -> int:
         return bad(error)
     typer.echo(f"{example.name}: {expected.title}\n")
     missed = _told(example, outcome)
+    for message in outcome.failures:
+        typer.echo(f"\nhookean: a run of it ended otherwise: {message}", err=True)
     typer.echo(f"\ninput, picture and README: {example.folder}" + (f"\npicture: {drawn}" if drawn is not None else ""))
     return MISSED if missed and example.original else FULFILLED
 
