@@ -68,7 +68,7 @@ def test_a_folder_has_all_that_the_gallery_shows(example: Example) -> None:
 
 
 def test_a_run_that_found_no_equilibrium_is_told():
-    """An outcome names the runs behind its panels that ended otherwise, so that no number of theirs is taken for one."""
+    """An outcome names the runs behind its panels that ended otherwise: none of their numbers is taken for one."""
     from hookean import Scene, relax
     from hookean.example import Outcome
     from hookean.sheet import Panel
