@@ -39,11 +39,12 @@ Reply = tuple[dict[str, Any], bytes]
 
 def host(connection: Connection, memory: int, forked: bool) -> None:
     """Serve one session until the server closes its end, dies or kills us."""
-    from hookean_server.workers import _die_with_parent, _limit_memory
+    from hookean_server.workers import _die_with_parent, _limit_memory, keep_pages
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _die_with_parent(forked)
     _limit_memory(memory)
+    keep_pages()
     with suppress(EOFError, OSError):
         Host(connection).run()
     os._exit(0)  # threads of libraries would hold a normal exit up
@@ -252,7 +253,7 @@ class Host:
             return
         now = time.monotonic()
         revision = self.simulation.state.revision
-        if not (self.playing or self.left) or revision != self.shown or now >= self.shown_at + 0.9 * FRAME:
+        if not (self.playing or self.left) or revision != self.shown or now >= self.shown_at + 0.5 * FRAME:
             self.credit, self.changed, self.shown, self.shown_at = 0, self.now, revision, now
             self.number += 1
             frame = parts.frame(self.simulation, self.number, self.playing or bool(self.left))
