@@ -60,10 +60,10 @@ def connect(start=True, python=None, timeout=15.0, folder=None, parent=None, idl
         found = _found(place)
         while not found:
             if not start:
-                raise Problem("no-server", "No hookean server is running; `hookean serve` starts it.")
+                raise Problem("no-server", "No hookean server runs; `hookean serve` starts it.")
             _start(place, python, os.getpid() if parent is None else parent, idle)
             if _now() > until:
-                raise Problem("starting", "The hookean server is starting; try again in a moment.")
+                raise Problem("starting", "The hookean server is starting; try again soon.")
             time.sleep(0.02)
             found = _found(place)
         return found
@@ -374,8 +374,8 @@ def state_folder():
 
 def _found(place):
     told = _told(place, "server.json")
-    connection = _open(told["url"], told["instance"], _now() + ANSWER) if _alive(told.get("pid")) else None
-    if connection is None:
+    connection = _alive(told.get("pid")) and _open(told.get("url"), told.get("instance"), _now() + ANSWER)
+    if not connection:
         return None
     connection.close()
     _check(told.get("wire"))
@@ -384,9 +384,10 @@ def _found(place):
 
 
 def _open(url, instance, until):
-    host, _, port = url.split("//")[-1].rpartition(":")
-    connection = httplib.HTTPConnection(host.strip("[]"), int(port or 0), timeout=REACH)
+    connection = httplib.HTTPConnection("")
     try:
+        host, _, port = url.split("//")[-1].rpartition(":")
+        connection = httplib.HTTPConnection(host.strip("[]"), int(port), timeout=REACH)
         connection.connect()
         connection.sock.settimeout(max(0.01, min(ANSWER, until - _now())))
         connection.request("GET", "/v1/health")

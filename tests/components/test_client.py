@@ -398,7 +398,7 @@ def test_frames_start_no_server(home: Home) -> None:
     assert frames.wait() is not None
     client.post("/v1/shutdown")
     wait_for(lambda: not home.told)
-    wait_for(lambda: "No hookean server" in frames.message)
+    wait_for(lambda: "No hookean server runs" in frames.message)
     assert not home.told and not frames.ended
     frames.close()
 

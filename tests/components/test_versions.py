@@ -1,0 +1,142 @@
+"""The client on every Python of this machine from 2.7 on, and what it is written in."""
+
+from __future__ import annotations
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import hookean_client
+from serving import CABLE, Home
+
+SOURCE = Path(hookean_client.__file__)
+NAMES = ["python2.7", *(f"python3.{minor}" for minor in range(6, 15)), "ipy"]
+VERSIONS = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+
+
+def interpreters() -> list[str]:
+    """The newest of each version that is found, this one among them."""
+    found = {name: path for name in NAMES if (path := shutil.which(name)) is not None}
+    for folder in sorted(VERSIONS.glob("*")) if VERSIONS.is_dir() else []:
+        found["python" + ".".join(folder.name.split(".")[:2])] = str(folder / "bin" / "python")
+    mine = f"python3.{sys.version_info.minor}"
+    usable = {n: p for n, p in found.items() if n in NAMES and n != mine and subprocess.call([p, "-c", ""]) == 0}
+    return [*usable.values(), sys.executable]
+
+
+SMOKE = """
+import json, sys, time
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import hookean_client
+scene = json.loads(sys.argv[3])
+client = hookean_client.connect(start=False, folder=sys.argv[2])
+scene["particles"] = hookean_client.buffer(scene["particles"])
+assert client.relax(scene)["status"] == "converged"
+session = client.session("v%d%d" % sys.version_info[:2])
+session.put(scene)
+frames = session.frames()
+assert frames.wait() is not None, frames.message
+session.play()
+revision = session.edit({"forces": {"1": {"vector": [0, 0, -30]}}})["revision"]
+frame = frames.wait(lambda frame: frame["revision"] >= revision)
+assert frame is not None and len(frame["particles"]) == 18, frames.message
+session.pause()
+assert session.undo()["redo"] == 1
+assert b"3D Geometry File Format" in session.state("3dm")[:64]
+try:
+    session.edit({"forces": {"9": {}}})
+except hookean_client.Problem as problem:
+    assert problem.status == 422 and problem.errors and "/forces/9" in str(problem)
+else:
+    raise AssertionError("no problem")
+frames.close()
+session.delete()
+client.close()
+print("done")
+"""
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
+    found = Home(tmp_path_factory.mktemp("versions") / "state")
+    found.serve()
+    yield found
+    found.end()
+
+
+@pytest.mark.parametrize("python", interpreters())
+def test_every_python_speaks_with_the_server(home: Home, python: str) -> None:
+    import json
+
+    words = [str(SOURCE.parents[1]), str(home.folder), json.dumps(CABLE)]
+    done = subprocess.run([python, "-c", SMOKE, *words], capture_output=True, text=True, timeout=120, check=False)
+    assert (done.stdout.strip(), done.returncode) == ("done", 0), done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="ends with a signal of POSIX")
+@pytest.mark.parametrize("python", interpreters()[:1])
+def test_the_oldest_python_starts_a_server(tmp_path: Path, python: str) -> None:
+    home = Home(tmp_path / "state")
+    code = (
+        "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, sys.argv[1]); import hookean_client\n"
+        "print(hookean_client.connect(folder=sys.argv[2], python=sys.argv[3], timeout=120.0, parent=0).instance)"
+    )
+    words = [str(SOURCE.parents[1]), str(home.folder), sys.executable]
+    try:
+        done = subprocess.run([python, "-c", code, *words], capture_output=True, text=True, timeout=150, check=False)
+        assert done.stdout.strip() == home.told["instance"], done.stderr
+    finally:
+        home.end()
+
+
+def test_it_is_written_in_what_all_pythons_read() -> None:
+    """Nothing that Python 2.7 has not: also where there is none on this machine."""
+    newer = (
+        ast.JoinedStr, ast.AnnAssign, ast.AsyncFunctionDef, ast.Await, ast.YieldFrom, ast.Nonlocal, ast.Starred,
+        ast.NamedExpr, ast.MatMult, ast.Match,
+    )  # fmt: skip
+    text = SOURCE.read_text(encoding="ascii")
+    for node in ast.walk(ast.parse(text)):
+        assert not isinstance(node, newer) or _star_of_a_call(node, text), ast.dump(node)
+        if isinstance(node, ast.FunctionDef | ast.Lambda):
+            assert not node.args.kwonlyargs and not node.args.posonlyargs
+            assert not any(argument.annotation for argument in node.args.args)
+        if isinstance(node, ast.FunctionDef):
+            assert node.returns is None
+        if isinstance(node, ast.ClassDef):
+            assert node.bases and not node.keywords, "a class of Python 2 names its base"
+        if isinstance(node, ast.Raise):
+            assert node.cause is None
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            assert node.func.id != "super" or node.args
+
+
+def _star_of_a_call(node: ast.AST, text: str) -> bool:
+    calls = [n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Call)]
+    return isinstance(node, ast.Starred) and any(ast.dump(node) == ast.dump(a) for call in calls for a in call.args)
+
+
+def test_it_needs_the_standard_library_alone() -> None:
+    found = set()
+    for node in ast.walk(ast.parse(SOURCE.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.split(".")[0] for alias in node.names}
+        if isinstance(node, ast.ImportFrom):
+            found.add(str(node.module).split(".")[0])
+    assert found - {"httplib"} <= set(sys.stdlib_module_names)
+
+
+def test_its_version_and_the_servers() -> None:
+    import hookean
+    from hookean_server.sessions import wire
+
+    assert hookean_client.__version__ == hookean.__version__
+    assert hookean_client.WIRE == wire.VERSION
+    assert tuple(hookean_client.STATUSES) == wire.STATUSES
