@@ -50,7 +50,15 @@ def test_the_fields_of_springs() -> None:
     }
     assert fields["lines"]["type"] == "lines" and fields["lines"]["unit"] == "length"
     assert fields["particles"]["type"] == "indices"
-    assert fields["edges"]["choices"] == ["all", "warp", "weft", "naked", "diagonals", "diagonals_one", "diagonals_other"]
+    assert fields["edges"]["choices"] == [
+        "all",
+        "warp",
+        "weft",
+        "naked",
+        "diagonals",
+        "diagonals_one",
+        "diagonals_other",
+    ]
     vector = {f["name"]: f for f in ENTRIES["unary"]["fields"]}["vector"]
     assert vector["required"] and vector["unit"] == "force" and vector["type"] == "vectors"
     assert {f["name"]: f for f in ENTRIES["floor"]["fields"]}["point"]["type"] == "vector"
