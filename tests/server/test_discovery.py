@@ -272,11 +272,11 @@ def test_it_ends_when_nobody_uses_it(home: Home) -> None:
 
 
 def test_what_use_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Open requests and sockets, sessions that play and workers that solve; not health and figures."""
-    live, states = SimpleNamespace(playing=False), {"busy": 0}
+    """Requests and sockets, sessions that play, workers that solve, jobs that are not done; not health and figures."""
+    live, states, jobs = SimpleNamespace(playing=False), {"busy": 0}, SimpleNamespace(busy=False)
     app: Any = lambda scope, receive, send: _nothing()  # noqa: E731
     app.state = SimpleNamespace(
-        sessions=SimpleNamespace(sessions={"a": live}), pool=SimpleNamespace(states=lambda: states)
+        sessions=SimpleNamespace(sessions={"a": live}), pool=SimpleNamespace(states=lambda: states), jobs=jobs
     )
     now = time.monotonic()
     monkeypatch.setattr("hookean_server.ending.time.monotonic", lambda: now)
@@ -294,6 +294,11 @@ def test_what_use_is(monkeypatch: pytest.MonkeyPatch) -> None:
     live.playing = False
     now += 50.0
     states["busy"] = 1
+    assert activity.idle() == 0.0
+    states["busy"] = 0
+    now += 50.0
+    assert activity.idle() == 50.0
+    jobs.busy = True
     assert activity.idle() == 0.0
 
 
