@@ -322,12 +322,13 @@ def test_a_stranger_is_told_nothing(home: Home) -> None:
             pass
 
     client = started(home)
-    port = home.told["port"]
     home.kill()
-    with HTTPServer(("127.0.0.1", port), Handler) as server:  # it has taken the port of the server that died
+    with HTTPServer(("127.0.0.1", 0), Handler) as server:  # as if it had the port of the server that died
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        (home.folder / "server.json").write_text(json.dumps({**home.told, "pid": os.getpid()}))
-        client._start = False
+        client.close()
+        client.url, client._start = f"http://127.0.0.1:{server.server_port}", False
+        told = {**home.told, "pid": os.getpid(), "port": server.server_port, "url": client.url}
+        (home.folder / "server.json").write_text(json.dumps(told))
         with pytest.raises(Problem) as found:
             client.post("/v1/relax", CABLE)
         server.shutdown()
