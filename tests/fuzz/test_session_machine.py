@@ -168,11 +168,11 @@ class Sessions(RuleBasedStateMachine):
 
     @rule(key=keys, load=LOADS)
     def replace(self, key: str, load: float) -> None:
-        """Another scene on the same session; the one that it has changes nothing."""
+        """Another scene on the same session, which plays on; the one that it has changes nothing."""
         model = self.models[key]
         self.ask("PUT", key, json=scene(load))
         if load != model.load:
-            self.models[key] = Model(load, revision=model.revision + 1)
+            self.models[key] = Model(load, revision=model.revision + 1, playing=model.playing)
 
     @rule(key=consumes(keys))
     def delete(self, key: str) -> None:
