@@ -49,7 +49,8 @@ class Problems:
             return  # nobody is left to answer
         except Problem as problem:
             if not started or scope["type"] == "websocket":
-                await refuse(problem, scope, receive, numbered, accepted=started)
+                with suppress(OSError):  # a client that has left needs no answer
+                    await refuse(problem, scope, receive, numbered, accepted=started)
         except asyncio.CancelledError:
             # only the shutdown cancels requests: those that did not end by themselves in its grace time
             if scope["type"] == "http" and not started:

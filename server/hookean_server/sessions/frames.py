@@ -35,10 +35,14 @@ async def frames(socket: WebSocket, key: str) -> None:
     try:
         live = await sessions.watch(key)
     except Problem as problem:
-        await socket.accept()
-        await socket.close(CLOSED.get(problem.slug, 1011), problem.detail[:120])
+        with suppress(OSError, WebSocketDisconnect):
+            await socket.accept()
+            await socket.close(CLOSED.get(problem.slug, 1011), problem.detail[:120])
         return
-    await socket.accept()
+    try:
+        await socket.accept()
+    except (OSError, WebSocketDisconnect):
+        return  # the client has left already
     live.watchers += 1
     client = _Client(socket, sessions, live)
     tasks = [asyncio.create_task(client.send()), asyncio.create_task(client.receive())]
