@@ -156,7 +156,7 @@ def _opened(path: Path | None) -> sqlite3.Connection:
     path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
     try:
         return _checked(path)
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # what is wrong may be told in damaged words
         if isinstance(error, sqlite3.OperationalError) and not _damaged(error):
             raise OSError(f"{path} cannot be opened ({error})") from None
         aside = path.with_name(f"{path.name}.damaged-{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}")
@@ -170,7 +170,7 @@ def _opened(path: Path | None) -> sqlite3.Connection:
 
 def _damaged(error: sqlite3.Error) -> bool:
     said = str(error)
-    return any(word in said for word in ("malformed", "not a database", "no such", "has no column", "corrupt"))
+    return any(word in said for word in ("malformed", "not a database", "no such", "has no column", "corrupt", "already exists"))
 
 
 def _checked(path: Path) -> sqlite3.Connection:
@@ -179,9 +179,10 @@ def _checked(path: Path) -> sqlite3.Connection:
         os.close(os.open(path, os.O_CREAT | os.O_RDWR, 0o600))
     connection = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
     try:
-        (found,) = connection.execute("PRAGMA quick_check(1)").fetchone()
-        if found != "ok":
-            raise sqlite3.DatabaseError(f"malformed: {found}")
+        connection.text_factory = lambda text: text.decode("utf-8", "replace")
+        found = connection.execute("PRAGMA integrity_check(1)").fetchone()
+        if found != ("ok",) or connection.execute("PRAGMA foreign_key_check").fetchone():
+            raise sqlite3.DatabaseError("malformed: its parts do not fit together")
         (version,) = connection.execute("PRAGMA user_version").fetchone()
         (application,) = connection.execute("PRAGMA application_id").fetchone()
         if version not in (0, VERSION) or (version and application != APPLICATION):

@@ -22,8 +22,8 @@ from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, initial
 from server.conftest import CABLE, Served
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
-RUNS, STEPS = (500, 30) if SOAK else (25, 15)
-WISHES = 10  # for a new start of the server until one is granted
+RUNS, STEPS = (500, 30) if SOAK else (25, 12)
+WISHES = 25  # for a new start of the server until one is granted
 
 LOADS = st.integers(-6, -1).map(float)
 INNER = st.integers(1, 4)

@@ -63,7 +63,7 @@ def edit(key: str, revision: int, sets: str, body: bytes) -> Work:
         number, before = db.execute(query, (key,)).fetchone() or (0, "")
         if not sets or sets != before:
             number += 1
-        db.execute("INSERT OR REPLACE INTO edits VALUES (?, ?, ?, ?, ?)", (key, number, revision, sets, body))
+        db.execute("INSERT OR REPLACE INTO edits VALUES (?, ?, ?, ?, ?)", (key, number, revision, sets, _signed(body)))
         db.execute("UPDATE sessions SET revision = ?, idle = 0 WHERE key = ?", (revision, key))
         return int(number)
 
@@ -103,7 +103,7 @@ def load(key: str) -> Work:
         found = db.execute("SELECT body, revision FROM edits WHERE key = ? ORDER BY number", (key,)).fetchall()
         state = b"" if row[1] is None else _verified(row[1], b"")
         base = _verified(row[0], None)
-        return base, state, [bytes(body) for body, _ in found], [int(revision) for _, revision in found], row[2]
+        return base, state, [_verified(body, None) for body, _ in found], [int(revision) for _, revision in found], row[2]
 
     return work
 
