@@ -169,8 +169,8 @@ def _opened(path: Path | None) -> sqlite3.Connection:
 
 
 def _damaged(error: sqlite3.Error) -> bool:
-    said = str(error)
-    return any(word in said for word in ("malformed", "not a database", "no such", "has no column", "corrupt", "already exists"))
+    words = ("malformed", "not a database", "no such", "has no column", "corrupt", "already exists")
+    return any(word in str(error) for word in words)
 
 
 def _checked(path: Path) -> sqlite3.Connection:

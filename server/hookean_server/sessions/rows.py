@@ -103,7 +103,8 @@ def load(key: str) -> Work:
         found = db.execute("SELECT body, revision FROM edits WHERE key = ? ORDER BY number", (key,)).fetchall()
         state = b"" if row[1] is None else _verified(row[1], b"")
         base = _verified(row[0], None)
-        return base, state, [_verified(body, None) for body, _ in found], [int(revision) for _, revision in found], row[2]
+        edits = [_verified(body, None) for body, _ in found]
+        return base, state, edits, [int(revision) for _, revision in found], row[2]
 
     return work
 
