@@ -93,7 +93,8 @@ def test_the_service_answers_every_damaged_file(files: dict[str, bytes], served:
         sizes.append((process.memory_info().rss, process.num_fds() if hasattr(process, "num_fds") else 0))
     half = sizes[len(sizes) // 2]
     assert sizes[-1][0] - half[0] <= 8 * 2**20
-    assert sizes[-1][1] - half[1] <= 2
+    # a worker that has read a file is replaced, and opens what it needs meanwhile: what stays is counted
+    wait_for(lambda: not half[1] or process.num_fds() - half[1] <= 2, 30.0)
     wait_for(lambda: served.health()["status"] == "ok", 60.0)
 
 
