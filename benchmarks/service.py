@@ -7,7 +7,9 @@ temporary folder, and prints one line for each figure with the bar it is held to
 from __future__ import annotations
 
 import asyncio
+import http.client
 import json
+import math
 import os
 import re
 import signal
@@ -16,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -89,12 +92,14 @@ def net(side: int) -> dict[str, Any]:
 
 
 def catenary() -> dict[str, Any]:
-    """The chapter's 51 particles."""
-    particles = [[0.2 * i, 0.0, 0.0] for i in range(51)]
+    """The chapter's cable of 51 particles: an arc of radius 10 and length 20 that falls through to a catenary."""
+    particles = [
+        [10.0 * math.sin(t), 0.0, 10.0 * (math.cos(t) - math.cos(1.0))] for t in (0.04 * i - 1.0 for i in range(51))
+    ]
     return {
         "particles": particles,
         "forces": [
-            {"kind": "springs", "particles": [[i, i + 1] for i in range(50)], "stiffness": 7000, "rest_factor": 2.0},
+            {"kind": "springs", "particles": [[i, i + 1] for i in range(50)], "stiffness": 7000, "rest_factor": 0.995},
             {"kind": "unary", "particles": list(range(51)), "vector": [0, 0, -1]},
         ],
         "anchors": [{"particles": [0, 50]}],
@@ -175,26 +180,25 @@ def health(server: Server) -> None:
 
 
 def solves(server: Server) -> None:
-    """Small solves over HTTP."""
+    """Small solves over HTTP, each client with a connection of its own."""
     body = json.dumps(catenary()).encode()
     head = {"content-type": "application/json", **server.headers}
 
-    async def run(clients: int) -> float:
-        async with httpx.AsyncClient(base_url=server.url, headers=head, timeout=60.0) as client:
-            done = 0
-            until = time.monotonic() + SECONDS
-
-            async def one() -> None:
-                nonlocal done
-                while time.monotonic() < until:
-                    (await client.post("/v1/relax", content=body)).raise_for_status()
-                    done += 1
-
-            await asyncio.gather(*(one() for _ in range(clients)))
-            return done / SECONDS
+    def one(until: float) -> int:
+        connection = http.client.HTTPConnection(server.url.removeprefix("http://"))
+        done = 0
+        while time.monotonic() < until:
+            connection.request("POST", "/v1/relax", body, head)
+            answer = connection.getresponse()
+            if answer.status != 200 or b'"converged"' not in answer.read():
+                raise SystemExit(f"a relaxation failed: {answer.status}")
+            done += 1
+        connection.close()
+        return done
 
     for clients in (1, 4):
-        rate = asyncio.run(run(clients))
+        with ThreadPoolExecutor(clients) as pool:
+            rate = sum(pool.map(one, [time.monotonic() + SECONDS] * clients)) / SECONDS
         show(f"51-particle catenary over POST /v1/relax, {clients} at once", f"{rate:.0f} /s", ">= 100 /s")
 
 

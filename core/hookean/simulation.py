@@ -132,23 +132,14 @@ class Simulation:
         return self.status
 
     def iterate(self, count: int) -> Status:
-        """Advance by at most `count` iterations of the solver."""
-        if self.status is Status.DIVERGED:
-            return self.status
-        self._advance(count)
-        self.status = self._watch.look(self.system, self.state)
-        self._said = ""
-        if self.status is Status.CONVERGED and self.driven:
-            self.status = Status.RUNNING  # at rest, but not for long
-        if self.status is Status.DIVERGED:
-            self.state = self._watch.good.copy()
-        elif self.status is Status.CONVERGED and not self.solver.physical:
-            self.system.remember(self.state)
-        elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):
-            self.status = Status.RUNNING  # somebody is watching; they decide when to stop
-        return self.status
+        """Advance by at most `count` iterations of the solver, and judge where that led."""
+        self.advance(count)
+        return self.look()
 
-    def _advance(self, count: int) -> None:
+    def advance(self, count: int) -> None:
+        """Advance by at most `count` iterations of the solver; `look` judges where that led."""
+        if self.status is Status.DIVERGED:
+            return
         playing = self._playing
         while count and playing is not None and not playing.finished:
             step = self.scene.settings.time_step
@@ -161,6 +152,22 @@ class Simulation:
         if count:
             goal = 0.0 if self.solver.physical else self._watch.goal
             self.solver.advance(self.system, self.state, count, goal)
+
+    def look(self) -> Status:
+        """Judge the state as it is now; one that diverged goes back to the last good one."""
+        if self.status is Status.DIVERGED:
+            return self.status
+        self.status = self._watch.look(self.system, self.state)
+        self._said = ""
+        if self.status is Status.CONVERGED and self.driven:
+            self.status = Status.RUNNING  # at rest, but not for long
+        if self.status is Status.DIVERGED:
+            self.state = self._watch.good.copy()
+        elif self.status is Status.CONVERGED and not self.solver.physical:
+            self.system.remember(self.state)
+        elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):
+            self.status = Status.RUNNING  # somebody is watching; they decide when to stop
+        return self.status
 
     @property
     def balance(self) -> Balance:

@@ -130,9 +130,9 @@ def test_frames_show_each_edit(client: hookean_client.Client) -> None:
     frames = session.frames()
     try:
         session.play()
-        first = frames.wait()
+        first = frames.wait(lambda frame: frame["playing"])
         assert first is not None and len(first["particles"]) == 18 and len(first["scalars"]) == 5
-        assert first["playing"] is True and first["status"] == "running"
+        assert first["status"] == "running"
         for i in range(10):
             revision = session.edit({"forces": {"1": {"vector": [0, 0, -20.0 - i]}}})["revision"]
             shown = frames.wait(lambda frame, revision=revision: frame["revision"] >= revision)

@@ -47,11 +47,11 @@ def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-
             tension = k * (length - rest)
             energy += 0.5 * tension * (length - rest)
         if length > 0.0:
-            tension /= length
+            inverse = 1.0 / length  # one division serves all
+            tension *= inverse
             if parameters[e, 1] > 0.0:
                 rate = (v[b, 0] - v[a, 0]) * dx + (v[b, 1] - v[a, 1]) * dy + (v[b, 2] - v[a, 2]) * dz
-                if rate != 0.0:  # at rest, and that is most of the time, there is no division
-                    tension += parameters[e, 1] * rate / (length * length)
+                tension += parameters[e, 1] * rate * inverse * inverse
             dx *= tension
             dy *= tension
             dz *= tension

@@ -7,7 +7,7 @@ Source: Swope et al. 1982 for the undamped scheme.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -19,52 +19,82 @@ if TYPE_CHECKING:
     from hookean.system import System
 
 
+@kernels.device
+def start_step(raw: Any, x: Any, v: Any, free: Any, inverse: Any, drag: Any, dt: Any, predicted: Any) -> None:
+    """Half a step of speed, a whole one of place; the speed that forces are to see next, and none of them yet."""
+    for i in range(x.shape[0]):
+        for c in range(3):
+            a = (raw[i, c] * free[i, c] - drag * v[i, c]) * inverse[i] * free[i, c]
+            v[i, c] += 0.5 * dt * a
+            x[i, c] += dt * v[i, c]
+            predicted[i, c] = v[i, c] + 0.5 * dt * a
+            raw[i, c] = 0.0
+
+
+@kernels.device
+def end_step(f: Any, v: Any, free: Any, inverse: Any, drag: Any, dt: Any) -> None:
+    """The second half step of speed, drag included."""
+    for i in range(v.shape[0]):
+        half = 0.5 * dt * inverse[i]
+        for c in range(3):
+            if free[i, c] != 0.0:  # held axes go on as fast as their anchor is led
+                v[i, c] = (v[i, c] + half * f[i, c]) / (1.0 + half * drag)
+
+
+@kernels.device
+def start_among_contacts(
+    impacts: Any, supports: Any, planes: Any, raw: Any, f: Any, x: Any, v: Any, free: Any, mass: Any, inverse: Any,
+    carried: Any, x_before: Any, v_before: Any, a: Any, drag: Any, dt: Any, predicted: Any,
+) -> None:  # fmt: skip
+    """`start_step` where contacts carry and catch."""
+    for i in range(x.shape[0]):
+        for c in range(3):
+            f[i, c] = raw[i, c] * free[i, c]
+    for p in range(len(supports)):
+        supports[p](x, v, f, carried, free, mass, dt, planes[p])
+    for i in range(x.shape[0]):
+        for c in range(3):
+            a[i, c] = (f[i, c] - drag * v[i, c]) * inverse[i] * free[i, c]
+            x_before[i, c] = x[i, c]
+            v_before[i, c] = v[i, c]
+            v[i, c] += 0.5 * dt * a[i, c]
+            x[i, c] += dt * v[i, c]
+    for p in range(len(impacts)):
+        impacts[p](x_before, v_before, a, x, v, free, dt, planes[p])
+    for i in range(x.shape[0]):
+        for c in range(3):
+            predicted[i, c] = v[i, c] + 0.5 * dt * a[i, c]
+            raw[i, c] = 0.0
+
+
 def verlet_loop(  # type: ignore[no-untyped-def]
-    functions, indices, parameters, memory, impacts, supports, planes, notes, x, v, free, mass, f, raw, w, carried,
-    x_before, v_before, acceleration, predicted, drag, steps, changing, fresh, count,
+    functions, indices, parameters, memory, impacts, supports, planes, notes, x, v, free, mass, inverse, raw, w,
+    f, carried, x_before, v_before, acceleration, predicted, drag, steps, contacts, changing, fresh, count,
 ):  # fmt: skip
-    n = x.shape[0]
     for _ in range(count):
         for s in range(steps.shape[0]):
             dt = steps[s]
             if changing or fresh:
-                for i in range(n):
-                    for c in range(3):
-                        raw[i, c] = 0.0
+                raw[:, :] = 0.0
                 for b in range(len(functions)):
                     functions[b](x, v, indices[b], parameters[b], memory[b], raw, w)
                 fresh = False
-            for i in range(n):
-                for c in range(3):
-                    f[i, c] = raw[i, c] * free[i, c]
-            for p in range(len(supports)):
-                supports[p](x, v, f, carried, free, mass, dt, planes[p])
-            for i in range(n):
-                for c in range(3):
-                    a = (f[i, c] - drag * v[i, c]) / mass[i] * free[i, c]
-                    x_before[i, c] = x[i, c]
-                    v_before[i, c] = v[i, c]
-                    acceleration[i, c] = a
-                    v[i, c] += 0.5 * dt * a
-                    x[i, c] += dt * v[i, c]
-            for p in range(len(impacts)):
-                impacts[p](x_before, v_before, acceleration, x, v, free, dt, planes[p])
-            for i in range(n):
-                for c in range(3):
-                    predicted[i, c] = v[i, c] + 0.5 * dt * acceleration[i, c]
-                    raw[i, c] = 0.0
+            if contacts:
+                start_among_contacts(
+                    impacts, supports, planes, raw, f, x, v, free, mass, inverse, carried,
+                    x_before, v_before, acceleration, drag, dt, predicted,
+                )  # fmt: skip
+            else:  # the same in one pass over memory
+                start_step(raw, x, v, free, inverse, drag, dt, predicted)
             for b in range(len(functions)):
                 functions[b](x, predicted, indices[b], parameters[b], memory[b], raw, w)
-            for i in range(n):
-                for c in range(3):
-                    f[i, c] = raw[i, c] * free[i, c]
-            for p in range(len(supports)):
-                supports[p](x, v, f, carried, free, mass, dt, planes[p])
-            for i in range(n):
-                for c in range(3):
-                    push = v[i, c] + 0.5 * dt * f[i, c] / mass[i]
-                    if free[i, c] != 0.0:  # held axes go on as fast as their anchor is led
-                        v[i, c] = push / (1.0 + 0.5 * dt * drag / mass[i])
+            if contacts:
+                f[:, :] = raw * free
+                for p in range(len(supports)):
+                    supports[p](x, v, f, carried, free, mass, dt, planes[p])
+                end_step(f, v, free, inverse, drag, dt)
+            else:
+                end_step(raw, v, free, inverse, drag, dt)
         for b in range(len(notes)):
             notes[b](x, indices[b], parameters[b], memory[b])
 
@@ -80,16 +110,17 @@ class Method(Solver):
         """Exactly `count` time steps; physical time does not stop early."""
         n = len(state.x)
         step = system.scene.settings.time_step
-        scratch = [np.zeros_like(state.x) for _ in range(7)]
-        f, raw, carried, x_before, v_before, acceleration, predicted = scratch
+        raw, predicted = np.zeros_like(state.x), np.zeros_like(state.x)
+        contacts = bool(system.contacts)
+        f, carried, x_before, v_before, a = [np.zeros_like(state.x) if contacts else raw for _ in range(5)]
         functions, indices, parameters, memory = system.tuples(state)
         notes = kernels.pointers([g.cls.end_of_step for g in system.groups], "remember")
         kernels.call(
             kernels.compiled(verlet_loop),
             functions, indices, parameters, memory, *system.hooks(), notes,
-            state.x, state.v, state.free, system.mass, f, raw, np.zeros(n), carried,
-            x_before, v_before, acceleration, predicted, system.drag,
-            step * np.array(self.weights), system.damped or system.yields, True, count,
+            state.x, state.v, state.free, system.mass, 1.0 / system.mass, raw, np.zeros(n),
+            f, carried, x_before, v_before, a, predicted, system.drag,
+            step * np.array(self.weights), contacts, system.damped or system.yields, True, count,
         )  # fmt: skip
         state.iteration += count
         for _ in range(count):

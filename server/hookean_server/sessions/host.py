@@ -30,7 +30,9 @@ from hookean_server.sessions import parts, wire
 log = logging.getLogger("hookean.session")
 
 FRAME = 1.0 / 60.0  # seconds from frame to frame while it plays
-SLICE = 0.009  # seconds of solving between looks at the commands
+SLICE = 0.005  # seconds of solving between commands
+LOOK = 0.010  # seconds from look to look at the shape while it is busy, if somebody wants a frame
+SELDOM = 0.1  # and if nobody does
 BEAT = 0.5
 CHECKPOINT = 0.8
 
@@ -68,18 +70,26 @@ class Host:
         self.shown, self.shown_at = -1, 0.0  # revision and moment of the last frame
         self.due = 0.0  # when the next frame's iterations are due
         self.owed = 0  # iterations until the next frame
+        self.judged, self.looked_at = True, 0.0  # whether, and when, the shape was looked at since it moved
         self.each = 1  # iterations that fit into a slice
         self.saved_at = self.beat_at = time.monotonic()
 
     def run(self) -> None:
         """Until the connection ends."""
         while True:
-            while self.connection.poll(self._rest()):
+            rest = self._rest()
+            while self.connection.poll(rest):
                 self._take()
-            if self.simulation is not None and (self.playing or self.left):
+                rest = 0.0
+            if self.simulation is not None and self._due():
                 self._advance(self.simulation)
             self._show()
             self._keep()
+
+    def _due(self) -> bool:
+        """Whether iterations are due now."""
+        paced = self.playing and (self.owed > 0 or time.monotonic() >= self.due)
+        return self.left > 0 or paced or (self.playing and self.fast)
 
     def _rest(self) -> float:
         """How long there is nothing to do."""
@@ -100,6 +110,8 @@ class Host:
         if head["do"] == "unstored":
             self.stored = -1  # the last checkpoint: another one is due
             return
+        if self.simulation is not None:
+            self._judge(self.simulation)
         answer = self._do(head, body)
         if answer is not None:
             self._send({"id": head["id"], **answer[0]}, answer[1])
@@ -174,7 +186,7 @@ class Host:
     def do_play(self, head: dict[str, Any], body: bytes) -> Reply:
         """Step on by itself; `fast` as quickly as it can, else `sub_iterations` for each of 60 frames a second."""
         simulation = self._simulation()
-        self.playing, self.fast = True, bool(head.get("fast"))
+        self.playing, self.fast, self.owed = True, bool(head.get("fast")), 0
         if simulation.status is Status.DIVERGED:
             self.playing = False
         self.due = time.monotonic()
@@ -184,7 +196,7 @@ class Host:
     def do_pause(self, head: dict[str, Any], body: bytes) -> Reply:
         """Stand still; a `step` under way ends."""
         self.playing = False
-        self.left = 0
+        self.left = self.owed = 0
         self._stepped()
         self._mark()
         return self._described(), b""
@@ -193,7 +205,7 @@ class Host:
         """Step `frames` frames on and pause; answered when done."""
         simulation = self._simulation()
         self._stepped()
-        self.playing = False
+        self.playing, self.owed = False, 0
         self.left = int(head["frames"]) * simulation.scene.settings.sub_iterations
         self.stepping = head["id"]
         return None
@@ -221,18 +233,28 @@ class Host:
     # running
 
     def _advance(self, simulation: Simulation) -> None:
-        """One slice of iterations."""
+        """One slice of iterations, and a look at the shape where a frame is complete."""
         began = time.monotonic()
-        if not self.owed:
+        if not (self.owed or self.left or self.fast):
             self.owed = simulation.scene.settings.sub_iterations
             self.due = max(self.due + FRAME, began)
-        count = min(self.each, self.left or (self.each if self.fast else self.owed))
-        status = simulation.iterate(count)
-        spent = time.monotonic() - began
-        self.each = max(1, min(2 * self.each, int(count * SLICE / max(spent, 1e-6)), 100_000))
+        count = min(self.each, self.left or self.owed or self.each)
+        simulation.advance(count)
+        self.judged = False
+        now = time.monotonic()
+        self.each = max(1, min(2 * self.each, int(count * SLICE / max(now - began, 1e-6)), 100_000))
         self.left = max(0, self.left - count)
         self.owed = max(0, self.owed - count)
-        if status is not Status.RUNNING:
+        done = not (self.left or self.owed or self.fast)
+        if done or now >= self.looked_at + (LOOK if self.credit else SELDOM):
+            self._judge(simulation)
+
+    def _judge(self, simulation: Simulation) -> None:
+        """Look at the shape, unless it is as it was: whatever is shown, stored or edited has been judged."""
+        if self.judged:
+            return
+        self.looked_at, self.judged = time.monotonic(), True
+        if simulation.look() is not Status.RUNNING:
             self.playing, self.left = False, 0
         if not self.left:
             self._stepped()
@@ -249,7 +271,7 @@ class Host:
 
     def _show(self) -> None:
         """Send a frame, if one is wanted and there is anything new in it."""
-        if not self.credit or self.simulation is None or self.changed == self.now:
+        if not self.credit or not self.judged or self.simulation is None or self.changed == self.now:
             return
         now = time.monotonic()
         revision = self.simulation.state.revision
@@ -262,7 +284,8 @@ class Host:
     def _keep(self) -> None:
         """A checkpoint or a sign of life, when one is due."""
         now = time.monotonic()
-        if self.simulation is not None and self.now != self.stored and now >= self.saved_at + CHECKPOINT:
+        wanted = self.judged and self.now != self.stored and now >= self.saved_at + CHECKPOINT
+        if self.simulation is not None and wanted:
             self.saved_at, self.stored = now, self.now
             self._send({"event": "checkpoint", **self._described()}, parts.state_bytes(self.simulation))
         if now >= self.beat_at + BEAT:
