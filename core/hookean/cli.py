@@ -1,4 +1,4 @@
-"""The command line: relax, simulate, example, serve, token, forces. Starts light: a command imports what it needs."""
+"""The command line. It starts light: a command imports what it needs."""
 
 from __future__ import annotations
 
@@ -160,14 +160,29 @@ def token(
 
 
 def _service() -> Any:
+    return _package("serve", "hookean_server", "the service")
+
+
+def _package(command: str, package: str, what: str) -> Any:
+    """The commands of another package of ours, imported when one is wanted."""
     import importlib
 
     try:
-        return importlib.import_module("hookean_server.command")
+        return importlib.import_module(f"{package}.command")
     except ModuleNotFoundError as error:
-        if not (error.name or "").startswith("hookean_server"):
+        if not (error.name or "").startswith(package):
             raise
-        fail(InputError("serve", "the service (hookean_server) is not installed; install hookean with it"))
+        fail(InputError(command, f"{what} ({package}) is not installed; install hookean with it"))
+
+
+@app.command(
+    context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+    add_help_option=False,
+    help="Grasshopper without Rhino: build components, look into archives, run and import definitions.",
+)
+def canvas(context: typer.Context) -> None:
+    """Hand the rest of the line to the commands of `hookean_canvas`."""
+    _package("canvas", "hookean_canvas", "what reads Grasshopper's files").app(context.args, prog_name="hookean canvas")
 
 
 @app.command()

@@ -1,0 +1,1 @@
+"""Grasshopper files without Grasshopper: archives read and written, components built, definitions run and imported."""
