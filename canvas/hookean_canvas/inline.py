@@ -1,0 +1,158 @@
+"""A component's script with the client inside: one text that needs nothing installed."""
+
+from __future__ import annotations
+
+import ast
+import base64
+import hashlib
+import json
+import re
+import zlib
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
+from importlib.util import find_spec
+from itertools import takewhile
+from pathlib import Path
+from typing import Literal
+
+from hookean.errors import InputError
+
+CLIENT = "hookean_client"
+FLAVOURS = ("rhino8", "rhino7")
+Flavour = Literal["rhino8", "rhino7"]
+
+BOOTSTRAP = '''
+def _hookean_client(packed):
+    # {client} {version}, kept in sys.modules under a name of its own: versions live side by side, state survives
+    import base64, json, sys, types, zlib
+
+    loaded = []
+    for name, source in json.loads(zlib.decompress(base64.b64decode(packed)).decode("ascii")):
+        name = str(name)
+        if name in sys.modules:
+            continue
+        sys.modules[name] = module = types.ModuleType(name)
+        loaded.append(name)
+        module.__file__, module.__package__ = "<%s>" % name, "{stamp}"
+        if "." in name:
+            setattr(sys.modules["{stamp}"], name.split(".")[1], module)
+        else:
+            module.__path__ = []
+        try:
+            exec(compile(str(source), module.__file__, "exec", 0, 1), module.__dict__)
+        except BaseException:
+            for name in loaded:
+                sys.modules.pop(name, None)
+            raise
+
+
+_hookean_client(
+    """
+{packed}
+"""
+)
+'''
+
+
+def inlined(code: str, flavour: Flavour = "rhino8", client: Path | None = None) -> str:
+    """`code` with the client inside, for Rhino 8 and 9 ("rhino8", CPython) or GhPython ("rhino7").
+
+    `client` is the package's folder (none: the installed one). The docstring and comments before it stay in front.
+    InputError where an import of the client is written in a way that cannot be redirected.
+    """
+    if flavour not in FLAVOURS:
+        raise InputError("flavour", f"{flavour!r} is none of {', '.join(FLAVOURS)}.")
+    stamp, version, packed = _packed(client or _installed())
+    lines = redirected(code, stamp, "code.py").splitlines(keepends=True)
+    cut = _after_docstring(code)
+    bootstrap = BOOTSTRAP.format(stamp=stamp, client=CLIENT, version=version, packed=packed)
+    first = "#! python 3\n" if flavour == "rhino8" and not code.startswith("#!") else ""
+    return first + "".join(lines[:cut]) + bootstrap + "".join(lines[cut:])
+
+
+def stamp(client: Path | None = None) -> str:
+    """The name of the packed client in sys.modules: its version and a digest of its files."""
+    return _packed(client or _installed())[0]
+
+
+def redirected(source: str, to: str, where: str) -> str:
+    """`source` with its imports of the client redirected to the module `to`.
+
+    Only `import hookean_client` and `from hookean_client[.module] import ...` can be redirected.
+    """
+    lines = source.splitlines(keepends=True)
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            raise InputError(f"{where}:{node.lineno}", f"imports relatively; write `from {CLIENT} import ...`.")
+        if isinstance(node, ast.Import) and any(a.name.split(".")[0] == CLIENT for a in node.names):
+            line = lines[node.lineno - 1]
+            told = re.sub(rf"\bimport {CLIENT}(?= as |\s*$)", rf"import {to} as {CLIENT}", line)
+            told = told.replace(f" as {CLIENT} as ", " as ")
+            if told == line or len(node.names) > 1:
+                raise InputError(f"{where}:{node.lineno}", f"cannot be redirected; write `import {CLIENT}` alone.")
+            lines[node.lineno - 1] = told
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == CLIENT:
+            line = lines[node.lineno - 1]
+            lines[node.lineno - 1] = re.sub(rf"\bfrom {CLIENT}\b", f"from {to}", line, count=1)
+    return "".join(lines)
+
+
+def _installed() -> Path:
+    spec = find_spec(CLIENT)
+    if spec is None or not spec.submodule_search_locations:
+        raise InputError(CLIENT, "is not installed; components are built from the source tree or an installed wheel.")
+    return Path(spec.submodule_search_locations[0])
+
+
+def _packed(client: Path) -> tuple[str, str, str]:
+    return _pack(tuple((p.name, p.read_text(encoding="utf-8")) for p in sorted(client.glob("*.py"))))
+
+
+@cache
+def _pack(files: tuple[tuple[str, str], ...]) -> tuple[str, str, str]:
+    """Stamp, version and packed text of the client's files, in the order in which they can be loaded."""
+    sources = {Path(name).stem: text for name, text in files}
+    for name, text in sources.items():
+        if not text.isascii():
+            raise InputError(f"{CLIENT}/{name}.py", "is not ASCII, which Python 2.7 cannot read.")
+    found = re.search(r'(?m)^__version__ = "([^"]+)"', sources["__init__"])
+    if not found:
+        raise InputError(f"{CLIENT}/__init__.py", 'says no `__version__ = "..."`.')
+    version = found.group(1)
+    digest = hashlib.sha256(json.dumps(sources, sort_keys=True).encode()).hexdigest()[:12]
+    stamp = f"{CLIENT}_{re.sub('[^0-9]', '_', version)}_{digest}"
+    modules = []
+    for name in _order(sources):
+        full = stamp if name == "__init__" else f"{stamp}.{name}"
+        modules.append([full, redirected(sources[name], stamp, f"{CLIENT}/{name}.py")])
+    data = base64.b64encode(zlib.compress(json.dumps(modules).encode("ascii"), 9)).decode("ascii")
+    return stamp, version, "\n".join(data[i : i + 116] for i in range(0, len(data), 116))
+
+
+def _order(sources: dict[str, str]) -> list[str]:
+    """Modules so that each comes after those it imports when loaded; `__init__` first."""
+    needs: dict[str, set[str]] = {"__init__": set()}
+    for name in sorted(sources):
+        if name == "__init__":
+            continue
+        needs[name] = {"__init__"}
+        for node in ast.parse(sources[name]).body:
+            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == CLIENT:
+                parts = (node.module or "").split(".")[1:] or [alias.name for alias in node.names]
+                needs[name] |= {part for part in parts if part in sources}
+    try:
+        return list(TopologicalSorter(needs).static_order())
+    except CycleError as error:
+        raise InputError(CLIENT, f"has modules that import one another: {' > '.join(error.args[1])}.") from None
+
+
+def _after_docstring(code: str) -> int:
+    """The line after the docstring and `from __future__` imports, counted from 0."""
+    cut = 0
+    for i, node in enumerate(ast.parse(code).body):
+        docstring = i == 0 and isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        if not docstring and not (isinstance(node, ast.ImportFrom) and node.module == "__future__"):
+            break
+        cut = node.end_lineno or 0
+    comments = takewhile(lambda line: not line.strip() or line.startswith("#"), code.splitlines())
+    return cut or len(list(comments))
