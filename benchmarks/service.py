@@ -209,7 +209,7 @@ def idle(server: Server) -> None:
     head = {"content-type": "application/json"}
     for number in range(20):
         server.client.put(f"/v1/sessions/idle-{number}", content=body, headers=head).raise_for_status()
-    show("memory with 20 sessions of 10,000 particles awake", f"{server.memory():.0f} MB", "- (a minute later they sleep)")
+    show("memory with 20 sessions of 10,000 particles awake", f"{server.memory():.0f} MB", "none; they sleep soon")
 
 
 def back(state: Path) -> None:

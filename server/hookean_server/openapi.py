@@ -50,6 +50,16 @@ def _takes(schema: dict[str, Any], examples: dict[str, Any], kind: str = "applic
     return {"requestBody": {"required": True, "content": {kind: content}}}
 
 
+_FORM = {
+    "type": "object",
+    "properties": {
+        "file": {"type": "string", "format": "binary", "description": "The .3dm file"},
+        "recipe": {"type": "string", "description": "What to make of it, as JSON text; none: as drawn"},
+    },
+    "required": ["file"],
+}
+
+
 def relax() -> dict[str, Any]:
     """What the route of `/v1/relax` says of itself."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/Result"}}}
@@ -63,15 +73,7 @@ def relax_file() -> dict[str, Any]:
         "model/vnd.3dm": {"schema": {"type": "string", "format": "binary"}},
         "application/json": {"schema": {"type": "object"}},
     }
-    form = {
-        "type": "object",
-        "properties": {
-            "file": {"type": "string", "format": "binary", "description": "The .3dm file"},
-            "recipe": {"type": "string", "description": "What to make of it, as JSON text; none: as drawn"},
-        },
-        "required": ["file"],
-    }
-    return {"responses": problems(success, computed=True), "openapi_extra": _takes(form, {}, "multipart/form-data")}
+    return {"responses": problems(success, computed=True), "openapi_extra": _takes(_FORM, {}, "multipart/form-data")}
 
 
 def discretize(name: str) -> dict[str, Any]:
@@ -85,16 +87,6 @@ def discretize(name: str) -> dict[str, Any]:
         ),
         "operation_id": f"discretize_{name}",
     }
-
-
-_FORM = {
-    "type": "object",
-    "properties": {
-        "file": {"type": "string", "format": "binary", "description": "The .3dm file"},
-        "recipe": {"type": "string", "description": "What to make of it, as JSON text; none: as drawn"},
-    },
-    "required": ["file"],
-}
 
 
 def session_body(*codes: int) -> dict[str, Any]:

@@ -21,7 +21,8 @@ import pytest
 from hookean.errors import InputError
 from hookean.files import threedm_atomic
 from hookean_server.store import Store
-from server.conftest import CABLE, Served, problem, wait_for
+from server.conftest import Served, problem
+from serving import CABLE, wait_for
 
 from .disk import Disk
 

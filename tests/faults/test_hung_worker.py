@@ -13,7 +13,8 @@ import httpx
 import psutil
 import pytest
 
-from server.conftest import CABLE, Served, endless, wait_for
+from server.conftest import Served, endless
+from serving import CABLE, wait_for
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="this system cannot stop a process")
 SOON = 60.0  # seconds until a state is called never reached; the service itself waits two

@@ -17,7 +17,8 @@ import pytest
 import websockets
 
 from hookean_server.sessions.wire import decode
-from server.conftest import CABLE, Served, wait_for
+from server.conftest import Served
+from serving import CABLE, wait_for
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 CYCLES, WARM = 50 if SOAK else 10, 10

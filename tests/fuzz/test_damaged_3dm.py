@@ -17,7 +17,8 @@ import psutil
 import pytest
 
 from hookean_server.workers import ended, limited
-from server.conftest import Served, wait_for
+from server.conftest import Served
+from serving import wait_for
 
 from . import damage
 

@@ -19,7 +19,8 @@ from schemathesis.specs.openapi import checks
 
 from hookean_server.app import create_app
 from hookean_server.problems import CATALOGUE
-from server.conftest import CABLE, Served
+from server.conftest import Served
+from serving import CABLE
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 CASES = 300 if SOAK else 30

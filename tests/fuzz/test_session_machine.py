@@ -19,7 +19,8 @@ from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, initialize, invariant, multiple, rule
 
-from server.conftest import CABLE, Served
+from server.conftest import Served
+from serving import CABLE
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 RUNS, STEPS = (500, 30) if SOAK else (25, 12)

@@ -8,21 +8,14 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import httpx
 import psutil
 import pytest
 
-CABLE: dict[str, Any] = {
-    "particles": [[0, 0, 0], [2, 0, 0], [4, 0, 0], [6, 0, 0], [8, 0, 0], [10, 0, 0]],
-    "forces": [
-        {"kind": "springs", "particles": [[0, 1], [1, 2], [2, 3], [3, 4], [4, 5]], "stiffness": 1000},
-        {"kind": "unary", "particles": [0, 1, 2, 3, 4, 5], "vector": [0, 0, -20]},
-    ],
-    "anchors": [{"particles": [0, 5]}],
-}
+from serving import wait_for
 
 
 def endless(seconds: float = 60.0) -> dict[str, Any]:
@@ -97,13 +90,6 @@ class Served:
             self.process.kill()
             self.client.close()
         return self.process.returncode, time.monotonic() - started, said
-
-
-def wait_for(true: Callable[[], Any], seconds: float = 10.0) -> None:
-    until = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < until, "waited too long"
-        time.sleep(0.02)
 
 
 @pytest.fixture(scope="session")

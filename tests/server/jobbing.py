@@ -9,8 +9,9 @@ import httpx
 import psutil
 
 from hookean_server.jobs.work import solve
+from serving import wait_for
 
-from .conftest import Served, wait_for
+from .conftest import Served
 
 NET: dict[str, Any] = {
     "particles": [[0.4 * i, 0.0, 0.0] for i in range(21)],

@@ -16,7 +16,9 @@ import httpx
 import psutil
 import pytest
 
-from .conftest import Served, wait_for
+from serving import wait_for
+
+from .conftest import Served
 from .jobbing import NET, ended, events, post, product, rows_of, sweep, table
 
 if importlib.util.find_spec("distributed") is None:

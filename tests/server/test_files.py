@@ -12,8 +12,9 @@ import pytest
 import rhino3dm
 
 from hookean.files.recipe import relax_file
+from serving import CABLE
 
-from .conftest import CABLE, problem
+from .conftest import problem
 
 RECIPE = {
     "units": {"length": "m", "force": "N"},

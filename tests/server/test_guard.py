@@ -22,8 +22,9 @@ from hookean_server.limits import BodyLimit
 from hookean_server.refusals import Problems
 from hookean_server.settings import Settings
 from hookean_server.tokens import LOGINS, Tokens, Unfit, chosen
+from serving import CABLE, wait_for
 
-from .conftest import CABLE, Served, problem, wait_for
+from .conftest import Served, problem
 
 FRIEND = "http://friend.example:3000"
 JSON_LIMIT = 2**20

@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 
 from hookean import Scene, relax
 from hookean_server.hops import FUNCTIONS
+from serving import CABLE
 
-from .conftest import CABLE, Served
+from .conftest import Served
 
 RECORDED = Path(__file__).parents[3] / "shared" / "data" / "grasshopper" / "hops_recorded.json"
 GOO = {"System.Boolean", "System.Double", "System.String", "System.Int32", "Rhino.Geometry.Line",

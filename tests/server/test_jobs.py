@@ -23,8 +23,9 @@ from hookean_server.jobs.runner import Live
 from hookean_server.pool import Pool
 from hookean_server.settings import Settings
 from hookean_server.store import Store
+from serving import CABLE, wait_for
 
-from .conftest import CABLE, Served, problem, wait_for
+from .conftest import Served, problem
 from .jobbing import COUNT, ENDLESS, ended, events, job_workers, parsed, post, sweep, table
 
 

@@ -18,7 +18,9 @@ import httpx
 import psutil
 import pytest
 
-from .conftest import CABLE, Served, wait_for
+from serving import CABLE, wait_for
+
+from .conftest import Served
 
 KILLS = 100 if os.environ.get("HOOKEAN_SOAK") == "1" else 10
 

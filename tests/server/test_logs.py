@@ -14,8 +14,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from hookean_server.logs import JsonLines, short_hash
+from serving import CABLE, wait_for
 
-from .conftest import CABLE, Served, wait_for
+from .conftest import Served
 
 MARK = 91827.36451827  # a coordinate that is found again wherever it is written
 MARKED: dict[str, Any] = {**CABLE, "particles": [*CABLE["particles"][:-1], [10.0, MARK, -MARK]]}

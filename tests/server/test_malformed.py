@@ -5,8 +5,10 @@ from __future__ import annotations
 import httpx
 import pytest
 
+from serving import CABLE
+
 from . import malformed
-from .conftest import CABLE, problem
+from .conftest import problem
 
 CASES = malformed.table()
 

@@ -11,8 +11,9 @@ from prometheus_client.parser import text_string_to_metric_families
 from websockets.sync.client import connect
 
 from hookean_server.problems import CATALOGUE
+from serving import CABLE, wait_for
 
-from .conftest import CABLE, Served, wait_for
+from .conftest import Served
 
 
 @pytest.fixture(scope="module")

@@ -14,8 +14,7 @@ from hookean.forces import KINDS
 from hookean_server.app import create_app
 from hookean_server.guard import needs_token
 from hookean_server.problems import CATALOGUE
-
-from .conftest import CABLE
+from serving import CABLE
 
 DOCUMENT: dict[str, Any] = json.loads(json.dumps(create_app().openapi()))
 OPERATIONS = [(path, method, o) for path, item in DOCUMENT["paths"].items() for method, o in item.items()]

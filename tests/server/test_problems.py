@@ -16,8 +16,9 @@ from hookean_server.app import create_app
 from hookean_server.operations import OPERATIONS
 from hookean_server.problems import CATALOGUE
 from hookean_server.settings import Settings
+from serving import CABLE
 
-from .conftest import CABLE, Served, problem
+from .conftest import Served, problem
 
 PATHS = {
     "/v1/health": "GET",

@@ -18,8 +18,9 @@ import psutil
 import pytest
 
 from hookean_server.ports import owner
+from serving import CABLE, wait_for
 
-from .conftest import CABLE, Served, endless, problem, wait_for
+from .conftest import Served, endless, problem
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 JSON = {"content-type": "application/json"}

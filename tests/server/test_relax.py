@@ -16,8 +16,9 @@ from compas.geometry import Pointcloud
 
 from hookean import Scene, relax
 from hookean_server.schemas import EXAMPLES
+from serving import CABLE
 
-from .conftest import CABLE, problem
+from .conftest import problem
 
 SCENES = {"chapter": CABLE, **EXAMPLES["relax"]}
 NET = EXAMPLES["relax"]["pulled net"]

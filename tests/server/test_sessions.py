@@ -14,8 +14,9 @@ from websockets.sync.client import ClientConnection, connect
 
 from hookean import Scene, Simulation, relax
 from hookean_server.sessions.wire import Shown, decode
+from serving import CABLE, wait_for
 
-from .conftest import CABLE, Served, wait_for
+from .conftest import Served
 
 
 @pytest.fixture(scope="module")

@@ -24,8 +24,9 @@ from hookean_server.jobs.runner import Live, Pending, Runner
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 from hookean_server.store import Store
+from serving import CABLE, wait_for
 
-from .conftest import CABLE, Served, problem, wait_for
+from .conftest import Served, problem
 from .jobbing import NET, ended, events, job_workers, parsed, post, product, rows_of, sweep, table
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
