@@ -82,8 +82,6 @@ def redirected(source: str, to: str, where: str) -> str:
     """
     lines = source.splitlines(keepends=True)
     for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.ImportFrom) and node.level:
-            raise InputError(f"{where}:{node.lineno}", f"imports relatively; write `from {CLIENT} import ...`.")
         if isinstance(node, ast.Import) and any(a.name.split(".")[0] == CLIENT for a in node.names):
             line = lines[node.lineno - 1]
             told = re.sub(rf"\bimport {CLIENT}(?= as |\s*$)", rf"import {to} as {CLIENT}", line)
@@ -137,9 +135,10 @@ def _order(sources: dict[str, str]) -> list[str]:
             continue
         needs[name] = {"__init__"}
         for node in ast.parse(sources[name]).body:
-            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == CLIENT:
-                parts = (node.module or "").split(".")[1:] or [alias.name for alias in node.names]
-                needs[name] |= {part for part in parts if part in sources}
+            if isinstance(node, ast.ImportFrom):
+                path = [CLIENT] * node.level + (node.module or "").split(".")
+                parts = [part for part in path[1:] if part] or [alias.name for alias in node.names]
+                needs[name] |= {part for part in parts if part in sources and path[0] == CLIENT}
     try:
         return list(TopologicalSorter(needs).static_order())
     except CycleError as error:
