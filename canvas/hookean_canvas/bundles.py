@@ -13,38 +13,9 @@ from typing import Any
 from uuid import NAMESPACE_URL, UUID, uuid5
 
 from hookean.errors import InputError
+from hookean_canvas import guids
 
-HINTS = (
-    "none",
-    "ghdoc",
-    "float",
-    "str",
-    "bool",
-    "int",
-    "complex",
-    "datetime",
-    "guid",
-    "color",
-    "point",
-    "vector",
-    "plane",
-    "interval",
-    "uvinterval",
-    "box",
-    "transform",
-    "line",
-    "circle",
-    "arc",
-    "polyline",
-    "rectangle",
-    "curve",
-    "mesh",
-    "surface",
-    "subd",
-    "brep",
-    "geometrybase",
-    "pointcloud",
-)
+HINTS = tuple(guids.HINTS)
 """Type hints by the names a bundle's metadata uses."""
 
 NO_ID = UUID(int=0)

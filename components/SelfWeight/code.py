@@ -1,0 +1,23 @@
+"""Weight as loads: `total` / number of particles on each, or half of `per_length` x start length on
+line ends.
+
+With a total, give particles, points or a mesh (nothing: every particle of the scene): 10 N on 51
+particles is 0.196 N each. With a weight per length, give lines, pairs of particles or a mesh (its
+edges). The load does not change as the lines stretch: weight is conserved. Energy -W d . x. Source:
+the chapter, 9.5.
+
+E = -W d.x
+"""
+
+from hookean_client import canvas
+
+force = canvas.force(
+    ghenv,
+    "self_weight",
+    lines=connection_,
+    points=point_,
+    per_length=per_length_,
+    total=total_,
+    direction=_direction_,
+    name=name_,
+)
