@@ -15,18 +15,21 @@ from hookean.files import compas_json
 from hookean.result import Result
 from hookean.scene import Scene
 
+Documents = dict[str | int, compas_json.Document]
 _EMPTY: dict[str, Any] = {"geometry": [], "forces": [], "reactions": {}, "contacts": {}}
 
 
-def encode(result: Result, scene: Scene, arrays: str, documents: dict[str, compas_json.Document] | None) -> bytes:
+def encode(result: Result, scene: Scene, arrays: str, documents: Documents | None) -> bytes:
     """A result as JSON text. `arrays`: `list` or `buffer`.
 
-    `documents`: meshes as COMPAS documents, with the vertex keys and faces of those given by name; none: plain.
+    `documents`: meshes, and geometry that was a document, as COMPAS documents with the keys, faces and edges of those
+    given, by the mesh's name or the geometry's number; none: plain.
     """
     values = dataclasses.replace(result, particles=np.zeros((0, 3)), **_EMPTY).to_dict()
     geometry = [dict(item) for item in result.geometry]
     if documents is not None:
-        geometry = [_with_document(g, item.mesh, documents) for g, item in zip(geometry, scene.geometry, strict=True)]
+        pairs = zip(geometry, scene.geometry, strict=True)
+        geometry = [_with_document(g, i, item.mesh, documents) for i, (g, item) in enumerate(pairs)]
     values.update(
         particles=result.particles,
         geometry=geometry,
@@ -82,15 +85,15 @@ def _finite(value: Any) -> Any:
     return [_finite(v) for v in value] if isinstance(value, list) else value
 
 
-def _with_document(
-    entry: dict[str, Any], name: str | None, documents: dict[str, compas_json.Document]
-) -> dict[str, Any]:
-    """A carried mesh with `mesh`, a COMPAS document, in place of its vertices and faces."""
-    if entry.get("kind") != "mesh":
+def _with_document(entry: dict[str, Any], number: int, name: str | None, documents: Documents) -> dict[str, Any]:
+    """A carried geometry with `mesh`, of a mesh, or `document`, of anything else that was one, in place of arrays."""
+    kept = {key: entry[key] for key in ("name", "kind")}
+    if number in documents and entry["kind"] != "mesh":
+        return {**kept, "document": compas_json.moved(documents[number], entry)}
+    if entry["kind"] != "mesh":
         return entry
-    vertices, faces = entry.pop("vertices"), entry.pop("faces")
-    given = documents.get(name or "")
-    title = (given.name if given else "") or entry.get("name") or name or ""
+    given = documents.get(number) or documents.get(name or "")
+    title = (given.name if given else "") or entry["name"] or name or ""
     if given is None:
-        return {**entry, "mesh": compas_json.mesh(vertices, faces, name=title)}
-    return {**entry, "mesh": compas_json.mesh(vertices, given.faces, given.keys, title)}
+        return {**kept, "mesh": compas_json.mesh(entry["vertices"], entry["faces"], name=title)}
+    return {**kept, "mesh": compas_json.mesh(entry["vertices"], given.faces, given.keys, title)}

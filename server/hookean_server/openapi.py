@@ -139,17 +139,22 @@ def hops_list() -> dict[str, Any]:
 def hops_description() -> dict[str, Any]:
     """What GET /<name> says of itself."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsFunction"}}}
-    return {"responses": problems(success, open_to_all=True)}
+    return {"responses": _told_to_hops(problems(success, open_to_all=True))}
 
 
 def hops_solve() -> dict[str, Any]:
     """What POST /solve says of itself: its problems have what Hops shows, as sentences."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsAnswer"}}}
-    found = problems(success, computed=True, open_to_all=True)
-    for status, response in found.items():
-        if status != 200:
-            response["content"] = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/HopsProblem"}}}
+    found = _told_to_hops(problems(success, computed=True, open_to_all=True))
     return {"responses": found, "openapi_extra": _takes({"$ref": "#/components/schemas/HopsRequest"}, EXAMPLES["hops"])}
+
+
+def _told_to_hops(found: dict[int | str, dict[str, Any]]) -> dict[int | str, dict[str, Any]]:
+    """Responses whose problems are as Hops reads them."""
+    problem = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/HopsProblem"}}}
+    return {
+        status: response if status == 200 else {**response, "content": problem} for status, response in found.items()
+    }
 
 
 def install(app: FastAPI) -> None:
@@ -188,10 +193,12 @@ def _build(app: FastAPI) -> dict[str, Any]:
 
 
 def _accept_documents(schemas: dict[str, Any]) -> None:
-    """Where a scene takes COMPAS documents: meshes, lines and coordinates."""
+    """Where a scene takes COMPAS documents: meshes, carried geometry, lines and coordinates."""
     document = {"$ref": "#/components/schemas/CompasDocument"}
     meshes = schemas["Scene"]["properties"]["meshes"]
     meshes["additionalProperties"] = {"anyOf": [meshes["additionalProperties"], document]}
+    geometry = schemas["Scene"]["properties"]["geometry"]
+    geometry["items"] = {"anyOf": [geometry["items"], document]}
     for schema in schemas.values():
         for name, field in schema.get("properties", {}).items():
             if name in ("lines", "points", "targets", "velocities", "vector") and "anyOf" in field:

@@ -193,3 +193,64 @@ def test_a_point_where_a_mesh_is_expected() -> None:
 
 def test_the_same_mesh_is_written_the_same() -> None:
     assert compas_json.mesh(np.eye(3), [[0, 1, 2]]) == compas_json.mesh(np.eye(3), [[0, 1, 2]])
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        Point(1, 2, 3),
+        Vector(1, 2, 3),
+        Line([0, 0, 0], [1, 0, 0]),
+        Polyline([[0, 0, 0], [1, 0, 0], [1, 1, 0]]),
+        Polygon([[0, 0, 0], [1, 0, 0], [1, 1, 0]]),
+        Pointcloud([[0, 0, 0], [1, 0, 0]]),
+        Graph.from_lines([[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [2, 0, 5]]]),
+        Mesh.from_meshgrid(1.0, nx=2),
+    ],
+)
+def test_a_carried_document_comes_back_as_what_it_was(thing: Any) -> None:
+    """In place where nothing moves, each of its points elsewhere where all is shifted."""
+    from hookean.result import carried
+    from hookean.system import compile
+
+    plain, documents, seen = compas_json.plain_scene({"geometry": [document(thing)], "forces": []})
+    assert seen and list(documents) == [0]
+    system = compile(Scene.read({**plain, "particles": documents[0].points}))
+    state = system.start()
+    state.x += 1.0
+    back = compas.json_loads(json.dumps(compas_json.moved(documents[0], carried(system, state)[0])))
+    assert type(back) is type(thing)
+    found = compas_json.read(document(back))
+    assert found.points.tolist() == (documents[0].points + 1.0).tolist()
+    assert found.edges.tolist() == documents[0].edges.tolist()
+    assert found.faces == documents[0].faces and found.keys == documents[0].keys
+
+
+def test_keys_of_a_graph_come_back() -> None:
+    graph = Graph()
+    for key in ("a", (1, 2), 7):
+        graph.add_node(key, x=1, y=2, z=3)
+    graph.add_edge((1, 2), "a")
+    found = compas_json.read(document(graph))
+    back = compas.json_loads(json.dumps(compas_json.graph(found.points, found.edges, "", found.keys)))
+    assert list(back.nodes()) == ["a", (1, 2), 7] and list(back.edges()) == [((1, 2), "a")]
+    back.add_node()
+    assert back.number_of_nodes() == 4  # max_node is right: no key is overwritten
+
+
+def test_a_document_alone_is_a_scene_with_its_boundary_held() -> None:
+    mesh = Mesh.from_meshgrid(4.0, nx=4)
+    mesh.vertex_attribute(12, "z", 1.0)
+    plain, documents, _ = compas_json.plain_scene(document(mesh))
+    scene = Scene.read(plain)
+    assert len(scene.anchors[0].particles) == 16 and list(documents) == [0]
+    with pytest.raises(InputError, match="a line alone cannot be relaxed"):
+        compas_json.plain_scene(document(Line([0, 0, 0], [1, 0, 0])))
+    with pytest.raises(InputError, match="a closed mesh has no naked vertices"):
+        compas_json.plain_scene(document(Mesh.from_polyhedron(6)))
+
+
+def test_a_mesh_of_the_name_of_a_document_is_told() -> None:
+    value = {"meshes": {"geometry 0": {}}, "geometry": [document(Mesh.from_meshgrid(1.0, nx=1))], "forces": []}
+    with pytest.raises(InputError, match="stands in the way"):
+        compas_json.plain_scene(value)

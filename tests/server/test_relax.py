@@ -186,6 +186,32 @@ def test_a_compas_graph_is_springs(client: httpx.Client) -> None:
     assert sum(answer["forces"][0]["length"]) == pytest.approx(10.4679154891668, abs=1e-6)
 
 
+def test_carried_documents_come_back_as_documents(client: httpx.Client) -> None:
+    graph = Graph.from_lines([[CABLE["particles"][i], CABLE["particles"][i + 1]] for i in range(5)])
+    scene = {**CABLE, "geometry": [json.loads(compas.json_dumps(graph)), {"kind": "points", "particles": [0]}]}
+    answer = client.post("/v1/relax", json=scene).json()
+    back = compas.json_loads(json.dumps(answer["geometry"][0]["document"]))
+    assert isinstance(back, Graph) and list(back.edges()) == list(graph.edges())
+    assert [back.node_coordinates(node) for node in back.nodes()] == answer["particles"]
+    assert answer["geometry"][1]["points"] == [[0, 0, 0]]
+    plain = client.post("/v1/relax?meshes=plain", json=scene).json()
+    assert plain["geometry"][0]["lines"][0] == [answer["particles"][0], answer["particles"][1]]
+
+
+def test_a_document_alone_is_relaxed_with_its_boundary_held(client: httpx.Client) -> None:
+    mesh = Mesh.from_meshgrid(4.0, nx=4)
+    mesh.vertex_attribute(1, "z", 1.0)
+    answer = client.post("/v1/relax", json=json.loads(compas.json_dumps(mesh))).json()
+    assert answer["status"] == "converged" and set(answer["reactions"]["names"]) == {"held"}
+    back = compas.json_loads(json.dumps(answer["geometry"][0]["mesh"]))
+    assert list(back.faces()) == list(mesh.faces()) and 0.0 < back.vertex_attribute(6, "z") < 1.0
+    graph = Graph.from_lines([[[0, 0, 0], [1, 0, 3]], [[1, 0, 3], [2, 0, 0]]])
+    answer = client.post("/v1/relax", json=json.loads(compas.json_dumps(graph))).json()
+    assert answer["particles"][1] == pytest.approx([1, 0, 0], abs=1e-5)
+    refused = client.post("/v1/relax", json=json.loads(compas.json_dumps(Pointcloud([[0, 0, 0]]))))
+    assert refused.status_code == 422 and "cannot be relaxed" in refused.text
+
+
 def test_requests_do_not_disturb_each_other(client: httpx.Client) -> None:
     from concurrent.futures import ThreadPoolExecutor
 

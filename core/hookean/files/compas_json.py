@@ -93,46 +93,131 @@ def mesh(vertices: ArrayLike, faces: Any, keys: Sequence[str] = (), name: str = 
     return _written("compas.datastructures/Mesh", data, name)
 
 
-def graph(points: ArrayLike, edges: ArrayLike, name: str = "") -> dict[str, Any]:
-    """A Graph document of nodes `(n, 3)` [length] and edges `(m, 2)` that name them by position."""
+def graph(points: ArrayLike, edges: ArrayLike, name: str = "", keys: Sequence[str] = ()) -> dict[str, Any]:
+    """A Graph document of nodes `(n, 3)` [length] and edges `(m, 2)` that name them by position.
+
+    `keys` are the nodes' keys as a document has them, such as `0` or `'a'` (none: 0, 1, ...).
+    """
     xyz = np.asarray(points, dtype=np.float64).reshape(-1, 3).tolist()
-    adjacency: dict[str, dict[str, Any]] = {str(i): {} for i in range(len(xyz))}
+    known = list(keys) or [str(i) for i in range(len(xyz))]
+    adjacency: dict[str, dict[str, Any]] = {key: {} for key in known}
     for a, b in np.asarray(edges, dtype=np.int64).reshape(-1, 2).tolist():
-        adjacency[str(a)][str(b)] = {}
+        adjacency[known[a]][known[b]] = {}
     data = {
         "attributes": {},
         "default_node_attributes": {"x": 0.0, "y": 0.0, "z": 0.0},
         "default_edge_attributes": {},
-        "node": {str(i): {"x": x, "y": y, "z": z} for i, (x, y, z) in enumerate(xyz)},
+        "node": {key: {"x": x, "y": y, "z": z} for key, (x, y, z) in zip(known, xyz, strict=True)},
         "edge": adjacency,
-        "max_node": len(xyz) - 1,
+        "max_node": max((int(key) for key in known if key.isdecimal()), default=-1),
     }
     return _written("compas.datastructures/Graph", data, name)
 
 
-def plain_scene(value: Any) -> tuple[Any, dict[str, Document], bool]:
-    """A scene's JSON values with every COMPAS document replaced by arrays, its mesh documents by name, and whether
-    there were any.
+def moved(document: Document, entry: dict[str, Any]) -> dict[str, Any]:
+    """The document that a carried geometry was given as, in the shape of its `entry` in a result.
+
+    Names, keys, faces and edges stay; other attributes of the document were never read.
+    """
+    points = document.points.copy()
+    if document.kind == "mesh":
+        return mesh(entry["vertices"], document.faces, document.keys, document.name)
+    if "lines" in entry:
+        points[document.edges] = entry["lines"]
+    else:
+        points = np.asarray(entry["points"])[: len(points)]  # a polygon is carried closed
+    if document.kind == "graph":
+        return graph(points, document.edges, document.name, document.keys)
+    rows = points.tolist()
+    several: dict[str, Any] = {"points": rows}
+    data: dict[str, Any] = {"point": rows[0], "vector": rows[0]} if len(rows) == 1 else {}
+    if document.kind == "line":
+        data["line"] = {"start": rows[0], "end": rows[1]}
+    dtype = f"compas.geometry/{document.kind.capitalize()}"
+    return _written(dtype, data.get(document.kind, several), document.name)
+
+
+def plain_scene(value: Any) -> tuple[Any, dict[str | int, Document], bool]:
+    """A scene's JSON values with every COMPAS document replaced by arrays, the documents that come back moved, and
+    whether there were any documents.
 
     Meshes may be Mesh documents; `lines` Graph, Line or Polyline documents or a list of them; coordinates Point,
-    Pointcloud, Polyline or Graph documents or a list of them; vectors Vector documents. `value` stays as it is.
-    Raises what `read` raises.
+    Pointcloud, Polyline or Graph documents or a list of them; vectors Vector documents; a carried geometry any
+    document. A Mesh or a Graph alone is the scene that `alone` makes of it. What comes back are mesh documents by
+    their names and documents of geometry by their numbers. `value` stays as it is. Raises what `read` raises.
     """
+    if is_document(value):
+        document = read(value)
+        return alone(document, value), {0: document}, True
     if not isinstance(value, dict):
         return value, {}, False
-    meshes: dict[str, Document] = {}
+    meshes: dict[str | int, Document] = {}
     scene, seen = _plain_fields(value, "", (*_POINTS, "particles"))
     if isinstance(value.get("meshes"), dict):
         scene["meshes"] = dict(value["meshes"])
         for name, entry in value["meshes"].items():
             if is_document(entry):
                 meshes[name], scene["meshes"][name] = plain_mesh(entry, f"/meshes/{_escaped(name)}")
+    _carry_documents(scene, meshes)
     for group in ("forces", "anchors", "geometry"):
         if isinstance(value.get(group), list):
-            found = [_plain_fields(item, f"/{group}/{i}", _POINTS) for i, item in enumerate(value[group])]
+            found = [_plain_fields(item, f"/{group}/{i}", _POINTS) for i, item in enumerate(scene[group])]
             scene[group] = [item for item, _ in found]
             seen = seen or any(s for _, s in found)
     return scene, meshes, seen or bool(meshes)
+
+
+def alone(document: Document, value: Any) -> dict[str, Any]:
+    """The scene of a Mesh or Graph alone: its edges springs of rest factor 0, naked vertices or nodes of one edge held.
+
+    Raises InputError for a document of another kind and for a closed mesh.
+    """
+    geometry: dict[str, Any] = {"kind": "lines", "name": document.name, "lines": document.lines}
+    scene: dict[str, Any] = {"particles": document.points, "geometry": [geometry]}
+    if document.kind == "mesh":
+        from hookean.discretize.meshes import as_mesh, edges, naked_vertices
+
+        plain = plain_mesh(value)[1]
+        drawn = as_mesh((document.points, plain["faces"]))
+        pairs, held = edges(drawn), naked_vertices(drawn)
+        if not len(held):
+            raise InputError("/", "a closed mesh has no naked vertices to hold; give a scene with anchors")
+        scene["meshes"] = {"document": plain}
+        geometry.update(kind="mesh", mesh="document")
+        del geometry["lines"]
+    elif document.kind == "graph":
+        pairs = np.asarray(document.edges)
+        held = np.flatnonzero(np.bincount(pairs.ravel(), minlength=len(document.points)) == 1)
+    else:
+        raise InputError("/dtype", f"a {document.kind} alone cannot be relaxed; give a Mesh, a Graph or a scene")
+    scene["forces"] = [{"kind": "springs", "particles": pairs, "rest_factor": 0.0}]
+    return {**scene, "anchors": [{"particles": held, "name": "held"}]}
+
+
+def _carry_documents(scene: dict[str, Any], documents: dict[str | int, Document]) -> None:
+    """Geometry of the scene that is a document as plain geometry, the documents kept by its number."""
+    if not isinstance(scene.get("geometry"), list):
+        return
+    scene["geometry"] = list(scene["geometry"])
+    for i, value in enumerate(scene["geometry"]):
+        if not is_document(value):
+            continue
+        documents[i] = document = read(value, f"/geometry/{i}")
+        entry: dict[str, Any] = {"name": document.name, "kind": "points", "points": document.points}
+        if document.kind == "mesh":
+            name = f"geometry {i}"
+            meshes = scene.get("meshes") or {}
+            if not isinstance(meshes, dict) or name in meshes:
+                raise InputError("/meshes", f'a mesh named "{name}" stands in the way of the document /geometry/{i}')
+            scene["meshes"] = {**meshes, name: plain_mesh(value, f"/geometry/{i}")[1]}
+            entry = {"name": document.name, "kind": "mesh", "mesh": name}
+        elif document.kind in ("graph", "line"):
+            entry = {"name": document.name, "kind": "lines", "lines": document.lines}
+        elif document.kind in ("polyline", "polygon"):
+            closed = document.kind == "polygon"
+            points = np.concatenate([document.points, document.points[:1]]) if closed else document.points
+            entry.update(kind="polyline", points=points)
+        scene["geometry"][i] = entry
 
 
 def plain_mesh(value: Any, pointer: str = "") -> tuple[Document, dict[str, Any]]:

@@ -244,7 +244,7 @@ def _read_json(source: Path) -> Source:
     with about(source.name):
         if compas_json.is_document(value):
             document = compas_json.read(value)
-            scene = Scene.read(_of_document(document, value))
+            scene = Scene.read(compas_json.alone(document, value))
         else:
             scene = Scene.read(compas_json.plain_scene(value)[0])
     forces = ", ".join(str(type(f).model_fields["kind"].default) for f in scene.forces) or "no force"
@@ -258,31 +258,6 @@ def _read_json(source: Path) -> Source:
         what = "naked vertices" if document.kind == "mesh" else "nodes of one edge"
         lines.append(f"a document without a scene: its edges are springs of rest factor 0, its {what} are held")
     return Source(scene, lines, unit=units.length, compas=document)
-
-
-def _of_document(document: Any, value: Any) -> dict[str, Any]:
-    """A mesh or graph alone, as the convention would read it: a film with its boundary held."""
-    if document.kind == "mesh":
-        from hookean.discretize.meshes import edges, naked_vertices
-        from hookean.files.compas_json import plain_mesh
-        from hookean.mesh import Mesh
-
-        plain = plain_mesh(value)[1]
-        faces = [[*f, f[2]] if len(f) == 3 else list(f) for f in plain["faces"]]
-        mesh = Mesh(document.points, np.array(faces, dtype=np.int64).reshape(-1, 4))
-        pairs, held = edges(mesh), naked_vertices(mesh)
-        if not len(held):
-            raise InputError("/", "a closed mesh has no naked vertices to hold; give a scene with anchors")
-    elif document.kind == "graph":
-        pairs = np.asarray(document.edges)
-        held = np.flatnonzero(np.bincount(pairs.ravel(), minlength=len(document.points)) == 1)
-    else:
-        raise InputError("/dtype", f"a {document.kind} alone cannot be relaxed; give a Mesh, a Graph or a scene")
-    return {
-        "particles": document.points,
-        "forces": [{"kind": "springs", "particles": pairs, "rest_factor": 0.0}],
-        "anchors": [{"particles": held, "name": "held"}],
-    }
 
 
 def _doubled(parts: list[tables.Section]) -> list[str]:
