@@ -1,0 +1,195 @@
+"""Where boxes stand on a canvas: left to right in columns by their depth, groups as blocks, few crossings.
+
+A layered drawing: columns by longest path (sources stand next to what they feed), boxes in a column ordered by the
+barycentre of their neighbours, then moved towards them without overlaps [Sugiyama, Tagawa and Toda 1981].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
+
+ACROSS, DOWN = 70.0, 14.0
+"""Room between columns and between boxes of a column, in pixels of the canvas."""
+MARGIN, TITLE = 24.0, 34.0
+"""Room between a group's boxes and the next block, and for its title."""
+
+
+@dataclass
+class Box:
+    """A rectangle to place: its size in, its upper left corner out."""
+
+    width: float
+    height: float
+    x: float = 0.0
+    y: float = 0.0
+
+
+@dataclass(frozen=True)
+class Link:
+    """A wire between boxes, with the heights at which it leaves and enters them."""
+
+    start: Hashable
+    end: Hashable
+    leaves: float
+    enters: float
+
+
+Boxes = dict[Hashable, Box]
+
+
+def arrange(
+    boxes: Boxes, links: Sequence[Link], blocks: Sequence[Sequence[Hashable]], heads: Sequence[tuple[float, float]] = ()
+) -> None:
+    """Place all boxes; those of a block stand together, and no two blocks or boxes overlap.
+
+    `heads` are widths and heights to leave free over the boxes of each block. Raises ValueError where
+    wires run in a circle, also where they do so between blocks.
+    """
+    inside: dict[Hashable, int] = {key: i for i, block in enumerate(blocks) for key in block}
+    loose = [[key] for key in boxes if key not in inside]
+    parts = [list(block) for block in blocks] + loose
+    number = {key: i for i, part in enumerate(parts) for key in part}
+    for _ in range(3):  # boxes in a block follow where the other blocks stand, and the blocks follow them
+        frames: Boxes = {}
+        for i, part in enumerate(parts):
+            frames[i] = _block(part, boxes, links, heads[i] if i < len(heads) else (0.0, 0.0), titled=i < len(blocks))
+        outer = [
+            Link(number[link.start], number[link.end], *_heights(link, boxes, frames, number))
+            for link in links
+            if number[link.start] != number[link.end]
+        ]
+        _layered(frames, outer, 2.0 * ACROSS, 2.0 * MARGIN, {})
+        for key, box in boxes.items():
+            frame = frames[number[key]]
+            box.x += frame.x
+            box.y += frame.y
+
+
+def _heights(link: Link, boxes: Boxes, frames: Boxes, number: dict[Hashable, int]) -> tuple[float, float]:
+    return boxes[link.start].y + link.leaves, boxes[link.end].y + link.enters
+
+
+def _block(
+    part: Sequence[Hashable], boxes: Boxes, links: Sequence[Link], head: tuple[float, float], titled: bool
+) -> Box:
+    """Places the boxes of a block from (0, 0) on; the size of the block."""
+    own = {key: boxes[key] for key in part}
+    within = [link for link in links if link.start in own and link.end in own]
+    pulls: dict[Hashable, list[float]] = {key: [] for key in own}
+    for link in links:
+        if (link.start in own) != (link.end in own):
+            here, there = (link.start, link.end) if link.start in own else (link.end, link.start)
+            height = boxes[there].y + (link.enters if here == link.start else link.leaves)
+            pulls[here].append(height - (link.leaves if here == link.start else link.enters))
+    _layered(own, within, ACROSS, DOWN, pulls)
+    edge = MARGIN if titled else 0.0
+    left, top = min(box.x for box in own.values()) - edge, min(box.y for box in own.values())
+    top -= edge + (TITLE if titled else 0.0) + head[1]
+    for box in own.values():
+        box.x -= left
+        box.y -= top
+    width = max(*(box.x + box.width for box in own.values()), edge + head[0]) + edge
+    return Box(width, max(box.y + box.height for box in own.values()) + edge)
+
+
+def _layered(
+    boxes: Boxes, links: Sequence[Link], across: float, down: float, pulls: dict[Hashable, list[float]]
+) -> None:
+    columns = _columns(boxes, links)
+    x = 0.0
+    for column in columns:
+        width = max(boxes[key].width for key in column)
+        for key in column:
+            boxes[key].x = x + (width - boxes[key].width)  # outputs of a column in one line
+        x += width + across
+    for column in columns:
+        _stack(column, boxes, {key: boxes[key].y for key in column}, down)
+    best = (crossings(boxes, links), [list(column) for column in columns])
+    for sweep in range(10):
+        backward = sweep % 2 == 1
+        for column in columns[::-1] if backward else columns:
+            wanted = {key: _wanted(key, boxes, links, pulls, (not backward, backward)) for key in column}
+            column.sort(key=lambda key: wanted[key] + 0.5 * boxes[key].height)
+            _stack(column, boxes, wanted, down)
+        count = crossings(boxes, links)
+        if count < best[0]:
+            best = (count, [list(column) for column in columns])
+    for sweep in range(8):
+        for column in best[1][::-1] if sweep % 2 else best[1]:
+            _stack(column, boxes, {key: _wanted(key, boxes, links, pulls, (True, True)) for key in column}, down)
+
+
+def _columns(boxes: Boxes, links: Sequence[Link]) -> list[list[Hashable]]:
+    """Boxes by depth; one without inputs stands in the column before the first that it feeds."""
+    depth = dict.fromkeys(boxes, 0)
+    for round_ in range(len(boxes) + 1):
+        changed = False
+        for link in links:
+            if depth[link.end] < depth[link.start] + 1:
+                depth[link.end] = depth[link.start] + 1
+                changed = True
+        if not changed:
+            break
+        if round_ == len(boxes):
+            raise ValueError("wires run in a circle")
+    fed = {link.end for link in links}
+    for key in boxes:
+        after = [depth[link.end] for link in links if link.start == key]
+        if key not in fed and after:
+            depth[key] = min(after) - 1
+    columns: list[list[Hashable]] = [[] for _ in range(max(depth.values()) + 1)]
+    for key in boxes:
+        columns[depth[key]].append(key)
+    return [column for column in columns if column]
+
+
+def _wanted(
+    key: Hashable, boxes: Boxes, links: Sequence[Link], pulls: dict[Hashable, list[float]], sides: tuple[bool, bool]
+) -> float:
+    """The y at which the wires of a box, those on its left, its right or both, would be level, on average."""
+    found = list(pulls.get(key, ()))
+    for link in links:
+        if link.end == key and sides[0]:
+            found.append(boxes[link.start].y + link.leaves - link.enters)
+        elif link.start == key and sides[1]:
+            found.append(boxes[link.end].y + link.enters - link.leaves)
+    return sum(found) / len(found) if found else boxes[key].y
+
+
+def _stack(column: Sequence[Hashable], boxes: Boxes, wanted: dict[Hashable, float], down: float) -> None:
+    """Boxes in this order as near as can be to where they want to be: means of runs that would overlap."""
+    runs: list[list[float]] = []  # mean wish of the run's top, boxes in it, height of it
+    for key in column:
+        runs.append([wanted[key], 1.0, boxes[key].height + down])
+        while len(runs) > 1 and runs[-2][0] + runs[-2][2] > runs[-1][0]:
+            top, count, height = runs.pop()
+            before = runs[-1]
+            before[0] = (before[0] * before[1] + (top - before[2]) * count) / (before[1] + count)
+            before[1] += count
+            before[2] += height
+    i = 0
+    for top, count, _ in runs:
+        for key in column[i : i + int(count)]:
+            boxes[key].y = top
+            top += boxes[key].height + down
+        i += int(count)
+
+
+def crossings(boxes: Boxes, links: Sequence[Link]) -> int:
+    """Pairs of wires that cross, taken as straight lines between boxes: a measure for tests and for looking."""
+    lines = [
+        (
+            boxes[link.start].x + boxes[link.start].width, boxes[link.start].y + link.leaves,
+            boxes[link.end].x, boxes[link.end].y + link.enters,
+        )
+        for link in links
+    ]  # fmt: skip
+    return sum(_cross(a, b) for i, a in enumerate(lines) for b in lines[:i])
+
+
+def _cross(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
+    def side(line: tuple[float, float, float, float], x: float, y: float) -> float:
+        return (line[2] - line[0]) * (y - line[1]) - (line[3] - line[1]) * (x - line[0])
+
+    return side(a, b[0], b[1]) * side(a, b[2], b[3]) < -1e-9 and side(b, a[0], a[1]) * side(b, a[2], a[3]) < -1e-9
