@@ -169,10 +169,10 @@ def _required(described: Mapping[str, Any], field: Mapping[str, Any]) -> bool:
 
 
 def _hint(field: Mapping[str, Any]) -> str:
-    if field["name"] in ("mesh", "target"):
-        return "mesh"
-    if field["name"] in ("curve", "lines"):
-        return "curve" if field["name"] == "curve" else "none"
+    if field["name"] in ("mesh", "target", "lines"):
+        return "none"  # the script looks at what it got
+    if field["name"] == "curve":
+        return "curve"
     return "point" if field["name"] == "point" else HINTS.get(field["type"], "none")
 
 
