@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
 import typer
+
+from hookean.cli import fail
+from hookean.errors import InputError
 
 app = typer.Typer(
     name="hookean canvas",
@@ -16,3 +23,91 @@ app = typer.Typer(
 @app.callback()
 def _options() -> None:
     pass
+
+
+@app.command()
+def show(
+    file: Annotated[Path, typer.Argument(help="A .gh, .ghx or .ghuser file")],
+    code: Annotated[bool, typer.Option("--code", help="With the source of every script")] = False,
+    json: Annotated[bool, typer.Option("--json", help="As JSON, for scripts")] = False,
+    everything: Annotated[bool, typer.Option("--all", help="Every chunk and item, nothing interpreted")] = False,
+) -> None:
+    """Print what a Grasshopper file holds: objects with inputs, outputs, wires, values and scripts."""
+    from hookean_canvas.show import show
+
+    show(file, code, json, everything)
+
+
+@app.command()
+def check(files: Annotated[list[Path], typer.Argument(help=".gh, .ghx and .ghuser files")]) -> None:
+    """Say what is wrong with Grasshopper files, a line for each fault; exits with 1 where there is one."""
+    from hookean_canvas.show import check
+
+    raise typer.Exit(check(files))
+
+
+@app.command()
+def build(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write to")] = Path("dist"),
+) -> None:
+    """Build all components: .ghuser files for Rhino 8 and 9 and for Rhino 7, and a package (.yak) of each."""
+    from hookean_canvas.build import build
+
+    try:
+        built = build(output)
+    except InputError as error:
+        fail(error)
+    for folder in sorted({path.parent for path in built.user_objects}):
+        typer.echo(f"{folder}: {sum(path.parent == folder for path in built.user_objects)} components")
+    for package in built.packages:
+        typer.echo(f"{package}")
+
+
+@app.command()
+def install(
+    rhino: Annotated[int, typer.Option(min=7, max=9, help="The Rhino to install for: 7, 8 or 9")] = 8,
+    folder: Annotated[Path | None, typer.Option(help="Grasshopper's User Object Folder, where not found")] = None,
+) -> None:
+    """Put the components on Grasshopper's panel: copy them to its user objects; it shows them when next started."""
+    from hookean_canvas.build import install
+
+    try:
+        files = install(rhino, folder)
+    except InputError as error:
+        fail(error)
+    typer.echo(f"{files[0].parent}: {len(files)} components for Rhino {rhino}; start Rhino anew to see them.")
+
+
+@app.command()
+def run(
+    file: Annotated[Path, typer.Argument(help="A definition, .ghx or .gh")],
+    set_: Annotated[list[str] | None, typer.Option("--set", help="A slider, toggle or panel: 'name=value'")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON")] = False,
+    seconds: Annotated[float, typer.Option(help="How long it may run [s]", min=0)] = 120.0,
+) -> None:
+    """Evaluate a definition without Rhino: print its panels, compare its numbers with an expected.json beside it.
+
+    Exit code 0; 1 where a number is not as expected, a component fails or it does not come to rest.
+    """
+    from hookean_canvas import checking
+
+    raise typer.Exit(_told(lambda: checking.run(file, set_ or [], as_json, seconds)))
+
+
+@app.command()
+def draw(
+    file: Annotated[Path, typer.Argument(help="A definition, .ghx or .gh")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="The picture, .png")],
+) -> None:
+    """Draw a definition as its canvas looks: boxes, groups and wires."""
+    from hookean_canvas import drawing, graph
+
+    _told(lambda: drawing.draw(graph.read(file), output))
+
+
+def _told(work: Callable[[], Any]) -> Any:
+    """What the work gives; an InputError becomes one line and exit code 2."""
+    try:
+        return work()
+    except InputError as error:
+        fail(error)
