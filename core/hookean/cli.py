@@ -182,7 +182,11 @@ def _package(command: str, package: str, what: str) -> Any:
 )
 def canvas(context: typer.Context) -> None:
     """Hand the rest of the line to the commands of `hookean_canvas`."""
-    _package("canvas", "hookean_canvas", "what reads Grasshopper's files").app(context.args, prog_name="hookean canvas")
+    commands = _package("canvas", "hookean_canvas", "what reads Grasshopper's files").app
+    try:
+        commands(context.args, prog_name="hookean canvas")
+    except InputError as error:
+        fail(error)
 
 
 @app.command()
