@@ -41,6 +41,29 @@ def catenary(start: ArrayLike, end: ArrayLike, length: float, *, count: int = 50
     return np.asarray(points)
 
 
+def catenaries(lines: ArrayLike, length: ArrayLike, *, count: int = 50, gravity: ArrayLike = DOWN) -> Floats:
+    """Points (m, count + 1, 3) [length] of m cables, each from the first to the second end of a line (m, 2, 3).
+
+    `length` and `gravity` are one for all, or one for each. InputError as `catenary`, naming the cable.
+    """
+    try:
+        ends = np.array(lines, dtype=float)
+        lengths = np.broadcast_to(np.array(length, dtype=float), (len(ends),))
+        downs = np.broadcast_to(np.array(gravity, dtype=float), (len(ends), 3))
+    except (TypeError, ValueError):
+        said = "cables, lengths and gravity directions do not fit; give one for all or one for each cable"
+        raise InputError("length", said) from None
+    if ends.ndim != 3 or ends.shape[1:] != (2, 3):
+        raise InputError("lines", f"shape {list(ends.shape)} given; pairs of points expected")
+    found = []
+    for number, (line, long, down) in enumerate(zip(ends, lengths, downs, strict=True)):
+        try:
+            found.append(catenary(line[0], line[1], float(long), count=count, gravity=down))
+        except InputError as error:
+            raise InputError(f"{error.pointer}/{number}", error.sentence) from None
+    return np.array(found, dtype=np.float64).reshape(len(ends), -1 if found else count + 1, 3)
+
+
 def tensions(
     start: ArrayLike,
     end: ArrayLike,

@@ -271,6 +271,8 @@ Lines = Annotated[
     _json({"type": "array", "items": _TRIPLE, "minItems": 2, "maxItems": 2}),
 ]
 """Straight lines `(m, 2, 3)`."""
+Table = Annotated[NDArray[np.float64], PlainValidator(_real), _out, _json({})]
+"""Numbers of any shape."""
 Vector = Annotated[NDArray[np.float64], PlainValidator(_vector), _out, WithJsonSchema(_TRIPLE)]
 """One vector `(3,)`."""
 Vectors = Annotated[NDArray[np.float64], PlainValidator(_vectors), _out, _json(_TRIPLE, _TRIPLE)]

@@ -1,4 +1,4 @@
-"""Relaxing an uploaded .3dm file: the form is taken apart, read and solved in a worker that is then replaced."""
+"""Uploaded .3dm files: the form is taken apart, read and solved in a worker that is then replaced."""
 
 from __future__ import annotations
 
@@ -62,6 +62,26 @@ def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         except InputError as error:
             raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
     return Done(read.scene.canonical.encode(), headers=_told(read.warnings))
+
+
+def geometry_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
+    """What an uploaded file has drawn in it, as plain numbers; options as `relax_upload`, with `divisions` (a pair, or
+    none) of surfaces and `arrays` (`list` or `buffer`)."""
+    from hookean.files.threedm_plain import plain
+    from hookean.files.threedm_read import parse
+
+    clock = Clock()
+    data, recipe = parts(Path(options["path"]), options["content_type"])
+    if recipe is not None:
+        raise InputError("/recipe", "a file is read without a recipe; the form has the part file only")
+    clock.lap("decode")
+    try:
+        with limited(options["read_seconds"]):
+            found = plain(parse(data, "the file").model, options["divisions"])
+    except InputError as error:
+        raise InputError("/file", error.sentence) from None
+    clock.lap("read")
+    return Done(answers.dump(found, options["arrays"]), timing=clock.parts)
 
 
 @contextlib.contextmanager

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from hookean.columns import Faces, Lines, Points
+from hookean.columns import Faces, Lines, Points, Reals, Table, Vectors
+from hookean.discretize import nurbs
 from hookean.errors import InputError
 from hookean.files import compas_json
 from hookean.files.scene_json import parse
@@ -23,8 +24,10 @@ from hookean_server.tasks import Cancelled, Clock, Done
 class Operation:
     """One operation: where its function is, what geometry it takes, its options and what it gives.
 
-    `takes`: `curve`, `surface`, `mesh`, `lines` or `points`. `options`: name -> `count`, `number`, `choice`, `flag`;
-    those with None as default must be given. `gives`: names of the function's results; `lines` is added to edges.
+    `at`: `module:function`, of `hookean.discretize` or with a leading dot of `hookean`. `takes`: `curve`, `surface`,
+    `mesh`, `lines` or `points`. `options`: name -> `count`, `whole`, `number`, `numbers`, `vectors`, `flag` or the
+    words to choose from; those with None as default must be given. `gives`: names of the function's results; their
+    places are added to edges and vertices of a mesh, see `PLACES`.
     """
 
     at: str
@@ -36,7 +39,8 @@ class Operation:
     def function(self) -> Callable[..., Any]:
         """The function, imported when first used."""
         module, name = self.at.split(":")
-        found: Callable[..., Any] = getattr(importlib.import_module(f"hookean.discretize.{module}"), name)
+        home = f"hookean{module}" if module.startswith(".") else f"hookean.discretize.{module}"
+        found: Callable[..., Any] = getattr(importlib.import_module(home), name)
         return found
 
     @property
@@ -47,6 +51,11 @@ class Operation:
 
 _GRID = {"u": ("count", None), "v": ("count", None)}
 _NEAR = {"tolerance": ("number", 1e-6)}
+_HANGING = {"length": ("numbers", None), "count": ("count", 50), "gravity": ("vectors", (0.0, 0.0, -1.0))}
+_SMOOTH = {"count": ("count", None), "degree": ("whole", 3)}
+PLACES = {"edges": "lines", "indices": "points", "naked": "naked_points", "clothed": "clothed_points",
+          "warp": "warp_lines", "weft": "weft_lines"}  # fmt: skip
+"""Results that are numbers of vertices, and the names of what lies there."""
 
 OPERATIONS: dict[str, Operation] = {
     "divide": Operation("curves:divide", "curve", {"count": ("count", None)}),
@@ -54,6 +63,9 @@ OPERATIONS: dict[str, Operation] = {
     "explode": Operation("curves:explode", "curve", gives=("lines",)),
     "end_points": Operation("curves:end_points", "curve"),
     "length": Operation("curves:length", "curve", gives=("length",)),
+    "arc": Operation("arcs:arc_through", "points", {"count": ("count", None)}),
+    "interpolate": Operation("arcs:interpolate", "points", _SMOOTH),
+    "catenary": Operation(".catenary:catenaries", "lines", _HANGING, ("polylines",)),
     "mesh_surface": Operation("surfaces:mesh_surface", "surface", _GRID, ("mesh",)),
     "mesh_faces": Operation("breps:mesh_faces", "surface", _GRID, ("mesh",)),
     "vertices": Operation("meshes:vertices", "mesh"),
@@ -61,8 +73,12 @@ OPERATIONS: dict[str, Operation] = {
     "naked_edges": Operation("meshes:naked_edges", "mesh", gives=("edges",)),
     "naked_vertices": Operation("meshes:naked_vertices", "mesh", gives=("indices",)),
     "clothed_vertices": Operation("meshes:clothed_vertices", "mesh", gives=("indices",)),
+    "boundary": Operation("meshes:boundary", "mesh", gives=("naked", "clothed")),
     "corners": Operation("meshes:corners", "mesh", {"angle": ("number", 0.75 * np.pi)}, ("indices",)),
     "warp_weft": Operation("warpweft:warp_weft", "mesh", {"strict": ("flag", True)}, ("warp", "weft")),
+    "threads": Operation(
+        "warpweft:threads", "mesh", {"strict": ("flag", True)}, ("warp", "weft", "warp_naked", "weft_naked")
+    ),
     "diagonals": Operation("meshes:diagonals", "mesh", {"pattern": ("both one other", "both")}, ("edges",)),
     "triangles": Operation("meshes:triangles", "mesh", gives=("triangles",)),
     "weld": Operation("meshes:weld", "mesh", _NEAR, ("mesh",)),
@@ -86,6 +102,8 @@ def discretize(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Do
     if operation.takes not in value:
         raise InputError(f"/{operation.takes}", "this is required")
     geometry = _READERS[operation.takes](value[operation.takes], f"/{operation.takes}")
+    if operation.takes == "lines" and "count" in operation.options:
+        _check_many(len(geometry) * given.get("count", operation.options["count"][1]), "/count", options["largest"])
     clock.lap("decode")
     try:
         found = operation.function(geometry, **given)
@@ -107,7 +125,7 @@ def uses_rhino(body: bytes) -> bool:
 def _placed(pointer: str, takes: str) -> str:
     """The place of a fault of a function's argument in the body."""
     first, _, rest = pointer.lstrip("/").partition("/")
-    known = first in (takes, "count", "u", "v", "angle", "pattern", "tolerance", "strict")
+    known = first in (takes, *_NAMES)
     return f"/{first}{'/' + rest if rest else ''}" if known else f"/{takes}"
 
 
@@ -127,15 +145,24 @@ def _options(operation: Operation, value: dict[str, Any], largest: int) -> dict[
         found[name] = _option(value[name], kind, f"/{name}", largest)
         if kind == "count":
             product *= found[name]
-            if product > largest:
-                raise InputError(f"/{name}", f"this makes {product} pieces; at most {largest} are allowed")
+            _check_many(product, f"/{name}", largest)
     return found
+
+
+def _check_many(pieces: int, pointer: str, largest: int) -> None:
+    if pieces > largest:
+        raise InputError(pointer, f"this makes {pieces} pieces; at most {largest} are allowed")
 
 
 def _option(value: Any, kind: str, pointer: str, largest: int) -> Any:
     if kind == "count":
         if type(value) is not int or not 1 <= value <= largest:
             raise InputError(pointer, f"a whole number from 1 to {largest} is expected")
+    elif kind == "whole":
+        if type(value) is not int or not 1 <= value <= 1000:
+            raise InputError(pointer, "a whole number from 1 to 1000 is expected")
+    elif kind in ("numbers", "vectors"):
+        return _checked(_REALS if kind == "numbers" else _VECTORS, value, pointer)
     elif kind == "number":
         if type(value) not in (int, float) or not abs(value) < 1e12:
             raise InputError(pointer, "a finite number is expected")
@@ -154,13 +181,28 @@ def _curve(value: Any, pointer: str) -> Any:
             raise InputError(f"{pointer}/dtype", f"a {document.kind} is no curve; give a Line, Polyline or Polygon")
         closing = document.points[:1] if document.kind == "polygon" else document.points[:0]
         return np.concatenate([document.points, closing])
+    if isinstance(value, dict) and "knots" in value:
+        return _nurbs(value, pointer, nurbs.nurbs_curve, ("degree", "points", "knots"))
     return decode(value, pointer) if _encoded(value) else _points(value, pointer)
 
 
 def _surface(value: Any, pointer: str) -> Any:
+    if isinstance(value, dict) and "knots_u" in value:
+        return _nurbs(value, pointer, nurbs.nurbs_surface, ("degree_u", "degree_v", "points", "knots_u", "knots_v"))
     if not _encoded(value):
-        raise InputError(pointer, "give a Rhino surface, Brep or extrusion as rhino3dm's Encode writes it")
+        raise InputError(pointer, "give a NURBS surface, or a Rhino surface or Brep as rhino3dm's Encode writes it")
     return decode(value, pointer)
+
+
+def _nurbs(value: dict[str, Any], pointer: str, make: Any, needed: tuple[str, ...]) -> Any:
+    if not set(needed) <= set(value) <= {*needed, "weights"}:
+        raise InputError(pointer, f"a NURBS form has {', '.join(needed)}, and may have weights; nothing else")
+    tables = [name for name in (*needed, "weights") if not name.startswith("degree") and value.get(name) is not None]
+    read = {name: _checked(_TABLE, value[name], f"{pointer}/{name}") for name in tables}
+    try:
+        return make(**{**value, **read})
+    except InputError as error:
+        raise InputError(f"{pointer}/{error.pointer}", error.sentence) from None
 
 
 def _mesh(value: Any, pointer: str) -> Any:
@@ -236,17 +278,22 @@ def _outputs(operation: Operation, found: Any, geometry: Any, documents: str) ->
             out[name] = {"vertices": value.vertices, "faces": value.faces}
         else:
             out[name] = value
-    if operation.takes == "mesh" and operation.gives in (("edges",), ("indices",)):
+    placed = [name for name in operation.gives if name in PLACES]
+    if placed:
         from hookean.discretize.meshes import as_mesh
 
-        chosen = as_mesh(geometry).vertices[np.asarray(found, dtype=np.int64)]
-        out["lines" if operation.gives == ("edges",) else "points"] = chosen
+        vertices = as_mesh(geometry).vertices
+        out.update({PLACES[name]: vertices[np.asarray(out[name], dtype=np.int64)] for name in placed})
     return out
 
 
 _POINTS: TypeAdapter[Any] = TypeAdapter(Points, config={"arbitrary_types_allowed": True})
 _LINES: TypeAdapter[Any] = TypeAdapter(Lines, config={"arbitrary_types_allowed": True})
+_REALS: TypeAdapter[Any] = TypeAdapter(Reals, config={"arbitrary_types_allowed": True})
+_TABLE: TypeAdapter[Any] = TypeAdapter(Table, config={"arbitrary_types_allowed": True})
+_VECTORS: TypeAdapter[Any] = TypeAdapter(Vectors, config={"arbitrary_types_allowed": True})
 _FACES: TypeAdapter[Any] = TypeAdapter(Faces, config={"arbitrary_types_allowed": True})
+_NAMES = {name for operation in OPERATIONS.values() for name in operation.options}
 _READERS: dict[str, Callable[[Any, str], Any]] = {
     "curve": _curve,
     "surface": _surface,

@@ -19,6 +19,8 @@ _LINES: dict[str, Any] = {
 }
 _DOCUMENT = {"$ref": "#/components/schemas/CompasDocument"}
 _RHINO = {"$ref": "#/components/schemas/RhinoObject"}
+_CURVES = {"$ref": "#/components/schemas/NurbsCurve"}
+_SURFACES = {"$ref": "#/components/schemas/NurbsSurface"}
 _MESH: dict[str, Any] = {"anyOf": [{"$ref": "#/components/schemas/MeshData"}, _DOCUMENT, _RHINO]}
 
 
@@ -26,6 +28,12 @@ def _object(**properties: Any) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": list(properties)}
 
 
+def _optional(schema: dict[str, Any], **properties: Any) -> dict[str, Any]:
+    """An object with further properties that may be left out."""
+    return {**schema, "properties": {**schema["properties"], **properties}}
+
+
+_DEGREE = {"type": "integer", "minimum": 1, "maximum": 25}
 _TEXT = {"type": "string"}
 _SENTENCES = {"type": "array", "items": _TEXT}
 _TREES = {"type": "array", "items": _object(ParamName=_TEXT, InnerTree={"type": "object"})}
@@ -33,7 +41,7 @@ _AT = _object(particles=_ARRAY, force=_ARRAY)
 
 SCHEMAS: dict[str, dict[str, Any]] = {
     "Buffer": {
-        **_object(dtype={"enum": ["<f8", "<i8"]}, shape={"type": "array", "items": {"type": "integer"}}),
+        **_object(dtype={"enum": ["<f8", "<i8", "<i4"]}, shape={"type": "array", "items": {"type": "integer"}}),
         "description": "An array as base64 of its little-endian bytes, C order",
     },
     "CompasDocument": {
@@ -43,6 +51,16 @@ SCHEMAS: dict[str, dict[str, Any]] = {
     "RhinoObject": {
         **_object(version={"type": "integer"}, archive3dm={"type": "integer"}, opennurbs={"type": "integer"}),
         "description": "Geometry as rhino3dm's CommonObject.Encode writes it",
+    },
+    "NurbsCurve": {
+        **_optional(_object(degree=_DEGREE, points=_POINTS, knots=_ARRAY), weights=_ARRAY),
+        "description": "A NURBS curve; points + degree + 1 knots, or without the first and the last as in Rhino",
+    },
+    "NurbsSurface": {
+        **_optional(
+            _object(degree_u=_DEGREE, degree_v=_DEGREE, points=_ARRAY, knots_u=_ARRAY, knots_v=_ARRAY), weights=_ARRAY
+        ),
+        "description": "A NURBS surface; a row of points for each step in the first direction, knots as of curves",
     },
     "Problem": {
         "type": "object",
@@ -158,8 +176,8 @@ SCHEMAS["RhinoObject"]["properties"]["data"] = {"type": "string"}
 SCHEMAS["RhinoObject"]["required"].append("data")
 
 _TAKES: dict[str, dict[str, Any]] = {
-    "curve": {"anyOf": [_POINTS["anyOf"][0], _BUFFER, _DOCUMENT, _RHINO]},
-    "surface": _RHINO,
+    "curve": {"anyOf": [_POINTS["anyOf"][0], _BUFFER, _CURVES, _DOCUMENT, _RHINO]},
+    "surface": {"anyOf": [_SURFACES, _RHINO]},
     "mesh": _MESH,
     "points": {"anyOf": [*_POINTS["anyOf"], _DOCUMENT, {"type": "array", "items": _DOCUMENT, "minItems": 1}]},
     "lines": {"anyOf": [*_LINES["anyOf"], _DOCUMENT, {"type": "array", "items": _DOCUMENT, "minItems": 1}]},
@@ -172,7 +190,10 @@ _GIVES: dict[str, dict[str, Any]] = {
 }
 _OPTIONS: dict[str, dict[str, Any]] = {
     "count": {"type": "integer", "minimum": 1},
+    "whole": {"type": "integer", "minimum": 1, "maximum": 1000},
     "number": _NUMBER,
+    "numbers": {"anyOf": [_NUMBER, *_ARRAY["anyOf"]]},
+    "vectors": {"anyOf": [_POINT, *_POINTS["anyOf"]]},
     "flag": {"type": "boolean"},
 }
 
@@ -197,7 +218,7 @@ _GRID = {
 _SMALL = {
     "curve": _CURVE,
     "mesh": _GRID,
-    "points": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+    "points": [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
     "lines": [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]],
 }
 _CABLE = {
@@ -248,7 +269,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "discretize": {
         name: {
             o.takes: _SMALL[o.takes],
-            **{option: 4 for option, (kind, default) in o.options.items() if default is None and kind == "count"},
+            **{option: 4 for option, (kind, default) in o.options.items() if default is None},
         }
         for name, o in OPERATIONS.items()
         if o.takes in _SMALL

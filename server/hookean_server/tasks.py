@@ -81,6 +81,7 @@ def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
         "hops": hops.solve,
         "file": files.relax_upload,
         "scene": files.scene_upload,
+        "geometry": files.geometry_upload,
         "job": work.check,
         "batch": work.batch,
         "item": work.item,

@@ -13,6 +13,7 @@ import rhino3dm
 from compas.datastructures import Mesh
 from compas.geometry import Line, Polygon, Polyline
 
+from hookean.catenary import catenary
 from hookean.discretize import curves, surfaces
 from hookean_server.operations import OPERATIONS
 from hookean_server.schemas import EXAMPLES
@@ -92,6 +93,52 @@ def test_meshes_as_compas(client: httpx.Client) -> None:
     assert compas.json_loads(json.dumps(welded)).to_vertices_and_faces() == mesh.to_vertices_and_faces()
 
 
+def test_nurbs_forms_are_the_geometry_itself(client: httpx.Client) -> None:
+    """A curve and a surface as numbers give what rhino3dm's own give; knots as Rhino has them, or all of them."""
+    arc = rhino3dm.Arc(rhino3dm.Point3d(0, 0, 0), 2.0, 1.5).ToNurbsCurve()
+    four = np.array([[p.X, p.Y, p.Z, p.W] for p in arc.Points])
+    form = {"degree": 2, "points": (four[:, :3] / four[:, 3:]).tolist(), "weights": four[:, 3].tolist()}
+    short = list(arc.Knots)
+    for knots in (short, [short[0], *short, short[-1]]):
+        answer = client.post("/v1/discretize/divide", json={"curve": {**form, "knots": knots}, "count": 7})
+        assert np.allclose(answer.json()["points"], curves.divide(arc, 7), atol=1e-14)
+    ball = sphere().ToNurbsSurface()
+    rows = range(ball.Points.CountU), range(ball.Points.CountV)
+    four = np.array([[[(p := ball.Points.GetControlPoint(i, j)).X, p.Y, p.Z, p.W] for j in rows[1]] for i in rows[0]])
+    surface = {
+        "degree_u": 2,
+        "degree_v": 2,
+        "points": (four[..., :3] / four[..., 3:]).tolist(),
+        "weights": four[..., 3].tolist(),
+        "knots_u": list(ball.KnotsU),
+        "knots_v": list(ball.KnotsV),
+    }
+    found = client.post("/v1/discretize/mesh_surface", json={"surface": surface, "u": 6, "v": 5}).json()["mesh"]
+    wanted = surfaces.mesh_surface(ball, 6, 5)
+    assert found["faces"] == wanted.faces.tolist() and np.allclose(found["vertices"], wanted.vertices, atol=1e-13)
+
+
+def test_places_are_told_beside_numbers_of_vertices(client: httpx.Client) -> None:
+    vertices = np.array(GRID["vertices"])
+    found = client.post("/v1/discretize/boundary", json=SMALL["boundary"]).json()
+    assert found["clothed"] == [4] and found["naked"] == [0, 1, 2, 3, 5, 6, 7, 8]
+    assert found["naked_points"] == vertices[found["naked"]].tolist()
+    found = client.post("/v1/discretize/threads", json=SMALL["threads"]).json()
+    assert found["warp_lines"] == vertices[found["warp"]].tolist()
+    inner = [not naked for naked in found["warp_naked"]]
+    assert sum(inner) == 2 and all(4 in pair for pair, is_inner in zip(found["warp"], inner, strict=True) if is_inner)
+
+
+def test_many_catenaries_in_one_request(client: httpx.Client) -> None:
+    lines = [[[0, 0, 0], [4, 0, 1]], [[0, 1, 0], [3, 3, 0]]]
+    body = {"lines": lines, "length": [6.0, 5.0], "count": 8, "gravity": [[0, 0, -1], [0, 1, 0]]}
+    found = client.post("/v1/discretize/catenary", json=body).json()["polylines"]
+    for number, (line, length, gravity) in enumerate(zip(lines, body["length"], body["gravity"], strict=True)):
+        assert found[number] == catenary(*line, length, count=8, gravity=gravity).tolist()
+    short = problem(client.post("/v1/discretize/catenary", json={**body, "length": [6.0, 1.0]}), 422, "invalid-input")
+    assert short["errors"][0]["pointer"] == "/length/1"
+
+
 def test_arrays_as_buffers(client: httpx.Client) -> None:
     answer = client.post("/v1/discretize/edges?arrays=buffer", json=SMALL["edges"]).json()
     assert answer["edges"]["dtype"] == "<i8" and answer["lines"]["dtype"] == "<f8"
@@ -116,6 +163,15 @@ GRID = SMALL["edges"]["mesh"]
         ("divide", {"curve": document(Mesh.from_meshgrid(1.0, nx=1)), "count": 3}, "/curve/dtype"),
         ("divide", {"curve": {"version": 1, "archive3dm": 60, "opennurbs": 1, "data": "AAAA"}, "count": 3}, "/curve"),
         ("divide", {"curve": {"version": "1", "archive3dm": 60, "opennurbs": 1, "data": ""}, "count": 3}, "/curve"),
+        ("divide", {"curve": {"degree": 3, "points": GRID["vertices"], "knots": [0, 1]}, "count": 3}, "/curve/knots"),
+        ("divide", {"curve": {"points": GRID["vertices"], "knots": [0, 1]}, "count": 3}, "/curve"),
+        ("divide", {"curve": {"degree": 9, "points": GRID["vertices"], "knots": [0]}, "count": 3}, "/curve/points"),
+        ("arc", {"points": GRID["vertices"], "count": 3}, "/points"),
+        ("interpolate", {"points": GRID["vertices"], "count": 9, "degree": 12}, "/degree"),
+        ("interpolate", {"points": GRID["vertices"], "count": 9, "degree": 0}, "/degree"),
+        ("catenary", {"lines": SMALL["catenary"]["lines"], "length": [1, 2, 3]}, "/length"),
+        ("catenary", {"lines": SMALL["catenary"]["lines"], "length": 2, "gravity": [0, 0]}, "/gravity"),
+        ("catenary", {"lines": SMALL["catenary"]["lines"], "length": 2, "count": 600_000}, "/count"),
         ("mesh_surface", {"surface": [[0, 0, 0]], "u": 1, "v": 1}, "/surface"),
         ("mesh_surface", {"surface": sphere().Encode(), "u": 2000, "v": 2000}, "/v"),
         ("mesh_surface", {"surface": sphere().Encode(), "u": 2, "v": 2}, "/"),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hookean.discretize.arcs import arc as arc
+    from hookean.discretize.arcs import arc_through as arc_through
     from hookean.discretize.arcs import interpolate as interpolate
     from hookean.discretize.breps import is_trimmed as is_trimmed
     from hookean.discretize.breps import mesh_faces as mesh_faces
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from hookean.discretize.duplicates import unique_lines as unique_lines
     from hookean.discretize.duplicates import unique_points as unique_points
     from hookean.discretize.meshes import as_mesh as as_mesh
+    from hookean.discretize.meshes import boundary as boundary
     from hookean.discretize.meshes import clothed_vertices as clothed_vertices
     from hookean.discretize.meshes import corners as corners
     from hookean.discretize.meshes import diagonals as diagonals
@@ -29,21 +31,28 @@ if TYPE_CHECKING:
     from hookean.discretize.meshes import join as join
     from hookean.discretize.meshes import naked_edges as naked_edges
     from hookean.discretize.meshes import naked_vertices as naked_vertices
+    from hookean.discretize.meshes import on_boundary as on_boundary
     from hookean.discretize.meshes import triangles as triangles
     from hookean.discretize.meshes import vertices as vertices
     from hookean.discretize.meshes import weld as weld
+    from hookean.discretize.nurbs import NurbsCurve as NurbsCurve
+    from hookean.discretize.nurbs import NurbsSurface as NurbsSurface
+    from hookean.discretize.nurbs import nurbs_curve as nurbs_curve
+    from hookean.discretize.nurbs import nurbs_surface as nurbs_surface
     from hookean.discretize.surfaces import mesh_surface as mesh_surface
+    from hookean.discretize.warpweft import threads as threads
     from hookean.discretize.warpweft import warp_weft as warp_weft
 
 _NAMES = {
-    "arcs": "arc interpolate",
+    "arcs": "arc arc_through interpolate",
     "breps": "is_trimmed mesh_faces",
     "curves": "divide end_points explode length shatter",
     "duplicates": "remove_duplicate_lines remove_duplicate_points unique_lines unique_points",
-    "meshes": "as_mesh clothed_vertices corners diagonals edges join naked_edges naked_vertices triangles vertices "
-    "weld",
+    "meshes": "as_mesh boundary clothed_vertices corners diagonals edges join naked_edges naked_vertices on_boundary "
+    "triangles vertices weld",
+    "nurbs": "NurbsCurve NurbsSurface nurbs_curve nurbs_surface",
     "surfaces": "mesh_surface",
-    "warpweft": "warp_weft",
+    "warpweft": "threads warp_weft",
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
 

@@ -43,6 +43,17 @@ def arc(a: ArrayLike, b: ArrayLike, c: ArrayLike, count: int) -> Array:
     return np.asarray(points)
 
 
+def arc_through(points: ArrayLike, count: int) -> Array:
+    """Points (count + 1, 3) [length] of `arc`, through the three given as rows (3, 3)."""
+    try:
+        rows = np.array(points, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("points", "rows of x, y, z expected") from None
+    if rows.shape != (3, 3):
+        raise InputError("points", f"shape {list(rows.shape)} given; three rows of x, y, z expected")
+    return arc(rows[0], rows[1], rows[2], count)
+
+
 def interpolate(points: ArrayLike, count: int, degree: int = 3) -> Array:
     """Points (count + 1, 3) [length] on a smooth curve through points (n, 3), for display.
 

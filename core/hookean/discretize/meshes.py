@@ -94,8 +94,23 @@ def naked_vertices(mesh: Any) -> Index:
 
 def clothed_vertices(mesh: Any) -> Index:
     """Indices `(k,)`, ascending, of the inner vertices: in a face and on no boundary edge."""
+    return boundary(mesh)[1]
+
+
+def boundary(mesh: Any) -> tuple[Index, Index]:
+    """Indices, ascending, of the naked vertices `(k,)`, those on boundary edges, and of the clothed ones within."""
     m = as_mesh(mesh)
-    return np.setdiff1d(np.unique(m.faces), naked_vertices(m))
+    naked = naked_vertices(m)
+    return naked, np.setdiff1d(np.unique(m.faces), naked)
+
+
+def on_boundary(mesh: Any, pairs: Index) -> NDArray[np.bool_]:
+    """Whether each of the edges `(k, 2)`, lower index first, is a boundary edge."""
+    m = as_mesh(mesh)
+    size = len(m.vertices)
+    naked = naked_edges(m)
+    found: NDArray[np.bool_] = np.isin(pairs[:, 0] * size + pairs[:, 1], naked[:, 0] * size + naked[:, 1])
+    return found
 
 
 def corners(mesh: Any, angle: float = 0.75 * np.pi) -> Index:

@@ -25,7 +25,7 @@ def mesh_surface(surface: Any, u: int, v: int) -> Mesh:
     A side collapsed to a point (the pole of a sphere) becomes one vertex and its quads triangles
     `(a, b, c, c)` with c the pole; a closed surface is welded along its seam.
 
-    Takes a rhino3dm or COMPAS surface; a Brep, BrepFace or Extrusion goes to `mesh_faces`. Raises
+    Takes a rhino3dm or COMPAS surface or a `NurbsSurface`; a Brep, BrepFace or Extrusion goes to `mesh_faces`. Raises
     InputError where a count is not a whole number >= 1 (>= 3 round a closed direction), a point is not
     finite or the surface has no size.
     """
@@ -54,24 +54,29 @@ def sample(surface: Any, u: int, v: int) -> Array:
     """Points `(u + 1, v + 1, 3)` of a surface at even parameters, its own evaluation."""
     if hasattr(surface, "IsoCurve"):
         (u0, u1), (v0, v1) = ((d.T0, d.T1) for d in (surface.Domain(0), surface.Domain(1)))
-        at = surface.PointAt
     elif hasattr(surface, "domain_u") and hasattr(surface, "point_at"):
         (u0, u1), (v0, v1) = surface.domain_u, surface.domain_v
-        at = surface.point_at
     else:
         kind = type(surface).__name__
         raise InputError("surface", f"{kind} is not a surface; give a rhino3dm or COMPAS surface or a Brep")
     # the ends themselves, not a rounded neighbour outside the domain
-    us = np.minimum(np.linspace(u0, u1, u + 1), u1).tolist()
-    vs = np.minimum(np.linspace(v0, v1, v + 1), v1).tolist()
-    rhino = hasattr(surface, "PointAt")
-    points = [at(s, t) for s in us for t in vs]
-    grid = np.array([(p.X, p.Y, p.Z) if rhino else (p[0], p[1], p[2]) for p in points], dtype=np.float64)
+    us = np.minimum(np.linspace(u0, u1, u + 1), u1)
+    vs = np.minimum(np.linspace(v0, v1, v + 1), v1)
+    grid = _evaluated(surface, us, vs).reshape(-1, 3)
     if not np.isfinite(grid).all():
         raise InputError("surface", "a point of it is not finite; rebuild it")
     if not np.ptp(grid, axis=0).any():
         raise InputError("surface", "it has no size: all its points are one; give a surface with area")
     return grid.reshape(u + 1, v + 1, 3)
+
+
+def _evaluated(surface: Any, us: Array, vs: Array) -> Array:
+    if hasattr(surface, "points_at"):
+        return np.asarray(surface.points_at(us, vs), dtype=np.float64)
+    rhino = hasattr(surface, "PointAt")
+    at = surface.PointAt if rhino else surface.point_at
+    points = [at(s, t) for s in us.tolist() for t in vs.tolist()]
+    return np.array([(p.X, p.Y, p.Z) if rhino else (p[0], p[1], p[2]) for p in points], dtype=np.float64)
 
 
 def merged_ids(grid: Array) -> Index:

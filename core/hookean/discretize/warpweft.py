@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.discretize.meshes import _edges, as_mesh
+from hookean.discretize.meshes import _edges, as_mesh, on_boundary
 from hookean.errors import InputError
 
 Index = NDArray[np.int64]
@@ -41,6 +41,13 @@ def warp_weft(mesh: Any, strict: bool = True) -> tuple[Index, Index]:
     _triangles(of, quad, neighbours, family)
     every = sides[first]
     return every[family == 0], every[family == 1]
+
+
+def threads(mesh: Any, strict: bool = True) -> tuple[Index, Index, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Warp and weft edges as `warp_weft` has them, and for each whether it is on the boundary."""
+    m = as_mesh(mesh)
+    warp, weft = warp_weft(m, strict)
+    return warp, weft, on_boundary(m, warp), on_boundary(m, weft)
 
 
 def _spread(seed: int, of: Index, quad: NDArray[np.bool_], neighbours: list[list[int]], family: Index) -> None:
