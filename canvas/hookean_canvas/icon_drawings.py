@@ -237,12 +237,20 @@ def compas(pen: Pen, key: str) -> None:
         for k in range(3):
             pen.line(corner[k][0], corner[k][2], colour=BLUE, width=1.2)
             pen.line(corner[0][k], corner[2][k], colour=BLUE, width=1.2)
-    elif "graph" in key or "network" in key:
+    elif any(word in key for word in ("graph", "network", "structure")):
         spots = ((15.0, 9.6), (18.2, 3.2), (21.4, 9.6))
         pen.line(*spots, colour=BLUE, width=1.2, closed=True)
         pen_dots(pen, spots, BLUE, 1.7)
-    elif any(word in key for word in ("relax", "solve", "engine")):
+    elif "relax" in key:
         pen.area((14.6, 2.4), (14.6, 11.0), (22.0, 6.7), colour=ORANGE)
+    elif "anchor" in key:
+        pen.support((18.0, 4.0), 6.0)
+        pen.dot((18.0, 3.4), 1.9)
+    elif "load" in key:
+        pen.arrow((18.0, 2.6), (18.0, 12.0), width=1.8, head=4.6)
+        pen.dot((18.0, 2.8), 1.8)
+    elif "spring" in key:
+        pen.spring((14.2, 10.6), (22.4, 2.4), turns=3, swing=1.9)
     else:
         pen.arrow((14.0, 6.7), (22.4, 6.7), width=1.8, head=4.6)
 
