@@ -5,14 +5,11 @@ from __future__ import annotations
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from hookean_server.hops import FUNCTIONS
-from hookean_server.problems import Problem
+from hookean_server.problems import Problem, is_function
 from hookean_server.settings import Settings
 from hookean_server.tokens import Tokens, cookie_name, cookies
 
 SAFE = {"GET", "HEAD", "OPTIONS"}
-HOPS = {f"/{name}" for name in FUNCTIONS}
-"""Descriptions of Hops' functions; GET / lists them and POST /solve runs them."""
 CORS = {
     "access-control-allow-methods": "GET, POST, PUT, PATCH, DELETE",
     "access-control-allow-headers": (
@@ -25,14 +22,17 @@ EXPOSED = "etag, location, retry-after, server-timing, x-request-id"
 
 def needs_token(method: str, path: str) -> bool:
     """Whether an address is for those who hold the token. Open: health, pages of problems, page files, Hops' calls."""
-    if method in ("GET", "HEAD"):
-        return not (path in {"/", "/v1/health", *HOPS} or path.startswith(("/problems/", "/page/")))
+    if method in ("GET", "HEAD") and (path == "/v1/health" or path.startswith(("/problems/", "/page/"))):
+        return False
     return not is_hops(method, path)
 
 
 def is_hops(method: str, path: str) -> bool:
-    """Whether this is one of Hops' own calls: pure functions, which no page may call."""
-    return path in {"/", *HOPS} if method in ("GET", "HEAD") else (method, path) == ("POST", "/solve")
+    """Whether this is one of Hops' own calls: pure functions, which no page may call. GET / lists them, POST /solve
+    runs them; any other name at the root is one, or one that there is not."""
+    if method in ("GET", "HEAD"):
+        return path == "/" or is_function(path)
+    return (method, path) == ("POST", "/solve")
 
 
 class Guard:

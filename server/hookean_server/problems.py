@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -128,10 +129,15 @@ class Problem(Exception):
             "instance": instance,
         }
         if hops:
-            document.update(values=[], errors=[self.detail], warnings=[])
+            document.update(values=[], errors=[self.detail], warnings=[], Inputs=[], Outputs=[])
         elif self.errors:
             document["errors"] = [{"pointer": p, "detail": d} for p, d in self.errors[:MOST]]
         return json.dumps(document).encode()
+
+
+def is_function(path: str) -> bool:
+    """Whether an address is a name at the root, as Hops' functions have; whoever asks for one reads as Hops does."""
+    return re.fullmatch("/[A-Za-z][A-Za-z_]*", path) is not None and path != "/metrics"
 
 
 def not_stored(error: BaseException) -> Problem:

@@ -11,7 +11,7 @@ from typing import Any
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from hookean_server.problems import MEDIA_TYPE, Problem
+from hookean_server.problems import MEDIA_TYPE, Problem, is_function
 
 log = logging.getLogger("hookean.server")
 
@@ -67,7 +67,7 @@ class Problems:
 async def answer(problem: Problem, scope: Scope, send: Send, *, more: bool = False) -> None:
     """Send a problem; with `more` the last, empty part of the body is still to come."""
     scope["problem"] = problem.slug
-    body = problem.body(scope.get("instance", "urn:uuid:0"), hops=scope["path"] == "/solve")
+    body = problem.body(scope.get("instance", "urn:uuid:0"), hops=is_function(scope["path"]))
     headers = [
         (b"content-type", MEDIA_TYPE.encode()),
         (b"content-length", str(len(body)).encode()),

@@ -13,6 +13,7 @@ from hookean_server import openapi
 from hookean_server.handling import compute
 from hookean_server.hops import FUNCTIONS
 from hookean_server.operations import uses_rhino
+from hookean_server.problems import Problem
 from hookean_server.routes_about import page_response
 
 router = APIRouter(tags=["hops"])
@@ -29,26 +30,19 @@ async def root(request: Request) -> Response:
     return answer
 
 
-def _describe(name: str) -> None:
-    description = FUNCTIONS[name].described(name)
-
-    @router.get(
-        f"/{name}",
-        summary=f"Hops' description of {name}",
-        operation_id=f"hops_{name}",
-        **openapi.hops_description(),
-    )
-    async def described() -> dict[str, Any]:
-        """Inputs and outputs as Hops reads them."""
-        return description
-
-
-for _name in FUNCTIONS:
-    _describe(_name)
-
-
 @router.post("/solve", summary="Run a function for Hops", **openapi.hops_solve())
 async def solve(request: Request) -> Response:
     """Answers and refusals are both as Hops reads them: `values`, `errors` and `warnings`."""
-    seconds = request.app.state.settings.solve_seconds
-    return await compute(request, "hops", {"seconds": seconds}, once=uses_rhino)
+    settings = request.app.state.settings
+    options = {"seconds": settings.solve_seconds, "largest": settings.largest_count}
+    return await compute(request, "hops", options, once=uses_rhino)
+
+
+@router.get("/{function}", summary="Hops' description of a function", **openapi.hops_description())
+async def described(function: str) -> dict[str, Any]:
+    """Inputs and outputs as Hops reads them."""
+    if function == "solve":
+        raise Problem("method-not-allowed", "Functions are run with POST /solve.", headers={"allow": "POST"})
+    if function not in FUNCTIONS:
+        raise Problem("not-found", "There is no function of this name; GET / of this server lists those there are.")
+    return FUNCTIONS[function].described(function)

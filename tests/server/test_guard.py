@@ -134,9 +134,10 @@ def test_every_address_needs_the_token_but_for_the_open_ones(served: Served) -> 
                     problem(answer, 401, "unauthorized")
                     assert answer.headers["www-authenticate"].startswith("Bearer")
         assert nobody.get("/v1/openapi.json").status_code == 401
-        assert nobody.get("/nothing").status_code == 401
+        assert nobody.get("/v1/nothing").status_code == nobody.post("/nothing").status_code == 401
+        assert nobody.get("/nothing").status_code == 404  # a function of Hops that there is not
         assert nobody.get("/page/login.js").status_code == 200
-    hops = {("get", "/"), ("get", "/relax"), ("get", "/relax_mesh"), ("post", "/solve")}
+    hops = {("get", "/"), ("get", "/{function}"), ("post", "/solve")}
     assert opened == {("get", "/v1/health"), ("get", "/problems/{slug}"), *hops}
 
 

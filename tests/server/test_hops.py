@@ -95,11 +95,12 @@ def test_the_list_and_each_description_are_as_hops_reads_them(hops: httpx.Client
     members = set.intersection(*(set(one) for one in known))
     parameter = {key for one in known for p in one["Inputs"] + one["Outputs"] for key in p}
     types = {(p["ParamType"], p["ResultType"]) for one in known for p in one["Inputs"] + one["Outputs"]}
+    types |= {("Curve", "Rhino.Geometry.Curve"), ("Surface", "Rhino.Geometry.Brep")}  # as ghhops-server has them
     for one in listed.json():
         assert members == set(one)
         assert hops.get(one["Uri"]).json() == one
         for p in one["Inputs"] + one["Outputs"]:
-            assert parameter - {"Default"} <= set(p) <= parameter
+            assert parameter - {"Default"} <= set(p) <= parameter | {"Minimum", "Maximum"}
             assert (p["ParamType"], p["ResultType"]) in types
             assert -1 <= p["AtLeast"] <= p["AtMost"]
         assert len({p["Name"] for p in one["Inputs"]}) == len(one["Inputs"])
@@ -214,12 +215,15 @@ FAULTY: dict[str, tuple[Any, str]] = {
     "no lines": (without("Lines"), "Lines is missing; connect at least one line"),
     "no load": (without("Load"), "Load takes one vector; 0 are given"),
     "two stiffnesses": (cable(Stiffness=branch("System.Double", 1.0, 2.0)), "Stiffness takes one number; 2 are given"),
-    "text": (cable(Stiffness=branch("System.String", "soft")), "Stiffness: a finite number is expected"),
-    "a negative factor": (cable(**{"Rest factor": branch("System.Double", -1.0)}), "rest_factor"),
-    "a point as line": (cable(Lines=branch("Rhino.Geometry.Point3d", point((0, 0, 0)))), "Lines: geometry as Hops"),
+    "text": (cable(Stiffness=branch("System.String", "soft")), "/Stiffness: a finite number is expected"),
+    "a negative factor": (
+        cable(**{"Rest factor": branch("System.Double", -1.0)}),
+        "Rest factor: -1 is given; allowed is 0 and more",
+    ),
+    "a point as line": (cable(Lines=branch("Rhino.Geometry.Point3d", point((0, 0, 0)))), "/Lines: geometry as Hops"),
     "damaged geometry": (
         cable(Lines=branch("x", {"version": 10000, "archive3dm": 70, "opennurbs": 1, "data": "AAAA"})),
-        "rhino3dm cannot decode this",
+        "/Lines: rhino3dm cannot decode this",
     ),
     "no JSON inside": (cable(Stiffness={"{0}": [{"type": "System.Double", "data": "NaN"}]}), "is not a number"),
     "no function": (asked("nope", {}), "there is no such function; there are /relax, /relax_mesh"),

@@ -26,12 +26,12 @@ PATHS = {
     "/v1/discretize": "GET",
     "/v1/relax": "POST",
     "/v1/relax/3dm": "POST",
+    "/v1/geometry/3dm": "POST",
     "/problems/busy": "GET",
     "/v1/openapi.json": "GET",
     "/metrics": "GET",
     "/": "GET",
-    "/relax": "GET",
-    "/relax_mesh": "GET",
+    "/{function}": "GET",
     **{f"/v1/discretize/{name}": "POST" for name in OPERATIONS},
 }
 METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE")
@@ -194,14 +194,14 @@ def test_a_failure_of_the_service_itself() -> None:
     app = create_app(Settings(token="token-of-this-test"))
     known = {"authorization": "Bearer token-of-this-test"}
 
-    @app.get("/broken")
+    @app.get("/v1/broken")
     async def broken() -> None:
         raise RuntimeError("secret of the implementation")
 
     async def ask() -> httpx.Response:
         transport = httpx.ASGITransport(app=app)
         async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8765", headers=known) as client:
-            return await client.get("/broken")
+            return await client.get("/v1/broken")
 
     response = asyncio.run(ask())
     assert "secret" not in response.text
