@@ -179,7 +179,7 @@ def _hint(field: Mapping[str, Any]) -> str:
 def _tooltip(described: Mapping[str, Any], field: Mapping[str, Any]) -> str:
     """What the input is, with its unit, what is allowed and its default."""
     told = TOLD.get((described["kind"], field["name"]), field["description"])
-    if "[" not in told and field["unit"] != "-":
+    if "[" not in told and (field["unit"] != "-" or field["type"] in ("number", "numbers", "vector", "vectors")):
         told += f" [{field['unit']}]"
     told = f"{told}."
     if "choices" in field:
