@@ -238,7 +238,7 @@ class _standing:
     """Rhino and Grasshopper in sys.modules are stand-ins, as long as this lasts."""
 
     def __enter__(self) -> None:
-        self._canvas = stand_in.Canvas(geometry=rhino3dm)
+        self._canvas: Any = stand_in.Canvas(geometry=rhino3dm)
         self._canvas.install()
 
     def __exit__(self, *_: object) -> None:
@@ -284,9 +284,8 @@ def _settings(graph: Graph, given: Mapping[str, str]) -> dict[UUID, Any]:
     for name, text in given.items():
         nodes = [node for node in settable if node.nickname == name]
         if not nodes:
-            raise InputError(
-                name, f"nothing has this name; there are {', '.join(sorted(n.nickname for n in settable))}"
-            )
+            known = ", ".join(sorted(node.nickname for node in settable))
+            raise InputError(name, f"nothing that can be set has this name; there are {known}")
         for node in nodes:
             found[node.id] = _set_value(node, text)
     return found
