@@ -105,6 +105,18 @@ def draw(
     _told(lambda: drawing.draw(graph.read(file), output))
 
 
+@app.command("import")
+def import_(
+    file: Annotated[Path, typer.Argument(help="A .gh or .ghx file with components of Kangaroo 0.099 or Kangaroo 2")],
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Default: NAME-hookean.ghx beside it")] = None,
+) -> None:
+    """Translate a definition made for Kangaroo: its components become ours, all else stays; says what could not be."""
+    from hookean_canvas import kangaroo
+
+    target, report = _told(lambda: kangaroo.import_file(file, output))
+    typer.echo(f"{report.text()}\n\nwritten: {target}")
+
+
 def _told(work: Callable[[], Any]) -> Any:
     """What the work gives; an InputError becomes one line and exit code 2."""
     try:

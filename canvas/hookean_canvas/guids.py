@@ -51,6 +51,8 @@ ae2531b4-bab2-4bb1-b5bf-f2143d10c132 Context Bake
 73215ec5-0eb5-4f85-9e07-b09c4590ce2b Context Print
 a9a8ebd2-fff5-4c44-a8f5-739736d129ba C# Script
 079bd9bd-54a0-41d4-98af-db999015f63d VB Script
+5a2b0735-ba98-4b7d-a7d3-c1dfc04475ad Timer|Trigger
+72a29b54-2e48-474b-a400-d2124c4edf79 Param Viewer
 """
 
 # ------------------------------------------------------------------------------------------------ floating parameters

@@ -98,6 +98,7 @@ cb2c7d3c-41b4-4c6d-a6bd-9235bd2851bb Gate Not
 5b850221-b527-4bd6-8c62-e94168cd6efa Mass Addition
 431bc610-8ae1-4090-b217-1a9d9c519fe2 Modulus
 ce46b74e-00c9-43c4-805a-193b69ea4a11 Multiplication
+b8963bb1-aa57-476e-a20e-ed6cf635a49c Multiplication
 a3371040-e552-4bc8-b0ff-10a840258e88 Negative
 78fed580-851b-46fe-af2f-6519a9d378e0 Power
 40177d8a-a35c-4622-bca7-d150031fe427 Similarity

@@ -1,0 +1,64 @@
+"""The wires of a definition before anything is changed: what flows into an input, and where outputs go."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+from uuid import UUID
+
+from hookean_canvas.archive import Chunk
+from hookean_canvas.parts import Part, inputs, outputs, parts, sources
+
+Wire = tuple[UUID, UUID]
+"""The ids of the output a wire leaves and of the input it enters."""
+
+
+class Streams:
+    """Objects and wires as they stand in a file; `parts` are the file's own objects, wires those at this moment."""
+
+    def __init__(self, root: Chunk) -> None:
+        self.parts = parts(root)
+        self._inputs = {id(part.chunk): copy.deepcopy(_side(part, inputs)) for part in self.parts}
+        self._owner = {_id(port): part for part in self.parts for port in _side(part, outputs)}
+        self._labels = dict(self._named())
+        found = [(source, _id(port)) for ports in self._inputs.values() for port in ports for source in sources(port)]
+        self.wires: list[Wire] = [wire for wire in dict.fromkeys(found) if wire[0] in self._owner]
+        self.dangling: list[Wire] = [wire for wire in dict.fromkeys(found) if wire[0] not in self._owner]
+
+    def inputs_before(self, part: Part) -> list[Chunk]:
+        """The inputs of an object as they were."""
+        return self._inputs[id(part.chunk)]
+
+    def above(self, port: Chunk) -> set[UUID]:
+        """Ids of all objects whose data reaches an input."""
+        found: set[UUID] = set()
+        waiting = sources(port)
+        while waiting:
+            owner = self._owner.get(waiting.pop())
+            if owner is not None and owner.id is not None and owner.id not in found:
+                found.add(owner.id)
+                waiting += [source for one in self._inputs[id(owner.chunk)] for source in sources(one)]
+        return found
+
+    def taken(self, output: UUID) -> bool:
+        """Whether any wire leaves an output."""
+        return any(wire[0] == output for wire in self.wires)
+
+    def told(self, wire: Wire) -> str:
+        """A wire as a person reads it: `Slider > Solver.On`."""
+        return f"{self._labels.get(wire[0], wire[0])} > {self._labels.get(wire[1], wire[1])}"
+
+    def _named(self) -> Iterator[tuple[UUID, str]]:
+        for part in self.parts:
+            for port in (*_side(part, inputs), *_side(part, outputs)):
+                name = port.value("NickName", default="")
+                yield _id(port), part.label if port is part.container else f"{part.label}.{name}"
+
+
+def _side(part: Part, side: object) -> list[Chunk]:
+    return side(part.container) if part.container is not None and callable(side) else []
+
+
+def _id(port: Chunk) -> UUID:
+    found: UUID = port.value("InstanceGuid")
+    return found

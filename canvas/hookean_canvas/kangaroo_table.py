@@ -1,0 +1,396 @@
+"""What stands for each component of Kangaroo: which of ours, input by input, what differs, and what has no counterpart.
+
+Inputs and outputs of Kangaroo by their names in lower case without spaces, as files have them; ours by the names of
+their variables without underscores. Sources of the differences: docs/from-kangaroo.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from hookean_canvas.kangaroo_guids import Known
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One of our components: `inputs` ours by Kangaroo's, `outputs` Kangaroo's by ours, `values` set from the start.
+
+    `feeds`: by an output, the input it is wired to, as the number of a piece and a name.
+    """
+
+    bundle: str
+    inputs: Mapping[str, str]
+    outputs: Mapping[str, str] = field(default_factory=dict)
+    values: Mapping[str, Any] = field(default_factory=dict)
+    feeds: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Swap:
+    """What a component of Kangaroo is swapped for.
+
+    `pieces`: the first stands in its place. `differs`: a sentence. `without`: why an input has no counterpart.
+    `usual`: what Kangaroo types into such an input, which says nothing. `needs`: inputs that tell which version it is.
+    """
+
+    pieces: tuple[Piece, ...]
+    differs: str = ""
+    without: Mapping[str, str] = field(default_factory=dict)
+    usual: Mapping[str, Any] = field(default_factory=dict)
+    needs: tuple[str, ...] = ()
+
+
+def _force(bundle: str, output: str, differs: str = "", needs: str = "", **inputs: str) -> Swap:
+    return Swap((Piece(bundle, inputs, {"force": output}),), differs, needs=tuple(needs.split()))
+
+
+_ENGINE = {
+    "iterations": "iterations",
+    "particles": "particlesout",
+    "geometry": "geometryout",
+    "energy": "ke",
+    "report": "out",
+}
+_PHYSICS = {"forceobjects": "forces", "anchorpoints": "anchors", "settings": "settings", "geometry": "geometry"}
+_ENDS = "it ends at a residual (out-of-balance force over load), not at a speed or an energy"
+_FRICTION = "friction is Coulomb's here (0.6 resting, 0.5 sliding), another law than the number typed in Kangaroo"
+_EXACT = "anchors hold exactly here, so they have no strength"
+_ENERGY = "the energy is that of all forces and of the motion, not of the motion alone"
+
+SETTINGS = Swap(
+    (
+        Piece(
+            "Settings",
+            {
+                "tolerance": "tolerance",
+                "timestep": "time_step",
+                "subiterations": "sub_iterations",
+                "floor": "floor",
+                "drag": "drag",
+                "solver": "solver",
+            },
+            {"settings": "settings"},
+        ),
+    ),
+    "solvers 0 and 1 are verlet and yoshida; 2 and 3 (Archimedes) are not here; " + _FRICTION,
+    {
+        "restitution": "the floor of the settings rebounds with 0.7; the component Floor takes another",
+        "staticfriction": _FRICTION,
+        "kineticfriction": _FRICTION,
+        "settle": "bouncing ends by itself",
+        "tumble": "sliding keeps the speed that friction leaves",
+        "sound": "nothing sounds",
+    },
+    {"restitution": 0.7, "staticfriction": 10.0, "kineticfriction": 10.0, "settle": 2.0, "tumble": 1.0, "sound": False},
+)
+
+CLASSIC: dict[str, Swap] = {
+    "kangaroophysics": Swap(
+        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),), f"{_ENERGY}; {_ENDS}"
+    ),
+    "zombiekangaroo": Swap(
+        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),),
+        f"the Engine plays on the service instead of holding the canvas; {_ENDS}",
+        {"threshold": _ENDS, "maxiters": "the engine stops by itself; `max_iterations` of a scene limits it"},
+    ),
+    "kangaroosettings": SETTINGS,
+    "springsfromline": Swap(
+        (
+            Piece(
+                "Springs",
+                {
+                    "connection": "connection",
+                    "stiffness": "stiffness",
+                    "damping": "damping",
+                    "restlength": "rest_length",
+                    "uppercutoff": "upper_cutoff",
+                    "lowercutoff": "lower_cutoff",
+                    "cutoff": "upper_cutoff",
+                    "plasticity": "plasticity",
+                },
+                {"force": "springs"},
+            ),
+        ),
+        "a rest length of 0, which Kangaroo types in, stays 0; an empty input would be the start length here",
+        {"compressionfail": "it does nothing in Kangaroo either", "tensilefail": "it does nothing in Kangaroo either"},
+        {"compressionfail": 0.0, "tensilefail": 0.0},
+    ),
+    "unaryforce": _force("Unary", "unaryforce", point="point", force="force"),
+    "anchorspring": Swap(
+        (Piece("AnchorSpring", {"point": "point", "strength": "strength"}, {"force": "a"}),),
+        without={"sticky": "soft anchors do not slip here"},
+    ),
+    "anchorxyz": Swap((Piece("Anchors", {"point": "point", "x": "x", "y": "y", "z": "z"}, {"anchors": "a"}),), _EXACT),
+    "bend": _force(
+        "Bend",
+        "b",
+        "the strength is EI here, moment x length per angle",
+        point1="point_1",
+        point2="point_2",
+        point3="point_3",
+        bendstrength="stiffness",
+        restangle="rest_angle",
+    ),
+    "hinge": _force(
+        "Hinge",
+        "h",
+        "the strength is a moment per radian here",
+        point1="point_1",
+        point2="point_2",
+        point3="point_3",
+        point4="point_4",
+        strength="strength",
+        restangle="rest_angle",
+    ),
+    "shell": _force(
+        "Shell",
+        "shellforce",
+        "the strength is the plate's bending stiffness D here, whatever the mesh",
+        mesh="mesh",
+        strength="strength",
+        anglefactor="angle_factor",
+    ),
+    "meshpressure": _force(
+        "Pressure",
+        "p",
+        "positive pressure pushes along the normals, out of counter-clockwise faces",
+        mesh="mesh",
+        pressurelevel="pressure",
+    ),
+    "springsfrommesh": _force(
+        "Springs", "springs", mesh="connection", stiffness="stiffness", restlengthfactor="rest_factor"
+    ),
+    "polyspring": _force("Springs", "springs", polyline="connection", stiffness="stiffness"),
+    "curvepull": _force(
+        "PullToCurve",
+        "c",
+        "a strength of 0 pulls not at all; it is no hard constraint",
+        curve="curve",
+        points="point",
+        strength="strength",
+    ),
+    "pulltosurf": _force(
+        "PullToMesh",
+        "p",
+        "the surface is taken as a mesh; connect a fine one for a curved surface",
+        constraintsurface="target",
+        points="point",
+        pullstrength="strength",
+    ),
+    "pulltomesh": _force(
+        "PullToMesh",
+        "p",
+        "a strength of 0 pulls not at all; it is no hard constraint",
+        constraintmesh="target",
+        points="point",
+        pullstrength="strength",
+    ),
+}
+
+_GOALS = {"goalobjects": "forces", "reset": "reset"}
+_SOLVED = {"iterations": "i", "particles": "v", "geometry": "o"}
+_OUT = "geometry comes out as Show takes it in, or as the goals' lines where nothing is shown, in its own tree"
+_PAUSE = "the Engine runs while reset is False; it has no other switch"
+
+
+def _corners(piece: int) -> dict[str, str]:
+    return {f"point_{i}": f"{piece}.point_{i}" for i in (1, 2, 3)}
+
+
+def _solver(solver: str, differs: str, **without: str) -> Swap:
+    values = {"solver": solver} | ({"fast": True} if "holding the canvas" in differs else {})
+    settings = Piece("Settings", {"tolerance": "tolerance"}, values=values, feeds={"settings": "0.settings"})
+    usual = {
+        "threshold": None,
+        "on": True,
+        "damping": 0.99,
+        "iterations": 10,
+        "momentum": False,
+        "animate": True,
+        "parallel": True,
+    }
+    told = {"threshold": _ENDS, "on": _PAUSE, **without}
+    return Swap((Piece("Engine", _GOALS, _SOLVED), settings), f"{differs}; {_OUT}", told, usual)
+
+
+SECOND: dict[str, Swap] = {
+    "solver": _solver(
+        "momentum",
+        "the same iteration, played on the service",
+        points="particles come from the forces",
+        restart="reset does both",
+        addcurrent="particles come from the forces",
+        parallel="the service decides that",
+    ),
+    "bouncysolver": _solver(
+        "verlet",
+        "particles have mass and time is physical, so the motion is another; the shape at rest is the same",
+        damping="the settings' drag and the springs' damping slow the motion",
+        iterations="`sub_iterations` of Settings",
+    ),
+    "zombiesolver": _solver(
+        "momentum",
+        "the Engine plays on the service instead of holding the canvas",
+        maxiterations="the engine stops by itself",
+    ),
+    "stepsolver": _solver(
+        "momentum",
+        "the Engine plays on instead of waiting for each step",
+        momentum="choose the solver in Settings",
+        damping="drag of Settings",
+        subiterations="`sub_iterations` of Settings",
+        animate=_PAUSE,
+    ),
+    "length(line)": _force("Springs", "s", line="connection", length="rest_length", strength="stiffness"),
+    "edgelengths": _force("Springs", "el", mesh="connection", lengthfactor="rest_factor", strength="stiffness"),
+    "anchor": Swap(
+        (Piece("AnchorSpring", {"p": "point", "t": "targets", "strength": "strength"}, {"force": "a"}),),
+        "the same soft anchor; the component Anchors holds exactly and tells reactions",
+        {"i": "anchors go by their points"},
+    ),
+    "anchorxyz": Swap(
+        (Piece("Anchors", {"p": "point", "x": "x", "y": "y", "z": "z"}, {"anchors": "a"}),),
+        _EXACT,
+        {"strength": _EXACT},
+        {"strength": 1000.0},
+    ),
+    "load": Swap(
+        (Piece("Unary", {"p": "point", "fv": "force"}, {"force": "u"}),),
+        "a load adds nothing to the mass of its particle; points, not indices, say where it acts",
+        {"w": "loads need no weighting"},
+        {"w": 1.0},
+    ),
+    "pressure": _force("Pressure", "p", m="mesh", strength="pressure"),
+    "soapfilm": _force(
+        "SoapFilm",
+        "s",
+        "the strength is the film's tension; its triangles keep even by themselves",
+        "m",
+        m="mesh",
+        strength="tension",
+    ),
+    "hinge": _force(
+        "Hinge",
+        "h",
+        "the strength is a moment per radian here, on any triangles",
+        foldstart="point_1",
+        foldend="point_2",
+        tip1="point_3",
+        tip2="point_4",
+        restangle="rest_angle",
+        strength="strength",
+    ),
+    "oncurve": _force("PullToCurve", "p", points="point", curve="curve", strength="strength"),
+    "onmesh": _force("PullToMesh", "p", points="point", mesh="target", strength="strength"),
+    "floor": Swap(
+        (Piece("Floor", {}, {"force": "h"}),),
+        "no particle sinks in, and it rubs",
+        {"strength": "the floor is hard here"},
+        {"strength": 1.0},
+    ),
+    "rod": Swap(
+        (
+            Piece(
+                "Springs",
+                {"polyline": "connection", "lengthfactor": "rest_factor", "axialstrength": "stiffness"},
+                {"force": "r"},
+            ),
+            Piece("Bend", {"anglefactor": "angle_factor", "bendstrength": "stiffness"}, {"force": "r"}),
+            Piece("*corners", {"polyline": "lines"}, feeds=_corners(1)),
+        ),
+        "axial and bending stiffness are two forces here; EI is the same number",
+    ),
+    "angle": Swap(
+        (
+            Piece("Bend", {"restangle": "rest_angle", "strength": "stiffness"}, {"force": "a"}),
+            Piece("*corners", {"linea": "lines", "lineb": "others"}, feeds=_corners(0)),
+        ),
+        "EI is the same number; the two lines have to meet at an end",
+    ),
+    "show": Swap((Piece("*geometry", {"g": "in"}, {"in": "g"}),), "a parameter that hands its geometry on"),
+    "meshcorners": Swap((Piece("MeshCorners", {"m": "mesh", "a": "angle"}, {"corners": "c"}),)),
+    "nakedvertices": Swap(
+        (
+            Piece(
+                "NakedVertices",
+                {"m": "mesh"},
+                {
+                    "clothed_indices": "clothedi",
+                    "naked_indices": "nakedi",
+                    "clothed": "clothedpts",
+                    "naked": "nakedpts",
+                },
+            ),
+        )
+    ),
+    "warpweft": Swap(
+        (Piece("WarpWeft", {"m": "mesh"}, {"warp": "a", "weft": "b", "warp_naked": "na", "weft_naked": "nb"}),)
+    ),
+}
+
+_PURE = "geometry without mechanics (equal, planar, parallel, tangent ...) is not here"
+_COLLIDE = "collisions other than floors are not here"
+_TOOL = "a tool for meshes"
+_PURE_NAMES = """
+planarize equallength equalangle equalize equalizeangles align direction lengthratio lengthsnap anglesnap
+cyclicquad tangentincircles conicalize developablize isothermic coplanar colinear cospherical cocircular
+polygonarea g2 transform coincident mirror translationlock
+"""
+_COLLIDE_NAMES = """
+collide2d collider curvecollide curvepointcollide imagecircles softbodycollide solidpointcollide spherecollide
+solidplanecollide rigidbody rigidbodycollide rigidpointset floorfriction collidemesh collidesurf
+"""
+_TOOL_NAMES = """
+bipartite byparent checkerboard combine&clean diagonalize facefaceoffset foldangle hingepoints meshdirection
+meshmap meshturn planarityanalysis refine refinestrips remeshbycolour simple simpleremesh stripper
+tangentcircles unroller vertexneighbours meshmachine removeduplicatepts meshcorners
+"""
+REASONS: dict[str, str] = {
+    "fd": "hookean takes the force density itself: Springs with rest length 0",
+    "constanttension": "for the same tension everywhere use SoapFilm; Springs with rest length 0 pull with k x length",
+    "clamplength": "Springs with lower_cutoff at their rest length are a cable; upper_cutoff a strut",
+    "plasticlength": "Springs with plasticity, which is a part of the rest length and not a distance",
+    "length(pts)": "connect a Line between the points to Springs From Line",
+    "vertexloads": "connect the mesh's vertices and a vector to Unary Force",
+    "dynamicweight1d": "Self Weight takes a weight per length, of the start length",
+    "areaweight": "Self Weight takes a total or a weight per length",
+    "tangentialsmooth": "SoapFilm keeps its triangles even by itself",
+    "smooth": "smoothing is not here",
+    "grab": "drag particles in the studio instead; `hookean serve` opens it",
+    "soapfilm": "connect a mesh to SoapFilm",
+    "pressure": "connect a mesh to Pressure",
+    "wind": "wind is not here; Pressure acts along the normals",
+    "volume": "gas volumes are not here; Pressure is",
+    "onplane": "Anchors with axes hold in x, y or z; Pull To Mesh pulls to a flat mesh",
+    "particle": "masses and first velocities are fields of a scene; the canvas has no component for them",
+    "counter": "the Engine's iterations count",
+    "sequence": "the service keeps the frames of a run",
+    "beam": "beams of six degrees of freedom are not here",
+    "support": "supports of six degrees of freedom are not here",
+    **dict.fromkeys(_PURE_NAMES.split(), _PURE),
+    **dict.fromkeys(_COLLIDE_NAMES.split(), _COLLIDE),
+    **dict.fromkeys(_TOOL_NAMES.split(), _TOOL),
+}
+"""Why a component has no counterpart, or what to use instead."""
+
+
+def key(name: str) -> str:
+    """A name as this table has it: lower case, without spaces."""
+    return "".join(name.lower().split())
+
+
+def swap_of(known: Known) -> Swap | None:
+    """What a component of Kangaroo is swapped for; None where it stays."""
+    return (CLASSIC if known.generation == "classic" else SECOND).get(key(known.name))
+
+
+def reason(known: Known) -> str:
+    """Why a component of Kangaroo stays as it is."""
+    return REASONS.get(key(known.name), "it has no counterpart")
+
+
+def is_tool(known: Known) -> bool:
+    """Whether it works on meshes and points alone, without a solver; such components of Kangaroo 2 go on working."""
+    return known.generation == "second" and REASONS.get(key(known.name)) == _TOOL
