@@ -1,0 +1,189 @@
+"""Scripts with the client inside: they need nothing, and versions do not disturb each other."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from hookean.errors import InputError
+from hookean_canvas import bundles, inline
+
+CODE = '"""Help."""\n\nimport hookean_client\nfrom hookean_client import Problem, canvas\n\nname = canvas.__name__\n'
+CLIENT = Path(__file__).parents[2] / "components" / "hookean_client"
+PYTHONS = ("2.7", "3.9", "3.13")  # of Rhino 7 as far as it goes, Rhino 8 and Rhino 9
+
+
+def python(version: str) -> str:
+    """An interpreter of that version; the test is skipped where there is none."""
+    if sys.version_info[:2] == tuple(map(int, version.split("."))):
+        return sys.executable
+    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+    found = [*sorted(root.glob(f"versions/{version}.*/bin/python")), shutil.which(f"python{version}")]
+    if not found[0]:
+        pytest.skip(f"this machine has no Python {version}")
+    return str(found[0])
+
+
+def run(version: str, code: str, folder: Path) -> str:
+    """What a script prints, run alone in an empty folder, with nothing of ours to import."""
+    script = folder / "script.py"
+    script.write_text(code, encoding="ascii")
+    alone = ["-I"] if version != "2.7" else ["-E", "-s"]
+    done = subprocess.run(
+        [python(version), *alone, str(script)], cwd=folder, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def client(folder: Path, version: str, extra: str = "") -> Path:
+    """A small client of that version, with a module that counts."""
+    folder.mkdir()
+    (folder / "__init__.py").write_text(f'__version__ = "{version}"\n{extra}')
+    (folder / "counts.py").write_text("from . import more\n\ncount = []\n")
+    (folder / "more.py").write_text(f"from hookean_client import __version__ as said\n\nmine = said == '{version}'\n")
+    return folder
+
+
+COUNTING = '"""Help."""\nfrom hookean_client import counts, more\ncounts.count.append(1)\nfound = len(counts.count)\n'
+
+
+@pytest.mark.parametrize("version", PYTHONS)
+@pytest.mark.parametrize("flavour", inline.FLAVOURS)
+def test_a_script_needs_nothing_installed(version, flavour, tmp_path):
+    """The client arrives under a name of its own, whole, and the component's help stays in front."""
+    said = run(version, inline.inlined(CODE, flavour) + "print(name)\nprint(__doc__)\n", tmp_path).split("\n")
+    assert said[:2] == [f"{inline.stamp()}.canvas", "Help."]
+    assert re.fullmatch(r"hookean_client_0_1_0_[0-9a-f]{12}", inline.stamp())
+
+
+@pytest.mark.parametrize("name", bundles.names())
+def test_every_shipped_script_compiles_for_rhino_8_and_keeps_its_help(name):
+    """With the syntax of Python 3.9, in both flavours, ASCII throughout, with only the first line between them."""
+    code = bundles.read(name).code
+    new, old = inline.inlined(code, "rhino8"), inline.inlined(code, "rhino7")
+    for text in (new, old):
+        assert text.isascii()
+        tree = ast.parse(text, feature_version=(3, 9))
+        assert ast.get_docstring(tree) == ast.get_docstring(ast.parse(code))
+        assert max(map(len, text.splitlines())) <= 120
+    assert new == "#! python 3\n" + old
+    assert new == inline.inlined(code, "rhino8")
+
+
+def test_comments_in_front_and_future_imports_keep_their_place(tmp_path):
+    """`# r:` is read from the head, a docstring is one only in front, `__future__` has to come before other code."""
+    code = '# r: compas\n"""Help."""\nfrom __future__ import division\n\nfrom hookean_client import Problem\n'
+    text = inline.inlined(code, "rhino8")
+    assert text.splitlines()[:4] == ["#! python 3", "# r: compas", '"""Help."""', "from __future__ import division"]
+    assert ast.get_docstring(ast.parse(text)) == "Help."
+    run("3.9", text, tmp_path)
+
+
+def test_state_stays_from_run_to_run_and_versions_live_side_by_side(tmp_path):
+    """The same client is loaded once in a process; another version has modules and state of its own."""
+    scripts = [inline.inlined(COUNTING, "rhino7", client(tmp_path / v, v)) for v in ("1.0.0", "1.1.0")]
+    found = []
+    before = set(sys.modules)
+    try:
+        for script in (scripts[0], scripts[0], scripts[1], scripts[0]):
+            space: dict[str, object] = {}
+            exec(compile(script, "script", "exec"), space)
+            found.append((space["found"], space["more"].mine))  # type: ignore[attr-defined]
+        loaded = sorted(set(sys.modules) - before)
+    finally:
+        for name in set(sys.modules) - before:
+            del sys.modules[name]
+    assert found == [(1, True), (2, True), (1, True), (3, True)]
+    assert len(loaded) == 6 and "hookean_client" not in loaded
+
+
+def test_a_client_that_fails_to_load_leaves_nothing_behind(tmp_path):
+    """The next solution tries again, and fails the same way."""
+    place = client(tmp_path / "client", "1.0.0")
+    (place / "counts.py").write_text("raise RuntimeError('no luck')\n")
+    script = inline.inlined(COUNTING, "rhino7", place)
+    before = set(sys.modules)
+    for _ in range(2):
+        with pytest.raises(RuntimeError, match="no luck"):
+            exec(compile(script, "script", "exec"), {})
+        assert not [name for name in set(sys.modules) - before if name.startswith("hookean_client_")]
+
+
+def test_one_changed_letter_gives_another_name(tmp_path):
+    """The digest covers every file of the client; the version is read from it."""
+    stamps = [
+        inline.stamp(client(tmp_path / "a", "1.0.0")),
+        inline.stamp(client(tmp_path / "b", "1.0.0")),
+        inline.stamp(client(tmp_path / "c", "1.0.0", "# a word\n")),
+        inline.stamp(client(tmp_path / "d", "1.0.1")),
+    ]
+    assert stamps[0] == stamps[1]
+    assert len(set(stamps)) == 3
+    assert stamps[3].startswith("hookean_client_1_0_1_")
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [
+        ("import hookean_client", "import X as hookean_client"),
+        ("import hookean_client as c", "import X as c"),
+        ("from hookean_client import canvas as c", "from X import canvas as c"),
+        ("from hookean_client.canvas import force", "from X.canvas import force"),
+        (
+            "def f():\n    from hookean_client import (\n        canvas,\n    )",
+            "def f():\n    from X import (\n        canvas,\n    )",
+        ),
+        ("import hookean_clients", "import hookean_clients"),
+        ("text = 'import hookean_client'", "text = 'import hookean_client'"),
+    ],
+)
+def test_imports_of_the_client_are_redirected_and_nothing_else(written, told):
+    """Every form of import that can be, wherever it stands; texts and longer names stay."""
+    assert inline.redirected(written, "X", "code.py") == told
+
+
+@pytest.mark.parametrize("line", ["import hookean_client.canvas", "import json, hookean_client"])
+def test_an_import_that_cannot_be_redirected_is_told(line):
+    """The sentence names the line and what to write."""
+    with pytest.raises(InputError, match=r"code.py:1: cannot be redirected; write `import hookean_client` alone"):
+        inline.redirected(line, "X", "code.py")
+
+
+def test_a_client_that_cannot_be_inlined_is_told(tmp_path):
+    """Modules that need one another, letters Python 2.7 does not read, no version, an unknown flavour."""
+    place = client(tmp_path / "circle", "1.0.0")
+    (place / "more.py").write_text("from . import counts\n")
+    with pytest.raises(InputError, match="modules that import one another"):
+        inline.inlined(COUNTING, "rhino7", place)
+    place = client(tmp_path / "letters", "1.0.0", "# φ\n")
+    with pytest.raises(InputError, match=r"__init__.py: is not ASCII"):
+        inline.inlined(COUNTING, "rhino7", place)
+    place = client(tmp_path / "nameless", "1.0.0")
+    (place / "__init__.py").write_text("")
+    with pytest.raises(InputError, match="says no `__version__"):
+        inline.inlined(COUNTING, "rhino7", place)
+    with pytest.raises(InputError, match="'rhino6' is none of rhino8, rhino7"):
+        inline.inlined(COUNTING, "rhino6")  # type: ignore[arg-type]
+
+
+def test_all_of_the_client_is_inside():
+    """Every file of hookean_client, and none that is not in the package."""
+    names = {path.stem for path in CLIENT.glob("*.py")}
+    assert {"__init__", "canvas", "compas"} <= names
+    space: dict[str, object] = {}
+    before = set(sys.modules)
+    try:
+        exec(compile(inline.inlined(CODE, "rhino7"), "script", "exec"), space)
+        loaded = {n for n in sys.modules if n.startswith(inline.stamp())}
+    finally:
+        for name in set(sys.modules) - before:
+            del sys.modules[name]
+    assert {n.partition(".")[2] or "__init__" for n in loaded} == names
