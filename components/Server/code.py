@@ -1,0 +1,12 @@
+"""The service that computes, on this machine: how it stands, start, stop, and the studio in the browser.
+
+The Engine and all components that need the service start it by themselves where they can.
+"""
+
+from hookean_client import canvas
+
+found = canvas.server(ghenv, start_, stop_, studio_)
+status = found.status
+url = found.url
+version = found.version
+sessions = found.sessions

@@ -1,0 +1,333 @@
+"""The engine's component: reads its inputs, lets a `Player` do the rest in threads, and shows how it stands.
+
+Every solution takes the newest frame and schedules the next one while anything moves; at rest none is scheduled. For
+Python 2.7 to 3.13.
+"""
+
+import hashlib
+import os
+
+from . import canvas
+from . import canvas_draw as drawing
+from . import canvas_geometry as geometry
+from . import canvas_link as link
+from . import canvas_scene as compose
+from .canvas_geometry import listed
+from .canvas_player import Player
+
+FRAME, POLL = 30, 100  # milliseconds to the next solution: while it runs, while it waits
+MANY = 8  # sentences on points that met nothing
+OUTPUTS = ("iterations", "particles", "geometry", "forces", "reactions", "residual", "energy", "status", "report")
+_players, _keys = {}, {}  # by session; the session of a component in an open document
+
+
+class Outputs(object):
+    """What the component puts out; None where nothing is known yet."""
+
+    def __init__(self):
+        for name in OUTPUTS:
+            setattr(self, name, None)
+
+
+class Wanted(object):
+    """The inputs of one solution, read; `signature` is the same for the same inputs."""
+
+    def __init__(self, forces, anchors, setting, rides, reset, length):
+        self.forces, self.anchors, self.setting, self.rides, self.reset = forces, anchors, setting, rides, reset
+        self.length, self.fast = length, bool(setting and setting.get("fast"))
+
+    def scene(self, anchors):
+        """The scene, with these anchors."""
+        carried = [entry for _, items in self.rides for entry, _ in items]
+        return compose.compose(self.forces, anchors, self.setting, carried, self.length)
+
+
+def solve(ghenv, forces, anchors, settings, rides, reset):
+    """One solution of the engine: its outputs."""
+    player = _player(ghenv)
+    wanted = canvas._told(ghenv, lambda: _wanted(ghenv, player, forces, anchors, settings, rides, reset))
+    if wanted is None:
+        return Outputs()
+    player.wanted = wanted
+    first = player.shown is None
+    for _ in range(3):
+        player.look()
+        trouble = player.trouble
+        if player.settled or trouble or not player.wait(link.WAIT if first else 0.1):
+            break
+        if player.kept is wanted and player.frame() and not player.rests:
+            break
+    _tell(ghenv, player)
+    if player.kept is wanted and player.frame() and player.state:
+        player.shown = _outputs(player)
+        _warn(ghenv, player)
+        drawing.draw(ghenv, player)
+    return player.shown or Outputs()
+
+
+def _player(ghenv):
+    """The player of a component: one for each component in each file; another one, that goes on from the first, once
+    the definition is saved under another name."""
+    document, component = ghenv.Component.OnPingDocument(), canvas.identity(ghenv)
+    path = getattr(document, "FilePath", None)
+    path = os.path.normcase(os.path.abspath(str(path))) if path else ""
+    digest = hashlib.sha1(path.encode("utf-8")).hexdigest()[:16]
+    key = "%s:%s:%s" % (getattr(document, "DocumentID", "none"), digest, component)
+    here = (component, str(getattr(document, "RuntimeID", id(document))))
+    before = _players.get(_keys.get(here)) if _keys.get(here) != key else None
+    if key not in _players:
+        title = "%s in %s" % (canvas.source(ghenv)["title"], os.path.basename(path) or "a new definition")
+        _players[key] = Player(key, title, before)
+    _keys[here] = key
+    return _players[key]
+
+
+# inputs
+
+
+def _wanted(ghenv, player, forces, anchors, settings, rides, reset):
+    texts = [str(item) for item in listed(forces)]
+    if not texts:
+        raise compose.missing("_forces is missing; connect the outputs of force components")
+    held = _anchors(ghenv, anchors)
+    setting = compose.read(settings, "settings", "settings_")[-1:]
+    flags = listed(reset)
+    carried, prints = _rides(player, rides)
+    plain = [texts, held, setting, prints, not flags or bool(compose._value(flags[0])), _length_unit()]
+    signature = compose.text(plain)
+    old = player.wanted
+    if old is not None and old.signature == signature:
+        return old
+    read = compose.read(texts, None, "_forces")
+    made = Wanted(read, held, setting[0] if setting else None, carried, plain[4], plain[5])
+    made.signature, made.prints = signature, prints
+    return made
+
+
+def _anchors(ghenv, given):
+    """Anchors {"name", "group", "label", "branch", "point", "target", "axes"} in the order they come."""
+    found = []
+    for path, items in geometry.branches(given):
+        owners = _owners(ghenv, "anchors_", path, len(items))
+        for number, item in enumerate(items):
+            item = geometry.value(item)
+            if item is None:
+                continue
+            if isinstance(item, geometry.TEXT) and '"kind"' in item:
+                [value] = compose.read([item], "anchors", "anchors_")
+                source, ones = value["source"], value["items"]
+                owner, branch = (source["component"], source["title"]), "run %d" % source["run"]
+                rows = [(branch, i, one["point"], one["target"], one["axes"]) for i, one in enumerate(ones)]
+            else:
+                owner, first = owners[number]
+                rows = [(path, number - first, geometry.point(item), None, "xyz")]
+            for place, i, point, target, axes in rows:
+                group = "%s %s" % (owner[0], place)
+                label = "anchor %d of %s, branch %s" % (i, owner[1] or "anchors_", place)
+                found.append({"name": "%s %d" % (group, i), "group": group, "label": label, "branch": path,
+                              "point": point, "target": target, "axes": axes})  # fmt: skip
+    return found
+
+
+def _owners(ghenv, name, path, count):
+    """For each item of a branch who it comes from, as (id, name), and the number of the first item from there."""
+    params = [one for one in ghenv.Component.Params.Input if name in (one.NickName, one.Name)]
+    sources = list(params[0].Sources) if params else []
+    found = []
+    for source in sources:
+        owner = (str(source.InstanceGuid), str(getattr(source, "NickName", "")))
+        size = count if len(sources) == 1 else _size(source, path)
+        found += [(owner, len(found))] * size
+    if len(found) != count:
+        found = [(("input", name), 0)] * count
+    return found
+
+
+def _size(source, path):
+    """How many items a source has on a path."""
+    data = getattr(source, "VolatileData", None)
+    if data is None:
+        return 0
+    for i, known in enumerate(data.Paths):
+        if str(known) == path:
+            return len(list(data.Branches[i]))
+    return 0
+
+
+def _rides(player, given):
+    """Geometry that rides along, by branches, as (entry, what makes geometry of moved points); and its fingerprints.
+    What is as it was is not read again."""
+    known = player.wanted.prints if player.wanted is not None else []
+    found, prints = [], []
+    for _b, (path, items) in enumerate(geometry.branches(given)):
+        made = []
+        for i, item in enumerate(items):
+            item = geometry.value(item)
+            if item is None:
+                continue
+            mark = [path, i, int(item.DataCRC(0))] if hasattr(item, "DataCRC") else None
+            at = len(prints)
+            if mark is not None and at < len(known) and known[at] == mark:
+                ride = [one for _, row in player.wanted.rides for one in row][at]
+            else:
+                ride = compose.ride(item)
+            prints.append(mark or [path, i, compose.text(ride[0])])
+            made.append(ride)
+        found.append((path, made))
+    return found, prints
+
+
+def _length_unit():
+    """The unit of the document in Rhino, None where that is none of ours."""
+    try:
+        import Rhino
+
+        name = str(Rhino.RhinoDoc.ActiveDoc.ModelUnitSystem)
+    except (ImportError, AttributeError):
+        return None
+    units = {"Millimeters": "mm", "Centimeters": "cm", "Decimeters": "dm", "Meters": "m", "Kilometers": "km",
+             "Inches": "in", "Feet": "ft", "Yards": "yd"}  # fmt: skip
+    return units.get(name)
+
+
+# words
+
+
+def _tell(ghenv, player):
+    """Words on how it stands, and the next solution where there will be something new."""
+    trouble, task = player.trouble, player.task
+    refused = task is not None and task.done and player.refused is player.wanted
+    if refused:
+        canvas.note(ghenv, "refused")
+        canvas.error(ghenv, _placed(player.wanted, trouble))
+        return
+    if trouble:
+        patient = task is not None and task.patient
+        (canvas.remark if patient else canvas.warning)(ghenv, trouble)
+        canvas.note(ghenv, "working" if patient else "no server" if player.kept is None else "waiting")
+        canvas.schedule(ghenv, 2 * POLL)
+        return
+    if player.kept is not player.wanted or not player.frame():
+        canvas.note(ghenv, "working")
+        canvas.schedule(ghenv, POLL // 2)
+        return
+    frame = player.frame()
+    said = "held at the start" if player.kept.reset else {"running": "iteration %d", "converged": "at rest after %d"}
+    said = said if player.kept.reset else said.get(frame["status"], frame["status"])
+    canvas.note(ghenv, said % frame["iteration"] if "%" in said else said)
+    if not player.settled:
+        canvas.schedule(ghenv, FRAME)
+
+
+def _placed(wanted, said):
+    """A refusal with the names of components in the place of pointers."""
+    for i, one in enumerate(wanted.forces):
+        said = said.replace("/forces/%d/" % i, "%s, " % one["source"]["title"])
+    return said.replace("/settings/", "Settings, ")
+
+
+def _warn(ghenv, player):
+    """Points that met no particle, by the names of components, and other warnings."""
+    report, title = player.state["report"], "%s: item %s"
+    said = []
+    for one in report["unmatched"]:
+        parts = one["pointer"].split("/")
+        wanted = player.kept
+        if parts[1] == "anchors":
+            who = wanted.anchors[int(parts[2])]["label"]
+        elif parts[1] == "forces":
+            who = title % (wanted.forces[int(parts[2])]["source"]["title"], parts[-1])
+        else:
+            who = title % (parts[1], parts[-1])
+        words = one["message"].split(": ", 1)[-1].replace("weld_tolerance", "the tolerance in Settings")
+        said.append("%s: %s." % (who[:1].upper() + who[1:], words))
+    rest = len(said) - MANY
+    for sentence in said[:MANY]:
+        canvas.warning(ghenv, sentence)
+    if rest > 0:
+        canvas.warning(ghenv, "%d more points meet no particle." % rest)
+    frame = player.frame()
+    if frame["status"] == "diverged":
+        canvas.error(ghenv, player.state["message"])
+    for sentence in report["warnings"]:
+        canvas.warning(ghenv, _placed(player.kept, sentence))
+    player.shown.report = said + [_placed(player.kept, one) for one in report["warnings"]] + player.shown.report
+
+
+# outputs
+
+
+def _outputs(player):
+    """The newest frame as outputs; with all digits where the state is that of the frame."""
+    frame, state, units = player.frame(), player.state, player.topology["units"]
+    flat = frame["particles"]
+    if player.exact:
+        places = state["particles"]
+    else:
+        places = [flat[i : i + 3] for i in range(0, len(flat), 3)]
+    made = Outputs()
+    made.iterations, made.residual = frame["iteration"], state["residual"] if player.exact else frame["residual"]
+    made.particles = [geometry.to_point(place) for place in places]
+    made.geometry = _moved(player, places)
+    made.forces = geometry.to_tree(_forces(player, frame))
+    made.reactions = geometry.to_tree(_reactions(player, frame))
+    made.energy = state["energy"]["total"]
+    running = "Running: iteration %d, residual %.3g." % (frame["iteration"], frame["residual"])
+    made.status = state["message"] if player.exact else running
+    unit = "%s %s" % (units["force"], units["length"])
+    made.report = ["%d particles, %d points merged." % (len(places), state["report"]["merged"]),
+                   "Energy %.6g %s, time %.4g %s, by %s." % (made.energy, unit, frame["time"], units["time"],
+                                                             state["solver"])]  # fmt: skip
+    return made
+
+
+def _moved(player, places):
+    """The geometry where its particles are now, in the tree it came in."""
+    rides = iter(player.topology["geometry"])
+    pairs = []
+    for path, items in player.kept.rides:
+        made = []
+        for entry, make in items:
+            start = entry["mesh"]["vertices"] if "mesh" in entry else entry.get("points")
+            start = [end for line in entry["lines"] for end in line] if start is None else start
+            made.append(make([places[p] if p >= 0 else at for p, at in zip(next(rides)["particles"], start)]))
+        pairs.append((path, made))
+    return geometry.to_tree(pairs)
+
+
+def _forces(player, frame):
+    """A branch for each component of forces, an item for each of its elements."""
+    columns = [[] for _ in player.kept.forces]
+    for column, found in zip(columns, player.state["forces"]):
+        name = next((n for n in ("force", "moment", "area") if n in found), None)
+        column.extend(found[name] if name else [])
+    if not player.exact and len(frame["scalars"]) == len(player.topology["spring_forces"]):
+        fresh = {}
+        for number, scalar in zip(player.topology["spring_forces"], frame["scalars"]):
+            fresh.setdefault(number, []).append(scalar)
+        for number, column in fresh.items():
+            columns[number] = column
+    order, branches = [], {}
+    for one, column in zip(player.kept.forces, columns):
+        owner = one["source"]["component"]
+        if owner not in branches:
+            order.append(owner)
+        items = [geometry.to_vector(item) if isinstance(item, (list, tuple)) else item for item in column]
+        branches.setdefault(owner, []).extend(items)
+    return [("{%d}" % i, branches[owner]) for i, owner in enumerate(order)]
+
+
+def _reactions(player, frame):
+    """The reaction of each anchor, None where it met no particle, in the tree of the anchors."""
+    told = player.state["reactions"]
+    forces = told["force"]
+    if not player.exact and len(frame["reactions"]) == 3 * len(forces):
+        forces = [frame["reactions"][3 * i : 3 * i + 3] for i in range(len(forces))]
+    by_name = dict(zip(told["names"], forces))
+    order, branches = [], {}
+    for anchor in player.kept.anchors:
+        if anchor["branch"] not in branches:
+            order.append(anchor["branch"])
+        force = by_name.get(anchor["name"])
+        branches.setdefault(anchor["branch"], []).append(None if force is None else geometry.to_vector(force))
+    return [(path, branches[path]) for path in order]

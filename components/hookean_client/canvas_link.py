@@ -1,0 +1,171 @@
+"""The service behind components: found, started and asked in threads, so that the canvas never waits for long.
+
+A component asks with `Task`s and looks at them in this solution and the next ones. What fails for want of a server is
+tried again by itself. For Python 2.7 to 3.13.
+"""
+
+import base64
+import struct
+import threading
+import time
+
+from . import FAILURES, Problem, buffer, connect
+
+WAIT = 0.25  # seconds a component may hold the canvas up in a solution
+LATE = 0.5  # seconds of silence after which that is said
+PATIENT = 5.0  # seconds of silence of a server that was there that are no cause for alarm
+AGAIN = 0.5  # seconds until what failed for want of a server is tried again
+now = getattr(time, "monotonic", time.time)
+SENTENCES = {
+    "starting": "The hookean server is starting; this goes on by itself once it is there.",
+    "no-server": "No hookean server runs; start one with `hookean serve` in a terminal.",
+    "no-python": (
+        "No hookean server runs and none can be started from here; run `hookean serve` once in a terminal, or set "
+        "HOOKEAN_PYTHON to the Python that has hookean."
+    ),
+    "lost": "The hookean server is gone; this goes on by itself once it is back.",
+    "no-answer": "The hookean server does not answer; this goes on by itself once it does.",
+    "silent": "The hookean server has not answered for %.1f s; this goes on by itself once it does.",
+    "wrong-version": "The hookean server that runs does not fit this component. %s",
+    "not-started": "The hookean server is not there. %s",
+}
+
+
+class Service(object):
+    """This user's server, as all components of this process share it."""
+
+    def __init__(self):
+        self._client, self._seen, self._lock = None, 0.0, threading.Lock()
+
+    def client(self):
+        """A client whose server answered just now; raises `Problem`. May take two seconds."""
+        with self._lock:
+            if self._client is None:
+                self._client = connect(timeout=0.0)
+            elif now() - self._seen > 1.0:
+                self._asked("/v1/health")
+            self._seen = now()
+            return self._client
+
+    def _asked(self, path):
+        try:
+            self._client.get(path, timeout=1.0)
+        except Problem:
+            self._client = None
+            raise
+
+    def doubt(self):
+        """Ask it whether it is there before the next use."""
+        self._seen = 0.0
+
+    def forget(self):
+        """Look for the server anew next time."""
+        client, self._client = self._client, None
+        if client is not None:
+            client.close()
+
+
+service = Service()
+
+
+class Task(object):
+    """`work(client)` in a thread: `value` or `problem` once it is `done`. `before`: the trouble there was before it,
+    which stands until then."""
+
+    def __init__(self, work, before=None):
+        self.value, self.problem, self._before = None, None, before
+        self.since, self.until, self.client = now(), 0.0, None
+        self._work, self._done = work, threading.Event()
+        thread = threading.Thread(target=self._run, name="hookean-task")
+        thread.daemon = True
+        thread.start()
+
+    def _run(self):
+        try:
+            self.client = self._find()
+            self.value = self._work(self.client)
+        except Problem as problem:
+            self.problem = problem
+            if wants_server(problem):
+                service.forget()
+        except FAILURES as error:
+            self.problem = Problem("failed", "This failed: %s: %s." % (type(error).__name__, error), 500)
+        self.until = now()
+        self._done.set()
+
+    def _find(self):
+        return service.client()
+
+    @property
+    def done(self):
+        """Whether it has ended."""
+        return self._done.is_set()
+
+    def wait(self, seconds):
+        """Whether it has ended, after at most so many seconds."""
+        self._done.wait(max(0.0, seconds))
+        return self.done
+
+    @property
+    def stale(self):
+        """Whether it failed for want of a server, long enough ago to be tried again."""
+        return self.done and wants_server(self.problem) and now() - self.until >= AGAIN
+
+    @property
+    def trouble(self):
+        """A sentence where it failed, or has not answered for long; else None."""
+        if self.problem is not None:
+            return sentence(self.problem)
+        silent = now() - self.since
+        if self.done or silent < LATE:
+            return None if self.done else self._before
+        return self._before or SENTENCES["silent"] % silent
+
+    @property
+    def patient(self):
+        """Whether there is nothing wrong so far but that it takes long: the server answered when this began."""
+        return not self.done and self.client is not None and self._before is None and now() - self.since < PATIENT
+
+
+def wants_server(problem):
+    """Whether a problem is none of what was asked, but of the server."""
+    return problem is not None and (problem.status == 0 or problem.status in (429, 502, 503, 504))
+
+
+def sentence(problem):
+    """A problem in one sentence for a person at the canvas."""
+    said = SENTENCES.get(problem.slug) if problem.status == 0 else None
+    if said is None:
+        return problem.detail
+    return said % problem.detail if "%s" in said else said
+
+
+def packed(value):
+    """Lists of points and of whole numbers as buffers, all the way down; other values as they are."""
+    if isinstance(value, dict):
+        return {key: packed(one) for key, one in value.items()}
+    flat = value if isinstance(value, (list, tuple)) else []
+    if not flat or not isinstance(flat[0], (list, tuple)):
+        return value
+    while flat and isinstance(flat[0], (list, tuple)):
+        flat = [part for row in flat for part in row]
+    kinds = set(map(type, flat))
+    if not flat or kinds & {dict, bool, type(None)}:
+        return value
+    return buffer(value, "d" if float in kinds else "q")
+
+
+def unpacked(value):
+    """The same with buffers as lists of lists."""
+    if isinstance(value, list):
+        return [unpacked(one) for one in value]
+    if not isinstance(value, dict):
+        return value
+    if set(value) != {"dtype", "shape", "base64"}:
+        return {key: unpacked(one) for key, one in value.items()}
+    raw = base64.b64decode(value["base64"])
+    code, size = {"<f8": ("d", 8), "<i8": ("q", 8), "<f4": ("f", 4), "<i4": ("i", 4)}[value["dtype"]]
+    flat = list(struct.unpack("<%d%s" % (len(raw) // size, code), raw))
+    for length in reversed(value["shape"][1:]):
+        flat = [flat[i : i + length] for i in range(0, len(flat), length)] if length else [[]] * value["shape"][0]
+    return flat

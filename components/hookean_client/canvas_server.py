@@ -1,0 +1,75 @@
+"""The server's component: how the service stands, started, stopped and opened in the browser in threads.
+
+For Python 2.7 to 3.13.
+"""
+
+import webbrowser
+
+from . import Problem, connect
+from . import canvas_geometry as geometry
+from . import canvas_link as link
+
+OLD = 1.0  # seconds after which a solution looks again
+_looks = {}  # by component: (what was asked for, Task, what was shown last)
+
+
+class Stand(object):
+    """What the component puts out."""
+
+    def __init__(self, status=None, url=None, version=None, sessions=None):
+        self.status, self.url, self.version, self.sessions = status, url, version, sessions
+
+
+class Look(link.Task):
+    """A look at the server that does not start it by itself."""
+
+    def _find(self):
+        return None
+
+
+def stand(ghenv, canvas, start, stop, studio):
+    """One solution of the component; `canvas` is the module that speaks on it."""
+    asked = tuple(_flag(flag) for flag in (start, stop, studio))
+    key = canvas.identity(ghenv)
+    before, task, shown = _looks.get(key, (None, None, Stand()))
+    if task is None or before != asked or (task.done and link.now() - task.until > OLD):
+        risen = [flag and not (before and before[i]) for i, flag in enumerate(asked)]
+        task = Look(lambda _: _work(asked[0] and not asked[1], risen[1], risen[2]), task and task.trouble)
+    task.wait(link.WAIT)
+    shown = task.value if task.done and task.problem is None else shown
+    _looks[key] = (asked, task, shown)
+    trouble = task.trouble
+    if trouble:
+        shown = Stand(trouble, None, None, [])
+        canvas.warning(ghenv, trouble)
+        canvas.note(ghenv, "no server")
+        canvas.schedule(ghenv, 1000 * link.AGAIN)
+    elif not task.done:
+        canvas.note(ghenv, "working")
+        canvas.schedule(ghenv, 100)
+    else:
+        canvas.note(ghenv, "running")
+    return shown
+
+
+def _flag(given):
+    items = geometry.listed(given)
+    return bool(items) and str(items[0]) not in ("False", "0")
+
+
+def _work(start, stop, studio):
+    client = connect(start=start, timeout=0.0)
+    try:
+        if stop:
+            client.post("/v1/shutdown", timeout=5.0)
+            raise Problem("stopped", "The hookean server has been stopped; its sessions are kept.")
+        health = client.get("/v1/health", timeout=5.0)
+        if studio:
+            webbrowser.open("%s/#t=%s" % (client.url, client.token))
+        rows = client.get("/v1/sessions", timeout=5.0)["sessions"]
+    finally:
+        client.close()
+    said = "%s: %s, iteration %s, residual %.3g"
+    lines = [said % (r["label"] or r["key"], r["status"], r["iteration"], r["residual"] or 0.0) for r in rows]
+    status = "The hookean server runs, version %s, %d sessions." % (health["version"], len(rows))
+    return Stand(status, client.url, health["version"], lines)
