@@ -31,6 +31,9 @@ def test_mesh_round_trip_through_compas() -> None:
     assert found.points.tolist() == vertices
     assert [list(f) for f in found.faces] == faces
     assert found.name == "roof"
+    assert len(found.lines) == mesh.number_of_edges()
+    drawn = {frozenset(map(tuple, mesh.edge_coordinates(edge))) for edge in mesh.edges()}
+    assert {frozenset(map(tuple, line)) for line in found.lines.tolist()} == drawn
     back = compas.json_loads(json.dumps(compas_json.mesh(found.points, found.faces, found.keys, found.name)))
     assert isinstance(back, Mesh)
     assert back.to_vertices_and_faces() == (vertices, faces)

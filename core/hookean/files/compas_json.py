@@ -42,8 +42,13 @@ class Document:
 
     @property
     def lines(self) -> Floats:
-        """Straight lines `(m, 2, 3)`: edges of a graph, segments of a polyline."""
-        return np.ascontiguousarray(self.points[self.edges])
+        """Straight lines `(m, 2, 3)`: edges of a mesh or graph, segments of a polyline."""
+        pairs: dict[tuple[int, int], tuple[int, int]] = {}
+        for face in self.faces:
+            for a, b in zip(face, face[1:] + face[:1], strict=True):
+                pairs.setdefault((min(a, b), max(a, b)), (a, b))
+        edges = np.array(list(pairs.values()), np.int64) if pairs else self.edges
+        return np.ascontiguousarray(self.points[edges])
 
 
 def is_document(value: Any) -> bool:
@@ -141,8 +146,8 @@ def plain_scene(value: Any) -> tuple[Any, dict[str | int, Document], bool]:
     """A scene's JSON values with every COMPAS document replaced by arrays, the documents that come back moved, and
     whether there were any documents.
 
-    Meshes may be Mesh documents; `lines` Graph, Line or Polyline documents or a list of them; coordinates Point,
-    Pointcloud, Polyline or Graph documents or a list of them; vectors Vector documents; a carried geometry any
+    Meshes may be Mesh documents; `lines` Mesh, Graph, Line or Polyline documents or a list of them; coordinates Point,
+    Pointcloud, Polyline, Mesh or Graph documents or a list of them; vectors Vector documents; a carried geometry any
     document. A Mesh or a Graph alone is the scene that `alone` makes of it. What comes back are mesh documents by
     their names and documents of geometry by their numbers. `value` stays as it is. Raises what `read` raises.
     """
