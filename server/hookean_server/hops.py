@@ -12,7 +12,7 @@ from typing import Any
 
 from hookean.errors import InputError
 from hookean.files.scene_json import parse
-from hookean_server import hops_cables, hops_discretize, hops_membranes, hops_relax
+from hookean_server import hops_cables, hops_discretize, hops_membranes, hops_motion, hops_relax, hops_structures
 from hookean_server.hops_model import Function, Inputs
 from hookean_server.tasks import Cancelled, Clock, Done
 
@@ -23,6 +23,8 @@ FUNCTIONS: Mapping[str, Function] = {
     **hops_discretize.FUNCTIONS,
     **hops_cables.FUNCTIONS,
     **hops_membranes.FUNCTIONS,
+    **hops_structures.FUNCTIONS,
+    **hops_motion.FUNCTIONS,
 }
 """Every function by its name; the routes and their guard walk this table."""
 

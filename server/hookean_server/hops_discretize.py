@@ -109,19 +109,7 @@ def _taken(operation: Operation, inputs: Inputs, name: str) -> Any:
         return inputs.lines(name)
     if operation.takes == "points":
         return inputs.points(name)
-    geometry = inputs.one(name)
-    if operation.at == "surfaces:mesh_surface":
-        return _single(geometry)
-    return geometry
-
-
-def _single(geometry: Any) -> Any:
-    """The surface below a Brep of one whole face, as which Grasshopper sends surfaces."""
-    from hookean.discretize.breps import is_trimmed
-
-    if type(geometry).__name__ == "Brep" and len(geometry.Faces) == 1 and not is_trimmed(geometry.Faces[0]):
-        return geometry.Faces[0].UnderlyingSurface()
-    return geometry
+    return inputs.surface(name) if operation.at == "surfaces:mesh_surface" else inputs.one(name)
 
 
 def _given(gives: str, value: Any, geometry: Any) -> dict[str, Any]:

@@ -175,3 +175,12 @@ class Inputs:
         """The straight pieces of an input of lines (n, 2, 3)."""
         pieces = [piece for line in self.many(name) for piece in line]
         return np.array(pieces, dtype=np.float64).reshape(-1, 2, 3)
+
+    def surface(self, name: str) -> Any:
+        """The surface of an input of one: of a Brep of one whole face, as which Grasshopper sends it, the one below."""
+        from hookean.discretize.breps import is_trimmed
+
+        found = self.one(name)
+        if type(found).__name__ == "Brep" and len(found.Faces) == 1 and not is_trimmed(found.Faces[0]):
+            return found.Faces[0].UnderlyingSurface()
+        return found

@@ -169,8 +169,9 @@ def _written_curve(curve: Any) -> str:
     if not hasattr(curve, "Encode"):
         import rhino3dm
 
+        polyline: Any = rhino3dm.PolylineCurve
         corners = [rhino3dm.Point3d(*row) for row in np.asarray(curve, dtype=np.float64).tolist()]
-        curve = rhino3dm.PolylineCurve(corners)
+        curve = polyline(corners)
     return _plain(curve.Encode())
 
 
