@@ -1,0 +1,11 @@
+"""The diagonals of the quads of meshes as lines, in the order of the faces.
+
+Springs along them keep quads from becoming diamonds. Several meshes in one branch give a branch
+each.
+
+Quad a b c d: a-c, b-d
+"""
+
+from hookean_client import canvas_tools as tools
+
+diagonals = tools.diagonals(ghenv, _mesh, _pattern_)

@@ -1,0 +1,10 @@
+"""Lines of a branch without those that are there before, either way round.
+
+The first of each kind stays; order and direction of the others are kept.
+
+Same: |a - p| and |b - q|, or |a - q| and |b - p|, at most the tolerance
+"""
+
+from hookean_client import canvas_tools as tools
+
+lines = tools.remove_duplicate_lines(ghenv, _lines, _tolerance_)
