@@ -10,7 +10,7 @@ A toggle that feeds an input called reset is pressed as a person presses it: Tru
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 from uuid import UUID
@@ -18,13 +18,14 @@ from uuid import UUID
 import rhino3dm
 
 from hookean.errors import InputError
-from hookean_canvas import stand_in
+from hookean_canvas import stand_in as untyped
 from hookean_canvas.graph import Graph, Node, Port, Unread
 from hookean_canvas.guids import BOOLEAN_TOGGLE, BUTTON, NUMBER_SLIDER, PANEL, RELAY, VALUE_LIST
 from hookean_canvas.natives import NATIVES, PARAMETERS, Native, Unfit, as_kind
-from hookean_canvas.scripts import SCRIPTS, Script, code_of, hinted, tree_of
+from hookean_canvas.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.trees import ITEM, LIST, TREE, Run, Tree, modified, runs
 
+stand_in: Any = untyped
 VALUES = (NUMBER_SLIDER, BOOLEAN_TOGGLE, PANEL, VALUE_LIST, BUTTON, RELAY)
 LONGEST_WAIT = 1.0  # s between scheduled solutions, however long one asks to wait
 
@@ -175,6 +176,8 @@ class Canvas:
                 return
             given.append((wanted.access, tree))
         for run in runs(given):
+            if any(value is None and access == ITEM for value, (access, _) in zip(run.values, given, strict=True)):
+                continue  # an item that is null, or an empty branch
             try:
                 found: Sequence[Any] = native.run(*run.values)
             except Unfit as error:
@@ -187,6 +190,9 @@ class Canvas:
 
     def _script(self, node: Node, script: Script) -> None:
         del script.component.messages[:]
+        for wired in script.component.Params.Input:
+            for source in wired.Sources:
+                source.VolatileData = handed(self._results[UUID(source.InstanceGuid)])
         script.component.RunCount = 0
         given: list[tuple[int, Tree]] = []
         for port in node.inputs:
@@ -351,7 +357,7 @@ def _panel_value(node: Node) -> list[Any]:
     return [text] if text else []
 
 
-_OWN = {
+_OWN: dict[UUID, Callable[[Node], list[Any]]] = {
     NUMBER_SLIDER: _slider_value,
     BOOLEAN_TOGGLE: lambda node: [bool(node.container.value("ToggleValue", default=False))],
     VALUE_LIST: _list_value,
