@@ -13,7 +13,7 @@ from hookean.errors import InputError
 from . import guids
 from .archive import Chunk, Item, Type, of_bytes
 from .archive_chunk import labelled
-from .parts import Part, code, inputs, is_floating, outputs, parts, sources
+from .parts import Part, code, given, inputs, is_floating, outputs, parts, sources
 
 Data = dict[str, Any]
 Owners = dict[Any, tuple[str, Chunk | None]]
@@ -90,7 +90,7 @@ def _definition(root: Chunk) -> Data:
         "name": _text(properties, "Name"),
         "description": _text(properties, "Description"),
         "id": _text(header, "DocumentID"),
-        "grasshopper": ".".join(map(str, definition.value("plugin_version", default=()))),
+        "grasshopper": ".".join(map(str, given(definition, "plugin_version", ()))),
         "libraries": [_library(library) for library in libraries.chunks] if libraries is not None else [],
         "objects": objects,
         "groups": [_group(part, members) for part in found if part.guid == guids.GROUP and part.container is not None],
@@ -127,8 +127,8 @@ def _part(part: Part, owners: Owners) -> Data:
     if part.container is None:
         return described
     attributes = part.container.chunk("Attributes")
-    place = attributes.value("Pivot") or attributes.value("Bounds", default=())[:2] if attributes is not None else ()
-    return described | {"pivot": [round(at, 1) for at in place]} | _container(guid, part.container, owners)
+    place = given(attributes, "Pivot", ()) or given(attributes, "Bounds", ())[:2]
+    return described | {"pivot": plain(tuple(place))} | _container(guid, part.container, owners)
 
 
 def _container(guid: UUID | None, container: Chunk, owners: Owners) -> Data:
@@ -151,8 +151,7 @@ def _container(guid: UUID | None, container: Chunk, owners: Owners) -> Data:
 
 def _port(port: Chunk, owners: Owners) -> Data:
     hint = port.value("TypeHintID")
-    access = port.value("Access", default=port.value("ScriptParamAccess", default=0))
-    mapping = port.value("Mapping", default=0)
+    access, mapping = given(port, "Access", given(port, "ScriptParamAccess", 0)), given(port, "Mapping", 0)
     stored = port.chunk("PersistentData")
     described: Data = {
         "name": _text(port, "Name"),
@@ -204,7 +203,7 @@ def _values(guid: UUID | None, container: Chunk) -> Data:
         named = {"value": "Value", "from": "Min", "to": "Max", "decimals": "Digits"}
         return {word: plain(slider.value(name)) for word, name in named.items()}
     if guid == guids.BOOLEAN_TOGGLE:
-        return {"value": container.value("ToggleValue")}
+        return {"value": plain(container.value("ToggleValue"))}
     if guid == guids.PANEL:
         return {} if sources(container) else {"text": _text(container, "UserText")}
     if guid == guids.VALUE_LIST:
@@ -248,14 +247,14 @@ def _user_object(root: Chunk) -> Data:
         "category": _text(root, "Category"),
         "subcategory": _text(root, "SubCategory"),
         "description": _text(root, "Description"),
-        "exposure": root.value("Exposure"),
+        "exposure": plain(root.value("Exposure")),
         "icon": plain(root.value("Icon", default=b"")),
         "id": _text(root, "InstanceGuid"),
         "known": guids.name(base) if isinstance(base, UUID) else None,
         "guid": str(base),
     }
     try:
-        inner = of_bytes(bytes(root.value("Object", default=b"")), "the object in it")
+        inner = of_bytes(given(root, "Object", b""), "the object in it")
     except InputError as error:
         return described | {"damage": str(error)}
     return described | {"object": _container(base if isinstance(base, UUID) else None, inner, {})}

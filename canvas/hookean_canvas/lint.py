@@ -18,7 +18,7 @@ from . import guids
 from .archive import Chunk, Type, of_bytes
 from .archive_chunk import labelled, sort_key
 from .lint_code import script_faults
-from .parts import SCRIPTS, Part, inputs, outputs, parts, sources
+from .parts import SCRIPTS, Part, given, inputs, outputs, parts, sources
 
 EXPOSURES = {-1, *(2**power for power in range(1, 9))}
 """Where on its tab a user object may stand: hidden, or in one of the rows."""
@@ -170,7 +170,8 @@ def _own_faults(guid: UUID | None, container: Chunk) -> Iterator[str]:
         if slider is None:
             yield "the slider has no chunk Slider"
         else:
-            low, high, value = (slider.value(name, default=0.0) for name in ("Min", "Max", "Value"))
+            yield from _missing(slider, "the slider", dict.fromkeys(("Min", "Max", "Value"), Type.DOUBLE))
+            low, high, value = (given(slider, name, 0.0) for name in ("Min", "Max", "Value"))
             if not low <= value <= high:
                 yield f"the slider stands at {value:g}, outside its limits {low:g} to {high:g}"
     elif guid == guids.VALUE_LIST:
@@ -254,12 +255,12 @@ def _user_object_faults(root: Chunk) -> Iterator[str]:
     base = root.value("BaseID")
     if base not in guids.NAMES:
         yield f"its base {base} is not known"
-    exposure = root.value("Exposure", default=2)
+    exposure = given(root, "Exposure", 2)
     if exposure != OBSCURE and exposure not in EXPOSURES and exposure - OBSCURE not in EXPOSURES - {-1}:
         yield f"its exposure is {exposure}, which is none of {sorted(EXPOSURES)}, {OBSCURE} added or not"
-    yield from _icon_faults(root.value("Icon", default=b""))
+    yield from _icon_faults(given(root, "Icon", b""))
     try:
-        inner = of_bytes(bytes(root.value("Object", default=b"")), "the object in it")
+        inner = of_bytes(given(root, "Object", b""), "the object in it")
     except InputError as error:
         yield str(error)
         return

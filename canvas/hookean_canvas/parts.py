@@ -6,10 +6,13 @@ import base64
 import binascii
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeVar
 from uuid import UUID
 
 from . import guids
 from .archive import Chunk
+
+Value = TypeVar("Value")
 
 _INPUTS, _OUTPUTS = ("InputParam", "param_input"), ("OutputParam", "param_output")
 SCRIPTS = {
@@ -58,6 +61,12 @@ class Code:
 
     text: str
     language: str
+
+
+def given(chunk: Chunk | None, name: str, default: Value) -> Value:
+    """The value of an item where it is there and of the default's type, else the default."""
+    value = chunk.value(name) if chunk is not None else None
+    return value if isinstance(value, type(default)) else default
 
 
 def parts(root: Chunk) -> list[Part]:
