@@ -68,7 +68,7 @@ def force(source, kind, fields):
     for name, values, given in zip(names, rows[1:], [lists[name] for name in names]):
         if len(given) > 1 and spread is not None:
             values = [value for value, times in zip(values, spread) for _ in range(times)]
-        made[name] = _single(values if len(given) > 1 else given)
+        made[name] = values if name == "targets" else _single(values if len(given) > 1 else given)
     return text(link.packed(made))
 
 
