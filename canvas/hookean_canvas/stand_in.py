@@ -442,6 +442,10 @@ class Component(object):
         """A message on it."""
         self.messages.append((level, text))
 
+    def RuntimeMessages(self, level):
+        """The messages of a level on it."""
+        return [text for known, text in self.messages if known == level]
+
     def OnPingDocument(self):
         """The document it is in."""
         return self.document

@@ -24,23 +24,29 @@ TAKES = dict(
     + [(name, "points") for name in ("remove_duplicate_points", "arc", "interpolate")]
     + [(name, "lines") for name in ("remove_duplicate_lines", "catenary")]
 )  # what an operation takes; all others take a mesh
+PAUSE = 0.02  # seconds between two solutions, at least; runs of one follow each other without
 _turns = {}  # by component
 
 
 class Turn(object):
-    """What a component said, asked and scheduled in this solution; its tasks stay for the next ones."""
+    """How long a component has held up this solution, and its tasks, which stay for the next ones."""
 
-    def __init__(self, before=None):
-        self.began, self.said, self.scheduled = link.now(), set(), False
-        self.tasks = before.tasks if before else {}
+    def __init__(self, tasks):
+        self.tasks, self.began, self.last = tasks, link.now(), link.now()
+
+    def left(self):
+        """Seconds it may still hold the canvas up."""
+        return link.WAIT - (link.now() - self.began)
 
 
 def turn(ghenv):
     """The turn of a component: a new one for each solution, shared by its runs in it."""
-    key, run = identity(ghenv), run_of(ghenv)
-    if key not in _turns or run <= 1:
-        _turns[key] = Turn(_turns.get(key))
-    return _turns[key]
+    key = identity(ghenv)
+    known = _turns.get(key)
+    if known is None or (run_of(ghenv) <= 1 and link.now() - known.last > PAUSE):
+        _turns[key] = known = Turn(known.tasks if known else {})
+    known.last = link.now()
+    return known
 
 
 def identity(ghenv):
@@ -58,12 +64,12 @@ def run_of(ghenv):
 
 def say(ghenv, level, sentence):
     """A sentence on the component, once in a solution; `level`: Error, Warning or Remark."""
-    now = turn(ghenv)
-    if (level, sentence) not in now.said:
-        from Grasshopper.Kernel import GH_RuntimeMessageLevel
+    from Grasshopper.Kernel import GH_RuntimeMessageLevel
 
-        now.said.add((level, sentence))
-        ghenv.Component.AddRuntimeMessage(getattr(GH_RuntimeMessageLevel, level), sentence)
+    kind = getattr(GH_RuntimeMessageLevel, level)
+    known = getattr(ghenv.Component, "RuntimeMessages", lambda _: ())
+    if sentence not in list(known(kind)):
+        ghenv.Component.AddRuntimeMessage(kind, sentence)
 
 
 def error(ghenv, sentence):
@@ -88,12 +94,11 @@ def note(ghenv, text):
 
 def schedule(ghenv, milliseconds):
     """Solve this component again after so long."""
-    now, document = turn(ghenv), ghenv.Component.OnPingDocument()
-    if now.scheduled or document is None:
+    component, document = ghenv.Component, ghenv.Component.OnPingDocument()
+    if document is None:
         return
     from Grasshopper.Kernel import GH_Document
 
-    component, now.scheduled = ghenv.Component, True
     document.ScheduleSolution(
         int(milliseconds), GH_Document.GH_ScheduleDelegate(lambda _: component.ExpireSolution(False))
     )
@@ -245,7 +250,8 @@ def ask(ghenv, slot, signature, work):
         before = known[1].trouble if known is not None and link.wants_server(known[1].problem) else None
         now.tasks[slot] = known = (signature, link.Task(work, before))
     task = known[1]
-    task.wait(0.02 if task.trouble else link.WAIT - (link.now() - now.began))
+    task.wait(0.02 if task.trouble else now.left())
+    now.last = link.now()
     return settled(ghenv, task)
 
 
