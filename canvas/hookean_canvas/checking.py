@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -71,6 +72,7 @@ def check(path: Path, settings: Mapping[str, str] | None = None, seconds: float 
 
     InputError where it cannot be read or run.
     """
+    os.environ.setdefault("HOOKEAN_PYTHON", sys.executable)  # a component may have to start the server
     outcome = Canvas(graph.read(path), settings).run(seconds)
     folder = Path(path).resolve().parent
     compared: list[Compared] = []

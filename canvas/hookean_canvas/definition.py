@@ -189,17 +189,21 @@ class Definition:
         trees: Sequence[str] = (), description: str = "",
     ) -> Made:  # fmt: skip
         """A Python 3 Script component; inputs in `lists` and `trees` have that access, the others take one item."""
-        ins = [Slot(key, access=1 if key in lists else 2 if key in trees else 0) for key in inputs]
+        access = {key: 1 if key in lists else 2 if key in trees else 0 for key in inputs}
+        ins = [Slot(key, access=access[key], optional=False) for key in inputs]
         outs = [Slot(key.replace(" ", "_")) for key in outputs]
         body = "#! python 3\n" + textwrap.dedent(code).strip() + "\n"
         return self._script("Python 3 Script", name, description or name, body, ins, outs, inputs)
 
-    def numbers(self, code: str, inputs: Mapping[str, Any], names: Mapping[str, str], **access: Sequence[str]) -> None:
+    def numbers(
+        self, code: str, inputs: Mapping[str, Any], names: Mapping[str, str], lists: Sequence[str] = (),
+        trees: Sequence[str] = (),
+    ) -> None:  # fmt: skip
         """The numbers of a figure: a script, and for each output a panel named as expected.json names the number.
 
         `names`: number by variable.
         """
-        made = self.script("Numbers", code, inputs, list(names), **access)
+        made = self.script("Numbers", code, inputs, list(names), lists, trees)
         for variable, number in names.items():
             self.panel(number, made[variable])
 

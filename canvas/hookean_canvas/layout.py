@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 ACROSS, DOWN = 70.0, 14.0
 """Room between columns and between boxes of a column, in pixels of the canvas."""
+_IN, _OUT, _WAY = object(), object(), object()
+STIFF = 20.0
+"""How much more a wire wants to be straight than a box wants to be level with its neighbours."""
 MARGIN, TITLE = 24.0, 34.0
 """Room between a group's boxes and the next block, and for its title."""
 
@@ -76,13 +79,20 @@ def _block(
     """Places the boxes of a block from (0, 0) on; the size of the block."""
     own = {key: boxes[key] for key in part}
     within = [link for link in links if link.start in own and link.end in own]
-    pulls: dict[Hashable, list[float]] = {key: [] for key in own}
+    gates: Boxes = {}  # where wires from and to other blocks come through this one's sides
+    pulls: dict[Hashable, list[float]] = {}
     for link in links:
-        if (link.start in own) != (link.end in own):
-            here, there = (link.start, link.end) if link.start in own else (link.end, link.start)
-            height = boxes[there].y + (link.enters if here == link.start else link.leaves)
-            pulls[here].append(height - (link.leaves if here == link.start else link.enters))
-    _layered(own, within, ACROSS, DOWN, pulls)
+        if link.end in own and link.start not in own:
+            gate = (_IN, link.start, link.leaves)
+            within.append(Link(gate, link.end, 1.0, link.enters))
+        elif link.start in own and link.end not in own:
+            gate = (_OUT, link.end, link.enters)
+            within.append(Link(link.start, gate, link.leaves, 1.0))
+        else:
+            continue
+        height = boxes[gate[1]].y + gate[2]
+        gates[gate], pulls[gate] = Box(0.0, 2.0, 0.0, height), [height]
+    _layered({**own, **gates}, within, ACROSS, DOWN, pulls)
     edge = MARGIN if titled else 0.0
     left, top = min(box.x for box in own.values()) - edge, min(box.y for box in own.values())
     top -= edge + (TITLE if titled else 0.0) + head[1]
@@ -97,20 +107,23 @@ def _layered(
     boxes: Boxes, links: Sequence[Link], across: float, down: float, pulls: dict[Hashable, list[float]]
 ) -> None:
     columns = _columns(boxes, links)
+    boxes, links = _ways(columns, boxes, links)
+    feeding = {link.start for link in links}
+    below = _own_matters(boxes, links)
     x = 0.0
     for column in columns:
         width = max(boxes[key].width for key in column)
         for key in column:
-            boxes[key].x = x + (width - boxes[key].width)  # outputs of a column in one line
+            boxes[key].x = x + (width - boxes[key].width if key in feeding else 0.0)  # outputs in one line
         x += width + across
     for column in columns:
         _stack(column, boxes, {key: boxes[key].y for key in column}, down)
-    best = (crossings(boxes, links), [list(column) for column in columns])
+    best = (1_000_000, columns)
     for sweep in range(10):
         backward = sweep % 2 == 1
         for column in columns[::-1] if backward else columns:
             wanted = {key: _wanted(key, boxes, links, pulls, (not backward, backward)) for key in column}
-            column.sort(key=lambda key: wanted[key] + 0.5 * boxes[key].height)
+            column.sort(key=lambda key: (key in below, wanted[key] + 0.5 * boxes[key].height))
             _stack(column, boxes, wanted, down)
         count = crossings(boxes, links)
         if count < best[0]:
@@ -120,8 +133,21 @@ def _layered(
             _stack(column, boxes, {key: _wanted(key, boxes, links, pulls, (True, True)) for key in column}, down)
 
 
+def _own_matters(boxes: Boxes, links: Sequence[Link]) -> set[Hashable]:
+    """Boxes of a block that nothing from other blocks reaches, where something does: settings, loads; they go below."""
+    reached = {key for key in boxes if isinstance(key, tuple) and key and key[0] is _IN}
+    if not reached:
+        return set()
+    for _ in boxes:
+        reached |= {link.end for link in links if link.start in reached}
+    return {key for key in boxes if key not in reached}
+
+
 def _columns(boxes: Boxes, links: Sequence[Link]) -> list[list[Hashable]]:
-    """Boxes by depth; one without inputs stands in the column before the first that it feeds."""
+    """Boxes by depth; one without inputs stands in the column before the first that it feeds, gates at the sides."""
+    side = {key: key[0] for key in boxes if isinstance(key, tuple) and key[0] in (_IN, _OUT)}
+    gated, links = boxes, [link for link in links if link.start not in side and link.end not in side]
+    boxes = {key: box for key, box in boxes.items() if key not in side}
     depth = dict.fromkeys(boxes, 0)
     for round_ in range(len(boxes) + 1):
         changed = False
@@ -138,10 +164,27 @@ def _columns(boxes: Boxes, links: Sequence[Link]) -> list[list[Hashable]]:
         after = [depth[link.end] for link in links if link.start == key]
         if key not in fed and after:
             depth[key] = min(after) - 1
-    columns: list[list[Hashable]] = [[] for _ in range(max(depth.values()) + 1)]
-    for key in boxes:
-        columns[depth[key]].append(key)
+    columns: list[list[Hashable]] = [[] for _ in range(max(depth.values()) + 3)]
+    for key in gated:
+        columns[{_IN: 0, _OUT: -1}[side[key]] if key in side else depth[key] + 1].append(key)
     return [column for column in columns if column]
+
+
+def _ways(columns: list[list[Hashable]], boxes: Boxes, links: Sequence[Link]) -> tuple[Boxes, list[Link]]:
+    """Room for wires through the columns between their ends: a thin box in each, added to `columns`."""
+    column_of = {key: i for i, column in enumerate(columns) for key in column}
+    boxes, found = dict(boxes), []
+    for link in links:
+        before, leaves = link.start, link.leaves
+        for i in range(column_of[link.start] + 1, column_of[link.end]):
+            way = (_WAY, link.start, link.end, i)
+            if way not in boxes:
+                boxes[way] = Box(0.0, 2.0, 0.0, boxes[link.start].y)
+                columns[i].append(way)
+            found.append(Link(before, way, leaves, 1.0))
+            before, leaves = way, 1.0
+        found.append(Link(before, link.end, leaves, link.enters))
+    return boxes, found
 
 
 def _wanted(
@@ -159,21 +202,22 @@ def _wanted(
 
 def _stack(column: Sequence[Hashable], boxes: Boxes, wanted: dict[Hashable, float], down: float) -> None:
     """Boxes in this order as near as can be to where they want to be: means of runs that would overlap."""
-    runs: list[list[float]] = []  # mean wish of the run's top, boxes in it, height of it
+    runs: list[tuple[float, float, float, list[Hashable]]] = []  # mean wish of the top, weight, height, boxes
     for key in column:
-        runs.append([wanted[key], 1.0, boxes[key].height + down])
+        runs.append((wanted[key], STIFF if _is_way(key) else 1.0, boxes[key].height + down, [key]))
         while len(runs) > 1 and runs[-2][0] + runs[-2][2] > runs[-1][0]:
-            top, count, height = runs.pop()
-            before = runs[-1]
-            before[0] = (before[0] * before[1] + (top - before[2]) * count) / (before[1] + count)
-            before[1] += count
-            before[2] += height
-    i = 0
-    for top, count, _ in runs:
-        for key in column[i : i + int(count)]:
+            top, weight, height, keys = runs.pop()
+            above = runs.pop()
+            mean = (above[0] * above[1] + (top - above[2]) * weight) / (above[1] + weight)
+            runs.append((mean, above[1] + weight, above[2] + height, above[3] + keys))
+    for top, _, _, keys in runs:
+        for key in keys:
             boxes[key].y = top
             top += boxes[key].height + down
-        i += int(count)
+
+
+def _is_way(key: Hashable) -> bool:
+    return isinstance(key, tuple) and bool(key) and key[0] in (_IN, _OUT, _WAY)
 
 
 def crossings(boxes: Boxes, links: Sequence[Link]) -> int:

@@ -255,7 +255,7 @@ def _vector(value: Any) -> Any:
 def _line(value: Any) -> Any:
     if isinstance(value, rhino3dm.Line):
         return value
-    if isinstance(value, rhino3dm.Curve) and value.IsLinear(1e-9):
+    if isinstance(value, rhino3dm.Curve) and value.IsLinear():
         return rhino3dm.Line(value.PointAtStart, value.PointAtEnd)
     return None
 
@@ -264,7 +264,7 @@ def _curve(value: Any) -> Any:
     if isinstance(value, rhino3dm.Line):
         return rhino3dm.LineCurve(value.From, value.To)
     if isinstance(value, rhino3dm.Polyline):
-        return rhino3dm.PolylineCurve(value)
+        return value.ToPolylineCurve()
     return value if isinstance(value, rhino3dm.Curve) else None
 
 

@@ -12,12 +12,13 @@ from typing import Any
 from uuid import UUID
 
 from hookean.errors import InputError
-from hookean_canvas import stand_in
+from hookean_canvas import stand_in as untyped
 from hookean_canvas.graph import Node
 from hookean_canvas.guids import GHPYTHON_SCRIPT, PYTHON3_SCRIPT, SCRIPT, hint
 from hookean_canvas.natives import Unfit, as_kind
 from hookean_canvas.trees import Tree, path_of
 
+stand_in: Any = untyped
 SCRIPTS = (PYTHON3_SCRIPT, SCRIPT, GHPYTHON_SCRIPT)
 """Components whose code is Python: Python 3 Script, Script with Python in it, GhPython."""
 
@@ -30,7 +31,7 @@ _KINDS = {
 def code_of(node: Node) -> str | None:
     """The Python code in a script component; None where it is another language's or there is none."""
     if node.guid == GHPYTHON_SCRIPT:
-        return node.container.value("CodeInput")
+        return str(node.container.value("CodeInput", default=""))
     script = node.container.chunk("Script")
     if script is None:
         return None
@@ -63,7 +64,7 @@ class Script:
         """One run: what the script left in each of its outputs. What it raises becomes an error on the component."""
         names: dict[str, Any] = {"__name__": "__main__", "ghenv": self._environment}
         for port, value in zip(self.node.inputs, values, strict=True):
-            names[port.nickname] = _handed(value)
+            names[port.nickname] = handed(value)
         names.update({port.nickname: None for port in self.node.outputs})
         said = io.StringIO()
         try:
@@ -94,7 +95,7 @@ def hinted(port_hint: UUID | None, value: Any) -> Any:
     return value if kind is None or value is None else as_kind(kind, value)
 
 
-def _handed(value: Any) -> Any:
+def handed(value: Any) -> Any:
     """Trees as Grasshopper's DataTree; everything else as it is."""
     if not isinstance(value, Tree):
         return value
