@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import io
 import json
+import subprocess
 import sys
 import types
 from pathlib import Path
@@ -13,7 +14,7 @@ import pytest
 
 from hookean.catalogue import catalogue
 from hookean.forces import KINDS
-from hookean_canvas import bundles, force_bundles, icons
+from hookean_canvas import bundles, force_bundles, icons, inline, isolated
 
 COMPONENTS = Path(__file__).parents[2] / "components"
 ENTRIES = {entry["kind"]: entry for entry in catalogue()}
@@ -163,6 +164,60 @@ def test_inputs_come_as_a_kangaroo_user_expects_them():
         ("Springs From Line", "Springs"),
         ("Unary Force", "UForce"),
     ]
+
+
+def point(*parts: float) -> dict[str, object]:
+    return {"Point3d": list(parts)}
+
+
+LINE = {"Line": [[0, 0, 0], [1, 0, 0]]}
+MESH = {"Mesh": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.2]], "faces": [[0, 1, 2, 3]]}}
+GIVEN: dict[str, dict[str, object]] = {
+    "Springs": {"_connection": [LINE, LINE], "_stiffness_": [5.0, 6.0], "_edges_": ["warp"], "name_": ["cable"]},
+    "Unary": {"_point": [point(0, 0, 0), point(1, 0, 0)], "_force": [{"Vector3d": [0, 0, -1]}]},
+    "Hinge": {f"_point_{i + 1}": [point(i, i * i, 0)] for i in range(4)} | {"_strength_": [2.0]},
+    "Bend": {f"_point_{i + 1}": [point(i, i * i, 0)] for i in range(3)} | {"rest_angle_": [0.1]},
+    "Floor": {"_point_": [point(0, 0, -1)], "_normal_": [{"Vector3d": [0, 0, 1]}], "_restitution_": [0.5]},
+    "Pressure": {"_mesh": [MESH], "_pressure_": [3.0]},
+    "Shell": {"_mesh": [MESH], "_strength_": [3.0]},
+    "SoapFilm": {"_mesh": [MESH], "_tension_": [3.0], "_warp_": [1.0]},
+    "PullToMesh": {"_target": [MESH], "_point": [point(0, 0, 1)], "_strength_": [10.0]},
+    "PullToCurve": {"_curve": [LINE], "_point": [point(0, 0, 1), point(0, 1, 1)], "_strength_": [1.0, 2.0]},
+    "AnchorSpring": {"_point": [point(0, 0, 1), point(0, 1, 1)], "targets_": [point(0, 0, 2)]},
+    "SelfWeight": {"connection_": [LINE], "per_length_": [2.0], "_direction_": [{"Vector3d": [0, 0, -1]}]},
+}
+
+
+@pytest.fixture(scope="module")
+def sent() -> dict[str, dict[str, object]]:
+    """What the built force components put on their wires for `GIVEN`, by their folders."""
+    steps = []
+    for name, given in GIVEN.items():
+        bundle = bundles.read(name)
+        inputs = {p.name: given.get(p.name) for p in bundle.inputs}
+        assert set(given) <= set(inputs)
+        steps.append({"name": name, "code": inline.inlined(bundle.code), "inputs": inputs, "outputs": ["force"]})
+    command = [sys.executable, "-I", isolated.__file__]
+    done = subprocess.run(command, input=json.dumps({"steps": steps}), capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    answers = dict(zip(GIVEN, json.loads(done.stdout), strict=True))
+    assert {name: a["messages"] for name, a in answers.items()} == {name: [] for name in GIVEN}
+    return {name: json.loads(answer["outputs"]["force"]) for name, answer in answers.items()}
+
+
+@every_force
+def test_what_a_component_sends_is_a_force_of_its_class(kind, sent):
+    """Every class takes what its component puts on the wire, and finds in it what was connected."""
+    name = KINDS[kind].__name__
+    force = {key: value for key, value in sent[name].items() if key != "source"}
+    if "mesh" in force:
+        force["mesh"] = "the engine names it"
+    found = KINDS[kind].model_validate(force)
+    fields = {e.variable: e.field for e in force_bundles.entries(ENTRIES[kind])}
+    numbers = {fields[v]: g for v, g in GIVEN[name].items() if isinstance(g, list) and isinstance(g[0], float | str)}
+    for field, values in numbers.items():
+        told = getattr(found, field)
+        assert (told.tolist() if hasattr(told, "tolist") else [told]) in (values, values[0])
 
 
 def test_names_are_known_to_the_tables():
