@@ -22,7 +22,17 @@ Owners = dict[Any, tuple[str, Chunk | None]]
 ACCESS = ("item", "list", "tree")
 MAPPING = ("", "flatten", "graft")
 _COMMON = {"Name", "NickName", "Description", "InstanceGuid", "Optional", "SourceCount", "Source", "Mapping"}
-_COMMON |= {"ReverseData", "SimplifyData", "CodeInput", "IconOverride", "IconDisplay", "Tooltip", "ToolTip"}
+_COMMON |= {
+    "GraftStandardOutputLines",
+    "ScriptComponentVersion",
+    "ReverseData",
+    "SimplifyData",
+    "CodeInput",
+    "IconOverride",
+    "IconDisplay",
+    "Tooltip",
+    "ToolTip",
+}
 _SHOWN = {"Attributes", "ParameterData", "PersistentData", "Script", "ScriptEditor", "PanelProperties"}
 _SHOWN |= {"InputParam", "OutputParam", "param_input", "param_output"}
 
@@ -99,8 +109,8 @@ def _definition(root: Chunk) -> Data:
 
 def _labels(found: list[Part]) -> list[str]:
     """What each object is called in wires: by its nickname, with its number where others are called the same."""
-    often = Counter(part.label for part in found)
-    return [part.label if often[part.label] == 1 else f"{part.label} #{n}" for n, part in enumerate(found)]
+    often = Counter(part.label for part in found if part.guid != guids.GROUP)  # no wire comes from a group
+    return [part.label if often[part.label] < 2 else f"{part.label} #{n}" for n, part in enumerate(found)]
 
 
 def _library(library: Chunk) -> Data:

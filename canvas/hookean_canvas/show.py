@@ -62,8 +62,9 @@ def text(top: Line) -> str:
 
 
 def _flat(line: Line, depth: int) -> Iterator[tuple[int, str]]:
-    for part in line.text.splitlines() or [""]:
-        yield depth, part
+    first, *more = line.text.splitlines() or [""]
+    yield depth, first
+    yield from ((depth + 1, part) for part in more)
     for below in line.below:
         yield from _flat(below, depth + 1)
 
@@ -97,7 +98,8 @@ def _definition(described: Data, name: str, with_code: bool) -> Line:
     if described["description"]:
         top.below.append(Line(described["description"]))
     for library in described["libraries"]:
-        top.below.append(Line(f"needs {library['name']} {library['version']} ({library['author']})"))
+        named = " ".join(library[key] for key in ("name", "version") if library[key])
+        top.below.append(Line(f"needs {named or library['id']} ({library['author'] or 'author unknown'})"))
     top.below.extend(_object(part, with_code) for part in objects)
     for group in groups:
         top.below.append(Line(f"group {group['name']!r}: {', '.join(group['members']) or 'empty'}"))
@@ -143,6 +145,8 @@ def _contents(line: Line, part: Data, with_code: bool) -> Line:
     for name, value in values.items():
         if isinstance(value, dict) and value.get("kind") in ("definition", "archive", "user object"):
             line.below.append(lines(value, name, with_code))
+        elif name == "text":
+            line.below.extend(Line(row) for row in value.splitlines())
         else:
             line.below.append(Line(f"{name}: {_short(value)}"))
     if part.get("floating"):
@@ -158,7 +162,7 @@ def _code(part: Data, with_code: bool) -> Line:
     count = len(part["code"].splitlines())
     heading = Line(f"script in {part['language']}, {_many(count, 'line')}")
     if with_code and part["code"]:
-        heading.below.append(Line("\n".join(part["code"].splitlines())))
+        heading.below.extend(Line(line) for line in part["code"].splitlines())
     return heading
 
 

@@ -78,7 +78,7 @@ arch.ghx: a definition with 8 objects, 4 wires, 1 group, Grasshopper 1.0.8
     chosen: (cable)
     list: cable 1
   Panel #7
-    text: two
+    two
     lines
   Weaverbird (unknown component 00000000-0000-0000-0000-0000000001f4)
     Levels: 2
