@@ -20,13 +20,13 @@ import rhino3dm
 from hookean.errors import InputError
 from hookean_canvas import stand_in as untyped
 from hookean_canvas.graph import Graph, Node, Port, Unread
-from hookean_canvas.guids import BOOLEAN_TOGGLE, BUTTON, NUMBER_SLIDER, PANEL, RELAY, VALUE_LIST
+from hookean_canvas.guids import BOOLEAN_TOGGLE, BUTTON, NUMBER_SLIDER, PANEL, PARAM_VIEWER, RELAY, TIMER, VALUE_LIST
 from hookean_canvas.natives import NATIVES, PARAMETERS, Native, Unfit, as_kind
 from hookean_canvas.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.trees import ITEM, LIST, TREE, Run, Tree, modified, runs
 
 stand_in: Any = untyped
-VALUES = (NUMBER_SLIDER, BOOLEAN_TOGGLE, PANEL, VALUE_LIST, BUTTON, RELAY)
+VALUES = (NUMBER_SLIDER, BOOLEAN_TOGGLE, PANEL, VALUE_LIST, BUTTON, RELAY, PARAM_VIEWER, TIMER)
 LONGEST_WAIT = 1.0  # s between scheduled solutions, however long one asks to wait
 
 

@@ -35,6 +35,8 @@ SCRIBBLE = UUID("7f5c6c55-f846-4a08-9c9a-cfdc285cc6fe")
 RELAY = UUID("b6236720-8d88-4289-93c3-ac4c99f9b97b")
 CLUSTER = UUID("f31d8d7a-7536-4ac8-9c96-fde6ecda4d0a")
 HOPS = UUID("c69bb52c-88ba-4640-b69f-188d111029e8")
+TIMER = UUID("5a2b0735-ba98-4b7d-a7d3-c1dfc04475ad")
+PARAM_VIEWER = UUID("72a29b54-2e48-474b-a400-d2124c4edf79")
 
 _SPECIAL = """
 9c53bac0-ba66-40bd-8154-ce9829b9db1a Colour Swatch
@@ -51,8 +53,6 @@ ae2531b4-bab2-4bb1-b5bf-f2143d10c132 Context Bake
 73215ec5-0eb5-4f85-9e07-b09c4590ce2b Context Print
 a9a8ebd2-fff5-4c44-a8f5-739736d129ba C# Script
 079bd9bd-54a0-41d4-98af-db999015f63d VB Script
-5a2b0735-ba98-4b7d-a7d3-c1dfc04475ad Timer|Trigger
-72a29b54-2e48-474b-a400-d2124c4edf79 Param Viewer
 """
 
 # ------------------------------------------------------------------------------------------------ floating parameters
@@ -195,6 +195,8 @@ NAMES: dict[UUID, tuple[str, ...]] = {
     RELAY: ("Relay",),
     CLUSTER: ("Cluster",),
     HOPS: ("Hops",),
+    TIMER: ("Timer", "Trigger"),
+    PARAM_VIEWER: ("Param Viewer",),
 } | _table(_SPECIAL, _PARAMETERS, native_guids.ALL)
 """Component and parameter ids with the names files have for them, the present one first."""
 PARAMETERS: dict[str, UUID] = {names[0]: guid for guid, names in reversed(_table(_PARAMETERS).items())}

@@ -18,18 +18,17 @@ from uuid import UUID, uuid5
 from hookean.errors import InputError
 from hookean_canvas import archive, containers
 from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.guids import GROUP, PANEL, SCRIPT_LIBRARY
+from hookean_canvas.guids import GROUP, PANEL, SCRIPT_LIBRARY, TIMER
 from hookean_canvas.kangaroo_import import Importing, connect
 from hookean_canvas.kangaroo_make import put_object
 from hookean_canvas.kangaroo_report import Report
 from hookean_canvas.parts import inputs, outputs, parts, sources
 
 NOTE = (255, 255, 235, 205)
-TIMER = UUID("5a2b0735-ba98-4b7d-a7d3-c1dfc04475ad")
 
 
 def import_file(source: Path, target: Path | None = None) -> tuple[Path, Report]:
-    """Translate a .gh or .ghx file, write the result (none: to `<name>-hookean.ghx` beside it); its path and the report.
+    """Translate a .gh or .ghx file and write it (none: to `<name>-hookean.ghx` beside it); its path and the report.
 
     InputError where the file cannot be read, is no definition, or would be written over.
     """

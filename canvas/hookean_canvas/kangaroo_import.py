@@ -11,7 +11,7 @@ from hookean_canvas import containers
 from hookean_canvas import kangaroo_make as make
 from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.containers import Slot, wire
-from hookean_canvas.guids import PARAMETERS, PYTHON3_SCRIPT
+from hookean_canvas.guids import CLUSTER, PARAMETERS, PYTHON3_SCRIPT
 from hookean_canvas.kangaroo_guids import Known, hidden, libraries, recognised
 from hookean_canvas.kangaroo_report import Report
 from hookean_canvas.kangaroo_space import Space, bounds_of, size
@@ -33,12 +33,20 @@ class Importing:
             raise InputError(report.name, "this is no Grasshopper definition; give a .gh or .ghx file")
         self.root, self.objects, self.report = root, objects, report
         self.libraries = libraries(definition)
-        self.known = {id(part.chunk): recognised(part.chunk, self.libraries) for part in parts(root)}
+        self.known = {id(part.chunk): self._recognised(part) for part in parts(root)}
         self.streams = Streams(root)
         self.space = Space(root)
         self.renamed: dict[UUID, UUID] = {}
         self.because: dict[UUID, str] = {}  # why wires into an input, or out of an output, are gone
         self.doubles: list[tuple[UUID, UUID]] = []  # an output of Kangaroo's, and a second one that goes with it
+
+    def _recognised(self, part: Part) -> Known | None:
+        """What of Kangaroo an object is; some classic components are clusters of others."""
+        known = recognised(part.chunk, self.libraries)
+        if known is None and part.guid == CLUSTER and part.container is not None:
+            named = Known("classic", str(part.container.value("Name", default="")))
+            return named if swap_of(named) and hidden(part.chunk, self.libraries) else None
+        return known
 
     def run(self) -> None:
         """Swap what can be swapped; say what cannot."""
@@ -122,15 +130,15 @@ class _Swapping:
             self._feed()
             self._stream()
         self._left()
-        words = " and ".join(recipe.name for recipe in self.recipes) or "a Geometry parameter"
+        words = " and ".join(recipe.name for recipe in self.recipes) or "a Data parameter"
         whole.report.swapped.append((called(self.part, self.known), words, self.swap.differs))
 
     def _parameter(self) -> None:
         """A floating parameter instead of a component that only hands on; the wires out of it keep their id."""
         given, result = inputs(self.old)[0], outputs(self.old)[0]
         id_: UUID = result.value("InstanceGuid")
-        guid = PARAMETERS["Geometry"]
-        chunk = containers.floating(id_, "Geometry", self.part.label, "Contains a collection of geometry")
+        guid = PARAMETERS["Data"]
+        chunk = containers.floating(id_, "Data", self.part.label, "Contains a collection of generic data")
         connect(chunk, sources(given))
         _copy_modifiers(given, chunk)
         data = given.chunk("PersistentData")
@@ -182,7 +190,7 @@ class _Swapping:
     def _output(self, id_: UUID, piece: Piece, slot: Slot) -> UUID:
         old = piece.outputs.get(slot.name)
         new = uuid5(id_, f"out {slot.name}")
-        port = self.results.get(old) if old is not None else None
+        port = next((self.results[name] for name in (old or "").split("|") if name in self.results), None)
         if port is None and len(piece.outputs) == 1 and old is not None and len(outputs(self.old)) == 1:
             port = outputs(self.old)[0]  # its only output, whatever this version calls it
         if port is None:

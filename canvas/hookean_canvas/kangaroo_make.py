@@ -61,6 +61,21 @@ for corner in corners:
         points.append(canvas.geometry.to_point(place))
 '''
 
+UPWARDS = '''"""Vertical vectors of these sizes, upwards where positive."""
+
+from hookean_client import canvas
+
+vectors = [canvas.geometry.to_vector([0.0, 0.0, canvas.geometry.number(size)]) for size in canvas.listed(_size)]
+'''
+
+LINES = '''"""Lines from points to points."""
+
+from hookean_client import canvas
+
+pairs = zip(*canvas.matched(canvas.geometry.points(_start), canvas.geometry.points(_end)))
+lines = [canvas.geometry.to_line(list(pair)) for pair in pairs]
+'''
+
 
 @dataclass(frozen=True)
 class Recipe:
@@ -74,16 +89,42 @@ class Recipe:
     outputs: tuple[Slot, ...]
 
 
+HELPERS = {
+    "*corners": Recipe(
+        "Corners",
+        "Corners",
+        "Points before, at and after corners",
+        CORNERS,
+        (Slot("_lines", "Polylines, or lines", 1), Slot("others_", "Lines that meet them, one for each", 1)),
+        tuple(Slot(f"point_{i}", f"Point {i} of each corner") for i in (1, 2, 3)),
+    ),
+    "*sort": Recipe(
+        "Sort Goals",
+        "Sort",
+        "Sorts forces, anchors and geometry",
+        SORT,
+        (Slot("_goals", "Forces, anchors and geometry in one stream", 2),),
+        tuple(Slot(name, f"The {name} among them") for name in ("forces", "anchors", "geometry")),
+    ),
+    "*upwards": Recipe(
+        "Upwards", "Upwards", "Vertical vectors", UPWARDS, (Slot("_size", "Sizes", 1),), (Slot("vectors", "Vectors"),)
+    ),
+    "*lines": Recipe(
+        "Lines",
+        "Lines",
+        "Lines from points to points",
+        LINES,
+        (Slot("_start", "Points", 1, "point"), Slot("_end", "Points", 1, "point")),
+        (Slot("lines", "Lines"),),
+    ),
+}
+"""Small scripts where our components take other things than Kangaroo's."""
+
+
 def recipe(bundle: str) -> Recipe:
-    """The recipe of a bundle, or of `*corners` and `*sort`; InputError where there is no such bundle."""
-    if bundle == "*corners":
-        lines = (Slot("_lines", "Polylines, or lines", 1), Slot("others_", "Lines that meet them, one for each", 1))
-        points = tuple(Slot(f"point_{i}", f"Point {i} of each corner") for i in (1, 2, 3))
-        return Recipe("Corners", "Corners", "Points before, at and after corners", CORNERS, lines, points)
-    if bundle == "*sort":
-        outputs = tuple(Slot(name, f"The {name} among them") for name in ("forces", "anchors", "geometry"))
-        goals = (Slot("_goals", "Forces, anchors and geometry in one stream", 2),)
-        return Recipe("Sort Goals", "Sort", "Sorts forces, anchors and geometry", SORT, goals, outputs)
+    """The recipe of a bundle or a helper; InputError where there is no such bundle."""
+    if bundle in HELPERS:
+        return HELPERS[bundle]
     found = bundles.read(bundle)
     inputs, outputs = (
         tuple(Slot(p.name, p.description, p.access, p.hint, p.optional, p.mapping) for p in side)

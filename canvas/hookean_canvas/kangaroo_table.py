@@ -15,7 +15,7 @@ from hookean_canvas.kangaroo_guids import Known
 
 @dataclass(frozen=True)
 class Piece:
-    """One of our components: `inputs` ours by Kangaroo's, `outputs` Kangaroo's by ours, `values` set from the start.
+    """One of our components: `inputs` ours by Kangaroo's, `outputs` Kangaroo's by ours (`|`: either), `values` set.
 
     `feeds`: by an output, the input it is wired to, as the number of a piece and a name.
     """
@@ -58,6 +58,37 @@ _ENDS = "it ends at a residual (out-of-balance force over load), not at a speed 
 _FRICTION = "friction is Coulomb's here (0.6 resting, 0.5 sliding), another law than the number typed in Kangaroo"
 _EXACT = "anchors hold exactly here, so they have no strength"
 _ENERGY = "the energy is that of all forces and of the motion, not of the motion alone"
+
+_TOOLS = {
+    "nakedvertices": Swap(
+        (
+            Piece(
+                "NakedVertices",
+                {"m": "mesh", "mesh": "mesh"},
+                {
+                    "clothed_index": "clothedi|clothedindex",
+                    "naked_index": "nakedi|nakedindex",
+                    "clothed_points": "clothedpts",
+                    "naked_points": "nakedpts",
+                },
+            ),
+        )
+    ),
+    "warpweft": Swap(
+        (
+            Piece(
+                "WarpWeft",
+                {"m": "mesh", "mesh": "mesh"},
+                {"warp": "a", "weft": "b", "warp_naked": "na", "weft_naked": "nb"},
+            ),
+        ),
+        "a mesh without two families of edges is an error here, unless `_strict_` is False",
+    ),
+    "removeduplicatelines": Swap(
+        (Piece("RemoveDuplicateLines", {"lines": "lines", "tolerance": "tolerance"}, {"lines": "q"}),)
+    ),
+}
+"""Tools of both generations."""
 
 SETTINGS = Swap(
     (
@@ -189,6 +220,8 @@ CLASSIC: dict[str, Swap] = {
     ),
 }
 
+CLASSIC |= _TOOLS
+
 _GOALS = {"goalobjects": "forces", "reset": "reset"}
 _SOLVED = {"iterations": "i", "particles": "v", "geometry": "o"}
 _OUT = "geometry comes out as Show takes it in, or as the goals' lines where nothing is shown, in its own tree"
@@ -310,24 +343,22 @@ SECOND: dict[str, Swap] = {
         "EI is the same number; the two lines have to meet at an end",
     ),
     "show": Swap((Piece("*geometry", {"g": "in"}, {"in": "g"}),), "a parameter that hands its geometry on"),
-    "meshcorners": Swap((Piece("MeshCorners", {"m": "mesh", "a": "angle"}, {"corners": "c"}),)),
-    "nakedvertices": Swap(
+    "vertexloads": Swap(
         (
-            Piece(
-                "NakedVertices",
-                {"m": "mesh"},
-                {
-                    "clothed_indices": "clothedi",
-                    "naked_indices": "nakedi",
-                    "clothed": "clothedpts",
-                    "naked": "nakedpts",
-                },
-            ),
-        )
+            Piece("Unary", {}, {"force": "l"}),
+            Piece("MeshVertices", {"mesh": "mesh"}, feeds={"points": "0.point"}),
+            Piece("*upwards", {"strength": "size"}, feeds={"vectors": "0.force"}),
+        ),
+        "a positive strength is upwards in both",
     ),
-    "warpweft": Swap(
-        (Piece("WarpWeft", {"m": "mesh"}, {"warp": "a", "weft": "b", "warp_naked": "na", "weft_naked": "nb"}),)
+    "length(pts)": Swap(
+        (
+            Piece("Springs", {"length": "rest_length", "strength": "stiffness"}, {"force": "s"}),
+            Piece("*lines", {"start": "start", "end": "end"}, feeds={"lines": "0.connection"}),
+        ),
     ),
+    "meshcorners": Swap((Piece("MeshCorners", {"m": "mesh", "a": "angle"}, {"corners": "c"}),)),
+    **_TOOLS,
 }
 
 _PURE = "geometry without mechanics (equal, planar, parallel, tangent ...) is not here"
@@ -345,15 +376,13 @@ solidplanecollide rigidbody rigidbodycollide rigidpointset floorfriction collide
 _TOOL_NAMES = """
 bipartite byparent checkerboard combine&clean diagonalize facefaceoffset foldangle hingepoints meshdirection
 meshmap meshturn planarityanalysis refine refinestrips remeshbycolour simple simpleremesh stripper
-tangentcircles unroller vertexneighbours meshmachine removeduplicatepts meshcorners
+tangentcircles unroller vertexneighbours meshmachine removeduplicatepts
 """
 REASONS: dict[str, str] = {
     "fd": "hookean takes the force density itself: Springs with rest length 0",
     "constanttension": "for the same tension everywhere use SoapFilm; Springs with rest length 0 pull with k x length",
     "clamplength": "Springs with lower_cutoff at their rest length are a cable; upper_cutoff a strut",
     "plasticlength": "Springs with plasticity, which is a part of the rest length and not a distance",
-    "length(pts)": "connect a Line between the points to Springs From Line",
-    "vertexloads": "connect the mesh's vertices and a vector to Unary Force",
     "dynamicweight1d": "Self Weight takes a weight per length, of the start length",
     "areaweight": "Self Weight takes a total or a weight per length",
     "tangentialsmooth": "SoapFilm keeps its triangles even by itself",

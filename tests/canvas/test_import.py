@@ -1,0 +1,389 @@
+"""Definitions made for Kangaroo, translated: what is swapped, what stays, and that nothing of it is silent."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from canvas.kangaroo_samples import (
+    PHYSICS,
+    SETTINGS,
+    SOLVER,
+    SPRINGS,
+    Kangaroo,
+    cable,
+    star,
+    store,
+    tent,
+    wires,
+)
+from hookean_canvas import archive, kangaroo, lint
+from hookean_canvas.archive import Chunk, Type
+from hookean_canvas.command import app
+from hookean_canvas.guids import BOOLEAN_TOGGLE, CLUSTER, PANEL, PARAMETERS, PYTHON3_SCRIPT
+from hookean_canvas.kangaroo_guids import COMPONENTS, Known, libraries, recognised
+from hookean_canvas.kangaroo_report import Report
+from hookean_canvas.kangaroo_space import bounds_of
+from hookean_canvas.kangaroo_table import CLASSIC, SECOND, is_tool, swap_of
+from hookean_canvas.parts import Part, inputs, outputs, parts, sources
+from serving import SOAK
+
+
+def translated(d: Kangaroo) -> tuple[Chunk, Report]:
+    """A translation, after the checks that every one has to pass."""
+    before = d.archive()
+    after, report = kangaroo.translate(before, "sample.gh")
+    assert lint.faults(after) == []
+    assert report.wires == len(wires(before)) == report.kept + len(report.lost)
+    assert len(wires(before) & wires(after)) <= report.kept <= len(wires(after))
+    assert remaining(after) == report.kangaroo - len(report.swapped)
+    return after, report
+
+
+def remaining(root: Chunk) -> int:
+    """How many components of Kangaroo a definition holds."""
+    definition = root.chunk("Definition")
+    assert definition is not None
+    return sum(recognised(part.chunk, libraries(definition)) is not None for part in parts(root))
+
+
+def the(root: Chunk, label: str) -> Part:
+    """The one object with that nickname."""
+    [found] = [part for part in parts(root) if part.label == label]
+    return found
+
+
+def port(part: Part, name: str) -> Chunk:
+    """An input by our name for it."""
+    assert part.container is not None
+    return next(p for p in inputs(part.container) if str(p.value("NickName")).strip("_") == name)
+
+
+def behind(root: Chunk, part: Part, name: str) -> list[Part]:
+    """What is wired to an input."""
+    owners = {p.value("InstanceGuid"): o for o in parts(root) if o.container for p in outputs(o.container)}
+    return [owners[source] for source in sources(port(part, name))]
+
+
+def test_a_classic_definition_is_translated_whole_with_its_ids_groups_and_timer() -> None:
+    d = cable()
+    before = d.archive()
+    after, report = translated(d)
+    assert report.complete and remaining(after) == 0 and len(report.swapped) == 3
+    assert wires(before) <= wires(after)
+    kinds = {part.id: part.guid for part in parts(after)}
+    for part in parts(before):
+        known = COMPONENTS.get(part.guid) if part.guid else None
+        assert kinds[part.id] == (PYTHON3_SCRIPT if known else part.guid)
+    assert "Timer is not needed" in report.text()
+
+
+def test_objects_stay_where_they_stand() -> None:
+    before, (after, _) = cable().archive(), translated(cable())
+    places = [
+        {part.id: box[:2] for part in parts(root) if (box := bounds_of(part.container))} for root in (before, after)
+    ]
+    assert places[0].items() <= places[1].items()
+
+
+def test_new_objects_stand_on_no_other() -> None:
+    after, _ = translated(tent())
+    boxes = {part.id: box for part in parts(after) if (box := bounds_of(part.container))}
+    old = {part.id for part in parts(tent().archive())}
+    new = {key: box for key, box in boxes.items() if key not in old}
+    assert len(new) >= 4
+    for key, box in new.items():
+        others = [other for id_, other in boxes.items() if id_ != key]
+        assert not any(
+            box[0] < o[0] + o[2] and o[0] < box[0] + box[2] and box[1] < o[1] + o[3] and o[1] < box[1] + box[3]
+            for o in others
+        )
+
+
+def test_typed_values_are_kept_and_those_that_are_ours_anyway_are_not_repeated() -> None:
+    d = Kangaroo("typed", "Typed", "Values in components.")
+    line = d.native("Line", start_point=d.point(0, 0, 0), end_point=d.point(1, 0, 0))
+    d.springs(line, {"Stiffness": 750.0, "Plasticity": 0.125})
+    after, _ = translated(d)
+    springs = the(after, "Springs")
+    held = {
+        name: [found.container.value("UserText") for found in behind(after, springs, name) if found.container]
+        for name in ("stiffness", "damping", "rest_length", "upper_cutoff", "plasticity")
+    }
+    # 10 and 0 are the defaults of damping and cutoff here too; the rest length's is the start length
+    assert held == {
+        "stiffness": ["750"],
+        "damping": [],
+        "rest_length": ["0"],
+        "upper_cutoff": [],
+        "plasticity": ["0.125"],
+    }
+
+
+def test_typed_lists_and_vectors_go_into_parameters_with_their_branches() -> None:
+    d = Kangaroo("lists", "Lists", "More than one value.")
+    line = d.native("Line", start_point=d.point(0, 0, 0), end_point=d.point(1, 0, 0))
+    springs = d.springs(line)
+    store(springs.inputs["stiffness"][1], [5.0, 7.5], "{0;2}")
+    d.kangaroo(
+        "UnaryForce",
+        (("Point", None), ("Force", (0.0, 50.0, 0.0))),
+        ["UnaryForce"],
+        classic=True,
+        point=d.point(0, 0, 0),
+    )
+    after, _ = translated(d)
+    [numbers] = behind(after, the(after, "Springs"), "stiffness")
+    [vector] = behind(after, the(after, "UForce"), "force")
+    assert (numbers.guid, vector.guid) == (PARAMETERS["Number"], PARAMETERS["Vector"])
+    data = numbers.container.chunk("PersistentData")  # type: ignore[union-attr]
+    assert data == springs.inputs["stiffness"][1].chunk("PersistentData") and data is not None
+    assert data.chunks[0].value("Path") == "{0;2}"
+
+
+def test_a_negative_cutoff_of_old_springs_is_a_lower_one() -> None:
+    d = Kangaroo("cutoff", "Cutoff", "One signed cutoff.")
+    old = tuple((n, v) for n, v in SPRINGS if "Cutoff" not in n) + (("Cutoff", -2.5),)
+    line = d.native("Line", start_point=d.point(0, 0, 0), end_point=d.point(1, 0, 0))
+    d.kangaroo(
+        "SpringsFromLine",
+        old,
+        ["Springs"],
+        guid=UUID("3ba652e9-f566-441d-8d04-02151edf69b4"),
+        classic=True,
+        connection=line,
+    )
+    after, _ = translated(d)
+    [held] = behind(after, the(after, "Springs"), "lower_cutoff")
+    assert held.container is not None and held.container.value("UserText") == "2.5"
+    assert behind(after, the(after, "Springs"), "upper_cutoff") == []
+
+
+def test_settings_keep_the_floor_and_what_has_no_counterpart_is_told_only_where_someone_changed_it() -> None:
+    d = Kangaroo("settings", "Settings", "Floor and friction.")
+    made = d.kangaroo("Kangaroo Settings", SETTINGS, ["Settings"], classic=True)
+    d.kangaroo("KangarooPhysics", PHYSICS, ["Out"], classic=True, settings=made)
+    after, report = translated(d)
+    assert report.values == []
+    [floor] = behind(after, the(after, "Settings"), "floor")
+    assert floor.guid == BOOLEAN_TOGGLE and floor.container is not None and floor.container.value("ToggleValue") is True
+    store(made.inputs["staticfriction"][1], [0.25])
+    _, report = translated(d)
+    assert [where for where, _ in report.values] == ["Kangaroo Settings, StaticFriction = 0.25"]
+
+
+def test_wires_into_inputs_without_counterpart_are_listed_with_the_reason() -> None:
+    _, report = translated(tent())
+    assert [wire for wire, _ in report.lost] == ["Threshold > Solver.Threshold", "On > Solver.On"]
+    assert "residual" in report.lost[0][1] and "reset is False" in report.lost[1][1]
+    assert not report.complete
+
+
+def test_goals_in_one_stream_are_sorted_and_show_becomes_a_parameter() -> None:
+    after, report = translated(tent())
+    engine = the(after, "Engine")
+    assert [behind(after, engine, name)[0].label for name in ("forces", "anchors", "geometry")] == ["Sort"] * 3
+    assert [found.label for found in behind(after, the(after, "Sort"), "goals")] == ["Goals"]
+    assert the(after, "Show").guid == PARAMETERS["Data"]
+    assert len(wires(after)) > report.kept
+    [settings_] = behind(after, engine, "settings")
+    [solver] = behind(after, settings_, "solver")
+    [merging] = behind(after, settings_, "tolerance")  # Kangaroo 2's 0.01 is not ours
+    assert [p.container.value("UserText") for p in (solver, merging) if p.container] == ["momentum", "0.01"]
+
+
+def test_a_goal_without_counterpart_stays_disabled_with_its_wires_and_a_mesh_tool_goes_on_working() -> None:
+    d = Kangaroo("stays", "Stays", "Planarize and Refine.")
+    mesh = d.parameter("Mesh", "Mesh")
+    refined = d.kangaroo("Refine", (("M", None), ("L", 1)), ["M"], m=mesh)
+    goal = d.kangaroo("Planarize", (("M", None), ("Strength", 1.0)), ["P"], m=refined)
+    d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goal)
+    after, report = translated(d)
+    assert [what for what, _ in report.stays] == ["Refine", "Planarize"] and report.lost == []
+    assert "comes with Rhino" in report.stays[0][1] and "disabled" in report.stays[1][1]
+    assert [
+        bool(p.container.value("Locked")) for p in (the(after, "Refine"), the(after, "Planarize")) if p.container
+    ] == [False, True]
+    names = [c.value("Name") for c in after.chunk("Definition").chunk("GHALibraries").chunks]  # type: ignore[union-attr]
+    assert names == ["RhinoCodePluginGH", "Kangaroo2 Components"]
+
+
+@pytest.mark.parametrize(
+    "known", sorted({*COMPONENTS.values(), *(Known("classic", n) for n in CLASSIC)}, key=str), ids=str
+)
+def test_every_component_of_kangaroo_is_translated_or_named(known: Known) -> None:
+    guids = [guid for guid, one in COMPONENTS.items() if one == known] or [UUID(int=7)]
+    for guid in guids:
+        d = Kangaroo(f"one {known.name}", "One", "One component of Kangaroo.")
+        names = [name for piece in swap_of(known).pieces for name in piece.inputs] if swap_of(known) else ["P"]  # type: ignore[union-attr]
+        source = d.parameter("Data", "Source")
+        inputs_ = [(name, None) for name in dict.fromkeys([*names, "Another"])]
+        d.kangaroo(
+            known.name, inputs_, ["Out"], guid=guid, classic=known.generation == "classic",
+            **{name.lower(): source for name, _ in inputs_},
+        )  # fmt: skip
+        after, report = translated(d)
+        text = report.text()
+        assert known.name in text
+        if report.swapped:
+            assert remaining(after) == 0 and report.lost and "Another" in text
+        else:
+            assert remaining(after) == 1 and report.kept == report.wires
+            [(_, why)] = report.stays
+            assert ("comes with Rhino" in why) == is_tool(known)
+
+
+def test_every_input_of_the_table_is_one_of_a_component_that_there_is() -> None:
+    from hookean_canvas import bundles
+    from hookean_canvas.kangaroo_make import recipe
+
+    for name, swap in [*CLASSIC.items(), *SECOND.items()]:
+        for piece in swap.pieces:
+            if piece.bundle == "*geometry" or not piece.bundle.startswith("*") and piece.bundle not in bundles.names():
+                continue
+            made = recipe(piece.bundle)
+            ours = {slot.name.strip("_") for slot in made.inputs}
+            assert {*piece.inputs.values(), *piece.values} <= ours, (name, piece)
+            assert {*piece.outputs, *piece.feeds} <= {slot.name for slot in made.outputs}, (name, piece)
+
+
+def test_clusters_and_scripts_that_use_kangaroo_are_named() -> None:
+    d = Kangaroo("inside", "Inside", "Kangaroo in a cluster and in a script.")
+    d.script("Scripted", "import clr\nclr.AddReference('KangarooSolver')\nx = 1", {}, ["x"])
+    d.script("Plain", "x = 1  # no kangaroo", {}, ["x"])
+    root = d.archive()
+    inner = Kangaroo("inner", "Inner", "In a cluster.")
+    inner.kangaroo("Smooth", (("M", None),), ["P"])
+    objects = root.chunk("Definition").chunk("DefinitionObjects")  # type: ignore[union-attr]
+    assert objects is not None
+    for label, document in (("Bad", archive.to_bytes(inner.archive())), ("Shut", b"locked")):
+        thing = (
+            objects.add("Object", len(objects.chunks))
+            .put("GUID", Type.GUID, CLUSTER)
+            .put("Name", Type.STRING, "Cluster")
+        )
+        container = thing.add("Container").put("NickName", Type.STRING, label).put("Name", Type.STRING, "Cluster")
+        container.put("InstanceGuid", Type.GUID, UUID(int=len(objects.chunks))).put(
+            "ClusterDocument", Type.BYTEARRAY, document
+        )
+    objects.put("ObjectCount", Type.INT32, len(objects.chunks))
+    _, report = kangaroo.translate(root)
+    assert [what for what, _ in report.stays] == ["Scripted", "Bad", "Shut"]
+    told = [why for _, why in report.stays]
+    assert "uses Kangaroo's solver" in told[0] and "holds Smooth" in told[1] and "cannot be looked into" in told[2]
+
+
+def test_encoded_scripts_are_found_wherever_the_name_starts() -> None:
+    from hookean_canvas.kangaroo_guids import _ENCODED
+
+    for before in ("", "x", "xx", "xxx"):
+        text = base64.b64encode(f"{before}KangarooSolver # more".encode()).decode()
+        assert any(code in text for code in _ENCODED)
+
+
+def test_members_and_wires_that_were_never_there_are_told_and_go() -> None:
+    d = cable()
+    before = d.archive()
+    group = next(part for part in parts(before) if part.name == "Group")
+    count = group.container.value("ID_Count")  # type: ignore[union-attr]
+    group.container.put("ID", Type.GUID, UUID(int=3), count).put("ID_Count", Type.INT32, count + 1)  # type: ignore[union-attr]
+    gone = the(before, "particles").container
+    assert gone is not None
+    gone.put("Source", Type.GUID, UUID(int=4), 1).put("SourceCount", Type.INT32, 2)
+    after, report = kangaroo.translate(before)
+    assert lint.faults(after) == []
+    assert "1 members of groups" in report.text() and "led nowhere before" in report.text()
+
+
+def test_a_length_wired_from_the_springs_own_lines_is_measured() -> None:
+    d = Kangaroo("measured", "Measured", "Rest length by a line.")
+    line = d.native("Line", start_point=d.point(0, 0, 0), end_point=d.point(1, 0, 0))
+    d.springs(line, rest_length=line)
+    after, report = translated(d)
+    [length] = behind(after, the(after, "Springs"), "rest_length")
+    assert length.name == "Length" and report.kept == report.wires
+
+
+def test_the_report_stands_in_the_file_and_the_same_input_gives_the_same_bytes() -> None:
+    after, report = translated(tent())
+    note = the(after, "Translated for hookean")
+    assert note.guid == PANEL and note.container is not None
+    words = " ".join(note.container.value("UserText").split())
+    assert " ".join(report.text().split()) == words
+    assert archive.to_xml(after) == archive.to_xml(kangaroo.translate(tent().archive(), "sample.gh")[0])
+
+
+def test_a_translated_definition_translates_to_itself_with_nothing_to_do() -> None:
+    after, _ = translated(cable())
+    again, report = kangaroo.translate(after)
+    assert report.kangaroo == 0 and report.complete and wires(again) == wires(after)
+
+
+GOALS: list[tuple[str, str, str]] = [
+    ("Length(Line)", "Line Length Strength", "S"),
+    ("Show", "G", "G"),
+    ("Planarize", "M Strength", "P"),
+    ("AnchorXYZ", "P X Y Z Strength", "A"),
+    ("Anchor", "P T Strength", "A"),
+    ("Load", "P FV W", "U"),
+    ("Rod", "Polyline LengthFactor AngleFactor AxialStrength BendStrength", "R"),
+    ("Grab", "On", "G"),
+    ("Angle", "LineA LineB RestAngle Strength", "A"),
+    ("VertexLoads", "Mesh Strength", "L"),
+    ("Solver", "GoalObjects Reset Threshold Tolerance On", "O"),
+    ("ZombieSolver", "GoalObjects Threshold Tolerance MaxIterations", "O"),
+    ("Refine", "M L", "M"),
+]
+
+
+@settings(max_examples=400 if SOAK else 40, deadline=None)
+@given(st.data())
+def test_no_wire_is_lost_unseen_however_things_are_wired(data: st.DataObject) -> None:
+    d = Kangaroo("random", "Random", "Any components, any wires.")
+    made: list[Any] = [d.parameter("Data", "Source")]
+    for number in range(data.draw(st.integers(1, 8))):
+        name, names, output = data.draw(st.sampled_from(GOALS))
+        typed = [(n, data.draw(st.sampled_from([None, True, 2.5, 7]))) for n in names.split()]
+        wired = {n.lower(): data.draw(st.lists(st.sampled_from(made), max_size=2, unique_by=id)) for n in names.split()}
+        made.append(d.kangaroo(name, typed, [output], **{n: w for n, w in wired.items() if w}))
+        if data.draw(st.booleans()):
+            d.panel(f"panel {number}", made[-1])
+    translated(d)
+
+
+def test_the_command_writes_beside_the_file_and_says_what_it_did(tmp_path: Path) -> None:
+    source = tmp_path / "tent.gh"
+    tent().save(source)
+    shell = CliRunner()
+    found = shell.invoke(app, ["import", str(source)])
+    assert found.exit_code == 0 and "6 of Kangaroo's" not in found.stdout
+    assert "Wires that are gone" in found.stdout and found.stdout.endswith(
+        f"written: {tmp_path / 'tent-hookean.ghx'}\n"
+    )
+    assert lint.faults(archive.read(tmp_path / "tent-hookean.ghx")) == []
+    assert shell.invoke(app, ["import", str(source), "-o", str(tmp_path / "other.gh")]).exit_code == 0
+    assert shell.invoke(app, ["check", str(tmp_path / "other.gh")]).exit_code == 0
+
+
+def test_bad_files_are_refused_in_one_sentence(tmp_path: Path) -> None:
+    source = tmp_path / "star.ghx"
+    star().save(source)
+    (tmp_path / "words.gh").write_text("no archive")
+    archive.write(Chunk("Root"), tmp_path / "empty.ghx")
+    shell = CliRunner()
+    for words, said in [
+        ([str(source), "-o", str(source)], "is the file to be translated itself"),
+        ([str(source), "-o", str(tmp_path / "x.txt")], "end in .gh"),
+        ([str(tmp_path / "none.gh")], "cannot be read"),
+        ([str(tmp_path / "words.gh")], "words.gh"),
+        ([str(tmp_path / "empty.ghx")], "no Grasshopper definition"),
+    ]:
+        found = shell.invoke(app, ["import", *words])
+        assert found.exit_code == 2 and said in found.stderr and found.stderr.count("\n") == 1

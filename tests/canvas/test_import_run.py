@@ -1,0 +1,150 @@
+"""Translated definitions run without Rhino, against a live server: the shapes that the originals have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+import numpy as np
+import pytest
+
+from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, cable, star, tent
+from hookean import Scene, relax
+from hookean_canvas import graph, kangaroo
+from hookean_canvas.evaluate import Canvas, Outcome
+from serving import Home
+
+SOFT = UUID("3c30b1a1-4473-4ad4-a700-ea9770726c03")
+"""The Anchor with a target."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
+    """A server that components find."""
+    found = Home(tmp_path_factory.mktemp("import"))
+    found.serve()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("HOOKEAN_STATE", str(found.folder))
+        yield found
+    found.end()
+
+
+def ran(d: Kangaroo, tmp_path: Path) -> Outcome:
+    """A translation, run until it rests; no component may complain."""
+    root, _ = kangaroo.translate(d.archive())
+    found = graph.of(root)
+    found.file = tmp_path / f"{d.key}.ghx"
+    outcome = Canvas(found).run(60.0)
+    assert [m for m in outcome.messages if m.level == "error"] == [], outcome.messages
+    assert outcome.at_rest
+    return outcome
+
+
+def places(outcome: Outcome, panel: str = "particles") -> Any:
+    """Points that a panel shows, in their order."""
+    return np.array([[p.X, p.Y, p.Z] for p in outcome.panels[panel].values_in_order()])
+
+
+def test_a_translated_classic_cable_hangs_as_the_same_scene_does(tmp_path: Path) -> None:
+    x = np.arange(11.0)[:, None] * [1.0, 0.0, 0.0]
+    scene = Scene.read(
+        {
+            "particles": x.tolist(),
+            "forces": [
+                {"kind": "springs", "particles": [[i, i + 1] for i in range(10)], "rest_length": 1.0},
+                {"kind": "unary", "particles": list(range(1, 10)), "vector": [0, 0, -10]},
+            ],
+            "anchors": [{"particles": [0, 10]}],
+            "settings": {"tolerance": 1e-9},
+        }
+    )
+    expected = relax(scene).particles
+    outcome = ran(cable(), tmp_path)
+    np.testing.assert_allclose(places(outcome), expected, atol=1e-3)
+    assert expected[5, 2] < -0.5
+    assert len(outcome.panels["geometry"].values_in_order()) == 10
+
+
+def test_a_translated_star_comes_to_the_point_that_kangaroo_2_is_published_with(tmp_path: Path) -> None:
+    """github.com/oberbichler/kangaroo.py, example_01.json: Kangaroo 2's own answer."""
+    expected = [
+        [0.204663774296581, 0.709309307605647, 0.0],
+        [-0.999574237567416, 0.999897261645, 0.0],
+        [0.999523084414622, 0.00042533038873443, 0.0],
+        [5.11531555739133e-05, 1.99967740797591, 0.0],
+    ]
+    outcome = ran(star(), tmp_path)
+    np.testing.assert_allclose(places(outcome), expected, atol=2e-6)
+    assert len(outcome.panels["shown"].values_in_order()) == 3  # nothing is shown, so the goals' lines are
+
+
+def test_a_stream_of_goals_anchors_and_shown_lines_is_sorted_and_runs(tmp_path: Path) -> None:
+    """Two springs of 1 m and 100 N/m with 10 N between them: 2 k (l - 1) sin = 10 with l = sqrt(1 + z^2)."""
+    from scipy.optimize import brentq
+
+    z = brentq(lambda z: 200.0 * (np.hypot(1, z) - 1) * z / np.hypot(1, z) - 10.0, 0.01, 2)
+    outcome = ran(tent(), tmp_path)
+    found = places(outcome)
+    assert sorted(np.round(found[:, 2], 4).tolist()) == pytest.approx([0.0, 0.0, z], abs=1e-3)
+    assert len(outcome.panels["shown"].values_in_order()) == 2
+
+
+def test_a_rod_and_pairs_of_lines_bend_at_the_same_corners(tmp_path: Path) -> None:
+    """A straight rod held by three soft anchors, its middle lifted: both ways to say it give one shape."""
+    points = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
+    shapes = []
+    for rod in (True, False):
+        d = Kangaroo(f"rod {rod}", "Rod", "A bent rod.")
+        ends = [d.point(*p) for p in points]
+        lines = [d.native("Line", start_point=a, end_point=b) for a, b in pairwise(ends)]
+        goals = []
+        if rod:
+            polyline = d.script(
+                "Polyline",
+                "import Rhino.Geometry as rg\nc = rg.Polyline(3)\nfor p in points: c.Add(p.X, p.Y, p.Z)\n",
+                {"points": ends},
+                ["c"],
+                lists=["points"],
+            )
+            typed = (
+                ("Polyline", None),
+                ("LengthFactor", 1.0),
+                ("AngleFactor", 1.0),
+                ("AxialStrength", 50.0),
+                ("BendStrength", 4.0),
+            )
+            goals.append(d.kangaroo("Rod", typed, ["R"], polyline=polyline))
+        else:
+            springs = (("Line", None), ("Length", None), ("Strength", 50.0))
+            goals.append(d.kangaroo("Length(Line)", springs, ["S"], line=lines))
+            typed = (("LineA", None), ("LineB", None), ("RestAngle", None), ("Strength", 4.0))
+            goals.append(d.kangaroo("Angle", typed, ["A"], linea=lines[0], lineb=lines[1]))
+        soft = tuple((n, 100.0 if n == "Strength" else v) for n, v in ANCHOR)
+        goals.append(d.kangaroo("Anchor", soft, ["A"], guid=SOFT, p=[ends[0], ends[2]]))
+        load = (("P", None), ("FV", (0.0, 0.0, 5.0)))
+        goals.append(d.kangaroo("Load", load, ["U"], p=ends[1]))
+        solver = d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goals, reset=d.toggle("Reset", False))
+        d.panel("particles", solver["V"])
+        shapes.append(places(ran(d, tmp_path)))
+    np.testing.assert_allclose(shapes[0], shapes[1], atol=1e-6)
+    assert shapes[0][1, 2] > 0.1
+
+
+def test_vertex_loads_and_lengths_between_points_act_where_kangaroo_has_them(tmp_path: Path) -> None:
+    """A spring of 10 N/m between points, held above by a soft anchor of 10^4 N/m: 5 N stretch it by 0.5 m."""
+    d = Kangaroo("points", "Points", "Length(Pts).")
+    top, low = d.point(0, 0, 1), d.point(0, 0, 0)
+    lengths = (("Start", None), ("End", None), ("Length", None), ("Strength", 10.0))
+    goals = [
+        d.kangaroo("Length(Pts)", lengths, ["S"], start=top, end=low),
+        d.kangaroo("Anchor", ANCHOR, ["A"], guid=SOFT, p=top),
+        d.kangaroo("Load", (("P", None), ("FV", (0.0, 0.0, -5.0))), ["U"], p=low),
+    ]
+    solver = d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goals, reset=d.toggle("Reset", False))
+    d.panel("particles", solver["V"])
+    found = places(ran(d, tmp_path))
+    np.testing.assert_allclose(found[:, 2], [1 - 5e-4, -0.5 - 5e-4], atol=1e-5)
+    assert LENGTH[2][1] == 10.0
