@@ -208,14 +208,10 @@ def interpolate(pen: Pen) -> None:
 
 
 def sweep(pen: Pen) -> None:
-    rail = bent((6.0, 17.5), (8.0, 5.0), (19.5, 5.0))
-    outer = [(x - 2.2, y - 2.6) for x, y in rail]
-    inner = [(x + 2.2, y + 4.2) for x, y in rail]
-    pen.area(*outer, *reversed(inner), colour=(38, 118, 184, 80))
-    pen.line(*outer, colour=BLUE, width=1.2)
-    pen.line(*inner, colour=BLUE, width=1.2)
-    for i in (0, 12, 24):
-        pen.line(outer[i], rail[i], inner[i], colour=ORANGE if i == 0 else BLUE, width=2.2 if i == 0 else 1.1)
+    for sag, colour in ((5.0, BLUE), (19.0, PALE), (33.0, ORANGE)):
+        pen.line(*bent((3.0, 4.5), (12.0, 4.5 + sag), (21.0, 4.5)), colour=colour, width=1.8)
+    pen.dot((3.0, 4.5), 2.2)
+    pen.dot((21.0, 4.5), 2.2)
 
 
 def rhino_file(pen: Pen) -> None:

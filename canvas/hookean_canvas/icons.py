@@ -133,11 +133,12 @@ def png(name: str, letters: str = "") -> bytes:
 
 
 def same_picture(one: bytes, other: bytes) -> bool:
-    """Whether two PNGs show the same, give or take what two versions of Pillow may differ by in an edge."""
+    """Whether two PNGs show the same, give or take what two versions of Pillow may differ by in some edges."""
     images = [Image.open(io.BytesIO(data)).convert("RGBA") for data in (one, other)]
     if images[0].size != images[1].size:
         return False
-    return all(abs(a - b) <= 24 for a, b in zip(images[0].tobytes(), images[1].tobytes(), strict=True))
+    values = [image.tobytes() for image in images]
+    return sum(abs(a - b) > 24 for a, b in zip(*values, strict=True)) <= len(values[0]) // 100
 
 
 def sheet(icons: Sequence[tuple[str, bytes]], columns: int = 8, zoom: int = 4) -> Image.Image:
