@@ -303,6 +303,47 @@ class Color(object):
         return cls(*((255,) + parts if len(parts) == 3 else parts))
 
 
+class Plane(object):
+    """An origin and a normal."""
+
+    def __init__(self, origin, normal):
+        self.Origin, self.Normal = origin, normal
+
+
+class PointStyle(object):
+    """How a point is drawn."""
+
+    X = "X"
+
+
+class CustomDisplay(object):
+    """Rhino.Display.CustomDisplay: what is drawn, in lists."""
+
+    def __init__(self, enable):
+        self.Enabled = enable
+        self.Clear()
+
+    def Clear(self):
+        """Take all away."""
+        self.lines, self.points, self.texts = [], [], []
+
+    def Dispose(self):
+        """The end of it."""
+        self.Clear()
+
+    def AddLine(self, line, color, thickness):
+        """A line."""
+        self.lines.append((line, color))
+
+    def AddPoint(self, point, color, style, radius):
+        """A point."""
+        self.points.append((point, color))
+
+    def AddText(self, text, plane, size, color):
+        """A text in a plane."""
+        self.texts.append((text, color))
+
+
 # Grasshopper
 
 
@@ -463,15 +504,15 @@ class Environment(object):
 
 
 GEOMETRY = (Point3d, Vector3d, Interval, Line, Polyline, PolylineCurve, LineCurve, ControlPoint, NurbsCurve,
-            NurbsSurface, MeshFace, Mesh)  # fmt: skip
+            NurbsSurface, MeshFace, Mesh, Plane)  # fmt: skip
 
 
 class Canvas(object):
     """The modules that component code imports, with the classes of this file or another module as Rhino.Geometry."""
 
     def __init__(self, geometry=None):
-        names = ("Rhino", "Rhino.Geometry", "Grasshopper", "Grasshopper.Kernel", "Grasshopper.Kernel.Data", "System",
-                 "System.Drawing")  # fmt: skip
+        names = ("Rhino", "Rhino.Geometry", "Rhino.Display", "Grasshopper", "Grasshopper.Kernel",
+                 "Grasshopper.Kernel.Data", "System", "System.Drawing")  # fmt: skip
         self.modules = {name: types.ModuleType(str(name)) for name in names}
         self._before = {}
         if geometry is not None:
@@ -485,6 +526,10 @@ class Canvas(object):
         self.modules["System"].Object, self.modules["System"].Guid = object, uuid.UUID
         self.modules["System"].Exception = Exception
         self.modules["System.Drawing"].Color = Color
+        self.modules["Rhino.Display"].CustomDisplay, self.modules["Rhino.Display"].PointStyle = (
+            CustomDisplay,
+            PointStyle,
+        )
         for name, module in self.modules.items():
             above, _, last = name.rpartition(".")
             if above:

@@ -28,7 +28,7 @@ class Player(object):
         self._branch, self._met, self._trouble = None, False, None
         self._heard, self._read, self._cost = (-1, link.now()), 0.0, 0.0
         if before is not None:
-            self._branch, self.anchors, self._met = before.key, dict(before.anchors), True
+            self._branch, self.anchors, self._met = before, dict(before.anchors), True
             before.leave()
 
     def look(self):
@@ -185,8 +185,10 @@ class Player(object):
 
     def _go_on_from(self, session):
         try:
-            path = "/v1/sessions/%s/branches" % self._branch
+            path = "/v1/sessions/%s/branches" % self._branch.key
             session.client.post(path, None, {"to": self.key, "label": self.title[:200]})
+            for name in ("sent", "form", "where", "topology"):
+                setattr(self, name, getattr(self._branch, name))
         except Problem as problem:
             if link.wants_server(problem):
                 raise  # else there is nothing to go on from, or it was done before
