@@ -21,7 +21,17 @@ _LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring 
 _TIME = item(
     "Time", "t", "Number", "Time since the start [s]; a frame every 0.05 s or 0.2 s", minimum=0.0, maximum=120.0
 )
-_SHAPE = (scenes.PARTICLES, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, _LENGTH, _SAG, _LARGEST, scenes.STATUS)
+_SHAPE = (
+    scenes.PARTICLES,
+    scenes.SPRINGS,
+    scenes.FORCES,
+    scenes.REACTIONS,
+    scenes.SUPPORTS,
+    _LENGTH,
+    _SAG,
+    _LARGEST,
+    scenes.STATUS,
+)
 _ENDS = optional(
     Parameter("Anchors", "A", "Point", "Where it is held: first, last and those between; none: (0, 0, 0), (10, 0, 0)")
 )

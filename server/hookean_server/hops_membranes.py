@@ -23,8 +23,8 @@ _DEEPEST = item("Deepest", "Dm", "Number", "How far the lowest vertex lies below
 _LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring [N]")
 _LEAST = item("Least force", "Fn", "Number", "The smallest force of a spring [N]")
 _LENGTH = item("Length", "L", "Number", "Length of all springs [model unit]")
-_SHAPE = (scenes.MESH, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, _SAG, _DEEPEST, _LARGEST, _LEAST, _LENGTH,
-          scenes.STATUS)  # fmt: skip
+_SHAPE = (scenes.MESH, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, scenes.SUPPORTS, _SAG, _DEEPEST, _LARGEST,
+          _LEAST, _LENGTH, scenes.STATUS)  # fmt: skip
 
 
 def _square(inputs: Inputs) -> Mesh:
@@ -77,6 +77,7 @@ def _membrane(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
         "particles": start,
         "forces": [springs, scenes.particles_of(start, inputs.one("Load"))],
         "anchors": held,
+        "settings": {"tolerance": 1e-12},
     }
     return _shape(scenes.relaxed(inputs, scene, cancelled), mesh, "edges")
 

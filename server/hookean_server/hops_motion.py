@@ -155,7 +155,7 @@ FUNCTIONS: dict[str, Function] = {
             scenes.MESH,
             scenes.SPRINGS,
             scenes.FORCES,
-            scenes.REACTIONS,
+            scenes.REACTIONS, scenes.SUPPORTS,
             item("Height of the middle", "H", "Number", "Of its middle vertex [model unit]"),
             item("Largest edge force", "Fe", "Number", "The largest force in a cable [N]"),
             item("Load", "P", "Number", "Load of the wind on each particle [N]"),

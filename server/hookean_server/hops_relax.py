@@ -75,7 +75,7 @@ _FORCED = (
     scenes.stiffness(1000.0),
     replace(scenes.rest_factor(1.0), maximum=None),
 )
-_FOUND = (scenes.FORCES, scenes.REACTIONS, scenes.STATUS)
+_FOUND = (scenes.FORCES, scenes.REACTIONS, scenes.SUPPORTS, scenes.STATUS)
 
 FUNCTIONS: dict[str, Function] = {
     "relax": Function(

@@ -20,6 +20,7 @@ SPRINGS = Parameter("Springs", "L", "Line", "Springs in equilibrium, in the orde
 MESH = item("Mesh", "M", "Mesh", "The mesh in equilibrium")
 FORCES = Parameter("Forces", "F", "Number", "Force of every spring [N], tension positive")
 REACTIONS = Parameter("Reactions", "Re", "Vector", "Force of every anchor on its particle [N]")
+SUPPORTS = Parameter("Supports", "Su", "Point", "Where the reactions act, in their order [model unit]")
 STATUS = item("Status", "S", "Text", "converged, or how the run ended")
 
 
@@ -101,6 +102,7 @@ def common(result: Any, *names: str) -> dict[str, Any]:
         "Springs": np.concatenate(springs),
         "Forces": np.concatenate([found["force"] for found in columns]),
         "Reactions": result.reactions["force"],
+        "Supports": result.particles[result.reactions["particles"]],
         "Status": str(result.status),
     }
 

@@ -28,7 +28,7 @@ def _in_kilonewtons(parameter: Parameter) -> Parameter:
 _FORCES, _REACTIONS = _in_kilonewtons(scenes.FORCES), _in_kilonewtons(scenes.REACTIONS)
 _LARGEST = item("Largest force", "Fm", "Number", "The largest force, tension positive [kN]")
 _LEAST = item("Least force", "Fn", "Number", "The smallest force, tension positive [kN]")
-_SHAPE = (scenes.MESH, scenes.SPRINGS, _FORCES, _REACTIONS, _LARGEST, _LEAST, scenes.STATUS)
+_SHAPE = (scenes.MESH, scenes.SPRINGS, _FORCES, _REACTIONS, scenes.SUPPORTS, _LARGEST, _LEAST, scenes.STATUS)
 _OVER = item("Upside down", "U", "Boolean", "True: turned over, every force reversed", False)
 _UNITS = {"force": "kN"}
 
@@ -235,7 +235,7 @@ FUNCTIONS: dict[str, Function] = {
             _in_kilonewtons(scenes.stiffness(1e7)),
             _OVER,
         ),
-        (scenes.PARTICLES, scenes.SPRINGS, _FORCES, _REACTIONS,
+        (scenes.PARTICLES, scenes.SPRINGS, _FORCES, _REACTIONS, scenes.SUPPORTS,
          item("Height", "H", "Number", "Sag of the chain, or rise of the arch [model unit]"),
          item("Pull", "T", "Number", "Horizontal pull of the chain, or thrust of the arch [kN]"),
          _LARGEST, _LEAST, scenes.STATUS),

@@ -137,7 +137,7 @@ class Problem(Exception):
 
 def is_function(path: str) -> bool:
     """Whether an address is a name at the root, as Hops' functions have; whoever asks for one reads as Hops does."""
-    return re.fullmatch("/[A-Za-z][A-Za-z_]*", path) is not None and path != "/metrics"
+    return re.fullmatch("/[A-Za-z0-9_-]+", path) is not None and path not in ("/metrics", "/v1")
 
 
 def not_stored(error: BaseException) -> Problem:
