@@ -10,7 +10,7 @@ from typing import Any
 
 from hookean.errors import InputError
 
-from .archive_chunk import DEEPEST, MOST_BYTES, MOST_PARTS, Chunk, Item, Type, labelled, sort_key
+from .archive_chunk import DEEPEST, MOST_BYTES, MOST_PARTS, Chunk, Item, Type, labelled, placed, sort_key
 
 SCALARS = {
     Type.BYTE: struct.Struct("<B"),
@@ -92,14 +92,14 @@ def to_plain(chunk: Chunk) -> bytes:
 
 def _write_chunk(chunk: Chunk, out: list[bytes], place: tuple[str, ...]) -> None:
     if len(place) > DEEPEST:
-        raise InputError("/".join(place[:3]) + "/…", f"chunks lie more than {DEEPEST} deep; GH_IO nests them by hand.")
+        raise InputError(placed(place[:3]) + "/…", f"chunks lie more than {DEEPEST} deep; GH_IO nests them by hand.")
     counts = _INT32.pack(len(chunk.items)) + _INT32.pack(len(chunk.chunks))
     out.append(_string(chunk.name, place) + _index(chunk.index, place) + counts)
     before = None
     for item in sorted(chunk.items, key=sort_key):
         here = (*place, labelled(item.name, item.index))
         if (item.name, item.index) == before:
-            raise InputError("/".join(here), "stands twice in its chunk; names are unique together with their index.")
+            raise InputError(placed(here), "stands twice in its chunk; names are unique together with their index.")
         before = item.name, item.index
         out.append(_string(item.name, here) + _index(item.index, here) + _INT32.pack(item.type) + _value(item, here))
     for inner in chunk.chunks:
@@ -110,9 +110,7 @@ def _string(text: str, place: tuple[str, ...]) -> bytes:
     try:
         data = text.encode()
     except UnicodeEncodeError:
-        raise InputError(
-            "/".join(place), f"is {text!r}, half a character (a lone surrogate); write it whole."
-        ) from None
+        raise InputError(placed(place), f"is {text!r}, half a character (a lone surrogate); write it whole.") from None
     length, prefix = len(data), bytearray()
     while length > 127:
         prefix.append(length & 127 | 128)
@@ -124,7 +122,7 @@ def _index(index: int, place: tuple[str, ...]) -> bytes:
     try:
         return _INT32.pack(index)
     except struct.error:
-        raise InputError("/".join(place), f"has the index {_short(index)}, which is no 32-bit whole number.") from None
+        raise InputError(placed(place), f"has the index {_short(index)}, which is no 32-bit whole number.") from None
 
 
 def _value(item: Item, place: tuple[str, ...]) -> bytes:
@@ -133,7 +131,7 @@ def _value(item: Item, place: tuple[str, ...]) -> bytes:
     try:
         return pack(item.type, item.value)
     except (struct.error, TypeError, ValueError, OverflowError, AttributeError):
-        raise InputError("/".join(place), f"is {_short(item.value)}, which is no {Type(item.type).label}.") from None
+        raise InputError(placed(place), f"is {_short(item.value)}, which is no {Type(item.type).label}.") from None
 
 
 def pack(type: Type, value: Any) -> bytes:
@@ -289,5 +287,6 @@ class _Reader:
         return self.data[start:end]
 
     def _damage(self, place: tuple[str, ...], what: str) -> InputError:
-        where = "/".join(place) or "the start"
-        return InputError(self.name, f"is damaged at {where}, byte {self.position}: {what}; save or copy it again.")
+        return InputError(
+            self.name, f"is damaged at {placed(place)}, byte {self.position}: {what}; save or copy it again."
+        )

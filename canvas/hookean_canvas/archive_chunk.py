@@ -122,6 +122,12 @@ def labelled(name: str, index: int) -> str:
     return name if index == -1 else f"{name}[{index}]"
 
 
+def placed(place: tuple[str, ...]) -> str:
+    """A path of labels as an error names it: long names cut, and what cannot be printed left out."""
+    cut = (label if len(label) <= 60 else label[:57] + "..." for label in place)
+    return "".join(letter if letter.isprintable() else "?" for letter in "/".join(cut)) or "the start"
+
+
 def sort_key(item: Item) -> tuple[bytes, int]:
     """The order of items in an archive: by name in UTF-16 code units (.NET's ordinal order), then by index."""
     return item.name.encode("utf-16-be", "surrogatepass"), item.index

@@ -16,7 +16,7 @@ import numpy
 from hookean.errors import InputError
 
 from .archive_binary import SCALARS, TUPLES, pack
-from .archive_chunk import DEEPEST, MOST_BYTES, MOST_PARTS, Chunk, Item, Type, labelled, sort_key
+from .archive_chunk import DEEPEST, MOST_BYTES, MOST_PARTS, Chunk, Item, Type, labelled, placed, sort_key
 
 _CORNERS = {  # the elements of a value that has several numbers
     Type.DRAWING_POINT: "X Y",
@@ -70,7 +70,7 @@ def of_xml(data: bytes | str, name: str = "archive", limit: int = MOST_BYTES) ->
 
 def _write_chunk(chunk: Chunk, out: list[str], place: tuple[str, ...], tag: str = "chunk") -> None:
     if len(place) > DEEPEST:
-        raise InputError("/".join(place[:3]) + "/…", f"chunks lie more than {DEEPEST} deep; write it flatter.")
+        raise InputError(placed(place[:3]) + "/…", f"chunks lie more than {DEEPEST} deep; write it flatter.")
     indent = "  " * (2 * len(place) - 2)
     out.append(f"{indent}<{tag} name={_attribute(chunk.name, place)}{_index(chunk.index)}>")
     if chunk.items:
@@ -90,7 +90,7 @@ def _write_items(chunk: Chunk, out: list[str], place: tuple[str, ...], indent: s
     for item in sorted(chunk.items, key=sort_key):
         here = (*place, labelled(item.name, item.index))
         if (item.name, item.index) == before:
-            raise InputError("/".join(here), "stands twice in its chunk; names are unique together with their index.")
+            raise InputError(placed(here), "stands twice in its chunk; names are unique together with their index.")
         before = item.name, item.index
         name = _attribute(item.name, here) + _index(item.index)
         kind = f'type_name="{item.type.label}" type_code="{int(item.type)}"'
@@ -110,7 +110,7 @@ def _escape(text: str, place: tuple[str, ...]) -> str:
     found = _FORBIDDEN.search(text)
     if found:
         raise InputError(
-            "/".join(place), f"holds the character {found[0]!r}, which no XML file may; save as .gh or leave it out."
+            placed(place), f"holds the character {found[0]!r}, which no XML file may; save as .gh or leave it out."
         )
     # a bare carriage return would come back as a line feed
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("\r", "&#13;")
@@ -123,7 +123,7 @@ def _body(item: Item, place: tuple[str, ...]) -> str:
     try:
         packed = pack(item.type, value)
     except (struct.error, TypeError, ValueError, OverflowError, AttributeError):
-        raise InputError("/".join(place), f"is {value!r:.60}, which is no {item.type.label}.") from None
+        raise InputError(placed(place), f"is {value!r:.60}, which is no {item.type.label}.") from None
     match item.type:
         case Type.BOOL:
             return "true" if value else "false"
@@ -247,7 +247,7 @@ class _Reader:
         return int(text)
 
     def _damage(self, place: tuple[str, ...], what: str) -> InputError:
-        return InputError(self.name, f"is damaged at {'/'.join(place)}: {what}; save or copy it again.")
+        return InputError(self.name, f"is damaged at {placed(place)}: {what}; save or copy it again.")
 
 
 def _value(type: Type, element: Element) -> Any:

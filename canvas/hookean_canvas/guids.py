@@ -46,6 +46,14 @@ bc984576-7aa6-491f-a91d-e444c33675a7 Graph Mapper
 339c0ee1-cf11-444f-8e10-65c9150ea755 Colour Picker
 33bcf975-a0b2-4b54-99fd-585c893b9e88 Digit Scroller
 bcac2747-348b-4edd-ae1f-77a782cebbdd Control Knob
+51a2ede9-8f8c-4fdf-a375-999c2062eab7 Colour Wheel
+d69a3494-785b-4beb-969b-d2373f65abfd Image Sampler
+216bccd8-bf29-4d3c-b791-54c89a180db3 Image Resource
+ab898d46-b8b3-4ed5-b28f-4f8047920262 Calendar
+f8a94819-1e2b-4d67-9100-9e983ac493cc Clock
+c7b5c66a-6360-4f5f-aa17-a918d0b1c314 Object Details
+b8a66384-fc66-4574-a8a9-ad18e610d623 Import Coordinates
+c2c0c6cf-f362-4047-a159-21a72e7c272a Import Image
 317f1cb2-820d-4a8f-b5c8-5de3594ddfba Import 3DM
 6587fcbf-e3cf-480a-b2f5-641794474194 Read File
 65283518-ad00-49d3-87fb-f76823ebb162 Data Dam

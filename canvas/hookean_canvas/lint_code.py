@@ -14,6 +14,7 @@ from uuid import UUID
 
 from . import guids
 from .archive import Chunk
+from .archive_chunk import labelled
 from .parts import Code, code, inputs, outputs
 
 RHINO8 = (3, 9)
@@ -49,6 +50,10 @@ def script_faults(component: UUID | None, container: Chunk) -> Iterator[str]:
     if found.language.startswith("python"):
         yield from (f"the script does not compile as {found.language}: {fault}" for fault in code_faults(found))
         yield from _name_faults(container)
+    data = container.chunk("ParameterData")
+    for item in data.items if data is not None else []:
+        if item.name in ("InputId", "OutputId") and item.value not in guids.NAMES:
+            yield f"{labelled(item.name, item.index)} is {item.value}, which is no known kind of parameter"
     for port in inputs(container):
         yield from _hint_faults(port)
 

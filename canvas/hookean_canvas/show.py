@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +12,8 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
+
+from hookean.errors import InputError
 
 from . import archive
 from .describe import Data, describe, raw
@@ -44,16 +47,19 @@ def show(file: Path, with_code: bool, as_json: bool, everything: bool, console: 
 
 
 def check(files: Iterable[Path]) -> int:
-    """Print what is wrong with each file; 0 where nothing is, else 1. InputError where a file cannot be read."""
-    wrong = 0
+    """Print what is wrong with each file: 0 where nothing is, 1 where something is, 2 where one cannot be read."""
+    worst = 0
     for file in files:
-        found = faults(archive.read(file))
-        wrong += bool(found)
-        for fault in found:
+        try:
+            found = faults(archive.read(file))
+        except InputError as error:
+            print(f"hookean: {error}", file=sys.stderr)
+            worst = 2
+            continue
+        for fault in found or ["no faults"]:
             print(f"{file}: {fault}")
-        if not found:
-            print(f"{file}: no faults")
-    return 1 if wrong else 0
+        worst = max(worst, 1 if found else 0)
+    return worst
 
 
 def text(top: Line) -> str:

@@ -9,7 +9,7 @@ import zlib
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hookean.errors import InputError
@@ -75,6 +75,7 @@ def test_a_changed_byte_is_refused_or_comes_back_as_it_is(data: st.DataObject) -
 
 @settings(max_examples=CASES, deadline=None)
 @given(st.binary(max_size=200))
+@example(b"\x01\n\0\0\0\0")  # a name that would break the line of the error
 def test_any_bytes_are_an_archive_or_an_input_error(data: bytes) -> None:
     for read in (of_plain, archive.of_bytes, archive.of_xml, lambda data: archive.of_bytes(deflate(data))):
         try:
@@ -209,6 +210,34 @@ def test_xml_is_read_in_the_encoding_it_declares(tmp_path: Path, encoding: str) 
     item = '<item name="Größe" type_code="10">weiß</item>'
     (tmp_path / "a.ghx").write_bytes(text.format(encoding.removesuffix("-sig"), item).encode(encoding))
     assert archive.read(tmp_path / "a.ghx") == Chunk("Root").put("Größe", Type.STRING, "weiß")
+
+
+def test_xml_is_read_as_grasshopper_lays_it_out() -> None:
+    """Comments with a bare ampersand, values of several numbers and streams over several lines."""
+    text = """<?xml version="1.0" encoding="utf-8" standalone="yes"?>
+<Archive name="Root">
+  <!--Grasshopper archive-->
+  <!--this & that-->
+  <items count="3">
+    <item name="ArchiveVersion" type_name="gh_version" type_code="80">
+      <Major>0</Major>
+      <Minor>2</Minor>
+      <Revision>2</Revision>
+    </item>
+    <item name="Empty" type_name="gh_string" type_code="10"></item>
+    <item name="Icon" type_name="gh_drawing_bitmap" type_code="37">
+      <bitmap length="3">AA
+        EC</bitmap>
+    </item>
+  </items>
+  <chunks count="1">
+    <chunk name="Object" index="0" />
+  </chunks>
+</Archive>
+"""
+    expected = Chunk("Root").put("ArchiveVersion", Type.VERSION, (0, 2, 2)).put("Empty", Type.STRING, "")
+    expected.put("Icon", Type.DRAWING_BITMAP, b"\x00\x01\x02").add("Object", 0)
+    assert archive.of_xml(text) == archive.of_xml(text.replace("\n", "\r\n")) == expected
 
 
 @settings(max_examples=CASES, deadline=None)

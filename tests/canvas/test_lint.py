@@ -173,6 +173,10 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
         lambda r: drop(at(container(r, 1), "ParameterData"), "InputId"),
         "ParameterData counts 1 in Inp",
     ),
+    "an unknown kind of input": (
+        lambda r: at(container(r, 1), "ParameterData").put("InputId", Type.GUID, guid(5), 0),
+        "InputId[0] is 00000000-0000-0000-0000-000000000005, which is no known kind of parameter",
+    ),
     "an unknown hint": (lambda r: port(r).put("TypeHintID", Type.GUID, guid(5)), "input 'x' has the type hint 0000"),
     "a converter of another hint": (
         lambda r: port(r).put("TypeHintID", Type.GUID, guids.HINTS["int"]),

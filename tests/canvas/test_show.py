@@ -208,6 +208,13 @@ def test_check_prints_a_line_for_each_fault_and_exits_with_1(file: Path, tmp_pat
     assert any("no output here" in line for line in told) and any("is not known" in line for line in told)
 
 
+def test_check_goes_on_after_a_file_it_cannot_read(tmp_path: Path) -> None:
+    archive.write(definition(), tmp_path / "good.ghx")
+    result = run("check", tmp_path / "none.gh", tmp_path / "good.ghx")
+    assert (result.exit_code, result.stdout) == (2, f"{tmp_path / 'good.ghx'}: no faults\n")
+    assert result.stderr == f"hookean: {tmp_path / 'none.gh'}: cannot be read: No such file or directory.\n"
+
+
 @pytest.mark.parametrize("command", ["show", "check"])
 def test_what_is_no_archive_is_one_line_and_exit_code_2(command: str, tmp_path: Path) -> None:
     (tmp_path / "a.gh").write_text("no archive")
