@@ -33,7 +33,7 @@ class Sweep(object):
 
     def __init__(self):
         self.wanted = self.job = self.status = self.rows = self.task = self.refused = None
-        self._again, self._wanted_by_job = "", None
+        self._again, self.signature = "", None  # that of the job
 
     def look(self, wanted):
         """Begin what has to be done for a sweep (None: none), if nothing is under way; returns at once."""
@@ -47,12 +47,13 @@ class Sweep(object):
                 return
         if self.settled:
             return
-        self.task = link.Task(self._work, task.trouble if task is not None else None)
+        before = task.trouble if task is not None and link.wants_server(task.problem) else None
+        self.task = link.Task(lambda client: self._work(client, wanted), before)
 
     @property
     def ours(self):
         """Whether the job is that of the wanted sweep."""
-        return self.job is not None and self.wanted is not None and self._wanted_by_job == self.wanted.signature
+        return self.job is not None and self.wanted is not None and self.signature == self.wanted.signature
 
     @property
     def settled(self):
@@ -60,11 +61,10 @@ class Sweep(object):
         ended = self.job is None or self.status["status"] in ENDED
         return ended if self.wanted is None else self.ours and ended and self.status["status"] != "cancelled"
 
-    def _work(self, client):
-        wanted = self.wanted
+    def _work(self, client, wanted):
         try:
-            if wanted is None or not self.ours:
-                self._cancel(client)
+            if wanted is None or wanted.signature != self.signature:
+                self._cancel(client, wanted)
             if wanted is not None and (self.job is None or self.status["status"] == "cancelled"):
                 self._submit(client, wanted)
             if self.job is not None:
@@ -77,11 +77,11 @@ class Sweep(object):
                 self.refused = wanted
             raise
 
-    def _cancel(self, client):
+    def _cancel(self, client, wanted):
         if self.job is not None and self.status["status"] not in ENDED:
             client.delete(self.job)
             self.status = dict(self.status, status="cancelled")
-        if self.wanted is not None:
+        if wanted is not None:
             self.job = None
 
     def _submit(self, client, wanted):
@@ -89,7 +89,7 @@ class Sweep(object):
         for _ in range(2):
             key = wanted.signature + self._again
             self.status = client.post("/v1/jobs", wanted.body, headers={"idempotency-key": key}, timeout=120.0)
-            self.job, self._wanted_by_job = "/v1/jobs/%s" % self.status["id"], wanted.signature
+            self.job, self.signature = "/v1/jobs/%s" % self.status["id"], wanted.signature
             self.rows = None
             if client.get(self.job)["status"] != "cancelled":
                 return
@@ -119,19 +119,19 @@ def sweep(ghenv, forces, anchors, settings, scene, parameters, values, mode, res
     key = (canvas.identity(ghenv), str(getattr(document, "RuntimeID", id(document))))
     found = _sweeps.setdefault(key, Sweep())
     made, given = Outputs(), (forces, anchors, settings, scene, parameters, values, mode)
-    wanted = canvas._told(ghenv, lambda: _wanted(ghenv, *given)) if tools.flag(run, False) else None
-    if wanted is not None and found.wanted is not None and wanted.signature == found.wanted.signature:
-        wanted = found.wanted
+    read = canvas._told(ghenv, lambda: _wanted(ghenv, *given))
+    if read is not None and found.wanted is not None and read.signature == found.wanted.signature:
+        read = found.wanted
+    wanted = read if tools.flag(run, False) else None
     if wanted is not None or found.job is not None:
         found.look(wanted)
         if found.task is not None:
             found.task.wait(link.WAIT)
-        found.look(wanted)
         _tell(ghenv, found)
-    if wanted is not None:
-        canvas._told(ghenv, lambda: _show(made, found, wanted, results))
-    elif not tools.flag(run, False):
-        canvas.note(ghenv, "off")
+    else:
+        canvas.note(ghenv, "" if read is None else "off")
+    if read is not None:
+        canvas._told(ghenv, lambda: _show(made, found, read, results))
     return made
 
 
@@ -245,7 +245,7 @@ def _tell(ghenv, found):
 def _show(made, found, wanted, results):
     """Outputs of a job: values of parameters and of results by branches, item by item; None for what is not done."""
     made.parameters = geometry.to_tree([("{%d}" % i, _shown(column)) for i, column in enumerate(wanted.columns)])
-    if not found.ours or found.rows is None:
+    if found.rows is None or found.signature != wanted.signature:
         return
     table, count = found.rows, len(wanted.patches)
     rows = [None] * count

@@ -17,7 +17,10 @@ def whole(given, value, name, least=1):
     """Whole numbers of an input, or a value where nothing is connected. `Unfit` where one is none, or too small."""
     found = []
     for item in default(given, value):
-        number = geometry.number(item)
+        try:
+            number = geometry.number(item)
+        except Unfit as unfit:
+            raise Unfit("%s: %s" % (name, unfit))
         if number != int(number) or number < least:
             raise Unfit("%s: %s given; a whole number from %d on is expected" % (name, item, least))
         found.append(int(number))
@@ -33,7 +36,8 @@ def word(given, known, name):
             found = known[int(geometry.number(found))]
         except (Unfit, IndexError):
             ways = ", ".join("%d %s" % pair for pair in enumerate(known))
-            raise Unfit("%s: %s is not known; give one of %s" % (name, geometry.called(item), ways))
+            given = item if isinstance(item, geometry.NUMBERS) else geometry.called(item)
+            raise Unfit("%s: %s is not known; give one of %s" % (name, given, ways))
     return str(found)
 
 
