@@ -140,7 +140,7 @@ def _order(sources: dict[str, str]) -> list[str]:
                 parts = [part for part in path[1:] if part] or [alias.name for alias in node.names]
                 needs[name] |= {part for part in parts if part in sources and path[0] == CLIENT}
     try:
-        return list(TopologicalSorter(needs).static_order())
+        return list(TopologicalSorter({name: sorted(before) for name, before in needs.items()}).static_order())
     except CycleError as error:
         raise InputError(CLIENT, f"has modules that import one another: {' > '.join(error.args[1])}.") from None
 
