@@ -188,11 +188,15 @@ class Definition:
         self, name: str, code: str, inputs: Mapping[str, Any], outputs: Sequence[str], lists: Sequence[str] = (),
         trees: Sequence[str] = (), description: str = "",
     ) -> Made:  # fmt: skip
-        """A Python 3 Script component; inputs in `lists` and `trees` have that access, the others take one item."""
+        """A Python 3 Script component; inputs in `lists` and `trees` have that access, the others take one item.
+
+        Code that imports `hookean_client` carries it along.
+        """
         access = {key: 1 if key in lists else 2 if key in trees else 0 for key in inputs}
         ins = [Slot(key, access=access[key], optional=False) for key in inputs]
         outs = [Slot(key.replace(" ", "_")) for key in outputs]
-        body = "#! python 3\n" + textwrap.dedent(code).strip() + "\n"
+        body = textwrap.dedent(code).strip() + "\n"
+        body = inline.inlined(body, "rhino8") if "hookean_client" in body else "#! python 3\n" + body
         return self._script("Python 3 Script", name, description or name, body, ins, outs, inputs)
 
     def numbers(

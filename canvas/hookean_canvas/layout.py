@@ -135,7 +135,7 @@ def _layered(
 
 def _own_matters(boxes: Boxes, links: Sequence[Link]) -> set[Hashable]:
     """Boxes of a block that nothing from other blocks reaches, where something does: settings, loads; they go below."""
-    reached = {key for key in boxes if isinstance(key, tuple) and key and key[0] is _IN}
+    reached: set[Hashable] = {key for key in boxes if isinstance(key, tuple) and key and key[0] is _IN}
     if not reached:
         return set()
     for _ in boxes:

@@ -1,0 +1,100 @@
+"""Figures 9.7 and 9.8 on the canvas: an anchor of a running cable is moved, put back, and the cable is reset."""
+
+from hookean_canvas.definition import Definition, flat
+
+SEQUENCE = """
+# What a person does: wait until the cable is at rest, move the anchor, wait, put it back, wait, reset, wait.
+import sys
+import types
+
+from Rhino.Geometry import Vector3d
+
+key = "hookean sequence " + str(ghenv.Component.InstanceGuid)
+state = sys.modules.setdefault(key, types.ModuleType("sequence"))
+if _reset or not hasattr(state, "phase"):
+    state.phase = 0
+    state.told = {}
+phase = state.phase
+shift = Vector3d(x, 0, z) if phase == 1 else Vector3d(0, 0, 0)
+hold = bool(_reset) or phase == 3
+if not _reset and phase < 5:
+    component = ghenv.Component
+    component.OnPingDocument().ScheduleSolution(50, lambda document: component.ExpireSolution(False))
+"""
+NUMBERS = """
+# Tells the sequence when the cable is at rest, by the name they share, and keeps what it was then.
+import sys
+
+state = sys.modules[key]
+reached = particles[-1].DistanceTo(anchor) < 1e-9
+rests = iterations == 0 if state.phase == 3 else str(status).startswith("In equilibrium") and iterations > 0
+if reached and rests and phase == state.phase and phase < 5:
+    points = particles
+    state.told[phase] = (
+        sum(a.DistanceTo(b) for a, b in zip(points, points[1:])), min(p.Z for p in points), max(forces.Branch(0)),
+        sum(v.Z for v in reactions.Branch(0)),
+    )
+    state.phase += 1
+told = state.told
+if 4 in told:
+    before = told[0][0]
+    moved, lowest, force = told[1][:3]
+    back = abs(told[2][0] - before)
+    upward = told[4][3]
+    again = abs(told[4][0] - before)
+"""
+
+
+def definition() -> Definition:
+    d = Definition(
+        "9.7-anchors-moved",
+        "Figure 9.7: an anchor moved while the cable runs",
+        "The right anchor goes 3 m in and 2 m up while the cable runs, comes back, and the cable is reset. An anchor "
+        "keeps the particle it was given, so no support is lost. Reset False plays the sequence.",
+    )
+    with d.group("Line"):
+        end = d.point(d.slider("Span [m]", 10, 1, 20, decimals=1), 0, 0)
+        line = d.native("Line", start_point=d.point(0, 0, 0), end_point=end)
+        ends = d.native("End Points", curve=line)
+        count = d.slider("Springs [-]", 10, 1, 50)
+        pieces = d.component("Shatter", curve=line, count=count)
+        points = d.component("Divide", curve=line, count=count)
+    with d.group("Sequence"):
+        reset = d.toggle("Reset", True)
+        sequence = d.script(
+            "Sequence", SEQUENCE,
+            {"_reset": reset, "x": d.slider("In [m]", -3, -5, 0, decimals=1),
+             "z": d.slider("Up [m]", 2, -5, 5, decimals=1)},
+            ["shift", "hold", "phase", "key"],
+        )  # fmt: skip
+        right = d.native("Move", geometry=ends["End"], motion=sequence["shift"])
+    with d.group("Forces"):
+        springs = d.component(
+            "Springs", connection=pieces["lines"], stiffness=d.slider("Stiffness [N/m]", 1000, 10, 5000)
+        )
+        down = d.native("Unit Z", factor=d.slider("Load [N]", -10, -100, 0, decimals=1))
+        load = d.component("Unary", point=points, force=down)
+    with d.group("Engine"):
+        settings = d.component(
+            "Settings", drag=d.slider("Drag [N s/m]", 5, 0, 10, decimals=1), residual=d.text("Residual [-]", "1e-12"),
+            fast=d.toggle("Fast", True),
+        )  # fmt: skip
+        engine = d.component(
+            "Engine", forces=flat(springs, load), anchors=[ends["Start"], right["Geometry"]], settings=settings,
+            geometry=pieces["lines"], reset=sequence["hold"],
+        )  # fmt: skip
+    with d.group("Numbers", "What expected.json holds the figure to."):
+        d.panel("report", engine["report"])
+        d.numbers(
+            NUMBERS,
+            {"particles": engine["particles"], "forces": engine["forces"], "reactions": engine["reactions"],
+             "iterations": engine["iterations"], "status": engine["status"], "anchor": right["Geometry"],
+             "phase": sequence["phase"], "key": sequence["key"]},
+            {
+                "before": "length before", "moved": "length while moved", "lowest": "lowest point while moved",
+                "force": "largest force while moved", "back": "length put back, change",
+                "upward": "reactions after a reset", "again": "length after a reset, change",
+            },
+            lists=["particles"], trees=["forces", "reactions"],
+        )  # fmt: skip
+    return d
