@@ -214,6 +214,13 @@ def sweep(pen: Pen) -> None:
     pen.dot((21.0, 4.5), 2.2)
 
 
+def moments(pen: Pen) -> None:
+    for control, colour in ((-9.0, PALE), (5.0, PALE), (30.0, BLUE)):
+        pen.line(*bent((3.0, 9.0), (12.0, control), (21.0, 9.0)), colour=colour, width=1.6)
+    pen.ring((18.6, 18.6), 4.0, ORANGE, 1.6)
+    pen.line((18.6, 16.0), (18.6, 18.6), (20.4, 19.8), colour=ORANGE, width=1.2)
+
+
 def rhino_file(pen: Pen) -> None:
     pen.area((4.5, 1.5), (14.5, 1.5), (19.5, 6.5), (19.5, 22.5), (4.5, 22.5), colour=WHITE)
     pen.line((4.5, 1.5), (14.5, 1.5), (19.5, 6.5), (19.5, 22.5), (4.5, 22.5), width=1.4, closed=True)
@@ -301,7 +308,7 @@ DRAWINGS: dict[str, Callable[[Pen], None]] = {
         *(springs, unary, anchor_spring, bend, floor, hinge, pressure, pull_to_curve, pull_to_mesh, self_weight),
         *(shell, soapfilm, engine, settings, anchors, server, divide, shatter, catenary, interpolate, sweep),
         *(mesh_surface, mesh_edges, mesh_vertices, mesh_corners, naked_vertices, warp_weft, diagonals),
-        *(remove_duplicate_lines, rhino_file),
+        *(remove_duplicate_lines, rhino_file, moments),
     )
 }
 """Drawings by the name of the bundle, in small letters without blanks."""
