@@ -10,7 +10,7 @@ from typing import Any
 
 from hookean.errors import InputError
 
-from .archive_chunk import DEEPEST, MOST_BYTES, MOST_PARTS, Chunk, Item, Type, labelled, placed, sort_key
+from .archive_chunk import DEEPEST, MOST_BYTES, MOST_PARTS, Chunk, Item, Type, in_order, labelled, placed, twin
 
 SCALARS = {
     Type.BYTE: struct.Struct("<B"),
@@ -95,12 +95,8 @@ def _write_chunk(chunk: Chunk, out: list[bytes], place: tuple[str, ...]) -> None
         raise InputError(placed(place[:3]) + "/…", f"chunks lie more than {DEEPEST} deep; GH_IO nests them by hand.")
     counts = _INT32.pack(len(chunk.items)) + _INT32.pack(len(chunk.chunks))
     out.append(_string(chunk.name, place) + _index(chunk.index, place) + counts)
-    before = None
-    for item in sorted(chunk.items, key=sort_key):
+    for item in in_order(chunk, place):
         here = (*place, labelled(item.name, item.index))
-        if (item.name, item.index) == before:
-            raise InputError(placed(here), "stands twice in its chunk; names are unique together with their index.")
-        before = item.name, item.index
         out.append(_string(item.name, here) + _index(item.index, here) + _INT32.pack(item.type) + _value(item, here))
     for inner in chunk.chunks:
         _write_chunk(inner, out, (*place, inner.label))
@@ -206,16 +202,11 @@ class _Reader:
             raise InputError(self.name, f"holds more than {MOST_PARTS} items and chunks; internalise less geometry.")
         chunk = Chunk(name, index)
         chunk.items = [self._item(place) for _ in range(items)]
-        self._no_twins(chunk, place)
+        again = twin(chunk.items)
+        if again is not None:
+            raise self._damage((*place, labelled(again.name, again.index)), "the item stands twice in its chunk")
         chunk.chunks = [self.chunk(place) for _ in range(chunks)]
         return chunk
-
-    def _no_twins(self, chunk: Chunk, place: tuple[str, ...]) -> None:
-        seen = set()
-        for item in chunk.items:
-            if (item.name, item.index) in seen:
-                raise self._damage((*place, labelled(item.name, item.index)), "the item stands twice in its chunk")
-            seen.add((item.name, item.index))
 
     def _item(self, place: tuple[str, ...]) -> Item:
         name, index, code = self._string(place), self._int(place), self._int(place)

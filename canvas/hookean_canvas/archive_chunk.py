@@ -6,10 +6,12 @@ Layout and type codes: GH_IO, archive version 0.2.2.
 from __future__ import annotations
 
 import bisect
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
+
+from hookean.errors import InputError
 
 MOST_BYTES = 256 * 2**20  # an archive's size once unpacked
 MOST_PARTS = 3_000_000  # items and chunks of an archive, together
@@ -126,6 +128,25 @@ def placed(place: tuple[str, ...]) -> str:
     """A path of labels as an error names it: long names cut, and what cannot be printed left out."""
     cut = (label if len(label) <= 60 else label[:57] + "..." for label in place)
     return "".join(letter if letter.isprintable() else "?" for letter in "/".join(cut)) or "the start"
+
+
+def twin(items: Iterable[Item]) -> Item | None:
+    """The first item whose name and index an earlier one has, or None."""
+    seen = set()
+    for item in items:
+        if (item.name, item.index) in seen:
+            return item
+        seen.add((item.name, item.index))
+    return None
+
+
+def in_order(chunk: Chunk, place: tuple[str, ...]) -> list[Item]:
+    """The items as an archive holds them: sorted; InputError where one stands twice."""
+    again = twin(chunk.items)
+    if again is not None:
+        where = placed((*place, labelled(again.name, again.index)))
+        raise InputError(where, "stands twice in its chunk; names are unique together with their index.")
+    return sorted(chunk.items, key=sort_key)
 
 
 def sort_key(item: Item) -> tuple[bytes, int]:

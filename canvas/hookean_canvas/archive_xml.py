@@ -16,7 +16,7 @@ import numpy
 from hookean.errors import InputError
 
 from .archive_binary import SCALARS, TUPLES, pack
-from .archive_chunk import DEEPEST, MOST_BYTES, MOST_PARTS, Chunk, Item, Type, labelled, placed, sort_key
+from .archive_chunk import DEEPEST, MOST_BYTES, MOST_PARTS, Chunk, Item, Type, in_order, labelled, placed, twin
 
 _CORNERS = {  # the elements of a value that has several numbers
     Type.DRAWING_POINT: "X Y",
@@ -86,12 +86,8 @@ def _write_chunk(chunk: Chunk, out: list[str], place: tuple[str, ...], tag: str 
 
 
 def _write_items(chunk: Chunk, out: list[str], place: tuple[str, ...], indent: str) -> None:
-    before = None
-    for item in sorted(chunk.items, key=sort_key):
+    for item in in_order(chunk, place):
         here = (*place, labelled(item.name, item.index))
-        if (item.name, item.index) == before:
-            raise InputError(placed(here), "stands twice in its chunk; names are unique together with their index.")
-        before = item.name, item.index
         name = _attribute(item.name, here) + _index(item.index)
         kind = f'type_name="{item.type.label}" type_code="{int(item.type)}"'
         out.append(f"{indent}<item name={name} {kind}>{_body(item, here)}</item>")
@@ -216,15 +212,10 @@ class _Reader:
                     chunk.chunks.append(self.chunk(part, place))
                 else:
                     raise self._damage(place, f"<{part.tag}> stands in <{group.tag}>")
-        self._no_twins(chunk, place)
+        again = twin(chunk.items)
+        if again is not None:
+            raise self._damage((*place, labelled(again.name, again.index)), "the item stands twice in its chunk")
         return chunk
-
-    def _no_twins(self, chunk: Chunk, place: tuple[str, ...]) -> None:
-        seen = set()
-        for item in chunk.items:
-            if (item.name, item.index) in seen:
-                raise self._damage((*place, labelled(item.name, item.index)), "the item stands twice in its chunk")
-            seen.add((item.name, item.index))
 
     def _item(self, element: Element, place: tuple[str, ...]) -> Item:
         name, index = element.get("name", ""), self._index(element, place)

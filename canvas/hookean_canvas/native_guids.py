@@ -1,9 +1,8 @@
 """Grasshopper's own components by their id: what a definition may hold beside parameters and scripts.
 
 Each line is an id, then the name that Grasshopper writes beside it; further names after `|` are those of other
-versions. Sources: public listings of an installed Rhino 7/8 (github.com/hellguz/ScriptBridgeJS,
-gh_docs_generation), read against the definitions of github.com/mcneel/rhinocodetests and the sample of
-github.com/mcneel/compute.rhino3d. Identifiers only.
+versions. Source: a public listing of what an installed Rhino 7/8 offers (github.com/hellguz/ScriptBridgeJS,
+gh_docs_generation/grasshopper_components.md); the sample of github.com/mcneel/compute.rhino3d agrees with it.
 """
 
 CURVE = """
