@@ -15,7 +15,7 @@ from hookean_server.tasks import Cancelled
 
 Floats = NDArray[np.float64]
 
-_LENGTH = item("Length", "L", "Number", "Length of all springs [model unit]")
+_LENGTH = item("Length", "Lt", "Number", "Length of all springs [model unit]")
 _SAG = item("Sag", "D", "Number", "How far the lowest particle lies below the first [model unit]")
 _LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring [N]")
 _TIME = item(
@@ -255,7 +255,7 @@ FUNCTIONS: dict[str, Function] = {
             item("Weight", "P", "Number", "What hangs on it [N]", 100.0, minimum=0.0),
         ),
         (
-            item("Spring", "S", "Line", "The spring"),
+            item("Spring", "Sp", "Line", "The spring"),
             item("Length", "L", "Number", "Its length [model unit]"),
             item("Extension", "X", "Number", "By how much it is longer [model unit]"),
             scenes.STATUS,

@@ -22,7 +22,7 @@ _SAG = item("Sag", "D", "Number", "How far the middle vertex lies below the plan
 _DEEPEST = item("Deepest", "Dm", "Number", "How far the lowest vertex lies below the plane z = 0 [model unit]")
 _LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring [N]")
 _LEAST = item("Least force", "Fn", "Number", "The smallest force of a spring [N]")
-_LENGTH = item("Length", "L", "Number", "Length of all springs [model unit]")
+_LENGTH = item("Length", "Lt", "Number", "Length of all springs [model unit]")
 _SHAPE = (scenes.MESH, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, scenes.SUPPORTS, _SAG, _DEEPEST, _LARGEST,
           _LEAST, _LENGTH, scenes.STATUS)  # fmt: skip
 
@@ -159,7 +159,7 @@ def _hypar(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
 
 _SQUARE = (_SIZE, _DIVISIONS, scenes.stiffness(2000.0), scenes.rest_factor(1.0), scenes.load(20.0), _HELD, _ANCHORS)
 _ACROSS = (
-    item("Diagonals", "P", "Text", "none, one, other or both of each face", "both",
+    item("Diagonals", "Di", "Text", "none, one, other or both of each face", "both",
          choices=("none", "one", "other", "both")),
     item("Diagonal stiffness", "kd", "Number", "Stiffness of every diagonal [N/model unit]", 1000.0, minimum=0.0),
     scenes.rest_factor(1.0, "Diagonal factor", "Rd"),

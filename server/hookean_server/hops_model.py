@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,6 +19,8 @@ Floats = NDArray[np.float64]
 MANY = 2147483647
 UNITS = {"Millimeters": "mm", "Centimeters": "cm", "Decimeters": "dm", "Meters": "m", "Kilometers": "km",
          "Inches": "in", "Feet": "ft", "Yards": "yd"}  # fmt: skip
+
+_PATH = re.compile(r"\{?\s*([0-9]{1,9}(\s*;\s*[0-9]{1,9})*)?\s*\}?")
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,8 @@ class Inputs:
         tree = entry.get("InnerTree") if isinstance(entry, dict) else None
         if not isinstance(tree, dict) or not all(isinstance(branch, list) for branch in tree.values()):
             raise InputError(where, "an input has ParamName and InnerTree, whose branches are lists")
+        if not all(_PATH.fullmatch(path) for path in tree):
+            raise InputError(where, "a path is whole numbers from 0 in braces, such as {0;1}")
         name = str(entry.get("ParamName")).removeprefix("RH_IN:").strip()
         parameter = self._parameters.get(name)
         if parameter is None:

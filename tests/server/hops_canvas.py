@@ -193,7 +193,7 @@ def sent(kind: str, value: Any) -> dict[str, str]:
     elif hasattr(value, "Encode"):
         named = f"Rhino.Geometry.{type(value).__name__}"
         return {"type": named, "data": json.dumps({**value.Encode(), "archive3dm": 70})}
-    return {"type": NET[kind], "data": json.dumps(value)}
+    return {"type": NET[kind], "data": json.dumps(value, ensure_ascii=False)}
 
 
 def goo(item: Any, kind: str) -> Any:

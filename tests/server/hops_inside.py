@@ -4,6 +4,7 @@ functions."""
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -49,7 +50,10 @@ class Service:
         transport = httpx.ASGITransport(app=self.app)
         async with httpx.AsyncClient(transport=transport, base_url=ADDRESS, timeout=None) as client:
             del client.headers["accept"]
-            return await client.request(method, path, json=body)
+            if body is None:
+                return await client.request(method, path)
+            kind = {"content-type": "application/json; charset=utf-8"}
+            return await client.request(method, path, content=json.dumps(body), headers=kind)
 
 
 @contextmanager

@@ -171,6 +171,18 @@ def test_polylines_are_their_pieces(hops: httpx.Client) -> None:
     assert as_curve.json() == as_lines.json()
 
 
+def test_a_figure_and_an_operation_in_a_worker(hops: httpx.Client) -> None:
+    """As on the canvas: a cable with its own values, then its particles as a curve cut into pieces."""
+    import rhino3dm
+
+    figure = read(hops.post("/solve", json=asked("cable", {})))
+    assert figure["Length"] == pytest.approx([10.753329301669], abs=1e-9) and figure["Status"] == ["converged"]
+    curve = rhino3dm.PolylineCurve([rhino3dm.Point3d(*(p[a] for a in "XYZ")) for p in figure["Particles"]])
+    given = {"Curve": branch("Rhino.Geometry.PolylineCurve", curve.Encode(), path="{4;2}")}
+    found = read(hops.post("/solve", json=asked("divide", given)))["Points"]
+    assert len(found) == 11 and found[0] == figure["Particles"][0] and found[-1] == figure["Particles"][-1]
+
+
 @pytest.mark.parametrize("unit", ["Millimeters", "Feet", "Meters"])
 def test_numbers_are_in_the_units_of_the_model(hops: httpx.Client, unit: str) -> None:
     """Lengths and stiffness in model units, forces in N: only the numbers count."""
