@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import rhino3dm
 
+from fuzz import damage
 from hookean.discretize.breps import mesh_faces
 from hookean.files import threedm, threedm_plain
 from hookean_server.routes_geometry import KINDS
@@ -101,3 +102,11 @@ def test_faulty_requests(client: httpx.Client, drawing: Path) -> None:
     form = {"files": {"file": ("a.3dm", data)}, "data": {"recipe": "{}"}}
     found = problem(client.post("/v1/geometry/3dm", **form), 422, "invalid-input")
     assert found["errors"][0]["pointer"] == "/recipe"
+
+
+def test_damaged_files_are_the_files_fault(client: httpx.Client) -> None:
+    files = damage.seeds()
+    for number in range(0, 2000, 200):
+        _, _, data = damage.mutant(files, number)
+        answer = read(client, data, u=3, v=2)
+        assert answer.status_code in (200, 422), (number, answer.text[:300])
