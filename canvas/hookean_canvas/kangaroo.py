@@ -10,7 +10,6 @@ What cannot be translated is in the report, and in a panel in the file.
 
 from __future__ import annotations
 
-import copy
 import textwrap
 from pathlib import Path
 from uuid import UUID, uuid5
@@ -22,6 +21,7 @@ from hookean_canvas.guids import GROUP, PANEL, SCRIPT_LIBRARY, TIMER
 from hookean_canvas.kangaroo_import import Importing, connect
 from hookean_canvas.kangaroo_make import put_object
 from hookean_canvas.kangaroo_report import Report
+from hookean_canvas.kangaroo_streams import copied
 from hookean_canvas.parts import inputs, outputs, parts, sources
 
 NOTE = (255, 255, 235, 205)
@@ -42,7 +42,7 @@ def import_file(source: Path, target: Path | None = None) -> tuple[Path, Report]
 
 def translate(root: Chunk, name: str = "definition") -> tuple[Chunk, Report]:
     """A translated copy of a definition, and what was done; InputError where it is no definition."""
-    root = copy.deepcopy(root)
+    root = copied(root)
     report = Report(name)
     work = Importing(root, report)
     work.run()
@@ -138,7 +138,8 @@ def _header(root: Chunk) -> None:
     definition = root.chunk("Definition")
     header = definition.chunk("DocumentHeader") if definition is not None else None
     if header is not None:
-        old = header.value("DocumentID", default=UUID(int=0))
+        old = header.value("DocumentID")
+        old = old if isinstance(old, UUID) else UUID(int=0)
         header.put("DocumentID", Type.GUID, uuid5(old, "hookean import"))
     root.chunks = [chunk for chunk in root.chunks if chunk.name != "Thumbnail"]
 

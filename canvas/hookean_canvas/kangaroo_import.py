@@ -15,12 +15,14 @@ from hookean_canvas.guids import CLUSTER, PARAMETERS, PYTHON3_SCRIPT
 from hookean_canvas.kangaroo_guids import Known, hidden, libraries, recognised
 from hookean_canvas.kangaroo_report import Report
 from hookean_canvas.kangaroo_space import Space, bounds_of, size
-from hookean_canvas.kangaroo_streams import Streams
+from hookean_canvas.kangaroo_streams import Streams, sound
 from hookean_canvas.kangaroo_table import Piece, Swap, is_tool, key, reason, swap_of
 from hookean_canvas.parts import Part, inputs, outputs, parts, sources
 
 CARRIED = {"length(line)": "line", "rod": "polyline", "edgelengths": "mesh"}
 """Goals of Kangaroo 2 whose output is the geometry of one of their inputs."""
+SOLVERS = {0: "verlet", 1: "yoshida"}
+"""Solvers of classic Kangaroo by the number that its settings have for them."""
 
 
 class Importing:
@@ -31,6 +33,7 @@ class Importing:
         objects = definition.chunk("DefinitionObjects") if definition is not None else None
         if definition is None or objects is None:
             raise InputError(report.name, "this is no Grasshopper definition; give a .gh or .ghx file")
+        sound(root, report.name)
         self.root, self.objects, self.report = root, objects, report
         self.libraries = libraries(definition)
         self.known = {id(part.chunk): self._recognised(part) for part in parts(root)}
@@ -218,7 +221,12 @@ class _Swapping:
         value = make.single(old)
         if not items or value is not None and make.usual(slot, value):
             return
-        if slot.name.strip("_") == "upper_cutoff" and isinstance(value, (int, float)) and value < 0:
+        if slot.name.strip("_") == "solver":
+            if value in SOLVERS:
+                self._hold(port, slot, SOLVERS[value])
+            else:
+                self._gone(old, "there is no such solver here; the Engine chooses one", value)
+        elif slot.name.strip("_") == "upper_cutoff" and isinstance(value, (int, float)) and value < 0:
             lower = next(p for p in inputs(self.made[0]) if p.value("Name") == "_lower_cutoff_")
             self._hold(lower, slot, -value)
         elif value is not None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 from uuid import UUID
 
@@ -121,6 +123,7 @@ HELPERS = {
 """Small scripts where our components take other things than Kangaroo's."""
 
 
+@cache
 def recipe(bundle: str) -> Recipe:
     """The recipe of a bundle or a helper; InputError where there is no such bundle."""
     if bundle in HELPERS:
@@ -171,7 +174,7 @@ def usual(slot: Slot, value: Any) -> bool:
     if found is None:
         return False
     try:
-        return float(found.group(1)) == float(value) and not isinstance(value, bool)
+        return math.isclose(float(found.group(1)), float(value), rel_tol=1e-6) and not isinstance(value, bool)
     except ValueError:
         return found.group(1) == str(value)
 
@@ -180,7 +183,8 @@ def holder(id: UUID, name: str, value: Any) -> tuple[UUID, Chunk, tuple[float, f
     """A toggle or a panel that holds a value: its kind, container, width and height."""
     if isinstance(value, bool):
         return BOOLEAN_TOGGLE, containers.toggle(id, name, value), (60.0 + 6.2 * len(name), 22.0)
-    text = str(value) if not isinstance(value, float) or value != int(value) or abs(value) > 1e15 else str(int(value))
+    whole = isinstance(value, float) and abs(value) < 1e15 and value == int(value)
+    text = str(int(value) if whole else value)
     return PANEL, containers.panel(id, name, text), (max(80.0, 6.2 * max(len(name), len(text)) + 30.0), 44.0)
 
 
@@ -210,7 +214,7 @@ def _kind(item: Chunk, hint: str) -> str:
 
 def put_object(objects: Chunk, guid: UUID, container: Chunk) -> Chunk:
     """Append an object to a definition and count it."""
-    thing = objects.add("Object", len(objects.chunks))
+    thing = objects.add("Object", 1 + max((chunk.index for chunk in objects.chunks), default=-1))
     fill(thing, guid, container)
     objects.put("ObjectCount", Type.INT32, len(objects.chunks))
     return thing

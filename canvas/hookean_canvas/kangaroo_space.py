@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from hookean_canvas import containers
-from hookean_canvas.archive import Chunk
+from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.containers import Rectangle
 from hookean_canvas.definition import CHARACTER, ROW
 from hookean_canvas.parts import parts
 
-GAP, STEP = 8.0, 16.0
-"""Room around a box, and how far the search for a free place goes down at a time, in pixels of the canvas."""
+GAP = 8.0
+"""Room around a box, in pixels of the canvas."""
 
 
 class Space:
@@ -24,11 +25,10 @@ class Space:
             if bounds is not None and part.container is not None:
                 self.taken[id(part.container)] = bounds
 
-    def free(self, x: float, y: float, width: float, height: float, besides: Chunk | None = None) -> Rectangle:
-        """The first place from (x, y) downwards where a box meets no other one (`besides`: one that does not count)."""
-        skipped = id(besides)
-        while any(_meet((x, y, width, height), b) for key, b in self.taken.items() if key != skipped):
-            y += STEP
+    def free(self, x: float, y: float, width: float, height: float) -> Rectangle:
+        """The first place from (x, y) downwards where a box meets no other one."""
+        while met := [box for box in self.taken.values() if _meet((x, y, width, height), box)]:
+            y = max(box[1] + box[3] for box in met) + GAP
         return x, y, width, height
 
     def put(self, container: Chunk, bounds: Rectangle) -> None:
@@ -60,8 +60,11 @@ def size(inputs: Sequence[str], outputs: Sequence[str]) -> tuple[float, float]:
 def bounds_of(container: Chunk | None) -> Rectangle | None:
     """Where an object stands: x, y, width, height; None where the file does not say."""
     attributes = container.chunk("Attributes") if container is not None else None
-    bounds = attributes.value("Bounds") if attributes is not None else None
-    return (float(bounds[0]), float(bounds[1]), float(bounds[2]), float(bounds[3])) if bounds is not None else None
+    bounds = attributes.item("Bounds") if attributes is not None else None
+    if bounds is None or bounds.type != Type.DRAWING_RECTANGLEF:
+        return None
+    x, y, width, height = map(float, bounds.value)
+    return (x, y, width, height) if math.isfinite(x + y + width + height) else None
 
 
 def _meet(one: Rectangle, other: Rectangle) -> bool:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Iterator
 from uuid import UUID
 
-from hookean_canvas.archive import Chunk
+from hookean.errors import InputError
+from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.parts import Part, inputs, outputs, parts, sources
 
 Wire = tuple[UUID, UUID]
@@ -18,7 +18,7 @@ class Streams:
 
     def __init__(self, root: Chunk) -> None:
         self.parts = parts(root)
-        self._inputs = {id(part.chunk): copy.deepcopy(_side(part, inputs)) for part in self.parts}
+        self._inputs = {id(part.chunk): [copied(port) for port in _side(part, inputs)] for part in self.parts}
         self._owner = {_id(port): part for part in self.parts for port in _side(part, outputs)}
         self._labels = dict(self._named())
         found = [(source, _id(port)) for ports in self._inputs.values() for port in ports for source in sources(port)]
@@ -62,3 +62,28 @@ def _side(part: Part, side: object) -> list[Chunk]:
 def _id(port: Chunk) -> UUID:
     found: UUID = port.value("InstanceGuid")
     return found
+
+
+_KINDS = {"InstanceGuid": Type.GUID, "Name": Type.STRING, "NickName": Type.STRING, "Source": Type.GUID}
+_KINDS |= {"SourceCount": Type.INT32, "Mapping": Type.INT32, "GUID": Type.GUID, "Lib": Type.GUID}
+
+
+def sound(root: Chunk, where: str) -> None:
+    """InputError where objects, inputs or outputs lack an id, or have one or a name of another type."""
+    for number, part in enumerate(parts(root)):
+        told = f"{where}, object {number}"
+        if part.container is None or part.guid is None:
+            raise InputError(told, "has no Container or no GUID; the file is damaged")
+        ports = [*inputs(part.container), *outputs(part.container)]
+        for chunk in (part.chunk, part.container, *ports):
+            for item in chunk.items:
+                if item.type != _KINDS.get(item.name, item.type):
+                    raise InputError(told, f"has {item.name} as {item.type.label}; the file is damaged")
+        if not all(isinstance(chunk.value("InstanceGuid"), UUID) for chunk in (part.container, *ports)):
+            raise InputError(told, "has no InstanceGuid, or an input or output of it has none; the file is damaged")
+
+
+def copied(chunk: Chunk) -> Chunk:
+    """A chunk of its own with all in it; values are shared, as none of them changes."""
+    items = [Item(item.name, item.index, item.type, item.value) for item in chunk.items]
+    return Chunk(chunk.name, chunk.index, items, [copied(inner) for inner in chunk.chunks])

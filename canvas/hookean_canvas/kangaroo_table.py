@@ -105,7 +105,8 @@ SETTINGS = Swap(
             {"settings": "settings"},
         ),
     ),
-    "solvers 0 and 1 are verlet and yoshida; 2 and 3 (Archimedes) are not here; " + _FRICTION,
+    "solvers 0 and 1 are verlet and yoshida; Archimedes, 2 and 3, is not here, and they are others if wired; "
+    + _FRICTION,
     {
         "restitution": "the floor of the settings rebounds with 0.7; the component Floor takes another",
         "staticfriction": _FRICTION,
@@ -423,3 +424,24 @@ def reason(known: Known) -> str:
 def is_tool(known: Known) -> bool:
     """Whether it works on meshes and points alone, without a solver; such components of Kangaroo 2 go on working."""
     return known.generation == "second" and REASONS.get(key(known.name)) == _TOOL
+
+
+def markdown() -> str:
+    """The table for docs/canvas.md: every component that is translated, by what, and what differs."""
+    lines = ["| Kangaroo | component | here | what differs |", "| --- | --- | --- | --- |"]
+    for generation, table in (("0.099", CLASSIC), ("2", SECOND)):
+        for name, swap in table.items():
+            by = ", ".join(_HELPER.get(piece.bundle, piece.bundle) for piece in swap.pieces)
+            told = "; ".join(
+                [swap.differs, *(f"{key}: {why}" for key, why in swap.without.items() if why not in swap.differs)]
+            )
+            lines.append(f"| {generation} | {name} | {by} | {told.strip('; ')} |")
+    return "\n".join(lines) + "\n"
+
+
+_HELPER = {
+    "*geometry": "a parameter",
+    "*corners": "a script for corners",
+    "*upwards": "a script for vectors",
+    "*lines": "a script for lines",
+}

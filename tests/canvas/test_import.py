@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from uuid import UUID
@@ -24,14 +25,16 @@ from canvas.kangaroo_samples import (
     tent,
     wires,
 )
+from hookean.errors import InputError
 from hookean_canvas import archive, kangaroo, lint
-from hookean_canvas.archive import Chunk, Type
+from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.command import app
 from hookean_canvas.guids import BOOLEAN_TOGGLE, CLUSTER, PANEL, PARAMETERS, PYTHON3_SCRIPT
 from hookean_canvas.kangaroo_guids import COMPONENTS, Known, libraries, recognised
 from hookean_canvas.kangaroo_report import Report
 from hookean_canvas.kangaroo_space import bounds_of
-from hookean_canvas.kangaroo_table import CLASSIC, SECOND, is_tool, swap_of
+from hookean_canvas.kangaroo_streams import copied
+from hookean_canvas.kangaroo_table import CLASSIC, SECOND, is_tool, markdown, swap_of
 from hookean_canvas.parts import Part, inputs, outputs, parts, sources
 from serving import SOAK
 
@@ -254,6 +257,22 @@ def test_every_input_of_the_table_is_one_of_a_component_that_there_is() -> None:
             assert {*piece.outputs, *piece.feeds} <= {slot.name for slot in made.outputs}, (name, piece)
 
 
+def test_the_table_of_the_docs_is_the_table_of_the_import() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "canvas.md").read_text(encoding="utf-8")
+    assert markdown() in page, "docs/canvas.md does not hold what hookean_canvas.kangaroo_table.markdown() gives"
+
+
+@pytest.mark.parametrize(("number", "held", "gone"), [(0, ["verlet"], 0), (1, ["yoshida"], 0), (3, [], 1)])
+def test_a_typed_solver_becomes_a_word_or_is_told(number: int, held: list[str], gone: int) -> None:
+    d = Kangaroo("solver", "Solver", "A typed solver.")
+    given = [(name, number if name == "Solver" else value) for name, value in SETTINGS]
+    d.kangaroo("Kangaroo Settings", given, ["Settings"], classic=True)
+    after, report = translated(d)
+    found = [part.container for part in behind(after, the(after, "Settings"), "solver")]
+    assert [container.value("UserText") for container in found if container] == held
+    assert len(report.values) == gone
+
+
 def test_clusters_and_scripts_that_use_kangaroo_are_named() -> None:
     d = Kangaroo("inside", "Inside", "Kangaroo in a cluster and in a script.")
     d.script("Scripted", "import clr\nclr.AddReference('KangarooSolver')\nx = 1", {}, ["x"])
@@ -326,6 +345,19 @@ def test_a_translated_definition_translates_to_itself_with_nothing_to_do() -> No
     assert report.kangaroo == 0 and report.complete and wires(again) == wires(after)
 
 
+ODD: list[tuple[Type, Any]] = [
+    (Type.INT32, -1),
+    (Type.INT32, 2**31 - 1),
+    (Type.STRING, "text"),
+    (Type.GUID, UUID(int=9)),
+    (Type.DOUBLE, float("nan")),
+    (Type.BYTEARRAY, b"bytes"),
+    (Type.BOOL, True),
+    (Type.POINT3D, (1.0, 2.0, 3.0)),
+    (Type.DRAWING_RECTANGLEF, (0.0, 0.0, float("inf"), float("nan"))),
+]
+SAMPLES: dict[Any, Chunk] = {}
+
 GOALS: list[tuple[str, str, str]] = [
     ("Length(Line)", "Line Length Strength", "S"),
     ("Show", "G", "G"),
@@ -343,7 +375,7 @@ GOALS: list[tuple[str, str, str]] = [
 ]
 
 
-@settings(max_examples=400 if SOAK else 40, deadline=None)
+@settings(max_examples=300 if SOAK else 30, deadline=None)
 @given(st.data())
 def test_no_wire_is_lost_unseen_however_things_are_wired(data: st.DataObject) -> None:
     d = Kangaroo("random", "Random", "Any components, any wires.")
@@ -356,6 +388,37 @@ def test_no_wire_is_lost_unseen_however_things_are_wired(data: st.DataObject) ->
         if data.draw(st.booleans()):
             d.panel(f"panel {number}", made[-1])
     translated(d)
+
+
+@settings(max_examples=1000 if SOAK else 60, deadline=None)
+@given(
+    st.sampled_from([cable, star, tent]),
+    st.integers(0, 10**6),
+    st.integers(0, 10**6),
+    st.sampled_from([None, *ODD]),
+)
+def test_damaged_definitions_are_translated_or_refused_in_a_sentence(
+    sample: Callable[[], Kangaroo], place: int, which: int, odd: tuple[Type, Any] | None
+) -> None:
+    root = SAMPLES.setdefault(sample, sample().archive())
+    root = copied(root)
+    held = list(root.walk())
+    chunk = held[place % len(held)]
+    parts_ = [*chunk.items, *chunk.chunks]
+    if not parts_:
+        return
+    part = parts_[which % len(parts_)]
+    if odd is None:
+        chunk.items = [item for item in chunk.items if item is not part]
+        chunk.chunks = [inner for inner in chunk.chunks if inner is not part]
+    elif isinstance(part, Item):
+        part.type, part.value = odd
+    else:
+        part.name, part.index = "Odd", which % 7 - 1
+    try:
+        kangaroo.translate(root, "damaged.gh")
+    except InputError as error:
+        assert str(error).count("\n") == 0
 
 
 def test_the_command_writes_beside_the_file_and_says_what_it_did(tmp_path: Path) -> None:
