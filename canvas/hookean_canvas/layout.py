@@ -93,6 +93,7 @@ def _block(
         height = boxes[gate[1]].y + gate[2]
         gates[gate], pulls[gate] = Box(0.0, 2.0, 0.0, height), [height]
     _layered({**own, **gates}, within, ACROSS, DOWN, pulls)
+    _close(own, MARGIN)
     edge = MARGIN if titled else 0.0
     left, top = min(box.x for box in own.values()) - edge, min(box.y for box in own.values())
     top -= edge + (TITLE if titled else 0.0) + head[1]
@@ -101,6 +102,16 @@ def _block(
         box.y -= top
     width = max(*(box.x + box.width for box in own.values()), edge + head[0]) + edge
     return Box(width, max(box.y + box.height for box in own.values()) + edge)
+
+
+def _close(boxes: Boxes, room: float) -> None:
+    """Take out bands that are empty across all boxes, as far as they are higher than `room`."""
+    shift, bottom = 0.0, None
+    for box in sorted(boxes.values(), key=lambda box: box.y):
+        if bottom is not None and box.y > bottom + room:
+            shift += box.y - bottom - room
+        bottom = max(box.y + box.height, box.y if bottom is None else bottom)
+        box.y -= shift
 
 
 def _layered(
@@ -130,7 +141,8 @@ def _layered(
             best = (count, [list(column) for column in columns])
     for sweep in range(8):
         for column in best[1][::-1] if sweep % 2 else best[1]:
-            _stack(column, boxes, {key: _wanted(key, boxes, links, pulls, (True, True)) for key in column}, down)
+            # other blocks have a say in the order only, so that a block stays together
+            _stack(column, boxes, {key: _wanted(key, boxes, links, {}, (True, True)) for key in column}, down)
 
 
 def _own_matters(boxes: Boxes, links: Sequence[Link]) -> set[Hashable]:
