@@ -33,6 +33,7 @@ class Turn(object):
 
     def __init__(self, tasks):
         self.tasks, self.began, self.last = tasks, link.now(), link.now()
+        self.trouble = ""  # what was said of the server
 
     def left(self):
         """Seconds it may still hold the canvas up."""
@@ -66,10 +67,16 @@ def say(ghenv, level, sentence):
     """A sentence on the component, once in a solution; `level`: Error, Warning or Remark."""
     from Grasshopper.Kernel import GH_RuntimeMessageLevel
 
-    kind = getattr(GH_RuntimeMessageLevel, level)
+    if not _says(ghenv, sentence):
+        ghenv.Component.AddRuntimeMessage(getattr(GH_RuntimeMessageLevel, level), sentence)
+
+
+def _says(ghenv, sentence):
+    """Whether a component says this already."""
+    from Grasshopper.Kernel import GH_RuntimeMessageLevel as levels
+
     known = getattr(ghenv.Component, "RuntimeMessages", lambda _: ())
-    if sentence not in list(known(kind)):
-        ghenv.Component.AddRuntimeMessage(kind, sentence)
+    return any(sentence in list(known(level)) for level in (levels.Error, levels.Warning, levels.Remark))
 
 
 def error(ghenv, sentence):
@@ -263,9 +270,10 @@ def settled(ghenv, task):
         return task.value
     if task.done and not link.wants_server(task.problem):
         note(ghenv, "refused")
-        error(ghenv, trouble)
+        error(ghenv, link.plainly(trouble))
         return None
-    if trouble:
+    if trouble and not _says(ghenv, turn(ghenv).trouble):
+        turn(ghenv).trouble = trouble
         (remark if task.patient else warning)(ghenv, trouble)
     note(ghenv, "no server" if trouble and not task.patient else "working")
     schedule(ghenv, 1000 * link.AGAIN if task.done else 200 if trouble else 50)

@@ -75,10 +75,11 @@ def _player(ghenv):
     key = "%s:%s:%s" % (getattr(document, "DocumentID", "none"), digest, component)
     here = (component, str(getattr(document, "RuntimeID", id(document))))
     before = _players.get(_keys.get(here)) if _keys.get(here) != key else None
-    if key not in _players:
+    if key not in _players or _players[key].ended:
         title = "%s in %s" % (canvas.source(ghenv)["title"], os.path.basename(path) or "a new definition")
         _players[key] = Player(key, title, before)
     _keys[here] = key
+    _players[key].component = ghenv.Component
     return _players[key]
 
 

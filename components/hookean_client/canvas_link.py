@@ -119,7 +119,7 @@ class Task(object):
         silent = now() - self.since
         if self.done or silent < LATE:
             return None if self.done else self._before
-        return self._before or SENTENCES["silent"] % silent
+        return SENTENCES["silent"] % silent
 
     @property
     def patient(self):
@@ -138,6 +138,15 @@ def sentence(problem):
     if said is None:
         return problem.detail
     return said % problem.detail if "%s" in said else said
+
+
+def plainly(said):
+    """A refusal with the place it speaks of in words: "/length/0: 3 given" becomes "Length 0: 3 given."."""
+    place, colon, rest = said.partition(": ")
+    if colon and place[:1] == "/":
+        words = place.strip("/").replace("/", " ")
+        said = (words[:1].upper() + words[1:] + ": " if words else "") + rest
+    return said if said.endswith((".", "?", "!")) else said + "."
 
 
 def packed(value):

@@ -8,6 +8,7 @@ import threading
 import time
 
 from . import Problem
+from . import canvas_draw as drawing
 from . import canvas_link as link
 from . import canvas_scene as compose
 
@@ -24,12 +25,13 @@ class Player(object):
         self.wanted = self.kept = self.refused = None
         self.sent = self.form = self.where = self.topology = self.state = self.frames = self.task = None
         self.anchors, self.revision, self.running = {}, -1, True
-        self.shown = self.seen = None
+        self.shown = self.seen = self.component = None
+        self.ended = self._watched = False
         self._branch, self._met, self._trouble = None, False, None
         self._heard, self._read, self._cost = (-1, link.now()), 0.0, 0.0
         if before is not None:
             self._branch, self.anchors, self._met = before, dict(before.anchors), True
-            before.leave()
+            before.end()
 
     def look(self):
         """Start what has to be done, if nothing is under way; returns at once."""
@@ -80,6 +82,12 @@ class Player(object):
         if frames is not None:
             frames.close()
             link.Task(lambda client: client.session(self.key).pause(timeout=5.0))
+
+    def end(self):
+        """It is not needed any more."""
+        self.ended = True
+        self.leave()
+        drawing.clear(self.key)
 
     def wait(self, seconds):
         """Whether nothing is under way, after at most so many seconds."""
@@ -278,18 +286,37 @@ class Player(object):
                 self.anchors[wanted.anchors[int(parts[2])]["name"]]["met"] = False
 
     def _keep_watch(self):
-        """Leave the session in peace once nobody looks any more: the component was deleted, or its file closed."""
-        frames = self.frames
+        """Leave the session in peace once nobody looks any more, and draw nothing once the component is gone."""
+        if self._watched:
+            return
+        self._watched = True
 
         def watch():
-            while self.frames is frames:
+            while not self.ended:
                 time.sleep(1.0)
-                if link.now() - self.seen > LEFT and self.frames is frames:
+                if self.frames is not None and link.now() - self.seen > LEFT:
                     self.leave()
+                if _gone(self.component):
+                    self.end()
 
         thread = threading.Thread(target=watch, name="hookean-watch")
         thread.daemon = True
         thread.start()
+
+
+def _gone(component):
+    """Whether a component was deleted, or its definition closed."""
+    document = None if component is None else component.OnPingDocument()
+    if component is None or document is None:
+        return component is not None
+    try:
+        from Grasshopper import Instances
+
+        if getattr(document, "Owner", None) is not None:
+            return False  # in a cluster
+        return all(one.RuntimeID != document.RuntimeID for one in Instances.DocumentServer)
+    except (ImportError, AttributeError, TypeError):
+        return False
 
 
 def _cell(spot, size):

@@ -9,7 +9,7 @@ from . import Problem, connect
 from . import canvas_geometry as geometry
 from . import canvas_link as link
 
-OLD = 1.0  # seconds after which a solution looks again
+OLD = 0.05  # seconds after which a solution looks again
 _looks = {}  # by component: (what was asked for, Task, what was shown last)
 
 

@@ -16,7 +16,7 @@ from canvas.canvasing import Bench, line, point, sentences, xyz
 from hookean_canvas import stand_in
 from hookean_client import canvas, canvas_draw, canvas_engine, canvas_link
 from hookean_client.canvas_player import Player
-from serving import Home
+from serving import Home, wait_for
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -49,7 +49,7 @@ def reopen() -> None:
     for player in canvas_engine._players.values():
         if player.frames is not None:
             player.frames.close()
-        player.frames = None
+        player.frames, player.ended = None, True
     canvas_engine._players.clear()
     canvas_engine._keys.clear()
 
@@ -360,6 +360,22 @@ def test_nobody_watches_for_long(home: Home, monkeypatch: pytest.MonkeyPatch) ->
     client.close()
     before = cable.out.iterations
     cable.run(lambda out: out.iterations > before + 10)
+
+
+def test_a_component_that_is_deleted_leaves_nothing_behind(home: Home) -> None:
+    """Nothing of it stays drawn, and its session stands still."""
+    cable = Cable()
+    cable.settings = {"drag": 0.01}
+    cable.run(lambda out: out.iterations)
+    player, component = cable.player, cable.engine.Component
+    document, component.document = component.document, None
+    wait_for(lambda: player.ended and player.key not in canvas_draw._displays)
+    client = hookean_client.connect(start=False)
+    wait_for(lambda: not client.session(player.key).read()["playing"])
+    client.close()
+    component.document = document  # taken back with undo
+    before = cable.out.iterations
+    cable.run(lambda out: out.iterations != before)
 
 
 PLACES = st.tuples(*[st.integers(-3, 3)] * 3).map(lambda p: [float(c) for c in p])
