@@ -226,7 +226,7 @@ def _tell(ghenv, found):
     task, status = found.task, found.status
     if task is not None and task.done and task.problem is not None and not link.wants_server(task.problem):
         canvas.note(ghenv, "refused")
-        canvas.error(ghenv, task.trouble)
+        canvas.error(ghenv, link.plainly(task.trouble.replace("/sweep/forces/", "/").replace("/scene/", "/")))
         return
     trouble = task.trouble if task is not None else None
     if trouble:

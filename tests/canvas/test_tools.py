@@ -156,7 +156,10 @@ def test_catenary(rhino: Any) -> None:
     several = run("Catenary", **{**given, "_end": [point(5, 0, 1), point(4, 1, 0)], "_length": [8, "9"]})
     assert (places(branches(several["points"])["{0;1}"]) == catenary([0, 0, 0], [4, 1, 0], 9.0, count=6)).all()
     assert len(several["catenary"]) == 2
-    assert "5 apart" in said("Catenary", _start=[point(0, 0, 0)], _end=[point(5, 0, 0)], _length=[4])
+    assert said("Catenary", _start=[point(0, 0, 0)], _end=[point(5, 0, 0)], _length=[4]) == (
+        "Length 0: 4 given; the ends are 5 apart and no shorter cable joins them. Give at least that, or bring the "
+        "ends nearer."
+    )
 
 
 def test_interpolate(rhino: Any) -> None:
@@ -282,7 +285,7 @@ def test_a_rhino_file_says_what_there_is(tmp_path: Path) -> None:
         assert len(run("RhinoFile", _file=[model], layer_=["left", "right"])["points"]) == 2
         damaged = tmp_path / "damaged.3dm"
         damaged.write_bytes(Path(model).read_bytes()[:3000])
-        assert said("RhinoFile", _file=[str(damaged)]).startswith("/file: ")
+        assert said("RhinoFile", _file=[str(damaged)]).startswith("File: ")
     finally:
         made.remove()
 

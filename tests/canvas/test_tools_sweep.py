@@ -149,7 +149,7 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
     ({"scene_": "{"}, "Scene: it is no JSON text of a scene."),
     ({"results_": ["force"]}, 'Results: there is no "force"; there are iterations, residual, energy, displacement, '
                               "reaction, springs.smallest, springs.largest, unary.smallest, unary.largest."),
-    ({"_parameters": ["0.stiffnes"]}, "/sweep/forces/0/stiffnes: \"stiffnes\" is no field of springs; did you mean "
+    ({"_parameters": ["0.stiffnes"]}, "0 stiffnes: \"stiffnes\" is no field of springs; did you mean "
                                       "stiffness?"),
 ]  # fmt: skip
 
