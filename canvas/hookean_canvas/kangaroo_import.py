@@ -48,7 +48,8 @@ class Importing:
         known = recognised(part.chunk, self.libraries)
         if known is None and part.guid == CLUSTER and part.container is not None:
             named = Known("classic", str(part.container.value("Name", default="")))
-            return named if swap_of(named) and hidden(part.chunk, self.libraries) else None
+            inside = hidden(part.chunk, self.libraries) or ""
+            return named if swap_of(named) and "holds" in inside else None
         return known
 
     def run(self) -> None:
@@ -74,6 +75,8 @@ class Importing:
         names = {key(name) for port in _ports(part, inputs) for name in _names(port)}
         if swap is None or not set(swap.needs) <= names:
             return reason(known)
+        if part.container is None or not inputs(part.container) or not outputs(part.container):
+            return "it has no input or no output; the file is damaged"
         for piece in swap.pieces:
             if piece.bundle != "*geometry":
                 try:

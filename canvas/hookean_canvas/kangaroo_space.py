@@ -45,6 +45,11 @@ class Space:
                 wide = CHARACTER * len(port.value("NickName", default="")) + 8.0
                 containers.place(port, (x + 2.0 if left else x + width - 2.0 - wide, y + 2.0 + i * row, wide, row))
 
+    def covered(self, container: Chunk) -> bool:
+        """Whether an object shares its place with another one."""
+        own = self.taken.get(id(container))
+        return own is not None and any(_meet(own, box, 0.0) for key, box in self.taken.items() if key != id(container))
+
     def corner(self) -> tuple[float, float]:
         """The upper left corner of all there is."""
         boxes = list(self.taken.values()) or [(0.0, 0.0, 0.0, 0.0)]
@@ -67,5 +72,5 @@ def bounds_of(container: Chunk | None) -> Rectangle | None:
     return (x, y, width, height) if math.isfinite(x + y + width + height) else None
 
 
-def _meet(one: Rectangle, other: Rectangle) -> bool:
-    return all(one[i] < other[i] + other[i + 2] + GAP and other[i] < one[i] + one[i + 2] + GAP for i in (0, 1))
+def _meet(one: Rectangle, other: Rectangle, gap: float = GAP) -> bool:
+    return all(one[i] < other[i] + other[i + 2] + gap and other[i] < one[i] + one[i + 2] + gap for i in (0, 1))

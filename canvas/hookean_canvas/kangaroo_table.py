@@ -57,6 +57,7 @@ _PHYSICS = {"forceobjects": "forces", "anchorpoints": "anchors", "settings": "se
 _ENDS = "it ends at a residual (out-of-balance force over load), not at a speed or an energy"
 _FRICTION = "friction is Coulomb's here (0.6 resting, 0.5 sliding), another law than the number typed in Kangaroo"
 _EXACT = "anchors hold exactly here, so they have no strength"
+_BARE = "without Settings there is no floor"
 _ENERGY = "the energy is that of all forces and of the motion, not of the motion alone"
 
 _TOOLS = {
@@ -120,7 +121,7 @@ SETTINGS = Swap(
 
 CLASSIC: dict[str, Swap] = {
     "kangaroophysics": Swap(
-        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),), f"{_ENERGY}; {_ENDS}"
+        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),), f"{_ENERGY}; {_ENDS}; {_BARE}"
     ),
     "zombiekangaroo": Swap(
         (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),),

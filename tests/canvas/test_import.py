@@ -299,6 +299,20 @@ def test_clusters_and_scripts_that_use_kangaroo_are_named() -> None:
     assert "uses Kangaroo's solver" in told[0] and "holds Smooth" in told[1] and "cannot be looked into" in told[2]
 
 
+def test_a_classic_component_that_is_a_cluster_of_others_is_translated_by_its_name() -> None:
+    inner = Kangaroo("inner", "Inner", "In the cluster.")
+    inner.kangaroo("Hinge", (("P1", None),), ["H"], guid=UUID(int=8), classic=True)
+    d = Kangaroo("shell", "Shell", "A cluster that comes with Kangaroo.")
+    given = (("Mesh", None), ("Strength", 250.0), ("AngleFactor", None))
+    shell = d.kangaroo("Shell", given, ["ShellForce"], guid=CLUSTER, classic=True, mesh=d.parameter("Mesh", "Mesh"))
+    shell.library = None
+    shell.container.put("ClusterDocument", Type.BYTEARRAY, archive.to_bytes(inner.archive()))
+    after, report = translated(d)
+    assert [by for _, by, _ in report.swapped] == ["Shell"] and report.complete
+    [held] = behind(after, the(after, "Shell"), "strength")
+    assert held.container is not None and held.container.value("UserText") == "250"
+
+
 def test_encoded_scripts_are_found_wherever_the_name_starts() -> None:
     from hookean_canvas.kangaroo_guids import _ENCODED
 
