@@ -150,9 +150,10 @@ def chain(version: str) -> list[dict[str, Any]]:
              "geometry_": rides}  # fmt: skip
     many = {**given, "_parameters": ["Springs.stiffness"], "_values": [1000.0, 2000.0], "_run": True}
     swept = step(version, "Sweep", {name: value for name, value in many.items() if name != "geometry_"})
+    moments = step(version, "Moments", {**given, "_times": [0.1, 0.2]})
     held = step(version, "Engine", {**given, "_reset": True})
     runs = step(version, "Engine", {**given, "_reset": False}, solutions=4000)
-    return [*steps, swept, held, runs]
+    return [*steps, swept, moments, held, runs]
 
 
 @cache
@@ -227,4 +228,4 @@ def test_with_nothing_connected_there_is_at_most_one_sentence(version: str, tmp_
 
 
 def test_every_component_has_a_sample() -> None:
-    assert [name for name in NAMES if name not in {*SAMPLES, "Engine", "Sweep"}] == []
+    assert [name for name in NAMES if name not in {*SAMPLES, "Engine", "Moments", "Sweep"}] == []

@@ -79,6 +79,7 @@ def samples() -> dict[str, dict[str, Any]]:
         "Divide": {"_curve": curve, "_count_": [4]},
         "Engine": {**held, "_reset": False, "settings_": [settings(drag=5.0)]},
         "Interpolate": {"_points": row, "_count_": [5]},
+        "Moments": {**held, "_times": [0.1]},
         "MeshSurface": {"_surface": [surface], "_u_": [3], "_v_": [2]},
         "RemoveDuplicateLines": {"_lines": [spans[0], spans[0]]},
         "RhinoFile": {"_file": [str(MODEL)]},
