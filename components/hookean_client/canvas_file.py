@@ -3,9 +3,12 @@
 import fnmatch
 import hashlib
 import os
+import threading
 import uuid
+from collections import OrderedDict
 
 from . import canvas
+from . import canvas_engine as engine
 from . import canvas_geometry as geometry
 from . import canvas_link as link
 from . import canvas_tools as tools
@@ -13,6 +16,8 @@ from .canvas_geometry import Unfit, listed
 
 UNITS = {"Millimeters": "mm", "Centimeters": "cm", "Decimeters": "dm", "Meters": "m", "Kilometers": "km",
          "Inches": "in", "Feet": "ft", "Yards": "yd"}  # fmt: skip
+FILES = 8  # whose geometry is kept
+_files, _lock = OrderedDict(), threading.Lock()
 
 
 class Drawing(object):
@@ -46,6 +51,10 @@ def _read(ghenv, given, layers, names, u, v):
     made.unit, made.layers = UNITS.get(found["unit"], found["unit"]), there
     for sentence in found["warnings"]:
         canvas.remark(ghenv, sentence)
+    here = engine._length_unit()
+    if here is not None and here != made.unit:
+        said = "The lengths of this file are in %s, those of the document in %s; they are not converted."
+        canvas.warning(ghenv, said % (made.unit, here))
     return made
 
 
@@ -148,17 +157,39 @@ def file_of(ghenv, given):
 
 def drawn(ghenv, place, query):
     """What is drawn in a .3dm file (see the service's `POST /v1/geometry/3dm`); None until it is there."""
-    told = os.stat(place)
-    signature = hashlib.sha1(repr((place, told.st_mtime, told.st_size, sorted(query.items()))).encode("utf-8"))
+    try:
+        told = os.stat(place)
+    except EnvironmentError:
+        raise Unfit("file: %s cannot be read" % place)
+    text = repr((place, told.st_mtime, told.st_size, sorted(query.items())))
+    signature = hashlib.sha1(text.encode("utf-8")).hexdigest()
+    shared = _shared(signature)
 
     def work(client):
-        with open(place, "rb") as file:
-            data = file.read()
-        line = uuid.uuid4().hex.encode("ascii")
-        head = b'\r\nContent-Disposition: form-data; name="file"; filename="drawing.3dm"\r\n\r\n'
-        body = b"--" + line + head + data + b"\r\n--" + line + b"--\r\n"
-        kind = {"content-type": "multipart/form-data; boundary=" + line.decode("ascii")}
-        asked = dict(query, arrays="buffer")
-        return link.unpacked(client.request("POST", "/v1/geometry/3dm", body, asked, kind, timeout=300.0))
+        with shared[0]:  # several components of a definition read the same file
+            if len(shared) == 1:
+                shared.append(_sent(client, place, query))
+            return shared[1]
 
-    return canvas.ask(ghenv, (canvas.run_of(ghenv), "file"), signature.hexdigest(), work)
+    return canvas.ask(ghenv, (canvas.run_of(ghenv), "file"), signature, work)
+
+
+def _shared(signature):
+    """What all components know of a file: a lock, and what is drawn there once somebody asked."""
+    with _lock:
+        found = _files.pop(signature, None) or [threading.Lock()]
+        _files[signature] = found
+        while len(_files) > FILES:
+            del _files[next(iter(_files))]
+        return found
+
+
+def _sent(client, place, query):
+    with open(place, "rb") as file:
+        data = file.read()
+    line = uuid.uuid4().hex.encode("ascii")
+    head = b'\r\nContent-Disposition: form-data; name="file"; filename="drawing.3dm"\r\n\r\n'
+    body = b"--" + line + head + data + b"\r\n--" + line + b"--\r\n"
+    kind = {"content-type": "multipart/form-data; boundary=" + line.decode("ascii")}
+    asked = dict(query, arrays="buffer")
+    return link.unpacked(client.request("POST", "/v1/geometry/3dm", body, asked, kind, timeout=300.0))

@@ -19,7 +19,7 @@ from hookean.discretize import curves, interpolate, meshes, nurbs_surface, surfa
 from hookean.files import threedm
 from hookean.mesh import Mesh
 from hookean_canvas import bundles, stand_in
-from hookean_client import canvas_file, canvas_geometry, canvas_link
+from hookean_client import canvas_engine, canvas_file, canvas_geometry, canvas_link
 from serving import Home
 
 OURS = ("Divide", "Shatter", "Catenary", "MeshSurface", "MeshEdges", "MeshVertices", "MeshCorners", "NakedVertices",
@@ -297,6 +297,35 @@ def test_a_file_that_was_saved_again_is_read_again(tmp_path: Path) -> None:
         for example, layer in (("9.4-cable", "cable"), ("9.24-membrane", "membrane")):
             file.write_bytes((EXAMPLES / example / "model.3dm").read_bytes())
             assert placed.run(_file=["model.3dm"])["layers"] == [layer]
+    finally:
+        made.remove()
+
+
+def test_a_file_in_another_unit_than_the_document_is_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = stand_in.Canvas().install()
+    monkeypatch.setattr(canvas_engine, "_length_unit", lambda: "mm")
+    try:
+        placed = Placed("RhinoFile")
+        placed.run(_file=[str(EXAMPLES / "9.4-cable" / "model.3dm")])
+        assert sentences(placed.ghenv, "Warning") == [
+            "The lengths of this file are in m, those of the document in mm; they are not converted."
+        ]
+    finally:
+        made.remove()
+
+
+def test_a_file_is_read_once_for_all_components(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    made = stand_in.Canvas().install()
+    sent: list[str] = []
+    real = canvas_file._sent
+    monkeypatch.setattr(
+        canvas_file, "_sent", lambda client, place, query: sent.append(place) or real(client, place, query)
+    )
+    try:
+        file = tmp_path / "model.3dm"
+        file.write_bytes((EXAMPLES / "9.32-ribbon" / "model.3dm").read_bytes())
+        counts = [len(run("RhinoFile", _file=[str(file)], layer_=[name])["curves"]) for name in ("beams", "arcs")]
+        assert counts == [2, 11] and sent == [str(file)]
     finally:
         made.remove()
 
