@@ -139,7 +139,10 @@ def hops_list() -> dict[str, Any]:
 def hops_description() -> dict[str, Any]:
     """What GET /<name> says of itself."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsFunction"}}}
-    return {"responses": _told_to_hops(problems(success, open_to_all=True))}
+    found = _told_to_hops(problems(success, open_to_all=True))
+    either = {"anyOf": [{"$ref": f"#/components/schemas/{name}"} for name in ("HopsProblem", "Problem")]}
+    found[404] = {**found[404], "content": {MEDIA_TYPE: {"schema": either}}}  # a name with a slash is none
+    return {"responses": found}
 
 
 def hops_solve() -> dict[str, Any]:
