@@ -83,7 +83,7 @@ _TOOLS = {
                 {"warp": "a", "weft": "b", "warp_naked": "na", "weft_naked": "nb"},
             ),
         ),
-        "a mesh without two families of edges is an error here, unless `_strict_` is False",
+        "which family comes first may differ; a mesh without two is an error, unless `_strict_` is False",
     ),
     "removeduplicatelines": Swap(
         (Piece("RemoveDuplicateLines", {"lines": "lines", "tolerance": "tolerance"}, {"lines": "q"}),)
@@ -359,7 +359,6 @@ SECOND: dict[str, Swap] = {
             Piece("*lines", {"start": "start", "end": "end"}, feeds={"lines": "0.connection"}),
         ),
     ),
-    "meshcorners": Swap((Piece("MeshCorners", {"m": "mesh", "a": "angle"}, {"corners": "c"}),)),
     **_TOOLS,
 }
 
@@ -403,6 +402,8 @@ REASONS: dict[str, str] = {
     **dict.fromkeys(_PURE_NAMES.split(), _PURE),
     **dict.fromkeys(_COLLIDE_NAMES.split(), _COLLIDE),
     **dict.fromkeys(_TOOL_NAMES.split(), _TOOL),
+    "meshcorners": f"{_TOOL} that gives corners round the boundary; Mesh Corners here gives them by the numbers of the"
+    " vertices, which would mix up lists that go with them",
 }
 """Why a component has no counterpart, or what to use instead."""
 
@@ -424,7 +425,7 @@ def reason(known: Known) -> str:
 
 def is_tool(known: Known) -> bool:
     """Whether it works on meshes and points alone, without a solver; such components of Kangaroo 2 go on working."""
-    return known.generation == "second" and REASONS.get(key(known.name)) == _TOOL
+    return known.generation == "second" and REASONS.get(key(known.name), "").startswith(_TOOL)
 
 
 def markdown() -> str:
