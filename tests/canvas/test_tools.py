@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 import rhino3dm
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from canvas.canvasing import Bench, line, point, sentences, xyz
 from hookean.catenary import catenary
@@ -132,6 +134,23 @@ def test_several_curves_have_a_branch_each_in_their_order(rhino: Any) -> None:
     bent = rhino.PolylineCurve([point(*corner) for corner in BENT])
     mixed = branches(run("Shatter", _curve=[lines[0], bent, lines[1]], _count_=[2, 0, 1])["lines"])
     assert [len(row) for row in mixed.values()] == [2, 2, 1]
+
+
+corner = st.tuples(*[st.floats(-100, 100).map(lambda x: round(x, 2))] * 3)
+polyline = st.lists(corner, min_size=2, max_size=5, unique=True)
+
+
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(rows=st.lists(polyline, min_size=1, max_size=4), counts=st.lists(st.integers(1, 30), max_size=6))
+def test_any_curves_and_counts_are_matched_by_the_longest_list(rhino: Any, rows: Any, counts: list[int]) -> None:
+    given_curves = [rhino.PolylineCurve([point(*place) for place in row]) for row in rows]
+    found = run("Divide", _curve=given_curves, _count_=counts)["points"]
+    most = max(len(rows), len(counts))
+    each = [(rows[min(i, len(rows) - 1)], (counts or [10])[min(i, len(counts or [10]) - 1)]) for i in range(most)]
+    wanted = [curves.divide(row, count) for row, count in each]
+    parts = [found] if most == 1 else list(branches(found).values())
+    assert len(parts) == most
+    assert all((places(part) == one).all() for part, one in zip(parts, wanted, strict=True))
 
 
 def test_a_branch_is_below_the_one_it_comes_from(rhino: Any) -> None:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Iterator
 from typing import Any
 
 import httpx
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from canvas.canvasing import Bench, line, point, sentences
 from canvas.test_tools import Placed, branches
 from hookean import Scene
 from hookean.sweep import solve
 from hookean_canvas import stand_in
-from hookean_client import canvas_link
+from hookean_client import canvas_link, canvas_sweep
 from serving import SWING, Home, wait_for
 
 
@@ -98,6 +101,12 @@ def test_every_value_with_every_other(home: Home) -> None:
     text = found["table"].splitlines()
     assert text[0] == ", ".join(["number", "Springs.stiffness", "UForce.vector", "status", *found["names"]])
     assert text[1].startswith("0, 500.0, 0.0 0.0 -20.0, converged, ") and len(text) == 5
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.lists(st.integers(), min_size=1, max_size=4), min_size=1, max_size=4))
+def test_items_are_counted_with_the_last_parameter_fastest(rows: list[list[int]]) -> None:
+    assert list(zip(*canvas_sweep._columns(rows, "product"), strict=True)) == list(itertools.product(*rows))
 
 
 def test_side_by_side_and_settings_of_a_scene_as_text(home: Home) -> None:

@@ -1,0 +1,75 @@
+"""The code inside the user objects that discretize, alone in the Pythons of Rhino: the numbers of the core itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from canvas.test_isolated import CURVE, PYTHONS, QUADS, SAMPLES, SURFACE, ask, step
+from hookean.catenary import catenary
+from hookean.discretize import divide, interpolate, mesh_surface, meshes, nurbs_curve, nurbs_surface, shatter, threads
+from hookean.mesh import Mesh
+from serving import Home
+
+MESH = Mesh(np.array(QUADS["vertices"], dtype=float), np.array(QUADS["faces"]))
+BENT = nurbs_curve(**CURVE["NurbsCurve"])
+V = MESH.vertices
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
+    found = Home(tmp_path_factory.mktemp("alone") / "state")
+    found.serve()
+    yield found
+    found.end()
+
+
+def wanted() -> dict[str, dict[str, Any]]:
+    """By component and output what the core gives for the samples."""
+    cable = catenary([0, 0, 0], [3, 1, 0], 4.0, count=5)
+    warp, weft, warp_naked, weft_naked = threads(MESH)
+    surface = mesh_surface(nurbs_surface(**SURFACE["NurbsSurface"]), 3, 2)
+    lines = shatter(BENT, 4)
+    naked, clothed = meshes.boundary(MESH)
+    row = [place["Point3d"] for place in SAMPLES["Interpolate"]["_points"]]
+    return {
+        "Divide": {"points": divide(BENT, 7)},
+        "Shatter": {"lines": lines, "lengths": np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)},
+        "Catenary": {"catenary": [cable], "points": cable, "lines": np.stack([cable[:-1], cable[1:]], axis=1)},
+        "Interpolate": {"curve": interpolate(row, 6)},
+        "MeshSurface": {"mesh": [surface]},
+        "MeshEdges": {"edges": V[meshes.edges(MESH)], "naked": V[meshes.naked_edges(MESH)]},
+        "MeshVertices": {"points": V},
+        "MeshCorners": {"corners": V[meshes.corners(MESH)], "indices": meshes.corners(MESH)},
+        "NakedVertices": {"naked_index": naked, "clothed_index": clothed, "naked_points": V[naked]},
+        "WarpWeft": {"warp": V[warp], "weft": V[weft], "warp_naked": warp_naked, "weft_naked": weft_naked},
+        "Diagonals": {"diagonals": V[meshes.diagonals(MESH)]},
+        "RemoveDuplicateLines": {"lines": [[[0, 0, 0], [1, 0, 0]]]},
+    }
+
+
+def plain(value: Any) -> Any:
+    """An output without the names of Rhino's types; a mesh as vertices and faces."""
+    if isinstance(value, dict):
+        [found] = value.values()
+        return found
+    return [plain(one) for one in value] if isinstance(value, list) else value
+
+
+@pytest.mark.parametrize("version", PYTHONS)
+def test_components_give_the_numbers_of_the_core(version: str, home: Home, tmp_path: Path) -> None:
+    expected = wanted()
+    steps = [step(version, name, SAMPLES[name]) for name in expected]
+    for name, answer in zip(expected, ask(version, {"steps": steps}, tmp_path / "alone", home), strict=True):
+        assert not answer["messages"], (name, answer["messages"])
+        for output, value in expected[name].items():
+            found = plain(answer["outputs"][output])
+            if output == "mesh":
+                assert np.array_equal(found[0]["faces"], value[0].faces)
+                found, value = found[0]["vertices"], value[0].vertices
+            assert np.shape(found) == np.shape(value), (name, output)
+            assert np.allclose(found, value, rtol=0, atol=1e-14), (name, output)
