@@ -90,6 +90,6 @@ def _report(ghenv, answers):
         said.append(sentence)
     for one in answers:
         if one["status"] == "diverged":
-            canvas.error(ghenv, one["message"])
+            canvas.warning(ghenv, one["message"])
             said.append(one["message"])
     return said + ["%d particles, at rest or in motion at %d moments." % (len(answers[0]["particles"]), len(answers))]
