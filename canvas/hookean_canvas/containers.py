@@ -12,9 +12,11 @@ from typing import Any
 from uuid import UUID
 
 from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.guids import CONVERTERS, HINTS, SCRIPT_PARAMETER
+from hookean_canvas.guids import CONVERTERS, HINTS, LIBRARIES, SCRIPT_LIBRARY, SCRIPT_PARAMETER
 from hookean_canvas.natives import PARAMETERS, Native
 
+TICKS = 638_000_000_000_000_000
+"""The date in every file, so that the same definition is the same file."""
 Rectangle = tuple[float, float, float, float]
 
 
@@ -204,3 +206,21 @@ def place(chunk: Chunk, bounds: Rectangle) -> None:
     if chunk.chunk("PanelProperties") is not None:
         for side in ("MarginLeft", "MarginRight", "MarginTop"):
             attributes.put(side, Type.INT32, 0)
+
+
+def header(definition: Chunk, id_: UUID, title: str, description: str) -> None:
+    """What a definition has beside its objects: its id, title, words and the library of scripts."""
+    head = definition.add("DocumentHeader").put("DocumentID", Type.GUID, id_).put("Preview", Type.STRING, "Shaded")
+    head.put("PreviewMeshType", Type.INT32, 1).put("PreviewNormal", Type.DRAWING_COLOR, (100, 150, 0, 0))
+    head.put("PreviewSelected", Type.DRAWING_COLOR, (100, 0, 150, 0))
+    properties = definition.add("DefinitionProperties").put("Date", Type.DATE, TICKS).put("Name", Type.STRING, title)
+    properties.put("Description", Type.STRING, description).put("KeepOpen", Type.BOOL, False)
+    properties.add("Revisions").put("RevisionCount", Type.INT32, 0)
+    properties.add("Projection").put("Target", Type.DRAWING_POINT, (0, 0)).put("Zoom", Type.SINGLE, 0.75)
+    properties.add("Views").put("ViewCount", Type.INT32, 0)
+    definition.add("RcpLayout").put("GroupCount", Type.INT32, 0)
+    libraries = definition.add("GHALibraries").put("Count", Type.INT32, 1)
+    library = libraries.add("Library", 0).put("Id", Type.GUID, SCRIPT_LIBRARY)
+    name = LIBRARIES[SCRIPT_LIBRARY]
+    library.put("Name", Type.STRING, name).put("Author", Type.STRING, "Robert McNeel & Associates")
+    library.put("Version", Type.STRING, "")

@@ -15,6 +15,7 @@ The same calls write the same bytes: ids are of the definition's key and of the 
 from __future__ import annotations
 
 import textwrap
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -32,9 +33,9 @@ ROW, CHARACTER = 20.0, 6.2
 COLOURS = (
     (120, 150, 190, 215), (120, 190, 215, 150), (120, 235, 200, 140), (120, 215, 170, 200), (120, 200, 200, 200),
 )  # fmt: skip
+SHARED = 4
+"""From so many wires into other groups on, those of an object are drawn faint."""
 NOTE = (255, 245, 245, 245)
-TICKS = 638_000_000_000_000_000
-"""The date in every file, so that the same definition is the same file."""
 
 
 @dataclass(frozen=True)
@@ -226,8 +227,11 @@ class Definition:
         """The definition as an archive."""
         self._arrange()
         root = Chunk("Root").put("ArchiveVersion", Type.VERSION, (0, 2, 2))
+        self._soften()
         definition = root.add("Definition").put("plugin_version", Type.VERSION, (1, 0, 8))
-        _header(definition, uuid5(NAMESPACE_URL, f"hookean definition {self.key}"), self.title, self.description)
+        containers.header(
+            definition, uuid5(NAMESPACE_URL, f"hookean definition {self.key}"), self.title, self.description
+        )
         objects = definition.add("DefinitionObjects")
         for made in self._made:
             self._finish(made)
@@ -324,6 +328,18 @@ class Definition:
             top -= note.size[1] + layout.DOWN
             note.box = layout.Box(*note.size, left, top)
 
+    def _soften(self) -> None:
+        """Faint wires where one object feeds several in other groups, as a person sets them for shared values."""
+        group = {made.id: i for i, (_, members, _) in enumerate(self._groups) for made in members}
+        far = Counter(
+            source.owner.id for made in self._made for sources in made.sources.values() for source in sources
+            if group.get(source.owner.id) != group.get(made.id)
+        )  # fmt: skip
+        for made in self._made:
+            for key, sources in made.sources.items():
+                if sources and all(far[source.owner.id] >= SHARED for source in sources):
+                    made.inputs[key][1].put("WireDisplay", Type.INT32, 1)
+
     def _finish(self, made: Made) -> None:
         """Bounds of an object and of its inputs and outputs, from its box."""
         x, y, (width, height) = round(made.box.x), round(made.box.y), made.size
@@ -366,20 +382,3 @@ def _height(made: Made, side: str, name: str) -> float:
     """How far below its top a wire leaves or enters."""
     ports: dict[str, Any] = getattr(made, side)
     return 2.0 + (list(ports).index(name) + 0.5) * (made.size[1] - 4.0) / len(ports)
-
-
-def _header(definition: Chunk, id_: UUID, title: str, description: str) -> None:
-    header = definition.add("DocumentHeader").put("DocumentID", Type.GUID, id_).put("Preview", Type.STRING, "Shaded")
-    header.put("PreviewMeshType", Type.INT32, 1).put("PreviewNormal", Type.DRAWING_COLOR, (100, 150, 0, 0))
-    header.put("PreviewSelected", Type.DRAWING_COLOR, (100, 0, 150, 0))
-    properties = definition.add("DefinitionProperties").put("Date", Type.DATE, TICKS).put("Name", Type.STRING, title)
-    properties.put("Description", Type.STRING, description).put("KeepOpen", Type.BOOL, False)
-    properties.add("Revisions").put("RevisionCount", Type.INT32, 0)
-    properties.add("Projection").put("Target", Type.DRAWING_POINT, (0, 0)).put("Zoom", Type.SINGLE, 0.75)
-    properties.add("Views").put("ViewCount", Type.INT32, 0)
-    definition.add("RcpLayout").put("GroupCount", Type.INT32, 0)
-    libraries = definition.add("GHALibraries").put("Count", Type.INT32, 1)
-    library = libraries.add("Library", 0).put("Id", Type.GUID, guids.SCRIPT_LIBRARY)
-    name = "RhinoCodePluginGH"
-    library.put("Name", Type.STRING, name).put("Author", Type.STRING, "Robert McNeel & Associates")
-    library.put("Version", Type.STRING, "")

@@ -31,7 +31,7 @@ def draw(graph: Graph, path: Path) -> None:
     for group in graph.groups:
         _group(axes, group.title, group.colour, [places[key] for key in group.members if key in places])
     for start, out, end, given in graph.wires():
-        _wire(axes, _place(start, out.id, right=True), _place(end, given.id, right=False))
+        _wire(axes, _place(start, out.id, right=True), _place(end, given.id, right=False), 0.15 if given.faint else 1.0)
     for node in shown:
         _node(axes, node)
     figure.savefig(path, dpi=SCALE, metadata={"Software": None})
@@ -46,12 +46,12 @@ def _place(node: Node, port: UUID, right: bool) -> tuple[float, float]:
     return (x + width if right else x), y + 2.0 + row * (height - 4.0)
 
 
-def _wire(axes: Any, start: tuple[float, float], end: tuple[float, float]) -> None:
+def _wire(axes: Any, start: tuple[float, float], end: tuple[float, float], alpha: float) -> None:
     reach = max(0.5 * abs(end[0] - start[0]), 20.0)
     t = np.linspace(0.0, 1.0, 40)[:, None]
     control = np.array([start, (start[0] + reach, start[1]), (end[0] - reach, end[1]), end])
     weights = np.hstack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3])
-    axes.plot(*(weights @ control).T, color=(0.2, 0.2, 0.2), linewidth=1.2, zorder=2)
+    axes.plot(*(weights @ control).T, color=(0.2, 0.2, 0.2), linewidth=1.2, alpha=alpha, zorder=2)
 
 
 def _group(axes: Any, title: str, colour: tuple[int, int, int, int], members: list[Node]) -> None:

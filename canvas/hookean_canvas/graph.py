@@ -30,6 +30,7 @@ class Port:
     simplify: bool = False
     hint: UUID | None = None
     data: Tree | None = None
+    faint: bool = False
 
 
 @dataclass
@@ -193,6 +194,7 @@ def port(chunk: Chunk) -> Port:
         simplify=bool(chunk.value("SimplifyData", default=False)),
         hint=chunk.value("TypeHintID"),
         data=_persistent(data) if data is not None else None,
+        faint=chunk.value("WireDisplay", default=0) != 0,
     )
 
 

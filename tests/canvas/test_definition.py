@@ -139,7 +139,7 @@ def test_any_wiring_is_laid_out_left_to_right_without_overlaps(measures, data) -
 
 
 def test_two_strands_are_laid_out_without_a_crossing() -> None:
-    boxes: layout.Boxes = {name: layout.Box(60.0, 40.0) for name in "a1 b1 a2 b2 a3 b3 end".split()}
+    boxes: layout.Boxes = {name: layout.Box(60.0, 40.0) for name in ["a1", "b1", "a2", "b2", "a3", "b3", "end"]}
     names = [("a1", "a2"), ("b1", "b2"), ("b2", "b3"), ("a2", "a3"), ("b3", "end"), ("a3", "end")]
     enters = {"b3": 10.0, "a3": 30.0}  # the strand drawn first enters lower
     links = [layout.Link(a, b, 20.0, enters.get(a, 20.0) if b == "end" else 20.0) for a, b in names]
