@@ -257,7 +257,7 @@ def ask(ghenv, slot, signature, work):
         before = known[1].trouble if known is not None and link.wants_server(known[1].problem) else None
         now.tasks[slot] = known = (signature, link.Task(work, before))
     task = known[1]
-    task.wait(0.02 if task.trouble else now.left())
+    task.wait(link.GLANCE if task.trouble else link.service.patience(now.left()))
     now.last = link.now()
     return settled(ghenv, task)
 

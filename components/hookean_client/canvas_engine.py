@@ -53,7 +53,7 @@ def solve(ghenv, forces, anchors, settings, rides, reset):
     for _ in range(3):
         player.look()
         trouble = player.trouble
-        if player.settled or trouble or not player.wait(link.WAIT if first else 0.1):
+        if player.settled or trouble or not player.wait(link.service.patience(link.WAIT if first else 0.1)):
             break
         if player.kept is wanted and player.frame() and not player.rests:
             break

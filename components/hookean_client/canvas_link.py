@@ -12,9 +12,10 @@ import time
 from . import FAILURES, Problem, buffer, connect
 
 WAIT = 0.25  # seconds a component may hold the canvas up in a solution
-LATE = 0.5  # seconds of silence after which that is said
+GLANCE = 0.005  # seconds that let threads work
+LATE = 0.4  # seconds of silence after which that is said
 PATIENT = 5.0  # seconds of silence of a server that was there that are no cause for alarm
-AGAIN = 0.5  # seconds until what failed for want of a server is tried again
+AGAIN = 0.4  # seconds until what failed for want of a server is tried again
 now = getattr(time, "monotonic", time.time)
 SENTENCES = {
     "starting": "The hookean server is starting; this goes on by itself once it is there.",
@@ -36,16 +37,23 @@ class Service(object):
 
     def __init__(self):
         self._client, self._seen, self._lock = None, 0.0, threading.Lock()
+        self._since = None  # since when it has been asked for in vain
 
     def client(self):
         """A client whose server answered just now; raises `Problem`. May take two seconds."""
+        self._since = self._since or now()
         with self._lock:
             if self._client is None:
                 self._client = connect(timeout=0.0)
             elif now() - self._seen > 1.0:
                 self._asked("/v1/health")
-            self._seen = now()
+            self._seen, self._since = now(), None
             return self._client
+
+    def patience(self, seconds):
+        """For how long a component may wait: hardly, where others have waited in vain."""
+        since = self._since
+        return seconds if since is None else max(GLANCE, min(seconds, WAIT - (now() - since)))
 
     def _asked(self, path):
         try:
@@ -58,9 +66,14 @@ class Service(object):
         """Ask it whether it is there before the next use."""
         self._seen = 0.0
 
+    def lose(self):
+        """Look for the server anew next time, which was asked in vain now."""
+        self.forget()
+        self._since = now() - WAIT
+
     def forget(self):
         """Look for the server anew next time."""
-        client, self._client = self._client, None
+        client, self._client, self._since = self._client, None, None
         if client is not None:
             client.close()
 
@@ -87,7 +100,7 @@ class Task(object):
         except Problem as problem:
             self.problem = problem
             if wants_server(problem):
-                service.forget()
+                service.lose()
         except FAILURES as error:
             self.problem = Problem("failed", "This failed: %s: %s." % (type(error).__name__, error), 500)
         self.until = now()

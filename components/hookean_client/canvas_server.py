@@ -35,7 +35,7 @@ def stand(ghenv, canvas, start, stop, studio):
     if task is None or before != asked or (task.done and link.now() - task.until > OLD):
         risen = [flag and not (before and before[i]) for i, flag in enumerate(asked)]
         task = Look(lambda _: _work(asked[0] and not asked[1], risen[1], risen[2]), task and task.trouble)
-    task.wait(link.WAIT)
+    task.wait(link.service.patience(link.WAIT))
     shown = task.value if task.done and task.problem is None else shown
     _looks[key] = (asked, task, shown)
     trouble = task.trouble
@@ -69,7 +69,14 @@ def _work(start, stop, studio):
         rows = client.get("/v1/sessions", timeout=5.0)["sessions"]
     finally:
         client.close()
-    said = "%s: %s, iteration %s, residual %.3g"
-    lines = [said % (r["label"] or r["key"], r["status"], r["iteration"], r["residual"] or 0.0) for r in rows]
+    lines = [_line(row) for row in rows]
     status = "The hookean server runs, version %s, %d sessions." % (health["version"], len(rows))
     return Stand(status, client.url, health["version"], lines)
+
+
+def _line(row):
+    """A session in a line; one that sleeps since the server was started tells less."""
+    if row.get("residual") is None:
+        return "%s: asleep" % (row.get("label") or row["key"])
+    said = "%s: %s, iteration %s, residual %.3g"
+    return said % (row.get("label") or row["key"], row["status"], row["iteration"], row["residual"])

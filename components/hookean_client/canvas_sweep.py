@@ -126,7 +126,7 @@ def sweep(ghenv, forces, anchors, settings, scene, parameters, values, mode, res
     if wanted is not None or found.job is not None:
         found.look(wanted)
         if found.task is not None:
-            found.task.wait(link.WAIT)
+            found.task.wait(link.service.patience(link.WAIT))
         _tell(ghenv, found)
     else:
         canvas.note(ghenv, "" if read is None else "off")
