@@ -134,6 +134,12 @@ class Run(object):
             places = [self.plain(one.Location)["Point3d"] for one in value.Points]
             weights = [one.Weight for one in value.Points]
             return {kind: {"degree": value.Degree, "points": places, "knots": list(value.Knots), "weights": weights}}
+        if isinstance(value, kinds.NurbsSurface):
+            grid = value.Points
+            places = [[self.plain(grid.GetControlPoint(i, j).Location)["Point3d"] for j in range(grid.CountV)]
+                      for i in range(grid.CountU)]  # fmt: skip
+            degrees = {"degree_u": value.Degree(0), "degree_v": value.Degree(1)}
+            return {kind: dict(degrees, points=places, knots_u=list(value.KnotsU), knots_v=list(value.KnotsV))}
         if isinstance(value, kinds.Mesh):
             vertices = [[vertex.X, vertex.Y, vertex.Z] for vertex in value.Vertices]
             return {kind: {"vertices": vertices, "faces": [[f.A, f.B, f.C, f.D] for f in value.Faces]}}

@@ -12,9 +12,11 @@ import pytest
 from canvas.test_isolated import CURVE, PYTHONS, QUADS, SAMPLES, SURFACE, ask, step
 from hookean.catenary import catenary
 from hookean.discretize import divide, interpolate, mesh_surface, meshes, nurbs_curve, nurbs_surface, shatter, threads
+from hookean.files import threedm
 from hookean.mesh import Mesh
 from serving import Home
 
+ROOF = Path(__file__).parents[2] / "gh_examples" / "9.24-membrane" / "model.3dm"
 MESH = Mesh(np.array(QUADS["vertices"], dtype=float), np.array(QUADS["faces"]))
 BENT = nurbs_curve(**CURVE["NurbsCurve"])
 V = MESH.vertices
@@ -58,6 +60,20 @@ def plain(value: Any) -> Any:
         [found] = value.values()
         return found
     return [plain(one) for one in value] if isinstance(value, list) else value
+
+
+@pytest.mark.parametrize("version", PYTHONS)
+def test_surfaces_of_a_file_are_meshed_as_the_core_meshes_them(version: str, home: Home, tmp_path: Path) -> None:
+    """From the file by the component of files, then by that of surfaces."""
+    file = step(version, "RhinoFile", {"_file": [str(ROOF)], "_u_": [4], "_v_": [3]})
+    given = {"_surface": {"output": [0, "surfaces"]}, "_u_": [4], "_v_": [3]}
+    steps = [file, step(version, "MeshSurface", given)]
+    drawn, meshed = (a["outputs"] for a in ask(version, {"steps": steps}, tmp_path / "alone", home))
+    wanted = mesh_surface(threedm.read(ROOF).foreign()[0].geometry, 4, 3)
+    for found in (drawn["meshes"], meshed["mesh"]):
+        assert plain(found)[0]["faces"] == wanted.faces.tolist()
+        assert np.allclose(plain(found)[0]["vertices"], wanted.vertices, rtol=0, atol=1e-13)
+    assert plain(drawn["surfaces"])[0]["degree_u"] > 1
 
 
 @pytest.mark.parametrize("version", PYTHONS)
