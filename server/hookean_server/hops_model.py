@@ -138,14 +138,14 @@ class Inputs:
         tree = entry.get("InnerTree") if isinstance(entry, dict) else None
         if not isinstance(tree, dict) or not all(isinstance(branch, list) for branch in tree.values()):
             raise InputError(where, "an input has ParamName and InnerTree, whose branches are lists")
-        if not all(_PATH.fullmatch(path) for path in tree):
-            raise InputError(where, "a path is whole numbers from 0 in braces, such as {0;1}")
         name = str(entry.get("ParamName")).removeprefix("RH_IN:").strip()
         parameter = self._parameters.get(name)
         if parameter is None:
             return  # of an older version of the definition
         if name in self._given:
             raise InputError(where, f"{name} is given twice")
+        if not all(_PATH.fullmatch(path) for path in tree):
+            raise InputError(f"/{name}", "a path is whole numbers from 0 in braces, such as {0;1}")
         self._given[name] = {
             path: [read(parameter.kind, value, f"/{name}") for value in branch] for path, branch in tree.items()
         }
@@ -168,7 +168,9 @@ class Inputs:
         found = [value for branch in self.tree(name).values() for value in branch]
         if not found and parameter.default is not None:
             return parameter.default
-        if len(found) != 1:
+        if not found:
+            raise InputError(f"/{name}", f"{name} is missing; connect one {parameter.kind.lower()}")
+        if len(found) > 1:
             raise InputError(f"/{name}", f"{name} takes one {parameter.kind.lower()}; {len(found)} are given")
         return parameter.check(found[0])
 

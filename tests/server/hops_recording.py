@@ -80,7 +80,7 @@ def _add(inputs: Any, cancelled: Any) -> Any:
 
 def _types(inputs: Any, cancelled: Any) -> Any:
     found = {name: inputs.one(name) for name, _ in BOTH}
-    (found["L"],) = found["L"]  # a line may be several pieces
+    found["L"] = found["L"][0]  # a line may be several pieces
     return found
 
 

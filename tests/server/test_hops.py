@@ -225,7 +225,7 @@ def test_defaults_stand_in(hops: httpx.Client) -> None:
 
 FAULTY: dict[str, tuple[Any, str]] = {
     "no lines": (without("Lines"), "Lines is missing; connect at least one line"),
-    "no load": (without("Load"), "Load takes one vector; 0 are given"),
+    "no load": (without("Load"), "Load is missing; connect one vector"),
     "two stiffnesses": (cable(Stiffness=branch("System.Double", 1.0, 2.0)), "Stiffness takes one number; 2 are given"),
     "text": (cable(Stiffness=branch("System.String", "soft")), "/Stiffness: a finite number is expected"),
     "a negative factor": (

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -205,10 +206,8 @@ WRONG = st.one_of(
     st.sampled_from([None, 5, "x", [], {}, {"type": "System.Double"}, {"data": 5}, {"type": 1, "data": "1"}]),
     st.sampled_from(sorted(RIGHT)).flatmap(lambda kind: RIGHT[kind].map(lambda value: sent(kind, value))),
 )
-PATHS = st.one_of(
-    st.lists(st.integers(0, 40), min_size=1, max_size=4).map(lambda p: "{" + ";".join(map(str, p)) + "}"),
-    st.sampled_from(["{0}", "0", "{}", "{ 0 ; 1 }", "{-1}", "x", ""]),
-)
+PATHS = st.lists(st.integers(0, 40), min_size=1, max_size=4).map(lambda p: "{" + ";".join(map(str, p)) + "}")
+ODD = st.sampled_from(["{0}", "0", "{}", "{ 0 ; 1 }", "{-1}", "x", ""])
 HEADS: dict[str, st.SearchStrategy[Any]] = {
     "absolutetolerance": st.sampled_from([0.001, 0.1, 0, -1, "x", None]),
     "modelunits": st.sampled_from(["Meters", "Millimeters", "Feet", "Parsecs", "None", 5, None]),
@@ -221,35 +220,59 @@ HEADS: dict[str, st.SearchStrategy[Any]] = {
 def requests(draw: st.DrawFn, name: str, one: Component) -> dict[str, Any]:
     """A request of a function, more or less as its component would send it."""
     values = []
+    faulty = draw(st.booleans())
     for param in one.inputs:
-        how = draw(st.sampled_from(["right", "right", "right", "right", "item", "wrong", "empty", "absent"]))
-        if how == "absent":
+        kinds = ["right", "empty", "wrong", "odd", "absent", "many"]
+        how = draw(st.sampled_from(kinds)) if faulty and draw(st.booleans()) else "right"
+        loose = how == "absent" or how == "right" and param.least == 0 or param.default is not None
+        if how == "absent" or loose and draw(st.booleans()):
             continue
-        items = RIGHT[param.kind].map(lambda value, kind=param.kind: sent(kind, value))
-        most = 1 if how == "item" or param.access == "item" and how == "right" else 4
-        branches = st.dictionaries(PATHS, st.lists(items if how != "wrong" else WRONG, max_size=most), max_size=3)
-        if how in ("right", "item") and param.access == "item":
-            branches = st.dictionaries(PATHS, st.lists(items, min_size=1, max_size=1), min_size=1, max_size=1)
-        tree: Any = {} if how == "empty" else draw(branches)
-        values.append({"ParamName": draw(st.sampled_from(["", "RH_IN:"])) + param.name, "InnerTree": tree})
+        values.append({"ParamName": draw(st.sampled_from(["", "RH_IN:"])) + param.name,
+                       "InnerTree": {} if how == "empty" else draw(trees(param, how))})  # fmt: skip
     extra = [{"ParamName": "Other", "InnerTree": {"{0}": [1]}}, {"ParamName": None}, 5, {"InnerTree": {"{0}": 1}}]
-    values += draw(st.lists(st.sampled_from([*extra, *values[:1]]), max_size=1)) if draw(st.booleans()) else []
+    values += draw(st.lists(st.sampled_from([*extra, *values[:1]]), max_size=1)) if faulty else []
     head = draw(st.fixed_dictionaries({}, optional=HEADS))
     return {**head, "pointer": draw(st.sampled_from(["", "/"])) + name, "values": draw(st.permutations(values))}
 
 
-@settings(max_examples=TREES, deadline=None, derandomize=not SOAK, suppress_health_check=list(HealthCheck))
-@given(data=st.data())
-def test_any_tree_has_an_answer_that_the_component_can_use(service: Service, data: st.DataObject) -> None:
+def trees(param: Any, how: str) -> st.SearchStrategy[dict[str, Any]]:
+    """Branches of one input: as it takes them, or more of them, of wrong values or with odd paths."""
+    items = RIGHT[param.kind]
+    if how == "right" and param.kind in ("Number", "Integer") and param.minimum is not None:
+        high = min(param.minimum + 12 if param.maximum is None else param.maximum, param.minimum + 12)
+        low = max(int(param.minimum), 3)
+        items = st.integers(low, max(int(high), low)) if param.kind == "Integer" else st.floats(param.minimum, high)
+    given = WRONG if how == "wrong" else items.map(lambda value: sent(param.kind, value))
+    paths = ODD if how == "odd" else PATHS
+    if param.access == "item" and how != "many":
+        return st.dictionaries(paths, st.lists(given, min_size=1, max_size=1), min_size=1, max_size=1)
+    return st.dictionaries(paths, st.lists(given, min_size=1, max_size=4), min_size=1, max_size=3)
+
+
+def test_any_tree_has_an_answer_that_the_component_can_use(service: Service) -> None:
     """Values for every output, or sentences; never a page, a failure of the service or a word of its insides; the same
-    again to the byte."""
-    name = data.draw(st.sampled_from(sorted(({*FUNCTIONS} - LASTING) | {*OURS})))
-    one = component(service, name)
-    request = data.draw(requests(name, one))
-    if name in ("arc_frames", "bouncing_cable"):
-        given = {"ParamName": "Time", "InnerTree": {"{0}": [sent("Number", 0.1)]}}
-        request["values"] = [v for v in request["values"] if "Time" not in str(v)] + [given]
-    answer = service.call("POST", "/solve", request)
+    again to the byte. Of what is drawn a good part is right, so that both kinds of answers are seen."""
+    seen: Counter[int] = Counter()
+
+    @settings(max_examples=TREES, deadline=None, derandomize=not SOAK, suppress_health_check=list(HealthCheck))
+    @given(data=st.data())
+    def answered(data: st.DataObject) -> None:
+        name = data.draw(st.sampled_from(sorted(({*FUNCTIONS} - LASTING) | {*OURS})))
+        one = component(service, name)
+        request = data.draw(requests(name, one))
+        if name in ("arc_frames", "bouncing_cable"):
+            given = {"ParamName": "Time", "InnerTree": {"{0}": [sent("Number", 0.1)]}}
+            request["values"] = [v for v in request["values"] if "Time" not in str(v)] + [given]
+        answer = service.call("POST", "/solve", request)
+        seen[answer.status_code] += 1
+        check(service, one, request, answer)
+
+    answered()
+    assert set(seen) == {200, 422} and min(seen.values()) > 0.2 * seen.total() and seen.total() >= TREES
+
+
+def check(service: Service, one: Component, request: dict[str, Any], answer: Any) -> None:
+    """An answer that the component can use."""
     assert answer.status_code in (200, 422), answer.text[:600]
     found = one.read(answer)
     if answer.status_code == 200:
