@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
 import secrets
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -45,15 +47,22 @@ class Served:
             "import sys; from hookean_server.main import serve; from hookean_server.settings import Settings;"
             f"sys.exit(serve(port=0, settings=Settings(**{settings!r})))"
         )
+        # a pipe that nobody reads would hold the server up once it is full
+        self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self.process = subprocess.Popen(
-            [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=self._log, text=True
         )
         assert self.process.stdout is not None
         self.said = self.process.stdout.readline()
         found = re.search(r"http://127\.0\.0\.1:(\d+)", self.said)
-        assert found, self.process.communicate(timeout=10)
+        assert found, (self.process.wait(10), self.log())
         self.url, self.port = found.group(0), int(found.group(1))
         self.client = httpx.Client(base_url=self.url, timeout=60.0, headers=self.known)
+
+    def log(self) -> str:
+        """What was written to stderr so far."""
+        size = os.fstat(self._log.fileno()).st_size
+        return os.pread(self._log.fileno(), size, 0).decode()
 
     def ready(self) -> Served:
         """Wait until a worker is idle."""
@@ -85,11 +94,13 @@ class Served:
         if self.process.poll() is None:
             self.process.send_signal(number)
         try:
-            _, said = self.process.communicate(timeout=20)
+            self.process.communicate(timeout=20)
         finally:
             self.process.kill()
             self.client.close()
-        return self.process.returncode, time.monotonic() - started, said
+        took, said = time.monotonic() - started, self.log()
+        self._log.close()
+        return self.process.returncode, took, said
 
 
 @pytest.fixture(scope="session")
