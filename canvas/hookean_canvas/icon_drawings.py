@@ -221,6 +221,12 @@ def moments(pen: Pen) -> None:
     pen.line((18.6, 16.0), (18.6, 18.6), (20.4, 19.8), colour=ORANGE, width=1.2)
 
 
+def stream(pen: Pen) -> None:
+    pen.line(*[(2.5 + 19 * i / 40, 8.0 - 4.5 * math.sin(i / 4.5)) for i in range(41)], colour=BLUE, width=1.8)
+    for x, tip in ((5.0, 19.0), (12.0, 22.0), (19.0, 17.5)):
+        pen.arrow((x, 12.5), (x, tip), width=1.6, head=3.6)
+
+
 def rhino_file(pen: Pen) -> None:
     pen.area((4.5, 1.5), (14.5, 1.5), (19.5, 6.5), (19.5, 22.5), (4.5, 22.5), colour=WHITE)
     pen.line((4.5, 1.5), (14.5, 1.5), (19.5, 6.5), (19.5, 22.5), (4.5, 22.5), width=1.4, closed=True)
@@ -308,7 +314,7 @@ DRAWINGS: dict[str, Callable[[Pen], None]] = {
         *(springs, unary, anchor_spring, bend, floor, hinge, pressure, pull_to_curve, pull_to_mesh, self_weight),
         *(shell, soapfilm, engine, settings, anchors, server, divide, shatter, catenary, interpolate, sweep),
         *(mesh_surface, mesh_edges, mesh_vertices, mesh_corners, naked_vertices, warp_weft, diagonals),
-        *(remove_duplicate_lines, rhino_file, moments),
+        *(remove_duplicate_lines, rhino_file, moments, stream),
     )
 }
 """Drawings by the name of the bundle, in small letters without blanks."""

@@ -35,7 +35,7 @@ def moments(ghenv, forces, anchors, settings, rides, times):
         answers = [link.unpacked(one) for one in answers]
         rows = [[geometry.to_point(place) for place in one["particles"]] for one in answers]
         found.particles = geometry.to_tree(_branches(rows))
-        rows = [[make(_places(entry)) for entry, make in zip(one["geometry"], makers)] for one in answers]
+        rows = [[make(places(entry)) for entry, make in zip(one["geometry"], makers)] for one in answers]
         found.geometry = geometry.to_tree(_branches(rows))
         found.times = [count * step for count in steps]
         found.report = _report(ghenv, answers)
@@ -46,15 +46,26 @@ def moments(ghenv, forces, anchors, settings, rides, times):
 
 def _asked(ghenv, forces, anchors, settings, rides, times):
     """A scene for each moment, its number of steps, the step [time], and what makes geometry of moved points."""
-    read = compose.read(forces, None, "_forces")
-    if not read:
-        raise compose.missing("_forces is missing; connect the outputs of force components")
+    scene, step, makers = setup(ghenv, forces, anchors, settings, rides)
     try:
         wanted = [geometry.number(one) for one in listed(times)]
     except Unfit as unfit:
         raise Unfit("_times: %s" % unfit)
     if not wanted:
         raise compose.missing("_times is missing; connect one moment or more [time]")
+    if min(wanted) < 0:
+        raise Unfit("_times: %g is before the start; give moments from 0 on" % min(wanted))
+    steps = [int(one / step + 0.5) for one in wanted]
+    made = [dict(scene, settings=dict(scene["settings"], max_iterations=count)) for count in steps]
+    return made, steps, step, makers
+
+
+def setup(ghenv, forces, anchors, settings, rides):
+    """The scene of a motion in physical time that never counts as at rest, its step [time], and what makes geometry of
+    moved points."""
+    read = compose.read(forces, None, "_forces")
+    if not read:
+        raise compose.missing("_forces is missing; connect the outputs of force components")
     held = [dict(one, home=one["point"], target=one["target"] or one["point"])
             for one in canvas_engine._anchors(ghenv, anchors)]  # fmt: skip
     setting = (compose.read(settings, "settings", "settings_")[-1:] or [None])[0]
@@ -63,15 +74,11 @@ def _asked(ghenv, forces, anchors, settings, rides, times):
     solver, step = scene["settings"].get("solver", "auto"), float(scene["settings"].get("time_step", STEP))
     if solver not in PHYSICAL:
         raise Unfit("settings_: %s has no time; moments need verlet or yoshida" % solver)
-    if min(wanted) < 0:
-        raise Unfit("_times: %g is before the start; give moments from 0 on" % min(wanted))
-    steps = [int(one / step + 0.5) for one in wanted]
     fixed = {"solver": "yoshida" if solver == "yoshida" else "verlet", "tolerance": 0.0}
-    made = [dict(scene, settings=dict(scene["settings"], max_iterations=count, **fixed)) for count in steps]
-    return made, steps, step, [make for _, make in carried]
+    return dict(scene, settings=dict(scene["settings"], **fixed)), step, [make for _, make in carried]
 
 
-def _places(entry):
+def places(entry):
     """Moved points of a geometry in a result, one after the other."""
     if "lines" in entry:
         return [end for line in entry["lines"] for end in line]
