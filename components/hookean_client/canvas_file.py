@@ -17,6 +17,7 @@ from .canvas_geometry import Unfit, listed
 UNITS = {"Millimeters": "mm", "Centimeters": "cm", "Decimeters": "dm", "Meters": "m", "Kilometers": "km",
          "Inches": "in", "Feet": "ft", "Yards": "yd"}  # fmt: skip
 FILES = 8  # whose geometry is kept
+MANY = 5  # sentences on what cannot be meshed
 _files, _lock = OrderedDict(), threading.Lock()
 
 
@@ -46,8 +47,11 @@ def _read(ghenv, given, layers, names, u, v):
     for wanted, key, known in ((layers, "layer", there), (names, "name", _once(one["name"] for one in chosen))):
         chosen = _chosen(chosen, [_text(one) for one in listed(wanted)], key, known)
     made = Drawing()
-    for one in chosen:
-        _add(ghenv, made, one)
+    faults = [fault for fault in [_add(made, one) for one in chosen] if fault]
+    for fault in faults[:MANY]:
+        canvas.warning(ghenv, fault)
+    if len(faults) > MANY:
+        canvas.warning(ghenv, "%d more surfaces cannot be meshed." % (len(faults) - MANY))
     made.unit, made.layers = UNITS.get(found["unit"], found["unit"]), there
     for sentence in found["warnings"]:
         canvas.remark(ghenv, sentence)
@@ -93,7 +97,8 @@ def _fits(name, pattern, key):
     return any(fnmatch.fnmatchcase(one, pattern.replace("[", "[[]")) for one in names)
 
 
-def _add(ghenv, made, one):
+def _add(made, one):
+    """Put an object where it belongs; a sentence where it cannot be meshed."""
     kind = one["kind"]
     made.names.append(one["name"])
     if kind in ("point", "points"):
@@ -112,7 +117,8 @@ def _add(ghenv, made, one):
         if "mesh" in one:
             made.meshes.append(geometry.to_mesh(one["mesh"]))
         else:
-            canvas.warning(ghenv, "%s on layer %s: %s." % (one["name"] or kind, one["layer"], one.get("fault")))
+            return "%s on layer %s: %s." % (one["name"] or "A " + kind, one["layer"], one.get("fault"))
+    return None
 
 
 def to_surface(plain):

@@ -309,6 +309,25 @@ def test_a_rhino_file_says_what_there_is(tmp_path: Path) -> None:
         made.remove()
 
 
+def test_surfaces_that_cannot_be_meshed_are_named(tmp_path: Path) -> None:
+    """Trimmed Breps without a cached mesh: the first five each in a sentence, the rest counted."""
+    made, file = stand_in.Canvas().install(), rhino3dm.File3dm()
+    for number in range(7):
+        attributes = rhino3dm.ObjectAttributes()
+        attributes.Name = f"lid {number}"
+        circle = rhino3dm.Circle(rhino3dm.Point3d(5.0 * number, 0, 0), 2.0).ToNurbsCurve()
+        file.Objects.AddBrep(rhino3dm.Brep.CreateTrimmedPlane(rhino3dm.Plane.WorldXY(), circle), attributes)
+    assert file.Write(str(tmp_path / "lids.3dm"), 7)
+    try:
+        placed = Placed("RhinoFile", Bench(str(tmp_path / "a.gh")))
+        assert placed.run(_file=["lids.3dm"])["meshes"] == []
+        said = sentences(placed.ghenv, "Warning")
+        assert len(said) == 6 and said[0].startswith("lid 0 on layer ") and "trimmed" in said[0]
+        assert said[-1] == "2 more surfaces cannot be meshed."
+    finally:
+        made.remove()
+
+
 def test_a_file_that_was_saved_again_is_read_again(tmp_path: Path) -> None:
     made = stand_in.Canvas().install()
     try:
