@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 ACROSS, DOWN = 70.0, 14.0
 """Room between columns and between boxes of a column, in pixels of the canvas."""
@@ -39,6 +42,8 @@ class Link:
 
 
 Boxes = dict[Hashable, Box]
+Wires = dict[Hashable, list[tuple[Link, bool]]]
+"""The wires of each box, with whether it is at their end."""
 
 
 def arrange(
@@ -120,6 +125,10 @@ def _layered(
     columns = _columns(boxes, links)
     boxes, links = _ways(columns, boxes, links)
     feeding = {link.start for link in links}
+    wires: Wires = {}  # of each box, in the order of the links
+    for link in links:
+        wires.setdefault(link.end, []).append((link, True))
+        wires.setdefault(link.start, []).append((link, False))
     below = _own_matters(boxes, links)
     x = 0.0
     for column in columns:
@@ -133,7 +142,7 @@ def _layered(
     for sweep in range(10):
         backward = sweep % 2 == 1
         for column in columns[::-1] if backward else columns:
-            wanted = {key: _wanted(key, boxes, links, pulls, (not backward, backward)) for key in column}
+            wanted = {key: _wanted(key, boxes, wires, pulls, (not backward, backward)) for key in column}
             column.sort(key=lambda key: (key in below, wanted[key] + 0.5 * boxes[key].height))
             _stack(column, boxes, wanted, down)
         count = crossings(boxes, links)
@@ -142,7 +151,7 @@ def _layered(
     for sweep in range(8):
         for column in best[1][::-1] if sweep % 2 else best[1]:
             # other blocks have a say in the order only, so that a block stays together
-            _stack(column, boxes, {key: _wanted(key, boxes, links, {}, (True, True)) for key in column}, down)
+            _stack(column, boxes, {key: _wanted(key, boxes, wires, {}, (True, True)) for key in column}, down)
 
 
 def _own_matters(boxes: Boxes, links: Sequence[Link]) -> set[Hashable]:
@@ -200,14 +209,14 @@ def _ways(columns: list[list[Hashable]], boxes: Boxes, links: Sequence[Link]) ->
 
 
 def _wanted(
-    key: Hashable, boxes: Boxes, links: Sequence[Link], pulls: dict[Hashable, list[float]], sides: tuple[bool, bool]
+    key: Hashable, boxes: Boxes, wires: Wires, pulls: dict[Hashable, list[float]], sides: tuple[bool, bool]
 ) -> float:
     """The y at which the wires of a box, those on its left, its right or both, would be level, on average."""
     found = list(pulls.get(key, ()))
-    for link in links:
-        if link.end == key and sides[0]:
+    for link, at_end in wires.get(key, ()):
+        if at_end and sides[0]:
             found.append(boxes[link.start].y + link.leaves - link.enters)
-        elif link.start == key and sides[1]:
+        elif not at_end and sides[1]:
             found.append(boxes[link.end].y + link.enters - link.leaves)
     return sum(found) / len(found) if found else boxes[key].y
 
@@ -241,11 +250,13 @@ def crossings(boxes: Boxes, links: Sequence[Link]) -> int:
         )
         for link in links
     ]  # fmt: skip
-    return sum(_cross(a, b) for i, a in enumerate(lines) for b in lines[:i])
+    if not lines:
+        return 0
+    x1, y1, x2, y2 = np.array(lines).T
 
+    def side(x: Any, y: Any) -> Any:
+        """On which side of each line (rows) each point (columns) is."""
+        return (x2 - x1)[:, None] * (y - y1[:, None]) - (y2 - y1)[:, None] * (x - x1[:, None])
 
-def _cross(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
-    def side(line: tuple[float, float, float, float], x: float, y: float) -> float:
-        return (line[2] - line[0]) * (y - line[1]) - (line[3] - line[1]) * (x - line[0])
-
-    return side(a, b[0], b[1]) * side(a, b[2], b[3]) < -1e-9 and side(b, a[0], a[1]) * side(b, a[2], a[3]) < -1e-9
+    apart = side(x1, y1) * side(x2, y2) < -1e-9
+    return int((apart & apart.T).sum()) // 2
