@@ -94,13 +94,13 @@ def _wanted(ghenv, player, forces, anchors, settings, rides, reset):
     setting = compose.read(settings, "settings", "settings_")[-1:]
     flags = listed(reset)
     carried, prints = _rides(player, rides)
-    plain = [texts, held, setting, prints, not flags or bool(compose._value(flags[0])), _length_unit()]
-    signature = compose.text(plain)
+    held_at_start, length = not flags or bool(compose._value(flags[0])), _length_unit()
+    signature = [texts, compose.text([held, setting, prints, held_at_start, length])]
     old = player.wanted
     if old is not None and old.signature == signature:
         return old
     read = compose.read(texts, None, "_forces")
-    made = Wanted(read, held, setting[0] if setting else None, carried, plain[4], plain[5])
+    made = Wanted(read, held, setting[0] if setting else None, carried, held_at_start, length)
     made.signature, made.prints = signature, prints
     return made
 
@@ -151,7 +151,7 @@ def _size(source, path):
         return 0
     for i, known in enumerate(data.Paths):
         if str(known) == path:
-            return len(list(data.Branches[i]))
+            return len(list(data.get_Branch(known) if hasattr(data, "get_Branch") else data.Branches[i]))
     return 0
 
 

@@ -31,6 +31,7 @@ class Player(object):
         self._heard, self._read, self._cost = (-1, link.now()), 0.0, 0.0
         if before is not None:
             self._branch, self.anchors, self._met = before, dict(before.anchors), True
+            self.shown = before.shown
             before.end()
 
     def look(self):
@@ -165,7 +166,8 @@ class Player(object):
         answer = self._set_going(session, wanted, new) or answer
         self.sent, self.form, self.where = scene, form, compose.places(scene)
         self.revision = self.revision if answer is None else answer["revision"]
-        self._fetch(session, None)
+        if new or self.state is None:
+            self._fetch(session, None)
         self._judge(wanted)
         if self.frames is None or self.frames.ended:
             self.frames = session.frames()
@@ -192,14 +194,21 @@ class Player(object):
         self._cost = self._read - began
 
     def _go_on_from(self, session):
+        path = "/v1/sessions/%s/branches" % self._branch.key
+        options = {"to": self.key, "label": self.title[:200]}
         try:
-            path = "/v1/sessions/%s/branches" % self._branch.key
-            session.client.post(path, None, {"to": self.key, "label": self.title[:200]})
+            try:
+                session.client.post(path, None, options)
+            except Problem as problem:
+                if problem.slug != "key-taken":
+                    raise
+                session.delete()  # of a definition that was saved over
+                session.client.post(path, None, options)
             for name in ("sent", "form", "where", "topology"):
                 setattr(self, name, getattr(self._branch, name))
         except Problem as problem:
             if link.wants_server(problem):
-                raise  # else there is nothing to go on from, or it was done before
+                raise  # else there is nothing to go on from
         self._branch = None
 
     def _recall(self, session):

@@ -242,6 +242,21 @@ def test_a_definition_saved_as_another_goes_on_in_a_session_of_its_own(home: Hom
     assert close(cable.at(10), (10, 0, 2.5))
 
 
+def test_a_definition_saved_over_another_takes_its_place(home: Home) -> None:
+    cable = Cable()
+    cable.run()
+    there, first = cable.bench.document.FilePath, cable.player.key
+    cable.bench.document.FilePath = f"/work/other-{next(COUNT)}.gh"
+    cable.load = -40.0
+    cable.run()
+    form = cable.at(5)
+    cable.bench.document.FilePath = there
+    seen: list[float] = []
+    cable.run(lambda out: seen.append(xyz(out.particles[5])[2]) or cable.player.settled)
+    assert cable.player.key == first
+    assert close(cable.at(5), form) and max(seen) < 0.99 * form[2]  # from there, not from what the file had been
+
+
 def test_a_session_that_was_forgotten_is_made_again(home: Home) -> None:
     cable = Cable()
     cable.run()

@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 import rhino3dm
+from hypothesis import given
+from hypothesis import strategies as st
 
 from canvas.canvasing import Bench, line, point, sentences
 from hookean import Scene
@@ -120,6 +122,41 @@ def test_trees_keep_their_paths_and_order(rhino: Any) -> None:
     assert found == [("{0;0}", []), ("{0;1}", [1, 2]), ("{2}", ["x"])]
     assert canvas_geometry.branches([1, None, 2]) == [("{0}", [1, 2])]
     assert canvas_geometry.branches(None) == []
+
+
+PATHS = st.lists(st.integers(0, 99), min_size=1, max_size=4).map(lambda p: "{" + ";".join(map(str, p)) + "}")
+
+
+@given(st.dictionaries(PATHS, st.lists(st.integers()), max_size=6))
+def test_any_tree_comes_back(branches: dict[str, list[int]]) -> None:
+    """With its empty branches, its paths in Grasshopper's order."""
+    made = stand_in.Canvas().install()
+    try:
+        found = canvas_geometry.branches(canvas_geometry.to_tree(branches.items()))
+    finally:
+        made.remove()
+    assert dict(found) == branches
+    paths = [tuple(map(int, path.strip("{}").split(";"))) for path, _ in found]
+    assert paths == sorted(paths)
+
+
+ROWS = st.integers(1, 3).flatmap(
+    lambda n: st.lists(st.lists(st.floats(allow_nan=False), min_size=n, max_size=n), min_size=1)
+)
+
+
+@given(st.dictionaries(st.text(max_size=3), ROWS | st.text() | st.lists(st.floats(allow_nan=False)) | st.booleans()))
+def test_arrays_come_back_from_buffers_bit_for_bit(value: dict[str, Any]) -> None:
+    sent = json.loads(json.dumps(canvas_link.packed(value)))
+    assert canvas_link.unpacked(sent) == value
+
+
+@given(st.lists(st.lists(st.integers(), max_size=5), min_size=1, max_size=4))
+def test_the_longest_list_rules(lists: list[list[int]]) -> None:
+    found = canvas.matched(*lists)
+    longest = max(map(len, lists))
+    for before, after in zip(lists, found, strict=True):
+        assert after == (before + [before[-1]] * (longest - len(before)) if before else [])
 
 
 def test_operations_take_what_the_service_says() -> None:
