@@ -183,8 +183,14 @@ def test_a_tree_keeps_its_paths(service: Service) -> None:
 
 # random trees
 
-NUMBERS = st.one_of(st.floats(-1e6, 1e6), st.integers(-5, 20), st.floats(0.1, 20.0))
-ROWS = st.tuples(*[st.one_of(st.floats(-100.0, 100.0), st.integers(-3, 3))] * 3)
+
+def decimals(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers as a slider has them, of six digits after the point."""
+    return st.floats(low, high).map(lambda value: max(low, round(value, 6)))
+
+
+NUMBERS = st.one_of(decimals(-1e6, 1e6), st.integers(-5, 20), decimals(0.1, 20.0))
+ROWS = st.tuples(*[st.one_of(decimals(-100.0, 100.0), st.integers(-3, 3))] * 3)
 RIGHT: dict[str, st.SearchStrategy[Any]] = {
     "Number": NUMBERS,
     "Integer": st.integers(-1, 12),
@@ -241,7 +247,7 @@ def trees(param: Any, how: str) -> st.SearchStrategy[dict[str, Any]]:
     if how == "right" and param.kind in ("Number", "Integer") and param.minimum is not None:
         high = min(param.minimum + 12 if param.maximum is None else param.maximum, param.minimum + 12)
         low = max(int(param.minimum), 3)
-        items = st.integers(low, max(int(high), low)) if param.kind == "Integer" else st.floats(param.minimum, high)
+        items = st.integers(low, max(int(high), low)) if param.kind == "Integer" else decimals(param.minimum, high)
     given = WRONG if how == "wrong" else items.map(lambda value: sent(param.kind, value))
     paths = ODD if how == "odd" else PATHS
     if param.access == "item" and how != "many":
