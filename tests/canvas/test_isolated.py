@@ -151,9 +151,11 @@ def chain(version: str) -> list[dict[str, Any]]:
     many = {**given, "_parameters": ["Springs.stiffness"], "_values": [1000.0, 2000.0], "_run": True}
     swept = step(version, "Sweep", {name: value for name, value in many.items() if name != "geometry_"})
     moments = step(version, "Moments", {**given, "_times": [0.1, 0.2]})
+    table = {"_file": [str(MODEL.parents[1] / "wind" / "wind.csv")], "_column": ["speed [m/s]"], "_force": ["Unary"]}
+    driven = step(version, "Stream", {**given, **table, "_scale": [{"Vector3d": [0, 0, -1.0]}], "_every_": [4.0]})
     held = step(version, "Engine", {**given, "_reset": True})
     runs = step(version, "Engine", {**given, "_reset": False}, solutions=4000)
-    return [*steps, swept, moments, held, runs]
+    return [*steps, swept, moments, driven, held, runs]
 
 
 @cache
@@ -228,4 +230,4 @@ def test_with_nothing_connected_there_is_at_most_one_sentence(version: str, tmp_
 
 
 def test_every_component_has_a_sample() -> None:
-    assert [name for name in NAMES if name not in {*SAMPLES, "Engine", "Moments", "Sweep"}] == []
+    assert [name for name in NAMES if name not in {*SAMPLES, "Engine", "Moments", "Stream", "Sweep"}] == []
