@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import socket
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -22,7 +20,7 @@ import hookean_client
 from canvas.canvasing import Bench, line, point, sentences
 from hookean_canvas import bundles, stand_in
 from hookean_client import canvas, canvas_engine, canvas_geometry, canvas_link, canvas_server
-from serving import SOAK, Home, living
+from serving import SOAK, Home
 
 SOON = 1.0 if SOAK else 15.0  # seconds to the sentence; the strict one on a machine with nothing else to do
 MODEL = Path(__file__).parents[2] / "gh_examples" / "9.4-cable" / "model.3dm"
@@ -162,15 +160,6 @@ def each_says(canvas: Canvas, *words: str) -> None:
         time.sleep(0.03)
 
 
-def test_where_it_can_it_starts_one(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("HOOKEAN_PYTHON", sys.executable)
-    canvas = Canvas(["Divide"])
-    each_says(canvas, "is starting", "has not answered")
-    canvas.until(canvas.works, 120.0)
-    [pid] = home.serving()
-    assert living(pid)
-
-
 @contextmanager
 def told(home: Home, port: int, wire: int = 1) -> Iterator[None]:
     """What a server would tell of itself, of a process that lives."""
@@ -217,8 +206,32 @@ def older(home: Home) -> Iterator[None]:
     thread.join()
 
 
-def test_one_trouble_after_the_other_and_a_server_at_last(home: Home) -> None:
-    """Every component says each of them, of which it looks again by itself, and works in the end."""
+def moving(canvas: Canvas) -> None:
+    """From the start on the engine moves: without damping it never comes to rest."""
+    canvas.inputs["Engine"]["settings_"] = [settings(drag=0.0)]
+    for reset, word in ((True, "held at the start"), (False, "iteration")):
+        canvas.inputs["Engine"]["_reset"] = reset
+        canvas.until(lambda name, word=word: name != "Engine" or word in canvas.ghenvs[name].Component.Message)
+
+
+@contextmanager
+def hanging(home: Home) -> Iterator[None]:
+    """The server and its processes stand still."""
+    [pid] = home.serving()
+    family = [psutil.Process(pid), *psutil.Process(pid).children(recursive=True)]
+    for process in family:
+        process.suspend()
+    try:
+        yield
+    finally:
+        for process in family:
+            with suppress(psutil.NoSuchProcess):
+                process.resume()
+
+
+def test_one_trouble_after_the_other(home: Home) -> None:
+    """Every component says each of them, of which it looks again by itself, and works once there is a server. The form
+    stays while there is none, and moves on from there; a server that was killed is started by the components."""
     canvas = Canvas()
     each_says(canvas, "none can be started from here", "No hookean server runs")
     with silent(home):
@@ -228,31 +241,11 @@ def test_one_trouble_after_the_other_and_a_server_at_last(home: Home) -> None:
         assert "99" in canvas.said("Engine")[0] and "hookean serve --stop" in canvas.said("Engine")[0]
     home.serve()
     canvas.until(canvas.works)
-
-
-def moving(canvas: Canvas) -> None:
-    """All work, and the engine moves: without damping it never comes to rest."""
-    canvas.inputs["Engine"]["settings_"] = [settings(drag=0.0)]
-    canvas.until(lambda name: canvas.works(name) or "iteration" in canvas.ghenvs[name].Component.Message)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="stops a process as POSIX can")
-def test_a_server_that_hangs_and_one_that_is_killed_while_the_form_moves(home: Home) -> None:
-    """The form stays meanwhile, and moves on from there once there is a server again: components start it."""
-    home.serve()
-    canvas = Canvas(["Engine", "Divide", "Server"])
+    canvas.inputs = {name: canvas.inputs[name] for name in ("Engine", "Divide", "Server")}
     moving(canvas)
-    [pid] = home.serving()
-    family = [psutil.Process(pid), *psutil.Process(pid).children(recursive=True)]
-    for process in family:
-        process.send_signal(signal.SIGSTOP)
-    canvas.inputs["Divide"]["_count_"] = [5]  # what was asked before is known
-    try:
+    with hanging(home):
+        canvas.inputs["Divide"]["_count_"] = [5]  # what was asked before is known
         each_says(canvas, "has not answered", "does not answer", "gone")
-    finally:
-        for process in family:
-            with suppress(psutil.NoSuchProcess):
-                process.send_signal(signal.SIGCONT)
     moving(canvas)
     home.kill()
     canvas.inputs["Divide"]["_count_"] = [6]
