@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import importlib.util
 import os
+import re
 import shutil
 import sys
 from collections.abc import Iterator
@@ -12,9 +14,10 @@ from pathlib import Path
 import pytest
 
 from hookean.example import examples
-from hookean_canvas import archive, graph, lint
+from hookean_canvas import archive, graph, inline, lint
 from hookean_canvas.checking import check
 from hookean_canvas.graph import Node
+from hookean_canvas.scripts import SCRIPTS, code_of
 from serving import SOAK, Home
 
 FIGURES = sorted(example.name for example in examples())
@@ -50,8 +53,14 @@ def test_a_shipped_definition_is_what_its_module_writes_now(figure: str, tmp_pat
     builder = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(builder)
     builder.definition(figure).save(tmp_path / "definition.ghx")
-    same = (tmp_path / "definition.ghx").read_bytes() == shipped(figure).read_bytes()
+    same = without_client(tmp_path / "definition.ghx") == without_client(shipped(figure))
     assert same, f"run `.venv/bin/python gh_examples/build_definitions.py {figure}`"
+
+
+def test_shipped_definitions_carry_the_present_client() -> None:
+    stamp = inline.stamp()
+    old = [f for f in FIGURES if any(stamp not in code for code in codes(shipped(f)) if "def _hookean_client" in code)]
+    assert old == [], "run `.venv/bin/python gh_examples/build_definitions.py`"
 
 
 @pytest.mark.parametrize("figure", FIGURES)
@@ -81,6 +90,22 @@ def test_another_slider_gives_other_numbers(home: Home, tmp_path: Path) -> None:
     checked = check(tmp_path / "cable" / "definition.ghx", {"Load [N]": "-20"}, seconds=300.0)
     [lift] = checked.outcome.panels["lift of an anchor"].values_in_order()
     assert checked.faults == [] and abs(lift - 110.0) < 1e-6  # half of 11 loads of 20 N
+
+
+def codes(path: Path) -> list[str]:
+    """The code of every script in a definition."""
+    return [code_of(node) or "" for node in graph.read(path).nodes if node.guid in SCRIPTS]
+
+
+def without_client(path: Path) -> archive.Chunk:
+    """A definition whose scripts do not carry the client."""
+    root = archive.read(path)
+    for chunk in root.walk():
+        if chunk.name == "Script":
+            code = base64.b64decode(chunk.value("Text")).decode("utf-8")
+            code = re.sub(r'(?s)\ndef _hookean_client\(.*?\n"""\n\)\n', "", code)
+            chunk.put("Text", archive.Type.STRING, re.sub(r"hookean_client_\w+", "hookean_client", code))
+    return root
 
 
 def overlap(a: Node, b: Node) -> bool:
