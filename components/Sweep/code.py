@@ -9,9 +9,7 @@ F(x; p) = 0 for each p of the lists
 
 from hookean_client import canvas_sweep
 
-found = canvas_sweep.sweep(
-    ghenv, _forces, anchors_, settings_, scene_, _parameters, _values, _mode_, results_, _run
-)
+found = canvas_sweep.sweep(ghenv, _forces, anchors_, settings_, scene_, _parameters, _values, _mode_, results_, _run)
 parameters = found.parameters
 results = found.results
 names = found.names
