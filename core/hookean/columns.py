@@ -74,11 +74,11 @@ def _truth(value: Any, at: str = "") -> str:
 
 def _from_buffer(dtype: Any, shape: Any, text: Any) -> NDArray[Any]:
     allowed = {"<f8", "<f4", "<i8", "<i4", "<u4", "<u8", "float64", "float32", "int64", "int32", "uint32"}
-    if dtype not in allowed:
+    if not isinstance(dtype, str) or dtype not in allowed:
         raise fault(f"dtype must be one of {', '.join(sorted(allowed))}", "/dtype")
-    sizes = isinstance(shape, list | tuple) and all(type(s) is int and 0 <= s < 2**40 for s in shape)
-    if not sizes:
-        raise fault("shape must be a list of whole numbers", "/shape")
+    sizes = isinstance(shape, list | tuple) and len(shape) <= 3 and all(type(s) is int and s >= 0 for s in shape)
+    if not sizes or max(shape, default=0) >= 2**40:
+        raise fault("shape must be a list of at most three whole numbers", "/shape")
     try:
         raw = base64.b64decode(text, validate=True)
     except (binascii.Error, ValueError, TypeError):

@@ -110,6 +110,8 @@ def test_arrays_may_come_as_buffers(points: list[tuple[float, float, float]]):
         ("/forces/0/particles", [[0, -1]], "/forces/0/particles/0/1", "counted from 0"),
         ("/forces/0/particles", [[0, 1.5]], "/forces/0/particles/0/1", "whole"),
         ("/forces/0/particles", [[0, True]], "/forces/0/particles/0/1", "whole"),
+        ("/particles", {"dtype": [], "shape": [], "base64": ""}, "/particles/dtype", "must be one of"),
+        ("/particles", {"dtype": "<f8", "shape": [0] * 99, "base64": ""}, "/particles/shape", "at most three"),
         ("/forces/0/kind", "sprngs", "/forces/0", 'kind "sprngs" is none; there are anchor_spring, bend'),
         ("/forces/0/kind", "sprngs", "/forces/0", "unary; did you mean springs?"),
         ("/forces/0/stifness", 10, "/forces/0/stifness", '"stifness" is no field of springs; did you mean stiffness?'),

@@ -65,7 +65,7 @@ class SessionProcess:
             answer, data = await asyncio.wait_for(asyncio.wrap_future(future), seconds)
         except TimeoutError:
             self.kill()
-            raise Problem("worker-lost", f"The session did not answer in {seconds:g} s; it is brought back.") from None
+            raise Problem("out-of-time", f"The session did not answer in {seconds:g} s; it is brought back.") from None
         finally:
             self._waiting.pop(number, None)
         if answer is GONE:
