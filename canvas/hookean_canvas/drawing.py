@@ -84,7 +84,7 @@ def _node(axes: Any, node: Node) -> None:
         for ports, at, side in ((node.inputs, x + 4.0, "left"), (node.outputs, x + width - 4.0, "right")):
             for i, port in enumerate(ports):
                 row = y + 2.0 + (i + 0.5) * (height - 4.0) / len(ports)
-                axes.text(at, row, port.nickname + "  ↓↑"[port.mapping].strip(), ha=side, **words)
+                axes.text(at, row, port.nickname + " ↓↑"[port.mapping].strip(), ha=side, **words)
         axes.text(x + 0.5 * width, y - 7.0, node.label, ha="center", weight="bold", **words)
 
 
