@@ -7,6 +7,7 @@ SEQUENCE = """
 import sys
 import types
 
+from Grasshopper.Kernel import GH_Document
 from Rhino.Geometry import Vector3d
 
 key = "hookean sequence " + str(ghenv.Component.InstanceGuid)
@@ -19,7 +20,8 @@ shift = Vector3d(x, 0, z) if phase == 1 else Vector3d(0, 0, 0)
 hold = bool(_reset) or phase == 3
 if not _reset and phase < 5:
     component = ghenv.Component
-    component.OnPingDocument().ScheduleSolution(50, lambda document: component.ExpireSolution(False))
+    again = GH_Document.GH_ScheduleDelegate(lambda document: component.ExpireSolution(False))
+    component.OnPingDocument().ScheduleSolution(50, again)
 """
 NUMBERS = """
 # Tells the sequence when the cable is at rest, by the name they share, and keeps what it was then.
