@@ -7,6 +7,7 @@ import base64
 import hashlib
 import json
 import re
+import tokenize
 import zlib
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
@@ -22,15 +23,17 @@ FLAVOURS = ("rhino8", "rhino7")
 Flavour = Literal["rhino8", "rhino7"]
 
 BOOTSTRAP = '''
-def _hookean_client(packed):
+def _hookean_client(names, packed):
     # {client} {version}, kept in sys.modules under a name of its own: versions live side by side, state survives
     import base64, json, sys, types, zlib
 
-    if "{stamp}" in sys.modules:
+    if not set("{stamp}" + name for name in names.split("|")).difference(sys.modules):
         return
     loaded = []
     for name, source in json.loads(zlib.decompress(base64.b64decode(packed)).decode("ascii")):
         name = str(name)
+        if name in sys.modules:
+            continue
         sys.modules[name] = module = types.ModuleType(name)
         loaded.append(name)
         module.__file__, module.__package__ = "<%s>" % name, "{stamp}"
@@ -47,9 +50,10 @@ def _hookean_client(packed):
 
 
 _hookean_client(
+    "{names}",
     """
 {packed}
-"""
+""",
 )
 '''
 
@@ -62,17 +66,56 @@ def inlined(code: str, flavour: Flavour = "rhino8", client: Path | None = None) 
     """
     if flavour not in FLAVOURS:
         raise InputError("flavour", f"{flavour!r} is none of {', '.join(FLAVOURS)}.")
-    stamp, version, packed = _packed(client or _installed())
+    sources = _sources(client or _installed())
+    stamp, version = _stamped(sources)
+    names, packed = _pack(sources, tuple(carried(code, dict(sources))))
     lines = redirected(code, stamp, "code.py").splitlines(keepends=True)
     cut = _after_docstring(code)
-    bootstrap = BOOTSTRAP.format(stamp=stamp, client=CLIENT, version=version, packed=packed)
+    bootstrap = BOOTSTRAP.format(stamp=stamp, client=CLIENT, version=version, names=names, packed=packed)
     first = "#! python 3\n" if flavour == "rhino8" and not code.startswith("#!") else ""
     return first + "".join(lines[:cut]) + bootstrap + "".join(lines[cut:])
 
 
 def stamp(client: Path | None = None) -> str:
     """The name of the packed client in sys.modules: its version and a digest of its files."""
-    return _packed(client or _installed())[0]
+    return _stamped(_sources(client or _installed()))[0]
+
+
+def carried(code: str, sources: dict[str, str]) -> list[str]:
+    """Modules of the client that `code` needs, each after those it imports when loaded; `__init__` first.
+
+    What a function of the client imports only when it runs is needed where that function is named.
+    """
+    wanted = {"__init__"} | _imported(ast.parse(code), sources)
+    named = _names(ast.parse(code))
+    while True:
+        trees = {name: ast.parse(sources[name]) for name in wanted}
+        more = set().union(*(_imported(tree, sources, named) for tree in trees.values()))
+        seen = named.union(*(_names(tree) for tree in trees.values()))
+        if more <= wanted and seen <= named:
+            return [name for name in _order(sources) if name in wanted]
+        wanted, named = wanted | more, seen
+
+
+def _imported(tree: ast.Module, sources: dict[str, str], named: set[str] | None = None) -> set[str]:
+    """Modules of the client that are imported at the top, and inside of functions that are `named`."""
+    found: set[str] = set()
+    for node in tree.body:
+        inside = isinstance(node, ast.FunctionDef | ast.ClassDef)
+        if inside and named is not None and node.name not in named:  # type: ignore[attr-defined]
+            continue
+        for at in ast.walk(node):
+            if isinstance(at, ast.ImportFrom):
+                path = [CLIENT] * at.level + (at.module or "").split(".")
+                parts = [part for part in path[1:] if part] or [alias.name for alias in at.names]
+                found |= {part for part in parts if part in sources and path[0] == CLIENT}
+    return found
+
+
+def _names(tree: ast.Module) -> set[str]:
+    """Every name that is used anywhere: variables, and what stands behind a dot."""
+    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return names | {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
 
 
 def redirected(source: str, to: str, where: str) -> str:
@@ -102,14 +145,14 @@ def _installed() -> Path:
     return Path(spec.submodule_search_locations[0])
 
 
-def _packed(client: Path) -> tuple[str, str, str]:
-    return _pack(tuple((p.name, p.read_text(encoding="utf-8")) for p in sorted(client.glob("*.py"))))
+def _sources(client: Path) -> tuple[tuple[str, str], ...]:
+    return tuple((p.stem, p.read_text(encoding="utf-8")) for p in sorted(client.glob("*.py")))
 
 
 @cache
-def _pack(files: tuple[tuple[str, str], ...]) -> tuple[str, str, str]:
-    """Stamp, version and packed text of the client's files, in the order in which they can be loaded."""
-    sources = {Path(name).stem: text for name, text in files}
+def _stamped(files: tuple[tuple[str, str], ...]) -> tuple[str, str]:
+    """The name of the packed client, and its version."""
+    sources = dict(files)
     for name, text in sources.items():
         if not text.isascii():
             raise InputError(f"{CLIENT}/{name}.py", "is not ASCII, which Python 2.7 cannot read.")
@@ -118,13 +161,38 @@ def _pack(files: tuple[tuple[str, str], ...]) -> tuple[str, str, str]:
         raise InputError(f"{CLIENT}/__init__.py", 'says no `__version__ = "..."`.')
     version = found.group(1)
     digest = hashlib.sha256(json.dumps(sources, sort_keys=True).encode()).hexdigest()[:12]
-    stamp = f"{CLIENT}_{re.sub('[^0-9]', '_', version)}_{digest}"
+    return f"{CLIENT}_{re.sub('[^0-9]', '_', version)}_{digest}", version
+
+
+@cache
+def _pack(files: tuple[tuple[str, str], ...], names: tuple[str, ...]) -> tuple[str, str]:
+    """Full names and packed text of some of the client's modules."""
+    sources, (stamp, _) = dict(files), _stamped(files)
     modules = []
-    for name in _order(sources):
+    for name in names:
         full = stamp if name == "__init__" else f"{stamp}.{name}"
-        modules.append([full, redirected(sources[name], stamp, f"{CLIENT}/{name}.py")])
+        modules.append([full, redirected(bare(sources[name]), stamp, f"{CLIENT}/{name}.py")])
     data = base64.b64encode(zlib.compress(json.dumps(modules).encode("ascii"), 9)).decode("ascii")
-    return stamp, version, "\n".join(data[i : i + 116] for i in range(0, len(data), 116))
+    told = "|".join(full.removeprefix(stamp) for full, _ in modules)
+    return '"\n    "'.join(told[i : i + 100] for i in range(0, len(told), 100)), "\n".join(
+        data[i : i + 116] for i in range(0, len(data), 116)
+    )
+
+
+def bare(source: str) -> str:
+    """`source` without comments and docstrings; every statement stays in its line."""
+    lines = source.splitlines(keepends=True)
+    for token in tokenize.generate_tokens(iter(lines).__next__):
+        if token.type == tokenize.COMMENT:
+            row, column = token.start
+            lines[row - 1] = lines[row - 1][:column].rstrip() + "\n"
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False):
+            first = node.body[0]
+            start, end = first.lineno - 1, first.end_lineno or first.lineno
+            lines[start] = lines[start][: first.col_offset] + ('""\n' if len(node.body) == 1 else "\n")
+            lines[start + 1 : end] = ["\n"] * (end - start - 1)
+    return "".join(lines)
 
 
 def _order(sources: dict[str, str]) -> list[str]:

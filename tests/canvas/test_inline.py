@@ -174,16 +174,43 @@ def test_a_client_that_cannot_be_inlined_is_told(tmp_path):
         inline.inlined(COUNTING, "rhino6")  # type: ignore[arg-type]
 
 
-def test_all_of_the_client_is_inside():
-    """Every file of hookean_client, and none that is not in the package."""
-    names = {path.stem for path in CLIENT.glob("*.py")}
-    assert {"__init__", "canvas", "compas"} <= names
-    space: dict[str, object] = {}
+def test_a_script_carries_what_it_needs_of_the_client_and_no_more():
+    """A force sends text: it needs neither the engine nor COMPAS; the engine needs no sweep."""
+    sources = {path.stem: path.read_text() for path in CLIENT.glob("*.py")}
+    force = inline.carried("from hookean_client import canvas\ncanvas.force(ghenv, 'unary')", sources)
+    assert force[0] == "__init__" and "canvas" in force and "canvas_engine" not in force and "compas" not in force
+    engine = inline.carried("from hookean_client import canvas\ncanvas.engine(ghenv, x)", sources)
+    assert set(force) < set(engine) and "canvas_engine" in engine and "canvas_sweep" not in engine
+
+
+def test_scripts_that_carry_different_parts_share_one_client():
+    """Whichever runs first, the other adds what is missing to the same modules."""
     before = set(sys.modules)
+    parts = ["from hookean_client import canvas\nfound = canvas", "from hookean_client import canvas, canvas_tools"]
     try:
-        exec(compile(inline.inlined(CODE, "rhino7"), "script", "exec"), space)
-        loaded = {n for n in sys.modules if n.startswith(inline.stamp())}
+        for order in (parts, parts[::-1]):
+            spaces: list[dict[str, object]] = [{}, {}]
+            for code, space in zip(order, spaces, strict=True):
+                exec(compile(inline.inlined(code, "rhino7"), "script", "exec"), space)
+            assert spaces[0]["canvas"] is spaces[1]["canvas"]
+            for name in set(sys.modules) - before:
+                del sys.modules[name]
     finally:
         for name in set(sys.modules) - before:
             del sys.modules[name]
-    assert {n.partition(".")[2] or "__init__" for n in loaded} == names
+
+
+def test_comments_and_docstrings_stay_at_home():
+    """What runs is the same, statement for statement and line for line."""
+    for path in CLIENT.glob("*.py"):
+        source = path.read_text()
+        told = inline.bare(source)
+        assert len(told) < len(source) and told.count("\n") == source.count("\n")
+        assert _statements(told) == _statements(source)
+
+
+def _statements(source: str) -> list[tuple[str, int]]:
+    """Kind and line of every statement but texts that stand alone."""
+    found = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.stmt)]
+    alone = [n for n in found if isinstance(n, ast.Expr) and isinstance(n.value, ast.Constant)]
+    return sorted((type(node).__name__, node.lineno) for node in found if node not in alone)
