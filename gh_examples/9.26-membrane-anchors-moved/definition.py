@@ -22,7 +22,8 @@ def definition() -> Definition:
         "9.26-membrane-anchors-moved",
         "Figure 9.26: a membrane's corners are moved while it runs",
         "A surface drawn in Rhino as a net of 20 x 20 cells, 20 N down on every particle. "
-        "Set Reset to False, then pull the corners up and down with the two sliders: an anchor takes its particle along.",
+        "Set Reset to False, then pull the corners up and down with the two sliders: an anchor takes its "
+        "particle along.",
     )
     with d.group("Drawn in Rhino", "Layers of model.3dm beside this file."):
         file = d.text("File", "model.3dm")

@@ -88,8 +88,8 @@ def definition() -> Definition:
             "Settings", solver=d.text("Solver", "newton"), residual=d.text("Residual [-]", "1e-13"), fast=fast
         )
         relaxing = d.component(
-            "Settings", solver=d.text("Solver of films", "relaxation"), residual=d.text("Residual of films [-]", "1e-9"),
-            fast=fast,
+            "Settings", solver=d.text("Solver of films", "relaxation"),
+            residual=d.text("Residual of films [-]", "1e-9"), fast=fast,
         )  # fmt: skip
         moved = []
         cases = (("net", springs, 0, exact), ("film", films[0], 0, relaxing), ("coarse film", films[1], 1, relaxing))

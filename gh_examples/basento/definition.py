@@ -115,7 +115,8 @@ def definition() -> Definition:
         given = {"skin": lines["edges"], "edges": lines["naked"], "particles": stretched["particles"]}
         told = {name: stretched[name] for name in ("forces", "reactions", "status")}
         over = d.script(
-            "Reverse", REVERSE, {**given, **told, "fingers": fingers, "stiffness": concrete, "nudge": nudge, "feet": standing},
+            "Reverse", REVERSE,
+            {**given, **told, "fingers": fingers, "stiffness": concrete, "nudge": nudge, "feet": standing},
             ["struts", "strut_lengths", "ribs", "rib_lengths", "nudged", "nudged_ribs", "tips", "pressed"],
             lists=[*given, "fingers"], trees=["forces", "reactions"],
         )  # fmt: skip

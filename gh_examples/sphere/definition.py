@@ -1,4 +1,4 @@
-"""Section 9.7 on the canvas: a mesh sphere falls onto the floor; springs alone crumple, with Shell it keeps its shape."""
+"""Section 9.7 on the canvas: a mesh sphere falls onto the floor; with springs alone it crumples, with Shell not."""
 
 from typing import Any
 
@@ -158,7 +158,8 @@ def definition() -> Definition:
         drag, floor = d.slider("Drag [N s/m]", 1, 0, 10, decimals=1), d.toggle("Floor", True)
         more: dict[str, Any] = {"drag": drag, "floor": floor}
         settings = d.component(
-            "Settings", time_step=d.text("Time step [s]", "0.004"), sub_iterations=d.slider("Steps a picture [-]", 5, 1, 50),
+            "Settings", time_step=d.text("Time step [s]", "0.004"),
+            sub_iterations=d.slider("Steps a picture [-]", 5, 1, 50),
             residual=d.text("Residual [-]", "1e-3"), **more,
         )  # fmt: skip
         too_fast = d.component("Settings", "Too fast", time_step=d.text("Too large a step [s]", "0.01"), **more)

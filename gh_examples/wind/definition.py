@@ -50,7 +50,8 @@ def definition() -> Definition:
         stream = d.component(
             "Stream", forces=flat(*springs, wind), anchors=flat(corners), settings=settings, geometry=mesh,
             file=d.text("Table", "wind.csv"), column=d.text("Column", "speed [m/s]"), force=d.text("Load", "wind"),
-            scale=scale["Vector"], power=d.slider("Power [-]", 2, 1, 3), every=d.slider("Every [s]", 0.1, 0.05, 1, decimals=2),
+            scale=scale["Vector"], power=d.slider("Power [-]", 2, 1, 3),
+            every=d.slider("Every [s]", 0.1, 0.05, 1, decimals=2),
         )  # fmt: skip
         d.panel("report", stream["report"])
     with d.group("Numbers", "What expected.json holds it to."):
