@@ -62,6 +62,10 @@ class Service(object):
             self._client = None
             raise
 
+    def uses(self, client):
+        """Whether it is still this client."""
+        return client is self._client
+
     def doubt(self):
         """Ask it whether it is there before the next use."""
         self._seen = 0.0
@@ -103,6 +107,8 @@ class Task(object):
                 service.lose()
         except FAILURES as error:
             self.problem = Problem("failed", "This failed: %s: %s." % (type(error).__name__, error), 500)
+        if self.client is not None and not service.uses(self.client):
+            self.client.close()  # forgotten meanwhile
         self.until = now()
         self._done.set()
 

@@ -23,6 +23,7 @@ from hookean_client import canvas, canvas_engine, canvas_geometry, canvas_link, 
 from serving import SOAK, Home
 
 SOON = 1.0 if SOAK else 15.0  # seconds to the sentence; the strict one on a machine with nothing else to do
+TABLE = Path(__file__).parents[2] / "gh_examples" / "wind" / "wind.csv"
 MODEL = Path(__file__).parents[2] / "gh_examples" / "9.4-cable" / "model.3dm"
 
 
@@ -82,6 +83,14 @@ def samples() -> dict[str, dict[str, Any]]:
         "Engine": {**held, "_reset": False, "settings_": [settings(drag=5.0)]},
         "Interpolate": {"_points": row, "_count_": [5]},
         "Moments": {**held, "_times": [0.1]},
+        "Stream": {
+            **held,
+            "_file": [str(TABLE)],
+            "_column": ["speed [m/s]"],
+            "_force": ["Load"],
+            "_every_": [1.0],
+            "_scale": [stand_in.Vector3d(0, 1, 0)],
+        },
         "MeshSurface": {"_surface": [surface], "_u_": [3], "_v_": [2]},
         "RemoveDuplicateLines": {"_lines": [spans[0], spans[0]]},
         "RhinoFile": {"_file": [str(MODEL)]},
