@@ -66,7 +66,7 @@ class Served:
 
     def ready(self) -> Served:
         """Wait until a worker is idle."""
-        wait_for(lambda: self.health()["workers"]["idle"] > 0, 60.0)
+        wait_for(lambda: self.health()["workers"]["idle"] > 0, 240.0)  # kernels may have to be compiled first
         return self
 
     def health(self) -> dict[str, Any]:

@@ -104,7 +104,7 @@ def test_no_acknowledged_edit_is_lost_when_the_server_is_killed(tmp_path: Path) 
             for ledger in ledgers:
                 ledger.acknowledged = {k: v for k, v in known.items() if k.startswith(f"{ledger.number}-")}
                 ledger.start()
-            wait_for(lambda ledgers=ledgers: any(ledger.answers for ledger in ledgers), 60.0)
+            wait_for(lambda ledgers=ledgers: any(ledger.answers for ledger in ledgers), 240.0)
             time.sleep(chance.uniform(0.0, 1.0))
             os.kill(served.process.pid, signal.SIGKILL)
             for ledger in ledgers:
