@@ -19,6 +19,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, UUID, uuid5
@@ -181,7 +182,7 @@ class Definition:
             [Slot(p.name, p.description, p.access, p.hint, p.optional, p.mapping) for p in side]
             for side in (found.inputs, found.outputs)
         ]
-        code = inline.inlined(found.code, "rhino8")
+        code = _inlined(found.code)
         description = found.description
         return self._script(found.name, nickname or found.nickname, description, code, slots[0], slots[1], inputs)
 
@@ -197,7 +198,7 @@ class Definition:
         ins = [Slot(key, access=access[key], optional=False) for key in inputs]
         outs = [Slot(key.replace(" ", "_")) for key in outputs]
         body = textwrap.dedent(code).strip() + "\n"
-        body = inline.inlined(body, "rhino8") if "hookean_client" in body else "#! python 3\n" + body
+        body = _inlined(body) if "hookean_client" in body else "#! python 3\n" + body
         return self._script("Python 3 Script", name, description or name, body, ins, outs, inputs)
 
     def numbers(
@@ -361,6 +362,11 @@ class Definition:
         if library is not None:
             chunk.put("Lib", Type.GUID, library)
         chunk.chunks.append(container)
+
+
+@cache
+def _inlined(code: str) -> str:
+    return inline.inlined(code, "rhino8")
 
 
 def _output(source: Any, kind: str, key: str) -> Output:
