@@ -86,36 +86,45 @@ def carried(code: str, sources: dict[str, str]) -> list[str]:
 
     What a function of the client imports only when it runs is needed where that function is named.
     """
-    wanted = {"__init__"} | _imported(ast.parse(code), sources)
-    named = _names(ast.parse(code))
+    wanted = {"__init__"} | _imported(code, sources)
+    named = _names(code)
     while True:
-        trees = {name: ast.parse(sources[name]) for name in wanted}
-        more = set().union(*(_imported(tree, sources, named) for tree in trees.values()))
-        seen = named.union(*(_names(tree) for tree in trees.values()))
+        more = set().union(*(_imported(sources[name], sources, named) for name in wanted))
+        seen = named.union(*(_names(sources[name]) for name in wanted))
         if more <= wanted and seen <= named:
             return [name for name in _order(sources) if name in wanted]
         wanted, named = wanted | more, seen
 
 
-def _imported(tree: ast.Module, sources: dict[str, str], named: set[str] | None = None) -> set[str]:
+def _imported(source: str, sources: dict[str, str], named: set[str] | None = None) -> set[str]:
     """Modules of the client that are imported at the top, and inside of functions that are `named`."""
     found: set[str] = set()
-    for node in tree.body:
-        inside = isinstance(node, ast.FunctionDef | ast.ClassDef)
-        if inside and named is not None and node.name not in named:  # type: ignore[attr-defined]
-            continue
+    for inside, modules in _imports(source):
+        if not inside or named is None or inside in named:
+            found |= modules & set(sources)
+    return found
+
+
+@cache
+def _imports(source: str) -> list[tuple[str, set[str]]]:
+    """What `source` may import of the client: name of the function or class it stands in, or "", and modules."""
+    found = []
+    for node in ast.parse(source).body:
+        inside = node.name if isinstance(node, ast.FunctionDef | ast.ClassDef) else ""
         for at in ast.walk(node):
             if isinstance(at, ast.ImportFrom):
                 path = [CLIENT] * at.level + (at.module or "").split(".")
                 parts = [part for part in path[1:] if part] or [alias.name for alias in at.names]
-                found |= {part for part in parts if part in sources and path[0] == CLIENT}
+                found.append((inside, set(parts) if path[0] == CLIENT else set()))
     return found
 
 
-def _names(tree: ast.Module) -> set[str]:
+@cache
+def _names(source: str) -> set[str]:
     """Every name that is used anywhere: variables, and what stands behind a dot."""
-    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    return names | {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    nodes = list(ast.walk(ast.parse(source)))
+    names = {node.id for node in nodes if isinstance(node, ast.Name)}
+    return names | {node.attr for node in nodes if isinstance(node, ast.Attribute)}
 
 
 def redirected(source: str, to: str, where: str) -> str:
@@ -198,17 +207,11 @@ def bare(source: str) -> str:
 def _order(sources: dict[str, str]) -> list[str]:
     """Modules so that each comes after those it imports when loaded; `__init__` first."""
     needs: dict[str, set[str]] = {"__init__": set()}
-    for name in sorted(sources):
-        if name == "__init__":
-            continue
-        needs[name] = {"__init__"}
-        for node in ast.parse(sources[name]).body:
-            if isinstance(node, ast.ImportFrom):
-                path = [CLIENT] * node.level + (node.module or "").split(".")
-                parts = [part for part in path[1:] if part] or [alias.name for alias in node.names]
-                needs[name] |= {part for part in parts if part in sources and path[0] == CLIENT}
+    for name in sorted(set(sources) - {"__init__"}):
+        loaded = [modules for inside, modules in _imports(sources[name]) if not inside]
+        needs[name] = {"__init__"}.union(*loaded) & set(sources)
     try:
-        return list(TopologicalSorter({name: sorted(before) for name, before in needs.items()}).static_order())
+        return list(TopologicalSorter(needs).static_order())
     except CycleError as error:
         raise InputError(CLIENT, f"has modules that import one another: {' > '.join(error.args[1])}.") from None
 
