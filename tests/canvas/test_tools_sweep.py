@@ -18,6 +18,7 @@ from hookean import Scene
 from hookean.sweep import solve
 from hookean_canvas import stand_in
 from hookean_client import canvas_link, canvas_sweep
+from server.conftest import endless
 from serving import SWING, Home, wait_for
 
 
@@ -67,9 +68,8 @@ def states(home: Home) -> list[str]:
 
 
 def slow(seconds: float) -> str:
-    """A scene that swings for so long."""
-    settings = {**SWING["settings"], "time_limit": seconds}
-    return json.dumps({**SWING, "settings": settings})
+    """A scene that swings for so long: too many particles to stall before."""
+    return json.dumps(endless(seconds))
 
 
 def test_every_value_with_every_other(home: Home) -> None:
