@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -14,22 +13,22 @@ import pytest
 
 from hookean import Scene, relax
 from hookean_canvas import bundles, inline, stand_in
+from pythons import interpreter
 from serving import Home
 
 NAMES = ("CompasStructure", "CompasSprings", "CompasLoad", "CompasAnchors", "CompasRelax")
-VERSIONS = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
 RUN = Path(__file__).with_name("compas_canvas_run.py")
 
 
 def rhino8(cache: Any) -> str:
     """A Python 3.9 with compas and nothing of ours, made once; skips where that cannot be."""
-    found = sorted(VERSIONS.glob("3.9.*/bin/python"))
-    if not found:
-        pytest.skip("no Python 3.9 of pyenv here")
+    found = interpreter("3.9")
+    if found is None:
+        pytest.skip("this machine has no Python 3.9")
     folder = Path(cache.mkdir("compas-3.9"))
     python = folder / "bin" / "python"
     if not (folder / "made").exists():
-        subprocess.run([found[-1], "-m", "venv", "--clear", folder], check=True, capture_output=True)
+        subprocess.run([found, "-m", "venv", "--clear", folder], check=True, capture_output=True)
         command = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "compas>=2.4"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
         if done.returncode:
@@ -119,15 +118,15 @@ def test_what_does_not_fit_is_one_sentence(told: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("version", ["2.7", "3.9", "3.13"])
 def test_every_python_of_rhino_imports_the_converters_without_compas(version: str) -> None:
-    found = sorted(VERSIONS.glob(f"{version}.*/bin/python"))
-    if not found:
-        pytest.skip(f"no Python {version} of pyenv here")
+    found = interpreter(version)
+    if found is None:
+        pytest.skip(f"this machine has no Python {version}")
     code = (
         "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, sys.argv[1])\n"
         "from hookean_client import compas, compas_canvas\n"
         "assert 'compas' not in sys.modules and compas.kind(type('P', (), {'x': 0, 'y': 0, 'z': 0})()) == 'point'\n"
         "print(compas.__name__)"
     )
-    words = [str(found[-1]), "-c", code, str(bundles.folder())]
+    words = [found, "-c", code, str(bundles.folder())]
     done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
     assert (done.stdout.strip(), done.returncode) == ("hookean_client.compas", 0), done.stderr

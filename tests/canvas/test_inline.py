@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import ast
-import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -14,6 +12,7 @@ import pytest
 
 from hookean.errors import InputError
 from hookean_canvas import bundles, inline
+from pythons import interpreter
 
 CODE = '"""Help."""\n\nimport hookean_client\nfrom hookean_client import Problem, canvas\n\nname = canvas.__name__\n'
 CLIENT = Path(__file__).parents[2] / "components" / "hookean_client"
@@ -22,13 +21,10 @@ PYTHONS = ("2.7", "3.9", "3.13")  # of Rhino 7 as far as it goes, Rhino 8 and Rh
 
 def python(version: str) -> str:
     """An interpreter of that version; the test is skipped where there is none."""
-    if sys.version_info[:2] == tuple(map(int, version.split("."))):
-        return sys.executable
-    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
-    found = [*sorted(root.glob(f"versions/{version}.*/bin/python")), shutil.which(f"python{version}")]
-    if not found[0]:
+    found = interpreter(version)
+    if found is None:
         pytest.skip(f"this machine has no Python {version}")
-    return str(found[0])
+    return found
 
 
 def run(version: str, code: str, folder: Path) -> str:

@@ -8,7 +8,6 @@ import math
 import os
 import shutil
 import subprocess
-import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Any
 
 import pytest
 
+import pythons
 from hookean_canvas import archive, bundles, isolated, userobject
 from serving import Home
 
@@ -30,13 +30,8 @@ LOOSE = {"iterations", "progress", "report", "status", "residual", "energy", "ur
 @cache
 def interpreter(version: str) -> list[str]:
     """The command of a Python of that version, alone; none where this machine has it not."""
-    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
-    found = [*sorted(map(str, root.glob(f"versions/{version}.*/bin/python"))), shutil.which(f"python{version}")]
-    if sys.version_info[:2] == tuple(map(int, version.split("."))):
-        found.insert(0, sys.executable)
-    alone = ["-I"] if version != "2.7" else ["-E", "-s"]
-    if found[0]:
-        return [found[0], *alone]
+    if found := pythons.interpreter(version):
+        return [found, *(["-I"] if version != "2.7" else ["-E", "-s"])]
     jython = shutil.which("jython") if version == "2.7" else None
     return [jython] if jython else []
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import os
 import shutil
 import subprocess
 import sys
@@ -13,21 +12,17 @@ from pathlib import Path
 import pytest
 
 import hookean_client
+from pythons import interpreter
 from serving import CABLE, Home
 
 SOURCE = Path(hookean_client.__file__)
-NAMES = ["python2.7", *(f"python3.{minor}" for minor in range(6, 15)), "ipy"]
-VERSIONS = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+VERSIONS = ["2.7", *(f"3.{minor}" for minor in range(6, 15))]
 
 
 def interpreters() -> list[str]:
     """The newest of each version that is found, this one among them."""
-    found = {name: path for name in NAMES if (path := shutil.which(name)) is not None}
-    for folder in sorted(VERSIONS.glob("*")) if VERSIONS.is_dir() else []:
-        found["python" + ".".join(folder.name.split(".")[:2])] = str(folder / "bin" / "python")
-    mine = f"python3.{sys.version_info.minor}"
-    usable = {n: p for n, p in found.items() if n in NAMES and n != mine and subprocess.call([p, "-c", ""]) == 0}
-    return [*usable.values(), sys.executable]
+    found = [interpreter(version) for version in VERSIONS] + [shutil.which("ipy")]
+    return [python for python in found if python]
 
 
 SMOKE = """
