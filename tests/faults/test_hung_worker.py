@@ -65,7 +65,8 @@ def test_pause_reaches_a_session_whose_process_hangs(running: Served) -> None:
     assert paused[0].status_code == 200 and paused[0].json()["playing"] is False
     wait_for(lambda: not process.is_running() or process.status() == psutil.STATUS_ZOMBIE, SOON)
     found = running.client.get("/v1/sessions/a/scene")
-    assert found.status_code == 200 and found.json()["forces"][1]["vector"] == [0, 0, -7.0]
+    assert found.status_code == 200, found.text + running.log()
+    assert found.json()["forces"][1]["vector"] == [0, 0, -7.0]
     stands = running.client.get("/v1/sessions/a").json()
     assert (stands["playing"], stands["revision"], stands["awake"]) == (False, 1, True)
     went = running.client.post("/v1/sessions/a/step", params={"frames": 2}).json()

@@ -8,7 +8,7 @@ import json
 import queue
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, InvalidStateError
 from contextlib import suppress
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
@@ -109,8 +109,8 @@ class SessionProcess:
                 body = connection.recv_bytes()
                 if "id" not in head:
                     self.on_event(head, body)
-                elif (future := self._waiting.get(head["id"])) is not None and not future.done():
-                    future.set_result((head, body))
+                elif (future := self._waiting.get(head["id"])) is not None:
+                    _settle(future, head, body)
         self.lost = True
         self.kill()
         self._fail()
@@ -121,5 +121,10 @@ class SessionProcess:
 
     def _fail(self) -> None:
         for future in list(self._waiting.values()):
-            if not future.done():
-                future.set_result((GONE, b""))
+            _settle(future, GONE, b"")
+
+
+def _settle(future: Future[tuple[dict[str, Any], bytes]], answer: dict[str, Any], body: bytes) -> None:
+    """Answer who waits, unless the event loop's thread or ours was first: asking before would race with the other."""
+    with suppress(InvalidStateError):
+        future.set_result((answer, body))
