@@ -29,6 +29,11 @@ def stand_ins():
     return module
 
 
+def execute(code, scope):
+    """Run code in a scope; a function of its own, as Jython has no exec where names are closed over."""
+    exec(code, scope)
+
+
 class Run(object):
     """The components of a request in one process, as in Rhino."""
 
@@ -50,7 +55,7 @@ class Run(object):
         while True:
             component.messages, self.document.scheduled = [], []
             scope = dict(given, ghenv=self.kinds.Environment(component), __name__="__main__")
-            exec(code, scope)
+            execute(code, scope)
             count += 1
             if not self.document.scheduled or count >= step.get("solutions", 400) or now() > until:
                 break
