@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic.fields import FieldInfo
-from scipy.spatial import cKDTree
 
+from hookean import near
 from hookean.columns import Vector, Vectors
 from hookean.errors import InputError
 from hookean.forces import Block, Force
@@ -69,7 +70,6 @@ class Welded:
         self._edges: dict[tuple[str, str], Ints] = {}
         self._pointer: dict[int, str] = {id(f): f"/forces/{i}" for i, f in enumerate(scene.forces)}
         self._weld()
-        self._tree = cKDTree(self.x) if len(self.x) else None
 
     def _weld(self) -> None:
         """Create particles: one list of candidates in order of appearance, then one pass of welding."""
@@ -194,13 +194,13 @@ class Welded:
         """The particle of each point: the first within the tolerance, as welding has it; else -1, and a line in the
         report names the nearest."""
         flat = points.reshape(-1, 3)
-        if self._tree is None or not len(flat):
+        if not len(self.x) or not len(flat):
             distance, nearest = np.full(len(flat), np.inf), np.full(len(flat), -1)
         else:
-            near, which = self._tree.query(flat, k=min(2, len(self.x)))
-            distance, nearest = near.reshape(len(flat), -1)[:, 0], which.reshape(len(flat), -1)[:, 0]
+            distances, which = self._tree.query(flat, k=2)
+            distance, nearest = distances[:, 0], which[:, 0]
             # where more than one is near enough, the first one wins
-            for i in np.flatnonzero((near.reshape(len(flat), -1)[:, 1:] <= self.tolerance).any(axis=1)):
+            for i in np.flatnonzero(distances[:, 1] <= self.tolerance):
                 nearest[i] = min(self._tree.query_ball_point(flat[i], self.tolerance))
         missed = distance > self.tolerance
         if not silent:
@@ -209,6 +209,10 @@ class Welded:
                 self._miss(Unmatched(f"{pointer}/{i}", name, spot, int(nearest[i]), float(distance[i])))  # type: ignore[arg-type]
         found = np.where(missed, -1, nearest).astype(np.int64)
         return np.ascontiguousarray(found.reshape(points.shape[:-1]))
+
+    @cached_property
+    def _tree(self) -> Any:
+        return near.tree(self.x)
 
     def _miss(self, unmatched: Unmatched) -> None:
         if self.scene.strict:
@@ -240,9 +244,8 @@ def weld(given: Floats, points: Floats, tolerance: float) -> tuple[Floats, Ints]
 def _keepers(points: Floats, given: int, tolerance: float) -> Ints:
     """For each point the one it becomes: itself, or the first kept point within the tolerance."""
     keeper = np.arange(len(points))
-    tree = cKDTree(points)
-    near = tree.query(points, k=2)[0][:, 1] <= tolerance if len(points) > 1 else np.zeros(len(points), bool)
-    for a in np.flatnonzero(near):
+    tree = near.tree(points)
+    for a in np.flatnonzero(tree.query(points, k=2)[0][:, 1] <= tolerance):
         if keeper[a] != a:
             continue
         for b in tree.query_ball_point(points[a], tolerance):
