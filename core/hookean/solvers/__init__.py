@@ -9,7 +9,7 @@ from hookean.solvers.base import Solver
 
 NAMES: tuple[str, ...] = (
     "auto",
-    *(m.name for m in pkgutil.iter_modules(__path__) if m.name not in ("auto", "base")),
+    *(m.name for m in pkgutil.iter_modules(__path__) if m.name not in ("auto", "base") and m.name[0] != "_"),
 )
 """What `settings.solver` may be."""
 

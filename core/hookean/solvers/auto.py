@@ -1,7 +1,8 @@
 """Auto: picks by the scene, and says what it picked.
 
-Linear scenes take one force-density solve. Everything else relaxes; where relaxation is slow or the tolerance tight,
-Newton steps finish, and where those do not help, relaxation goes on.
+Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities. Everything
+else relaxes, and so do nets whose lowest shape those steps do not find; where relaxation is slow or the tolerance
+tight, Newton steps finish, and where those do not help, relaxation goes on.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hookean.solvers import force_density, newton, relaxation
+from hookean.solvers import _complementary, force_density, newton, relaxation
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -25,19 +26,21 @@ NEWTON_STEPS = 60
 
 
 class Method(Solver):
-    """Force density where it is exact, else relaxation with a Newton finish."""
+    """Force density where it is exact, complementary energy for chains, else relaxation with a Newton finish."""
 
     name: ClassVar[str] = "auto"
 
     def __init__(self) -> None:
         self.used: list[str] = []
         self._linear = force_density.Method()
+        self._complementary = _complementary.Method()
         self._relaxation = relaxation.Method()
         self._newton = newton.Method()
 
     def start(self, system: System, state: State) -> None:
         """Look at the system and choose."""
         self._one_solve = not self._linear.refuse(system)
+        self._chains = not self._complementary.refuse(system)
         entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if g.cls.role != "load")
         self._small = 3 * len(state.x) <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS
         self._relaxation.start(system, state)
@@ -52,6 +55,12 @@ class Method(Solver):
             done = self._linear.advance(system, state, count, goal)
             if done:
                 self._use("force_density")
+                return done
+        if self._chains:
+            self._chains = False
+            done = self._complementary.advance(system, state, count, goal)
+            if done:
+                self._use("complementary")
                 return done
         if self._steps > 0:
             return self._finish(system, state, count, goal)
