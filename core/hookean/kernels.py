@@ -14,7 +14,6 @@ import os
 import sys
 import tempfile
 import types
-import warnings
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
@@ -45,7 +44,6 @@ def keep(table: Any) -> float:
     return float(_TABLES.setdefault(key, table).ctypes.data)
 
 
-@device
 def rows(address: float, count: float, columns: int) -> Any:
     """The kept table at an address, inside a kernel: (count, columns), to be read only."""
     import ctypes
@@ -57,27 +55,6 @@ def rows(address: float, count: float, columns: int) -> Any:
 
 
 @cache
-def _native_rows() -> Any:
-    """`rows` as machine code."""
-    import numba
-    from numba.extending import intrinsic
-
-    @intrinsic
-    def pointer(typing, address):  # type: ignore[no-untyped-def]
-        def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-            return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
-
-        return numba.types.CPointer(numba.types.float64)(numba.types.int64), generate
-
-    @numba.njit
-    @device
-    def native(address, count, columns):  # type: ignore[no-untyped-def]
-        return numba.carray(pointer(numba.int64(address)), (numba.int64(count), columns))
-
-    return native
-
-
-@cache
 def compiled(function: Callable[..., Any], role: str | None = None) -> Any:
     """Machine code of `function`, from the cache on disk when its source is unchanged.
 
@@ -86,47 +63,56 @@ def compiled(function: Callable[..., Any], role: str | None = None) -> Any:
     """
     import numba
 
-    if function is rows:
-        return _native_rows()
+    if function in _NATIVE:
+        from hookean import pointers
+
+        task = _RUNNERS.get(function)
+        return pointers.runner(task, _signature(task)) if task else pointers.kept
     prepared = _with_devices(function)
     numba.config.CACHE_DIR = str(cache_folder(function))
+    numba.config.SLP_VECTORIZE = 1  # the columns of a particle in one operation; no sum changes its order
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
     if role is None:
         return numba.njit(**options)(prepared)
     return numba.njit(_signature(role), **options)(prepared)
 
 
-def call(loop: Any, *arguments: Any) -> Any:
-    """Call a compiled loop that takes tuples of kernels."""
-    from numba.core.errors import NumbaExperimentalFeatureWarning
+def table(role: str, calls: Sequence[tuple[Callable[..., Any], tuple[Any, ...]]]) -> Any:
+    """What a loop needs to call kernels of one role on their own arrays: in each row the address of a kernel, and of
+    each of its arrays with their shape. The arrays must outlive it."""
+    import numpy as np
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
-        return loop(*arguments)
+    rows = [[_address(f, role), *(n for a in arrays for n in (a.ctypes.data, *a.shape))] for f, arrays in calls]
+    return np.array(rows, dtype=np.int64) if rows else np.zeros((0, 1), np.int64)
 
 
-def pointers(functions: Sequence[Callable[..., Any] | None], role: str) -> tuple[Any, ...]:
-    """Pointers to functions of one role (none: idle), padded to 2, 4, 8 ... so that loops meet few tuple sizes."""
-    idle = _pointer(_IDLE[role], role)
-    filled = [idle if f is None else _pointer(f, role) for f in functions]
-    size = 2
-    while size < len(filled):
-        size *= 2
-    return (*filled, *[idle] * (size - len(filled)))
+def forces(calls: Any, x: Any, v: Any, f: Any, w: Any) -> None:
+    """All force kernels of a table, inside a loop."""
+
+
+def notes(calls: Any, x: Any) -> None:
+    """All notes of what is remembered, inside a loop."""
+
+
+def impacts(calls: Any, x_before: Any, v_before: Any, acceleration: Any, x: Any, v: Any, free: Any, dt: Any) -> None:
+    """All impacts of a table, inside a loop."""
+
+
+def supports(calls: Any, x: Any, v: Any, f: Any, carried: Any, free: Any, mass: Any, dt: Any) -> None:
+    """All supports of a table, inside a loop."""
+
+
+_RUNNERS = {forces: "force", notes: "remember", impacts: "impact", supports: "support"}
+_NATIVE: tuple[Any, ...] = (rows, *_RUNNERS)
+for _function in _NATIVE:
+    device(_function)
 
 
 @cache
-def _pointer(function: Callable[..., Any], role: str) -> Any:
-    from hookean.pointers import Pointer
+def _address(function: Callable[..., Any], role: str) -> int:
+    from hookean.pointers import address
 
-    return Pointer(compiled(function, role), _pointer_type(role))
-
-
-@cache
-def _pointer_type(role: str) -> Any:
-    from hookean.pointers import PointerType
-
-    return PointerType(_signature(role))
+    return address(compiled(function, role), _signature(role))
 
 
 @cache
@@ -189,27 +175,3 @@ def _signature(role: str) -> Any:
         # x, v, f, carried, free, mass, dt, parameters
         "support": t.void(real, real, real, real, real, flat, t.float64, real),
     }[role]
-
-
-def _no_force(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
-    return 0.0
-
-
-def _no_impact(x_before, v_before, acceleration, x, v, free, dt, parameters):  # type: ignore[no-untyped-def]
-    pass
-
-
-def _no_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore[no-untyped-def]
-    pass
-
-
-def _no_memory(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
-    pass
-
-
-_IDLE: dict[str, Callable[..., Any]] = {
-    "force": _no_force,
-    "impact": _no_impact,
-    "support": _no_support,
-    "remember": _no_memory,
-}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,26 +123,6 @@ class System:
             b = group.block
             energies[i] = kernel(state.x, v, b.indices, b.parameters, memory, f, w)
         return f, w, energies
-
-    def tuples(self, state: State) -> tuple[Any, ...]:
-        """Kernels, indices, parameters and memories as equally long tuples, for the compiled loops."""
-        groups = self.groups
-        functions = kernels.pointers([g.cls.kernel for g in groups], "force")
-        idle = len(functions) - len(groups)
-        none = np.zeros((0, 1))
-        return (
-            functions,
-            (*(g.block.indices for g in groups), *[np.zeros((0, 1), np.int64)] * idle),
-            (*(g.block.parameters for g in groups), *[none] * idle),
-            (*state.memory, *[none] * idle),
-        )
-
-    def hooks(self) -> tuple[Any, ...]:
-        """Impact and support functions of the contacts, and their parameters."""
-        impacts = kernels.pointers([g.cls.impact for g in self.contacts], "impact")
-        supports = kernels.pointers([g.cls.support for g in self.contacts], "support")
-        idle = len(impacts) - len(self.contacts)
-        return impacts, supports, (*(g.block.parameters for g in self.contacts), *[np.zeros((0, 9))] * idle)
 
     def support(self, state: State, f: Floats) -> Floats:
         """Take from `f` what contacts carry at rest; returns their force on the particles (n, 3)."""

@@ -82,6 +82,7 @@ class Force(Model):
     formula: ClassVar[str] = ""
     role: ClassVar[Literal["internal", "load", "support"]] = "internal"  # internal: forces and moments sum to zero
     conservative: ClassVar[bool] = True  # force = -gradient of the energy the kernel returns
+    constant: ClassVar[bool] = False  # the force is the same wherever the particles are
     damped: ClassVar[bool] = False  # the kernel reads the velocities
     remembers: ClassVar[bool] = False  # memory changes at the end of a step
     arity: ClassVar[int] = 1
@@ -115,6 +116,15 @@ class Force(Model):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel; raises InputError where an element makes no sense."""
         raise TypeError(f"{type(self).__name__} does not say how it compiles")
+
+    @classmethod
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
+        """Indices and parameters for the loops of solvers, that the kernel knows by their shape; None: as they are.
+
+        With them it adds to `f` alone (its stiffness and energy are not asked for), x, v and f have a fourth column of
+        zeros, and without `damped` nothing moves. `memory` stays as it is meanwhile.
+        """
+        return None
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """What a result tells of each element, by the names and units of `outputs`.

@@ -34,6 +34,7 @@ class SelfWeight(Force):
     formula: ClassVar[str] = "E = -W d·x"
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     creates: ClassVar[bool] = False
+    constant: ClassVar[bool] = True
     everywhere: ClassVar[bool] = True
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(unary_kernel)

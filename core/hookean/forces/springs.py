@@ -8,13 +8,83 @@ import numpy as np
 from pydantic import Field
 
 from hookean.columns import IndexRows, Lines, NonNegatives
-from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.kernels import device
 
 Edges = Literal["all", "warp", "weft", "naked", "diagonals", "diagonals_one", "diagonals_other"]
 
 
+@device
+def pull(x: Any, indices: Any, parameters: Any, f: Any) -> None:
+    """Forces of packed springs: one vector operation for the columns of a particle."""
+    for e in range(indices.shape[0]):
+        a, b = ends(indices[e, 0])
+        d0 = x[b, 0] - x[a, 0]
+        d1 = x[b, 1] - x[a, 1]
+        d2 = x[b, 2] - x[a, 2]
+        d3 = x[b, 3] - x[a, 3]
+        length = np.sqrt(d0 * d0 + d1 * d1 + d2 * d2)
+        if length > 0.0:
+            k, rest = parameters[e, 0], parameters[e, 1]
+            tension = k * (length - rest)
+            tension /= length
+            d0 *= tension
+            d1 *= tension
+            d2 *= tension
+            d3 *= tension
+            f[a, 0] += d0
+            f[a, 1] += d1
+            f[a, 2] += d2
+            f[a, 3] += d3
+            f[b, 0] -= d0
+            f[b, 1] -= d1
+            f[b, 2] -= d2
+            f[b, 3] -= d3
+
+
+@device
+def pull_damped(x: Any, v: Any, indices: Any, parameters: Any, f: Any) -> None:
+    """`pull` of springs with damping."""
+    for e in range(indices.shape[0]):
+        a, b = ends(indices[e, 0])
+        d0 = x[b, 0] - x[a, 0]
+        d1 = x[b, 1] - x[a, 1]
+        d2 = x[b, 2] - x[a, 2]
+        d3 = x[b, 3] - x[a, 3]
+        rate = (v[b, 0] - v[a, 0]) * d0 + (v[b, 1] - v[a, 1]) * d1 + (v[b, 2] - v[a, 2]) * d2
+        length = np.sqrt(d0 * d0 + d1 * d1 + d2 * d2)
+        if length > 0.0:
+            k, rest = parameters[e, 0], parameters[e, 1]
+            tension = k * (length - rest)
+            tension = (tension + parameters[e, 2] * rate / length) / length
+            d0 *= tension
+            d1 *= tension
+            d2 *= tension
+            d3 *= tension
+            f[a, 0] += d0
+            f[a, 1] += d1
+            f[a, 2] += d2
+            f[a, 3] += d3
+            f[b, 0] -= d0
+            f[b, 1] -= d1
+            f[b, 2] -= d2
+            f[b, 3] -= d3
+
+
+@device
+def ends(pair: Any) -> Any:
+    """The two particles of a packed spring; unsigned: no index counts from the end."""
+    return np.uint64(pair) & np.uint64(0xFFFFFFFF), np.uint64(pair) >> np.uint64(32)
+
+
 def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
+    if parameters.shape[1] == 2:
+        pull(x, indices, parameters, f)
+        return energy
+    if parameters.shape[1] == 3:
+        pull_damped(x, v, indices, parameters, f)
+        return energy
     for e in range(indices.shape[0]):
         a = np.uint64(indices[e, 0])  # unsigned: no index counts from the end
         b = np.uint64(indices[e, 1])
@@ -153,6 +223,17 @@ class Springs(Force):
             lower_cutoff=self.lower_cutoff,
             plasticity=self.plasticity,
         )
+
+    @classmethod
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
+        """Both ends in one number, and k, rest length and where it counts c; not with cutoffs or plasticity."""
+        p = block.parameters
+        if p[:, 4:].any():
+            return None
+        table = [p[:, 0], p[:, 2] * p[:, 3] + memory[:, 0]]
+        if damped and p[:, 1].any():
+            table.append(p[:, 1])
+        return block.indices[:, :1] | block.indices[:, 1:] << 32, np.column_stack(table)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length [length], force [force; tension +] and strain (l - L0)/L0 [-; 0 for rest length 0]."""

@@ -34,6 +34,7 @@ class Unary(Force):
     formula: ClassVar[str] = "E = -F·x"
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     creates: ClassVar[bool] = False
+    constant: ClassVar[bool] = True
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(unary_kernel)
 

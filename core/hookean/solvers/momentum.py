@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hookean import kernels
+from hookean.kernels import forces, impacts, supports
+from hookean.lean import contacts, lean
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -20,8 +22,7 @@ if TYPE_CHECKING:
 
 
 def momentum_loop(  # type: ignore[no-untyped-def]
-    functions, indices, parameters, memory, impacts, supports, planes, x, v, free, still, f, w, mass, carried, loads,
-    count, goal,
+    full, hits, rests, x, v, free, load, still, f, w, mass, carried, loads, count, goal
 ):  # fmt: skip
     n = x.shape[0]
     for step in range(count):
@@ -29,16 +30,13 @@ def momentum_loop(  # type: ignore[no-untyped-def]
             w[i] = loads[i]
             for c in range(3):
                 x[i, c] += v[i, c]
-                f[i, c] = 0.0
-        for p in range(len(impacts)):
-            impacts[p](x, v, v, x, v, free, 0.0, planes[p])
-        for b in range(len(functions)):
-            functions[b](x, still, indices[b], parameters[b], memory[b], f, w)
+                f[i, c] = load[i, c]
+        impacts(hits, x, v, v, x, v, free, 0.0)
+        forces(full, x, still, f, w)
         for i in range(n):
             for c in range(3):
                 f[i, c] *= free[i, c]
-        for p in range(len(supports)):
-            supports[p](x, v, f, carried, free, mass, 0.0, planes[p])
+        supports(rests, x, v, f, carried, free, mass, 0.0)
         worst = 0.0
         for i in range(n):
             size = f[i, 0] * f[i, 0] + f[i, 1] * f[i, 1] + f[i, 2] * f[i, 2]
@@ -56,8 +54,7 @@ def momentum_loop(  # type: ignore[no-untyped-def]
             if along < 0.0:
                 for c in range(3):
                     v[i, c] *= 0.9
-        for p in range(len(impacts)):
-            impacts[p](x, v, v, x, v, free, 0.0, planes[p])
+        impacts(hits, x, v, v, x, v, free, 0.0)
         if worst <= goal * goal:
             return step + 1
     return count
@@ -77,11 +74,10 @@ class Method(Solver):
         """At most `count` iterations."""
         still, f, carried = (np.zeros_like(state.x) for _ in range(3))
         w = np.zeros(len(state.x))
-        done = kernels.call(
-            kernels.compiled(momentum_loop),
-            *system.tuples(state),
-            *system.hooks(),
-            state.x, state.v, state.free, still, f, w, system.mass, carried, system.load_count, count, goal,
+        own = lean(system, state, damped=False)
+        done = kernels.compiled(momentum_loop)(
+            own.full, *contacts(system), state.x, state.v, state.free, own.load, still, f, w, system.mass, carried,
+            system.load_count, count, goal,
         )  # fmt: skip
         state.iteration += int(done)
         return int(done)

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hookean import kernels
-from hookean.kernels import device
+from hookean.kernels import device, forces, impacts, supports
+from hookean.lean import contacts, lean, padded
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -24,42 +25,54 @@ MASS = 0.275
 
 
 @device
+def put(values: Any, target: Any) -> None:
+    """Copy one flat array to another."""
+    for i in range(target.size):
+        target[i] = values[i]
+
+
+@device
 def push(f: Any, v: Any, free: Any, mass: Any, inverse: Any, part: Any) -> Any:
     """Speeds after one step of the forces; returns the largest squared force left and twice the kinetic energy."""
     worst = 0.0
     kinetic = 0.0
     for i in range(f.shape[0]):
         step = part * inverse[i]
-        fx = f[i, 0] * free[i, 0]
-        fy = f[i, 1] * free[i, 1]
-        fz = f[i, 2] * free[i, 2]
-        vx = v[i, 0] + step * fx
-        vy = v[i, 1] + step * fy
-        vz = v[i, 2] + step * fz
-        f[i, 0] = fx
-        f[i, 1] = fy
-        f[i, 2] = fz
-        v[i, 0] = vx
-        v[i, 1] = vy
-        v[i, 2] = vz
-        kinetic += mass[i] * (vx * vx + vy * vy + vz * vz)
-        worst = max(worst, fx * fx + fy * fy + fz * fz)
+        f0 = f[i, 0] * free[i, 0]
+        f1 = f[i, 1] * free[i, 1]
+        f2 = f[i, 2] * free[i, 2]
+        f3 = f[i, 3] * free[i, 3]
+        v0 = v[i, 0] + step * f0
+        v1 = v[i, 1] + step * f1
+        v2 = v[i, 2] + step * f2
+        v3 = v[i, 3] + step * f3
+        f[i, 0] = f0
+        f[i, 1] = f1
+        f[i, 2] = f2
+        f[i, 3] = f3
+        v[i, 0] = v0
+        v[i, 1] = v1
+        v[i, 2] = v2
+        v[i, 3] = v3
+        kinetic += mass[i] * (v0 * v0 + v1 * v1 + v2 * v2)
+        size = f0 * f0 + f1 * f1 + f2 * f2
+        if size > worst:
+            worst = size
     return worst, kinetic
 
 
 @device
 def move(x: Any, v: Any) -> Any:
     """One step, over flat arrays; `x += v` takes ten times as long."""
-    flat, speed = x.reshape(x.size), v.reshape(x.size)
     for i in range(x.size):
-        flat[i] += speed[i]
+        x[i] += v[i]
 
 
 @device
 def step_back(x: Any, v: Any, f: Any, inverse: Any) -> Any:
     """To about where the peak of kinetic energy was, and at rest."""
     for i in range(x.shape[0]):
-        for c in range(3):
+        for c in range(4):
             x[i, c] += 0.5 * inverse[i] * f[i, c] - 0.5 * v[i, c]
             v[i, c] = 0.0
 
@@ -73,26 +86,23 @@ def weigh(mass: Any, inverse: Any, w: Any, caution: Any) -> Any:
 
 
 def relaxation_loop(  # type: ignore[no-untyped-def]
-    functions, indices, parameters, memory, impacts, supports, planes, x, v, free, still, f, w, mass, carried, clock,
-    count, goal,
+    full, packed, hits, rests, x, v, free, load, still, f, w, mass, inverse, carried, clock, count, goal
 ):  # fmt: skip
     energy_before = clock[0]
     fresh = clock[1] != 0.0
-    contacts = 0
-    for p in range(len(planes)):
-        contacts += planes[p].shape[0]
-    inverse = 1.0 / mass
+    contacts = len(hits) + len(rests)
+    flat_x, flat_v, flat_f, flat_load = x.reshape(x.size), v.reshape(x.size), f.reshape(x.size), load.reshape(x.size)
     for step in range(count):
-        f[:] = 0.0
-        w[:] = 0.0
-        for b in range(len(functions)):
-            functions[b](x, still, indices[b], parameters[b], memory[b], f, w)
+        put(flat_load, flat_f)
+        if fresh:
+            w[:] = 0.0
+            forces(full, x, still, f, w)
+            weigh(mass, inverse, w, clock[2])
+        else:
+            forces(packed, x, still, f, w)
         if contacts > 0:
             f *= free
-            for p in range(len(supports)):
-                supports[p](x, v, f, carried, free, mass, 0.0, planes[p])
-        if fresh:
-            weigh(mass, inverse, w, clock[2])
+            supports(rests, x, v, f, carried, free, mass, 0.0)
         worst, kinetic = push(f, v, free, mass, inverse, 0.5 if fresh else 1.0)
         if worst <= goal * goal:
             v[:] = 0.0
@@ -104,24 +114,13 @@ def relaxation_loop(  # type: ignore[no-untyped-def]
             step_back(x, v, f, inverse)
             energy_before = 0.0
         else:
-            move(x, v)
+            move(flat_x, flat_v)
             energy_before = kinetic
         if contacts > 0:
-            for p in range(len(impacts)):
-                impacts[p](x, v, v, x, v, free, 0.0, planes[p])
+            impacts(hits, x, v, v, x, v, free, 0.0)
     clock[0] = energy_before
     clock[1] = 1.0 if fresh else 0.0
     return count
-
-
-def undamped(system: System, parameters: tuple[Any, ...]) -> tuple[Any, ...]:
-    """The parameters without damping: kernels see no speed here, and need not look for one at every spring."""
-    tables = list(parameters)
-    for i, group in enumerate(system.groups):
-        if group.cls.damped:
-            tables[i] = parameters[i].copy()
-            tables[i][:, [name == "damping" for name in group.block.names]] = 0.0
-    return tuple(tables)
 
 
 class Method(Solver):
@@ -138,13 +137,14 @@ class Method(Solver):
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """At most `count` iterations, stopping at the first shape within `goal`."""
-        still, f, carried = (np.zeros_like(state.x) for _ in range(3))
-        functions, indices, parameters, memory = system.tuples(state)
-        done = kernels.call(
-            kernels.compiled(relaxation_loop),
-            functions, indices, undamped(system, parameters), memory, *system.hooks(),
-            state.x, state.v, state.free, still, f, np.zeros(len(state.x)), state.scratch["mass"], carried,
+        n = len(state.x)
+        own = lean(system, state, damped=False)
+        x, v, free, load, still, f, carried = padded(n, state.x, state.v, state.free, own.load, None, None, None)
+        mass = state.scratch["mass"]
+        done = kernels.compiled(relaxation_loop)(
+            own.full, own.packed, *contacts(system), x, v, free, load, still, f, np.zeros(n), mass, 1.0 / mass, carried,
             state.scratch["clock"], count, goal,
         )  # fmt: skip
+        state.x[:], state.v[:] = x[:, :3], v[:, :3]
         state.iteration += int(done)
         return int(done)

@@ -1,0 +1,81 @@
+"""Lean: what the solvers' loops run over, thousands of times for each time a person looks.
+
+Positions, velocities and forces have four columns, x y z and a zero, so that a particle is one vector of the processor.
+Blocks are packed where their force can (`Force.pack`): they then give forces alone, neither stiffness nor energy.
+Forces that never change are summed once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean import kernels
+from hookean.state import State
+from hookean.system import Group, System
+
+Floats = NDArray[np.float64]
+
+LINE = 64  # bytes of a cache line
+PAGE = 4096  # the processor takes addresses that are equal within a page for the same at first
+
+
+@dataclass(frozen=True)
+class Lean:
+    """Tables of the force kernels for a loop (see `kernels.table`), with their arrays in full or packed; `load` (n, 3)
+    is the sum of the constant forces, which are in no table."""
+
+    full: Any
+    packed: Any
+    load: Floats
+    calls: tuple[list[Any], list[Any]]  # kernels with their arrays, in full and packed, as the tables have them
+
+
+def lean(system: System, state: State, *, damped: bool) -> Lean:
+    """The forces of a system for a loop; without `damped` the velocities do nothing."""
+    load = np.zeros_like(state.x)
+    full: list[Any] = []
+    packed: list[Any] = []
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        b, kernel = group.block, group.cls.kernel
+        if group.cls.constant:
+            kernels.compiled(kernel, "force")(state.x, load, b.indices, b.parameters, memory, load, load[:, 0].copy())
+        else:
+            full.append((kernel, (b.indices, b.parameters, memory)))
+            packed.append((kernel, (*_packed(group, memory, damped), memory)))
+    return Lean(kernels.table("force", full), kernels.table("force", packed), load, (full, packed))
+
+
+def contacts(system: System) -> tuple[Any, Any]:
+    """Tables of the contacts' impact and support hooks."""
+    impacts = [(g.cls.impact, (g.block.parameters,)) for g in system.contacts if g.cls.impact]
+    supports = [(g.cls.support, (g.block.parameters,)) for g in system.contacts if g.cls.support]
+    return kernels.table("impact", impacts), kernels.table("support", supports)
+
+
+def _packed(group: Group, memory: Floats, damped: bool) -> tuple[Any, Any]:
+    """Indices and parameters of a group, packed if its force can."""
+    block = group.block
+    if group.cls.pack is not None and (packed := group.cls.pack(block, memory, damped)) is not None:
+        return packed
+    if damped or not group.cls.damped:
+        return block.indices, block.parameters
+    # kernels see no speed, and need not look for one at every element
+    return block.indices, np.where([name == "damping" for name in block.names], 0.0, block.parameters)
+
+
+def padded(n: int, *rows: Floats | None) -> list[Floats]:
+    """Copies of rows (n, 3) with a fourth column of zeros, or zeros (n, 4) for None; starts spread over a page."""
+    size = -(-32 * n // PAGE) * PAGE + PAGE // len(rows) // LINE * LINE
+    raw = np.zeros(size * len(rows) + PAGE, np.uint8)
+    start = -raw.ctypes.data % PAGE
+    made = []
+    for i, given in enumerate(rows):
+        place = start + i * size
+        made.append(raw[place : place + 32 * n].view(np.float64).reshape(n, 4))
+        if given is not None:
+            made[i][:, :3] = given
+    return made

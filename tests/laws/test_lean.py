@@ -1,0 +1,92 @@
+"""What the loops of solvers evaluate is the force that its kernel has in full."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hookean import Scene, kernels
+from hookean.forces import KINDS
+from hookean.lean import lean, padded
+from hookean.system import System, compile
+
+from .cases import example_system
+
+SEEDED = settings(derandomize=True, deadline=None, max_examples=30, database=None)
+EPS = float(np.finfo(float).eps)
+
+
+def springs(**columns: object) -> System:
+    """A dozen springs between ten particles, two of them without length, and one without any rest length."""
+    rng = np.random.default_rng(5)
+    x = rng.uniform(-1.0, 1.0, (10, 3))
+    x[4] = x[3]
+    pairs = [*rng.integers(0, 10, (10, 2)).tolist(), [3, 4], [5, 5]]
+    rest = rng.uniform(0.2, 2.0, 12)
+    rest[3] = 0.0
+    force = {"kind": "springs", "particles": pairs, "rest_length": rest, "stiffness": rng.uniform(1, 1e4, 12)}
+    return compile(Scene(particles=x, forces=[{**force, **columns}]))
+
+
+SYSTEMS = {kind: example_system(kind) for kind, cls in KINDS.items() if cls.kernel is not None}
+SYSTEMS["plain"] = springs(damping=0.0)
+SYSTEMS["damped"] = springs(damping=np.linspace(0.0, 30.0, 12))
+SYSTEMS["cut off"] = springs(upper_cutoff=1.0)
+
+
+@pytest.mark.parametrize("damped", [True, False])
+@pytest.mark.parametrize("name", SYSTEMS)
+@SEEDED
+@given(seed=st.integers(0, 2**32 - 1))
+def test_lean_forces_are_the_forces(name: str, damped: bool, seed: int) -> None:
+    """Packed blocks and summed loads push as the kernels in full do.
+
+    An element's two ways differ by a few roundings of stiffness x coordinates and of its force, and the damping ones.
+    """
+    system, rng = SYSTEMS[name], np.random.default_rng(seed)
+    state = system.start()
+    far = 0.3 * system.size
+    state.x += far * rng.uniform(-1.0, 1.0, state.x.shape) * (rng.random((len(state.x), 1)) < 0.8)
+    state.v[:] = rng.normal(size=state.x.shape) if damped else 0.0
+    expected, w, _ = system.evaluate(state, still=not damped)
+    own = lean(system, state, damped=damped)
+    x, v, f = padded(len(state.x), state.x, state.v, own.load)
+    for kernel, arrays in own.calls[1]:
+        kernels.compiled(kernel, "force")(x, v, *arrays, f, np.zeros(len(x)))
+    drag = 30.0 * np.abs(state.v).max() * len(system.groups[0].block.indices) if damped else 0.0
+    size = w.max() * np.abs(state.x).max() + np.abs(expected).max() + drag
+    assert np.abs(f[:, :3] - expected).max() <= 16.0 * EPS * size
+    assert not f[:, 3].any() and not x[:, 3].any()
+
+
+def test_springs_are_packed_where_they_can_be() -> None:
+    """Two columns without damping, three with it; cutoffs need them all, and nothing else does."""
+    columns = {}
+    for name in ("plain", "damped", "cut off"):
+        system = SYSTEMS[name]
+        columns[name] = [lean(system, system.start(), damped=d).calls[1][0][1][1].shape[1] for d in (False, True)]
+    whole = len(SYSTEMS["plain"].groups[0].block.names)
+    assert columns == {"plain": [2, 2], "damped": [2, 3], "cut off": [whole, whole]}
+
+
+def test_constant_forces_are_those_that_never_change() -> None:
+    """A force that says it is constant is the same at any place, and one that does not say so changes somewhere."""
+    rng = np.random.default_rng(3)
+    for kind, cls in KINDS.items():
+        if cls.kernel is not None:
+            state = (system := example_system(kind)).start()
+            first, _, _ = system.evaluate(state)
+            state.x += 0.2 * rng.normal(size=state.x.shape)
+            assert cls.constant == np.array_equal(first, system.evaluate(state)[0]), kind
+
+
+def test_rows_of_padded_arrays_start_apart() -> None:
+    """Starts are aligned to a cache line, differ within a page, and hold what was given."""
+    rows = np.arange(30.0).reshape(10, 3)
+    made = padded(10, rows, None, rows, None, None)
+    starts = [a.ctypes.data % 4096 for a in made]
+    assert len(set(starts)) == 5 and not any(s % 64 for s in starts)
+    assert all(np.array_equal(made[i][:, :3], rows) for i in (0, 2))
+    assert not made[1].any() and not made[0][:, 3].any()
