@@ -41,6 +41,7 @@ Ints = NDArray[np.int64]
 CHAINS = 0.8  # of the free particles have at most two springs; others may be stable in more than one shape
 WORK = 200  # products a particle in the factor of a net that is little more than chains
 STEPS = 25
+POLISH = 4
 NEAR = 1e-5  # of the model's size: a last step this short has nothing left to correct
 
 
@@ -129,7 +130,7 @@ def direction(x, ends, q, k, rest, ground, gap, first, starts, matrix, step, dq)
 
 
 def out_of_balance(x, ends, k, rest, ground, pull, left):  # type: ignore[no-untyped-def]
-    """The largest force that the springs' own law leaves on a particle."""
+    """The largest force that the springs' own law leaves on a particle; infinite where a spring has no length."""
     free = ground.shape[0]
     for i in range(free):
         for c in range(3):
@@ -137,6 +138,8 @@ def out_of_balance(x, ends, k, rest, ground, pull, left):  # type: ignore[no-unt
     for e in range(ends.shape[0]):
         low, high = ends[e, 0], ends[e, 1]
         length = np.sqrt((x[high, 0] - x[low, 0]) ** 2 + (x[high, 1] - x[low, 1]) ** 2 + (x[high, 2] - x[low, 2]) ** 2)
+        if not length > 0.0 and rest[e] > 0.0:
+            return np.inf  # no direction to push in: the highest energy, not the lowest
         density = k[e] * (length - rest[e]) / length if length > 0.0 else 0.0
         for c in range(3):
             force = density * (x[high, c] - x[low, c])
@@ -190,7 +193,8 @@ class Climb:
 
     def same_tension(self, tension: float) -> float:
         """Give all springs one tension [force]; how D changes with its logarithm, nan where it holds nothing."""
-        q = np.where(self.stretches, tension / (self.net.rest + tension * self.soft), self.net.k)
+        q = self.net.k.copy()
+        np.divide(tension, self.net.rest + tension * self.soft, out=q, where=self.stretches)
         return float((self.gap * q * (1.0 - q * self.soft)).sum()) if self.settle(q) else np.nan
 
     def begin(self, tension: float) -> bool:
@@ -245,6 +249,24 @@ class Climb:
             kernels.compiled(out_of_balance)(self.x, net.ends, net.k, net.rest, net.ground, net.pull, self.left)
         )
 
+    def polish(self, goal: float) -> bool:
+        """Correct positions by what the springs' own law leaves; False, and back, unless that comes to the goal.
+
+        Rounding of lengths makes force densities uncertain by k / T times as much, and with them x(q).
+        """
+        start, left = self.x.copy(), self.out_of_balance()
+        free, tangent = len(self.left[0]), (self.matrix3, self.starts3, self.first3)
+        for _ in range(POLISH):
+            if left <= goal:
+                return True
+            step = self.left.T.flatten()
+            kernels.compiled(solve)(*tangent, step)
+            self.x[:free] += step.reshape(free, 3)
+            left = self.out_of_balance()
+        if left > goal:
+            self.x = start
+        return left <= goal
+
 
 def _starts(first: Ints) -> Ints:
     """Where each row begins, and the last one ends, if rows go from their first entry to the diagonal."""
@@ -286,22 +308,16 @@ class Method(Solver):
         load = float(np.abs(net.pull).sum())
         if not climb.begin(load if load > 0.0 else 0.01 * float((net.k * net.rest).mean())):
             return 0
-        done, least, best, near = 0, np.inf, climb.x, NEAR * system.size
-        while done < min(count, STEPS):
+        near = NEAR * system.size
+        for done in range(1, min(count, STEPS) + 1):
             before = climb.x[:free].copy()
             if not climb.onward():
-                break
-            done += 1
-            left = climb.out_of_balance()
-            if left < least:
-                least, best = left, climb.x.copy()
-            if least <= goal and np.abs(climb.x[:free] - before).max() <= near:
-                break
-        if least > goal:
-            return 0
-        state.x[net.particles[:free]] = best[:free]
-        state.iteration += done
-        return done
+                return 0
+            if np.abs(climb.x[:free] - before).max() <= near and climb.polish(goal):
+                state.x[net.particles[:free]] = climb.x[:free]
+                state.iteration += done
+                return done
+        return 0
 
 
 def _net(system: System, state: State) -> Net | None:
