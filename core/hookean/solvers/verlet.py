@@ -22,60 +22,59 @@ if TYPE_CHECKING:
 
 
 @device
-def start_step(f: Any, x: Any, v: Any, free: Any, load: Any, inverse: Any, drag: Any, dt: Any, seen: Any) -> None:
-    """Half a step of speed, a whole one of place; the speed that forces are to see next, and the loads alone."""
-    for i in range(x.shape[0]):
-        for c in range(4):
-            a = (f[i, c] * free[i, c] - drag * v[i, c]) * inverse[i] * free[i, c]
-            v[i, c] += 0.5 * dt * a
-            x[i, c] += dt * v[i, c]
-            seen[i, c] = v[i, c] + 0.5 * dt * a
-            f[i, c] = load[i, c]
+def start_step(f: Any, x: Any, v: Any, pull: Any, load: Any, drag: Any, dt: Any, seen: Any) -> None:
+    """Half a step of speed, a whole one of place; the speed that forces are to see next, and the loads alone.
+
+    These passes run over flat arrays; `pull` is 1/m, and 0 on held axes, which go on as fast as their anchor is led.
+    """
+    for i in range(x.size):
+        a = (f[i] - drag * v[i]) * pull[i]
+        v[i] += 0.5 * dt * a
+        x[i] += dt * v[i]
+        seen[i] = v[i] + 0.5 * dt * a
+        f[i] = load[i]
 
 
 @device
-def end_step(f: Any, v: Any, free: Any, inverse: Any, drag: Any, dt: Any) -> None:
+def end_step(f: Any, v: Any, pull: Any, drag: Any, dt: Any) -> None:
     """The second half step of speed, drag included."""
-    for i in range(v.shape[0]):
-        half = 0.5 * dt * inverse[i]
-        kept = 1.0 / (1.0 + half * drag)
-        for c in range(4):
-            if free[i, c] != 0.0:  # held axes go on as fast as their anchor is led
-                v[i, c] = (v[i, c] + half * f[i, c]) * kept
+    for i in range(v.size):
+        half = 0.5 * dt * pull[i]
+        v[i] = (v[i] + half * f[i]) / (1.0 + half * drag)
 
 
 @device
-def turn(
-    f: Any, x: Any, v: Any, free: Any, load: Any, inverse: Any, drag: Any, ended: Any, dt: Any
-) -> None:  # fmt: skip
-    """`end_step` of one step and `start_step` of the next in one pass over memory; nobody sees the speed."""
-    for i in range(x.shape[0]):
-        half = 0.5 * ended * inverse[i]
-        kept = 1.0 / (1.0 + half * drag)
+def turn(f: Any, x: Any, v: Any, pull: Any, load: Any, drag: Any, ended: Any, dt: Any) -> None:
+    """`end_step` of one step and `start_step` of the next in one pass, where no force sees the speed."""
+    for i in range(x.size):
+        half = 0.5 * ended * pull[i]
+        speed = (v[i] + half * f[i]) / (1.0 + half * drag)
+        a = (f[i] - drag * speed) * pull[i]
+        speed += 0.5 * dt * a
+        v[i] = speed
+        x[i] += dt * speed
+        f[i] = load[i]
+
+
+@device
+def only_free(raw: Any, free: Any, f: Any) -> None:
+    """Forces on free axes; anchors carry the others."""
+    for i in range(raw.shape[0]):
         for c in range(4):
-            speed = v[i, c]
-            if free[i, c] != 0.0:
-                speed = (speed + half * f[i, c]) * kept
-            a = (f[i, c] * free[i, c] - drag * speed) * inverse[i] * free[i, c]
-            speed += 0.5 * dt * a
-            v[i, c] = speed
-            x[i, c] += dt * speed
-            f[i, c] = load[i, c]
+            f[i, c] = raw[i, c] * free[i, c]
 
 
 @device
 def start_among_contacts(
-    hits: Any, rests: Any, raw: Any, f: Any, x: Any, v: Any, free: Any, load: Any, mass: Any, inverse: Any,
-    carried: Any, x_before: Any, v_before: Any, a: Any, drag: Any, dt: Any, seen: Any,
+    hits: Any, rests: Any, raw: Any, f: Any, x: Any, v: Any, free: Any, pull: Any, load: Any, mass: Any, carried: Any,
+    x_before: Any, v_before: Any, a: Any, drag: Any, dt: Any, seen: Any,
 ) -> None:  # fmt: skip
     """`start_step` where contacts carry and catch."""
-    for i in range(x.shape[0]):
-        for c in range(4):
-            f[i, c] = raw[i, c] * free[i, c]
+    only_free(raw, free, f)
     supports(rests, x, v, f, carried, free, mass, dt)
     for i in range(x.shape[0]):
         for c in range(4):
-            a[i, c] = (f[i, c] - drag * v[i, c]) * inverse[i] * free[i, c]
+            a[i, c] = (f[i, c] - drag * v[i, c]) * pull[i, c]
             x_before[i, c] = x[i, c]
             v_before[i, c] = v[i, c]
             v[i, c] += 0.5 * dt * a[i, c]
@@ -88,11 +87,14 @@ def start_among_contacts(
 
 
 def verlet_loop(  # type: ignore[no-untyped-def]
-    packed, hits, rests, noted, x, v, free, load, mass, inverse, raw, w, f, carried, x_before, v_before,
-    acceleration, seen, drag, steps, contacts, changing, count,
+    packed, hits, rests, noted, x, v, free, pull, load, mass, raw, w, f, carried, x_before, v_before, acceleration,
+    seen, drag, steps, contacts, changing, count,
 ):  # fmt: skip
     last = count * steps.shape[0] - 1
     started = False
+    size = x.size
+    flat_x, flat_v, flat_pull, flat_load = x.reshape(size), v.reshape(size), pull.reshape(size), load.reshape(size)
+    flat_raw, flat_f, flat_seen = raw.reshape(size), f.reshape(size), seen.reshape(size)
     for s in range(last + 1):
         dt = steps[s % steps.shape[0]]
         if not started:
@@ -101,21 +103,21 @@ def verlet_loop(  # type: ignore[no-untyped-def]
                 forces(packed, x, v, raw, w)
             if contacts:
                 start_among_contacts(
-                    hits, rests, raw, f, x, v, free, load, mass, inverse, carried, x_before, v_before, acceleration,
-                    drag, dt, seen,
+                    hits, rests, raw, f, x, v, free, pull, load, mass, carried, x_before, v_before, acceleration, drag,
+                    dt, seen,
                 )  # fmt: skip
             else:  # the same in one pass over memory
-                start_step(raw, x, v, free, load, inverse, drag, dt, seen)
+                start_step(flat_raw, flat_x, flat_v, flat_pull, flat_load, drag, dt, flat_seen)
         forces(packed, x, seen, raw, w)
         started = not (contacts or changing or s == last)
         if contacts:
-            f[:, :] = raw * free
+            only_free(raw, free, f)
             supports(rests, x, v, f, carried, free, mass, dt)
-            end_step(f, v, free, inverse, drag, dt)
+            end_step(flat_f, flat_v, flat_pull, drag, dt)
         elif started:
-            turn(raw, x, v, free, load, inverse, drag, dt, steps[(s + 1) % steps.shape[0]])
+            turn(flat_raw, flat_x, flat_v, flat_pull, flat_load, drag, dt, steps[(s + 1) % steps.shape[0]])
         else:
-            end_step(raw, v, free, inverse, drag, dt)
+            end_step(flat_raw, flat_v, flat_pull, drag, dt)
         if (s + 1) % steps.shape[0] == 0:
             notes(noted, x)
 
@@ -132,7 +134,8 @@ class Method(Solver):
         n = len(state.x)
         step = system.scene.settings.time_step
         own = lean(system, state, damped=True)
-        x, v, free, load, raw, seen = padded(n, state.x, state.v, state.free, own.load, None, None)
+        pull = state.free / system.mass[:, None]
+        x, v, free, pull, load, raw, seen = padded(n, state.x, state.v, state.free, pull, own.load, None, None)
         rows = padded(n, *[None] * 5) if system.contacts else [raw] * 5
         yields = system.yields
         noted = [
@@ -141,9 +144,9 @@ class Method(Solver):
             if yields and g.cls.end_of_step is not None
         ]
         kernels.compiled(verlet_loop)(
-            own.packed, *contacts(system), kernels.table("remember", noted), x, v, free, load, system.mass,
-            1.0 / system.mass, raw, np.zeros(n), *rows, seen, system.drag, step * np.array(self.weights),
-            bool(system.contacts), system.damped or yields, count,
+            own.packed, *contacts(system), kernels.table("remember", noted), x, v, free, pull, load, system.mass, raw,
+            np.zeros(n), *rows, seen, system.drag, step * np.array(self.weights), bool(system.contacts),
+            system.damped or yields, count,
         )  # fmt: skip
         state.x[:], state.v[:] = x[:, :3], v[:, :3]
         state.iteration += count
