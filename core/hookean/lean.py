@@ -67,15 +67,29 @@ def _packed(group: Group, memory: Floats, damped: bool) -> tuple[Any, Any]:
     return block.indices, np.where([name == "damping" for name in block.names], 0.0, block.parameters)
 
 
-def padded(n: int, *rows: Floats | None) -> list[Floats]:
-    """Copies of rows (n, 3) with a fourth column of zeros, or zeros (n, 4) for None; starts spread over a page."""
-    size = -(-32 * n // PAGE) * PAGE + PAGE // len(rows) // LINE * LINE
-    raw = np.zeros(size * len(rows) + PAGE, np.uint8)
-    start = -raw.ctypes.data % PAGE
-    made = []
-    for i, given in enumerate(rows):
-        place = start + i * size
-        made.append(raw[place : place + 32 * n].view(np.float64).reshape(n, 4))
-        if given is not None:
-            made[i][:, :3] = given
-    return made
+class Desk:
+    """Where a solver lays out its arrays, call after call: new memory of a large net costs as much as several steps."""
+
+    def __init__(self) -> None:
+        self._raw = np.zeros(0, np.uint8)
+        self._size = 0
+
+    def lay(self, n: int, *rows: Floats | None) -> list[Floats]:
+        """Copies of rows (n, 3) with a fourth column of zeros, or zeros (n, 4) for None; starts spread over a page.
+        They hold until the next call."""
+        size = -(-32 * n // PAGE) * PAGE + PAGE // len(rows) // LINE * LINE
+        if self._size != size * len(rows):
+            self._size = size * len(rows)
+            self._raw = np.zeros(self._size + PAGE, np.uint8)
+        start = -self._raw.ctypes.data % PAGE
+        made = []
+        for i, given in enumerate(rows):
+            place = start + i * size
+            array = self._raw[place : place + 32 * n].view(np.float64).reshape(n, 4)
+            if given is None:
+                array[:] = 0.0
+            else:
+                array[:, :3] = given
+                array[:, 3] = 0.0
+            made.append(array)
+        return made

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from hookean import Scene, kernels
 from hookean.forces import KINDS
-from hookean.lean import lean, padded
+from hookean.lean import Desk, lean
 from hookean.system import System, compile
 
 from .cases import example_system
@@ -52,7 +52,7 @@ def test_lean_forces_are_the_forces(name: str, damped: bool, seed: int) -> None:
     state.v[:] = rng.normal(size=state.x.shape) if damped else 0.0
     expected, w, _ = system.evaluate(state, still=not damped)
     own = lean(system, state, damped=damped)
-    x, v, f = padded(len(state.x), state.x, state.v, own.load)
+    x, v, f = Desk().lay(len(state.x), state.x, state.v, own.load)
     for kernel, arrays in own.calls[1]:
         kernels.compiled(kernel, "force")(x, v, *arrays, f, np.zeros(len(x)))
     drag = 30.0 * np.abs(state.v).max() * len(system.groups[0].block.indices) if damped else 0.0
@@ -82,11 +82,14 @@ def test_constant_forces_are_those_that_never_change() -> None:
             assert cls.constant == np.array_equal(first, system.evaluate(state)[0]), kind
 
 
-def test_rows_of_padded_arrays_start_apart() -> None:
-    """Starts are aligned to a cache line, differ within a page, and hold what was given."""
-    rows = np.arange(30.0).reshape(10, 3)
-    made = padded(10, rows, None, rows, None, None)
-    starts = [a.ctypes.data % 4096 for a in made]
-    assert len(set(starts)) == 5 and not any(s % 64 for s in starts)
-    assert all(np.array_equal(made[i][:, :3], rows) for i in (0, 2))
-    assert not made[1].any() and not made[0][:, 3].any()
+def test_rows_on_a_desk_start_apart_and_hold_what_was_given() -> None:
+    """Starts are aligned to a cache line and differ within a page; the next lay forgets what the last one left."""
+    rows, desk = np.arange(30.0).reshape(10, 3), Desk()
+    for _ in range(2):
+        made = desk.lay(10, rows, None, rows, None, None)
+        starts = [a.ctypes.data % 4096 for a in made]
+        assert len(set(starts)) == 5 and not any(s % 64 for s in starts)
+        assert all(np.array_equal(made[i][:, :3], rows) for i in (0, 2))
+        assert not made[1].any() and not made[0][:, 3].any()
+        for array in made:
+            array[:] = np.nan

@@ -13,7 +13,7 @@ import numpy as np
 
 from hookean import kernels
 from hookean.kernels import device, forces, impacts, supports
-from hookean.lean import contacts, lean, padded
+from hookean.lean import Desk, contacts, lean
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -128,6 +128,9 @@ class Method(Solver):
 
     name: ClassVar[str] = "relaxation"
 
+    def __init__(self) -> None:
+        self._desk = Desk()
+
     def start(self, system: System, state: State) -> None:
         """Rest, and the first step a half one."""
         n = len(state.x)
@@ -139,7 +142,9 @@ class Method(Solver):
         """At most `count` iterations, stopping at the first shape within `goal`."""
         n = len(state.x)
         own = lean(system, state, damped=False)
-        x, v, free, load, still, f, carried = padded(n, state.x, state.v, state.free, own.load, None, None, None)
+        x, v, free, load, still, f, carried = self._desk.lay(
+            n, state.x, state.v, state.free, own.load, None, None, None
+        )
         mass = state.scratch["mass"]
         done = kernels.compiled(relaxation_loop)(
             own.full, own.packed, *contacts(system), x, v, free, load, still, f, np.zeros(n), mass, 1.0 / mass, carried,

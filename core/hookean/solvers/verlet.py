@@ -13,7 +13,7 @@ import numpy as np
 
 from hookean import kernels
 from hookean.kernels import device, forces, impacts, notes, supports
-from hookean.lean import contacts, lean, padded
+from hookean.lean import Desk, contacts, lean
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -129,14 +129,18 @@ class Method(Solver):
     physical: ClassVar[bool] = True
     weights: ClassVar[tuple[float, ...]] = (1.0,)
 
+    def __init__(self) -> None:
+        self._desk = Desk()
+
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Exactly `count` time steps; physical time does not stop early."""
         n = len(state.x)
         step = system.scene.settings.time_step
         own = lean(system, state, damped=True)
         pull = state.free / system.mass[:, None]
-        x, v, free, pull, load, raw, seen = padded(n, state.x, state.v, state.free, pull, own.load, None, None)
-        rows = padded(n, *[None] * 5) if system.contacts else [raw] * 5
+        given = (state.x, state.v, state.free, pull, own.load)
+        x, v, free, pull, load, *rows = self._desk.lay(n, *given, *[None] * (7 if system.contacts else 2))
+        raw, seen, *more = rows
         yields = system.yields
         noted = [
             (g.cls.end_of_step, (g.block.indices, g.block.parameters, memory))
@@ -145,7 +149,7 @@ class Method(Solver):
         ]
         kernels.compiled(verlet_loop)(
             own.packed, *contacts(system), kernels.table("remember", noted), x, v, free, pull, load, system.mass, raw,
-            np.zeros(n), *rows, seen, system.drag, step * np.array(self.weights), bool(system.contacts),
+            np.zeros(n), *(more or [raw] * 5), seen, system.drag, step * np.array(self.weights), bool(system.contacts),
             system.damped or yields, count,
         )  # fmt: skip
         state.x[:], state.v[:] = x[:, :3], v[:, :3]
