@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.forces.base import lengths
 from hookean.state import State
 from hookean.system import System
 
@@ -32,6 +34,7 @@ class Balance:
     residual: float
     floor: float
     worst: int
+    energies: Floats  # of each group of elements [force length]
 
     def met(self, tolerance: float) -> bool:
         """Converged: residual <= max(tolerance, floor)."""
@@ -40,11 +43,11 @@ class Balance:
 
 def balance(system: System, state: State) -> Balance:
     """Judge a shape at rest."""
-    f, w, _ = system.evaluate(state)
+    f, w, energies = system.evaluate(state)
     left = f * state.free
     contact = system.support(state, left) if system.contacts else np.zeros_like(f)
     reactions = -(f + contact) * (1.0 - state.free)
-    size = _lengths(left)
+    size = lengths(left)
     worst = int(np.argmax(size)) if len(size) else 0
     out = float(size[worst]) if len(size) else 0.0
     loads = _load_size(system, state)
@@ -53,9 +56,9 @@ def balance(system: System, state: State) -> Balance:
     free = _largest(state.free) > 0.0
     floor = float(noise[free].max()) if free.any() else 0.0
     if scale > 0.0:
-        return Balance(left, reactions, contact, scale, out, out / scale, floor / scale, worst)
+        return Balance(left, reactions, contact, scale, out, out / scale, floor / scale, worst, energies)
     # nothing pushes anywhere: balanced if what is left is rounding
-    return Balance(left, reactions, contact, 1.0, out, out, floor, worst)
+    return Balance(left, reactions, contact, 1.0, out, out, floor, worst, energies)
 
 
 def force_scale(system: System, state: State, loads: Floats) -> float:
@@ -66,7 +69,9 @@ def force_scale(system: System, state: State, loads: Floats) -> float:
     total, count = 0.0, 0
     for group, memory in zip(system.groups, state.memory, strict=True):
         if group.cls.role != "load" and len(group.block.indices):
-            sizes = np.linalg.norm(system.element_forces(group, state, memory), axis=2).max(axis=1)
+            forces = system.element_forces(group, state, memory)
+            # column by column: reducing an axis of two or three is slow
+            sizes = reduce(np.maximum, (lengths(forces[:, i]) for i in range(forces.shape[1])))
             total, count = total + float(sizes.sum()), count + len(sizes)
     now = total / count if count else 0.0
     # where stress dies out at equilibrium, the scale must not die with it
@@ -76,14 +81,7 @@ def force_scale(system: System, state: State, loads: Floats) -> float:
 
 def _load_size(system: System, state: State) -> Floats:
     loads, _, _ = system.evaluate(state, only="load")
-    return _lengths(loads * state.free)
-
-
-def _lengths(vectors: Floats) -> Floats:
-    """Length of each row (n, 3); ten times as fast as the norm along an axis."""
-    x, y, z = vectors.T
-    lengths: Floats = np.sqrt(x * x + y * y + z * z)
-    return lengths
+    return lengths(loads * state.free)
 
 
 def _largest(vectors: Floats) -> Floats:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import deepcopy
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
@@ -141,9 +140,8 @@ def gather(
     system: System, state: State, found: Balance, status: Status, message: str, solver: str, *, moving: bool
 ) -> Result:
     """Collect a result from a state and its balance."""
-    _, _, energies = system.evaluate(state)
     energy: dict[str, float] = {}
-    for group, value in zip(system.groups, energies, strict=True):
+    for group, value in zip(system.groups, found.energies, strict=True):
         kind = str(group.cls.model_fields["kind"].default)
         energy[kind] = energy.get(kind, 0.0) + float(value)
     energy["kinetic"] = float(0.5 * (system.mass[:, None] * state.v**2 * state.free).sum()) if moving else 0.0
@@ -163,7 +161,7 @@ def gather(
         iterations=state.iteration,
         time=state.time,
         solver=solver,
-        report=deepcopy(system.report),
+        report=Report(system.report.merged, list(system.report.unmatched), list(system.report.warnings)),
         units=system.scene.units,
     )
 
@@ -208,14 +206,19 @@ def _measures(system: System, state: State) -> list[dict[str, Any]]:
 
 
 def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
-    held = np.flatnonzero((state.free == 0).any(axis=1))
-    names = [""] * len(system.x)
+    held = np.flatnonzero(_any(state.free == 0))
+    names = dict.fromkeys(held.tolist(), "")
     for anchor in system.held:
-        for particle in anchor.particles:
-            names[particle] = anchor.name
-    return {"particles": held, "force": found.reactions[held], "names": [names[p] for p in held]}
+        names.update(dict.fromkeys(anchor.particles.tolist(), anchor.name))
+    return {"particles": held, "force": found.reactions[held], "names": [names[p] for p in held.tolist()]}
 
 
 def _contacts(found: Balance) -> dict[str, Any]:
-    touching = np.flatnonzero((found.contact != 0).any(axis=1))
+    touching = np.flatnonzero(_any(found.contact != 0))
     return {"particles": touching, "force": found.contact[touching]}
+
+
+def _any(rows: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which rows (n, 3) have something."""
+    x, y, z = rows.T
+    return np.asarray(x | y | z)

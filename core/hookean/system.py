@@ -79,7 +79,7 @@ class System:
         """Length scale of the model [length]: the diagonal of its start and its anchors' targets, or how far from
         the origin it is."""
         reach = np.concatenate([self.x, *(anchor.targets for anchor in self.held)])
-        diagonal = float(np.linalg.norm(np.ptp(reach, axis=0)))
+        diagonal = float(np.linalg.norm([np.ptp(column) for column in reach.T]))
         return diagonal or float(np.abs(reach).max()) or 1.0
 
     @property
@@ -229,14 +229,10 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
         pointer = f"/forces/{number}" if number >= 0 else "/settings/floor"
         fits(force, pointer, welded)
         block = force.compile(welded)
-        met = (block.indices >= 0).all(axis=1)
-        inputs = np.flatnonzero(met)
-        block = Block(
-            np.ascontiguousarray(block.indices[met]),
-            np.ascontiguousarray(block.parameters[met]),
-            np.ascontiguousarray(block.memory[met]),
-            block.names,
-        )
+        inputs = np.arange(len(block.indices))
+        if block.indices.min(initial=0) < 0:
+            inputs = np.flatnonzero((block.indices >= 0).all(axis=1))
+            block = Block(block.indices[inputs], block.parameters[inputs], block.memory[inputs], block.names)
         joined.setdefault(type(force), []).append((number, force, block, inputs))
     groups: list[Group] = []
     contacts: list[Group] = []
@@ -247,12 +243,12 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
             parts.append(Part(number, force, slice(start, start + len(block.indices)), inputs))
             start += len(block.indices)
         blocks = [block for _, _, block, _ in members]
-        whole = Block(
-            np.ascontiguousarray(np.concatenate([b.indices for b in blocks])),
-            np.ascontiguousarray(np.concatenate([b.parameters for b in blocks])),
-            np.ascontiguousarray(np.concatenate([b.memory for b in blocks])),
-            blocks[0].names,
-        )
+        indices = np.ascontiguousarray(np.concatenate([b.indices for b in blocks]))  # may be the scene's own
+        if len(blocks) == 1:
+            whole = Block(indices, blocks[0].parameters, blocks[0].memory, blocks[0].names)
+        else:
+            parameters = np.concatenate([b.parameters for b in blocks])
+            whole = Block(indices, parameters, np.concatenate([b.memory for b in blocks]), blocks[0].names)
         (groups if cls.kernel is not None else contacts).append(Group(cls, whole, parts))
     return groups, contacts
 

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from hookean.columns import IndexRows, Lines, NonNegatives
-from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.kernels import device
 
 Edges = Literal["all", "warp", "weft", "naked", "diagonals", "diagonals_one", "diagonals_other"]
@@ -23,23 +23,22 @@ def pull(x: Any, indices: Any, parameters: Any, f: Any) -> None:
         d1 = x[b, 1] - x[a, 1]
         d2 = x[b, 2] - x[a, 2]
         d3 = x[b, 3] - x[a, 3]
-        length = np.sqrt(d0 * d0 + d1 * d1 + d2 * d2)
-        if length > 0.0:
-            k, rest = parameters[e, 0], parameters[e, 1]
-            tension = k * (length - rest)
-            tension /= length
-            d0 *= tension
-            d1 *= tension
-            d2 *= tension
-            d3 *= tension
-            f[a, 0] += d0
-            f[a, 1] += d1
-            f[a, 2] += d2
-            f[a, 3] += d3
-            f[b, 0] -= d0
-            f[b, 1] -= d1
-            f[b, 2] -= d2
-            f[b, 3] -= d3
+        density = parameters[e, 0]
+        square = d0 * d0 + d1 * d1 + d2 * d2
+        if parameters[e, 1] != 0.0 and square > 0.0:
+            density -= parameters[e, 1] / np.sqrt(square)
+        d0 *= density
+        d1 *= density
+        d2 *= density
+        d3 *= density
+        f[a, 0] += d0
+        f[a, 1] += d1
+        f[a, 2] += d2
+        f[a, 3] += d3
+        f[b, 0] -= d0
+        f[b, 1] -= d1
+        f[b, 2] -= d2
+        f[b, 3] -= d3
 
 
 @device
@@ -52,23 +51,22 @@ def pull_damped(x: Any, v: Any, indices: Any, parameters: Any, f: Any) -> None:
         d2 = x[b, 2] - x[a, 2]
         d3 = x[b, 3] - x[a, 3]
         rate = (v[b, 0] - v[a, 0]) * d0 + (v[b, 1] - v[a, 1]) * d1 + (v[b, 2] - v[a, 2]) * d2
-        length = np.sqrt(d0 * d0 + d1 * d1 + d2 * d2)
-        if length > 0.0:
-            k, rest = parameters[e, 0], parameters[e, 1]
-            tension = k * (length - rest)
-            tension = (tension + parameters[e, 2] * rate / length) / length
-            d0 *= tension
-            d1 *= tension
-            d2 *= tension
-            d3 *= tension
-            f[a, 0] += d0
-            f[a, 1] += d1
-            f[a, 2] += d2
-            f[a, 3] += d3
-            f[b, 0] -= d0
-            f[b, 1] -= d1
-            f[b, 2] -= d2
-            f[b, 3] -= d3
+        density = parameters[e, 0]
+        square = d0 * d0 + d1 * d1 + d2 * d2
+        if square > 0.0:
+            density += parameters[e, 2] * rate / square - parameters[e, 1] / np.sqrt(square)
+        d0 *= density
+        d1 *= density
+        d2 *= density
+        d3 *= density
+        f[a, 0] += d0
+        f[a, 1] += d1
+        f[a, 2] += d2
+        f[a, 3] += d3
+        f[b, 0] -= d0
+        f[b, 1] -= d1
+        f[b, 2] -= d2
+        f[b, 3] -= d3
 
 
 @device
@@ -211,13 +209,15 @@ class Springs(Force):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: k, c, rest length, factor, upper and lower cutoff, plasticity."""
         index = places.elements(self)
-        start = np.linalg.norm(places.x[index[:, 1]] - places.x[index[:, 0]], axis=1)
+        rest = self.rest_length
+        if rest is None:
+            rest = lengths(places.x.take(index[:, 1], axis=0) - places.x.take(index[:, 0], axis=0))
         return Block.of(
             index,
             memory=1,
             stiffness=self.stiffness,
             damping=self.damping,
-            rest_length=start if self.rest_length is None else self.rest_length,
+            rest_length=rest,
             rest_factor=self.rest_factor,
             upper_cutoff=self.upper_cutoff,
             lower_cutoff=self.lower_cutoff,
@@ -226,23 +226,24 @@ class Springs(Force):
 
     @classmethod
     def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
-        """Both ends in one number, and k, rest length and where it counts c; not with cutoffs or plasticity."""
+        """Both ends in one number, and k, k x rest length and where it counts c; not with cutoffs or plasticity."""
         p = block.parameters
         if p[:, 4:].any():
             return None
-        table = [p[:, 0], p[:, 2] * p[:, 3] + memory[:, 0]]
+        table = [p[:, 0], p[:, 0] * (p[:, 2] * p[:, 3] + memory[:, 0])]
         if damped and p[:, 1].any():
             table.append(p[:, 1])
         return block.indices[:, :1] | block.indices[:, 1:] << 32, np.column_stack(table)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length [length], force [force; tension +] and strain (l - L0)/L0 [-; 0 for rest length 0]."""
-        d = x[block.indices[:, 1]] - x[block.indices[:, 0]]
-        length = np.linalg.norm(d, axis=1)
-        unit = d / np.where(length > 0, length, 1.0)[:, None]
+        d = x.take(block.indices[:, 1], axis=0) - x.take(block.indices[:, 0], axis=0)
+        length = lengths(d)
+        d *= element_forces[:, 0]
+        along = (d[:, 0] + d[:, 1] + d[:, 2]) / np.where(length > 0, length, 1.0)
         rest = block.parameters[:, 2] * block.parameters[:, 3] + block.memory[:, 0]
         strain = np.where(rest > 0, (length - rest) / np.where(rest > 0, rest, 1.0), 0.0)
-        return {"length": length, "force": (element_forces[:, 0] * unit).sum(axis=1), "strain": strain}
+        return {"length": length, "force": along, "strain": strain}
 
     @classmethod
     def example(cls) -> tuple[Springs, Floats]:
