@@ -7,11 +7,12 @@ Source: Nocedal and Wright, Numerical Optimization, 2006, chapters 3 and 4.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.factor import Factors
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from hookean.system import System
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 class Method(Solver):
@@ -27,8 +29,12 @@ class Method(Solver):
     name: ClassVar[str] = "newton"
     longest: ClassVar[int] = 3
 
+    def __init__(self) -> None:
+        self._pattern: Pattern | None = None
+
     def start(self, system: System, state: State) -> None:
         """Start from rest with a small shift."""
+        self._pattern = None
         state.v[:] = 0.0
         _, w, _ = system.evaluate(state)
         state.scratch = {"shift": np.array([1e-4, float(w.mean()) if len(w) else 1.0])}
@@ -36,9 +42,12 @@ class Method(Solver):
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """At most `count` Newton steps; fewer when no step helps any more, none when none helped."""
         shift, unit = state.scratch["shift"]
-        pattern = Pattern(system, state)
-        if not len(pattern.dofs) or unit <= 0.0:
+        free = _movable(system, state)
+        if not free.any() or unit <= 0.0:
             return 0
+        if self._pattern is None or not np.array_equal(self._pattern.free, free):
+            self._pattern = Pattern(system, free)
+        pattern = self._pattern
         energy, left = _energy_and_left(system, state)
         done, helped = 0, False
         while done < count and np.sqrt((left**2).sum(axis=1).max()) > goal:
@@ -86,44 +95,63 @@ def _search(system: System, state: State, step: Floats, energy: float, left: Flo
 
 
 class Pattern:
-    """Where element blocks go in the sparse tangent: worked out once, filled at every step."""
+    """Where element blocks go in the lower triangle of the sparse tangent: worked out once, filled at every step."""
 
-    def __init__(self, system: System, state: State) -> None:
-        free = state.free.copy()
-        left, stuck = system.evaluate(state)[0] * free, None
-        if system.contacts:
-            # what rests on a floor and sticks is held for these steps; the balance afterwards tells if that was true
-            stuck = np.abs(system.support(state, left)).sum(axis=1) > 0
-            free[stuck & (left == 0.0).all(axis=1)] = 0.0
-        self.slides = bool(stuck is not None and (stuck & (left != 0.0).any(axis=1)).any())
-        self.dofs = np.flatnonzero(free.ravel() > 0) if not self.slides else np.zeros(0, np.int64)
-        number = np.full(free.size, -1)
-        number[self.dofs] = np.arange(len(self.dofs))
-        keys, self.takes = [], []
-        for group in system.groups:
-            index = group.block.indices
-            mine = number[(3 * index[:, :, None] + np.arange(3)).reshape(len(index), -1)]
-            row = np.repeat(mine, mine.shape[1], axis=1).ravel()
-            column = np.tile(mine, (1, mine.shape[1])).ravel()
-            take = np.flatnonzero((row >= 0) & (column >= 0)) if group.cls.role != "load" else np.zeros(0, np.int64)
-            self.takes.append(take)
-            keys.append(column[take].astype(np.int64) * len(self.dofs) + row[take])
-        diagonal = np.arange(len(self.dofs), dtype=np.int64) * (len(self.dofs) + 1)
-        unique, place = np.unique(np.concatenate([*keys, diagonal]), return_inverse=True)
-        self.place, self.count = place, len(unique)
-        size = max(len(self.dofs), 1)
-        self.rows = (unique % size).astype(np.int32)
-        self.starts = np.searchsorted(unique // size, np.arange(len(self.dofs) + 1)).astype(np.int32)
-        self.diagonal = place[len(place) - len(self.dofs) :]
+    def __init__(self, system: System, free: Floats) -> None:
+        n = len(free)
+        self.free = free
+        self.dofs = np.flatnonzero(free.ravel() > 0)
+        lower = [_lower(g.block.indices) if g.cls.role != "load" else np.zeros((0, 3), np.int64) for g in system.groups]
+        own = np.arange(n, dtype=np.int64) * (n + 1)
+        pairs, which = np.unique(
+            np.concatenate([*(low[:, 1] * n + low[:, 0] for low in lower), own]), return_inverse=True
+        )
+        place = self._arrange(pairs % n, pairs // n)
+        ends = np.cumsum([len(low) for low in lower], dtype=np.int64)
+        self.takes, places = [], [np.zeros(0, np.int64)]
+        for group, low, end in zip(system.groups, lower, ends, strict=True):
+            wide = 3 * group.block.indices.shape[1]
+            corner = low[:, 2, None, None] + wide * np.arange(3)[:, None] + np.arange(3)
+            mine = place[which[end - len(low) : end]]
+            self.takes.append(corner[mine >= 0])
+            places.append(mine[mine >= 0])
+        self.places = np.concatenate(places)
+
+    def _arrange(self, row: Ints, column: Ints) -> Ints:
+        """Lay out the matrix for pairs of particles sorted by column and row, (i, i) first in each column.
+
+        Returns the place (pairs, 3, 3) of each entry by the axes of its row and its column; -1 where it has none.
+        """
+        free = self.free > 0
+        n = len(free)
+        rank = np.cumsum(free, axis=1) - 1  # of each free axis among its particle's
+        axes = free.sum(axis=1)[row]
+        first = np.searchsorted(column, np.arange(n))
+        above = np.cumsum(axes) - axes
+        above -= above[first][column]  # entries of the column over those of the pair
+        height = np.add.reduceat(axes, first)[:, None] - rank
+        starts = np.concatenate([[0], np.cumsum(height[free])])
+        begin = np.zeros(free.shape, np.int64)
+        begin[free] = starts[:-1]
+        place: Ints = (begin - rank)[column][:, None, :] + (above[:, None] + rank[row])[:, :, None]
+        kept = free[row][:, :, None] & free[column][:, None, :]
+        kept &= (row > column)[:, None, None] | np.tri(3, dtype=bool)
+        place[~kept] = -1
+        number = np.zeros(free.shape, np.int32)
+        number[free] = np.arange(len(self.dofs))
+        rows = np.zeros(starts[-1], np.int32)
+        rows[place[kept]] = np.broadcast_to(number[row][:, :, None], place.shape)[kept]
+        self.diagonal, self.count = starts[:-1], len(rows)
+        self.factors = Factors(rows, starts.astype(np.int32))
+        return place
 
     def tangent(self, system: System, state: State) -> Floats:
-        """Values of the sparse tangent stiffness."""
-        values = []
+        """Values of the lower triangle of the sparse tangent stiffness."""
+        values = [np.zeros(0)]
         for group, memory, take in zip(system.groups, state.memory, self.takes, strict=True):
             if len(take):
                 values.append(system.stiffness_blocks(group, state, memory).ravel()[take])
-        values.append(np.zeros(len(self.dofs)))
-        summed: Floats = np.bincount(self.place, np.concatenate(values), self.count).astype(np.float64)
+        summed: Floats = np.bincount(self.places, np.concatenate(values), self.count).astype(np.float64)
         return summed
 
     def step(
@@ -135,7 +163,7 @@ class Pattern:
         while shift <= 1e4:
             shifted = values.copy()
             shifted[self.diagonal] += shift * unit
-            solution = self._solve(shifted, rhs)
+            solution = self.factors.solve(shifted, rhs)
             if solution is not None:
                 step = np.zeros(left.size)
                 step[self.dofs] = solution
@@ -143,19 +171,28 @@ class Pattern:
             shift = max(shift * 10.0, 1e-9)
         return None, shift
 
-    def _solve(self, values: Floats, rhs: Floats) -> Floats | None:
-        """Solution, or None unless the matrix is positive definite."""
-        import scipy.sparse as sparse
-        from scipy.sparse.linalg import splu
 
-        size = len(self.dofs)
-        matrix = sparse.csc_matrix((values, self.rows, self.starts), shape=(size, size))
-        options: dict[str, Any] = {"SymmetricMode": True}
-        try:
-            factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-        except RuntimeError:
-            return None
-        if not (factor.U.diagonal() > 0).all():
-            return None
-        solution: Floats = factor.solve(rhs)
-        return solution if np.isfinite(solution).all() else None
+def _lower(index: Ints) -> Ints:
+    """Row and column particle of what is not above the diagonal, and its corner in the flat blocks of all elements."""
+    m, arity = index.shape
+    row, column = np.repeat(index, arity, axis=1).ravel(), np.tile(index, (1, arity)).ravel()
+    i, j = np.divmod(np.arange(arity * arity), arity)
+    corner = (9 * arity * arity * np.arange(m)[:, None] + 9 * arity * i + 3 * j).ravel()
+    below = row >= column
+    return np.column_stack([row[below], column[below], corner[below]])
+
+
+def _movable(system: System, state: State) -> Floats:
+    """Free axes (n, 3); none where something slides on a contact.
+
+    What rests on a floor and sticks is held for these steps; the balance afterwards tells if that was true.
+    """
+    if not system.contacts:
+        return state.free.copy()
+    free = state.free.copy()
+    left = system.evaluate(state)[0] * free
+    stuck = np.abs(system.support(state, left)).sum(axis=1) > 0
+    if (stuck & (left != 0.0).any(axis=1)).any():
+        return np.zeros_like(free)
+    free[stuck] = 0.0
+    return free
