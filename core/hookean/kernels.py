@@ -19,6 +19,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
+from hookean.machine import Compiled, Kind
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -55,12 +57,20 @@ def rows(address: float, count: float, columns: int) -> Any:
 
 
 @cache
-def compiled(function: Callable[..., Any], role: str | None = None) -> Any:
+def compiled(function: Callable[..., Any], role: str | None = None) -> Compiled:
     """Machine code of `function`, from the cache on disk when its source is unchanged.
 
     `role` names the signature (`force`, `impact`, `support`, `remember`, `hessian`); without one the types of
-    the first call decide (the solvers' loops). Sums keep their written order: no fast-math.
+    each call decide (the solvers' loops). Sums keep their written order: no fast-math.
     """
+    kind = None if role is None else _kind(role)
+    name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
+    return Compiled(name, cache_folder(function), lambda: dispatcher(function, role), kind)
+
+
+@cache
+def dispatcher(function: Callable[..., Any], role: str | None = None) -> Any:
+    """What numba makes of `function`: for other machine code to inline, and where its code is not on disk yet."""
     import numba
 
     if function in _NATIVE:
@@ -110,9 +120,11 @@ for _function in _NATIVE:
 
 @cache
 def _address(function: Callable[..., Any], role: str) -> int:
+    if (entry := compiled(function, role).entry(_kind(role))) is not None:
+        return entry.address
     from hookean.pointers import address
 
-    return address(compiled(function, role), _signature(role))
+    return address(dispatcher(function, role), _signature(role))
 
 
 @cache
@@ -120,8 +132,9 @@ def cache_folder(function: Callable[..., Any]) -> Path:
     """Folder of compiled code: the user's cache, then a digest of every source a kernel may inline."""
     digest = hashlib.sha256()
     home = Path(__file__).parent
-    sources = {Path(__file__), home / "pointers.py", Path(inspect.getfile(function))}
-    sources.update(home.glob("forces/*.py"), home.glob("solvers/*.py"))
+    sources = {Path(__file__), Path(inspect.getfile(function))}
+    sources.update(home / name for name in ("pointers.py", "machine.py", "emit.py"))
+    sources.update(*(home.glob(f"{folder}/*.py") for folder in ("forces", "solvers", "multigrid")))
     for source in sorted(sources):
         digest.update(source.read_bytes())
     return _writable_root() / digest.hexdigest()[:16]
@@ -144,7 +157,7 @@ def _with_devices(function: Callable[..., Any]) -> Callable[..., Any]:
     """The same function with the `@device` functions it names replaced by their compiled selves."""
     module = vars(sys.modules[function.__module__])
     used = {
-        name: compiled(module[name])
+        name: dispatcher(module[name])
         for name in function.__code__.co_names
         if getattr(module.get(name), "__device__", False)
     }
@@ -159,19 +172,30 @@ def _with_devices(function: Callable[..., Any]) -> Callable[..., Any]:
 def _signature(role: str) -> Any:
     from numba import types as t
 
-    flat = t.Array(t.float64, 1, "C")
-    real = t.Array(t.float64, 2, "C")
-    whole = t.Array(t.int64, 2, "C")
-    cube = t.Array(t.float64, 3, "C")
-    return {
-        # x, v, indices, parameters, memory, f, w -> energy
-        "force": t.float64(real, real, whole, real, real, real, flat),
-        # x, indices, parameters, memory, blocks
-        "hessian": t.void(real, whole, real, real, cube),
-        # x, indices, parameters, memory
-        "remember": t.void(real, whole, real, real),
-        # x_before, v_before, acceleration, x, v, free, dt, parameters
-        "impact": t.void(real, real, real, real, real, real, t.float64, real),
-        # x, v, f, carried, free, mass, dt, parameters
-        "support": t.void(real, real, real, real, real, flat, t.float64, real),
-    }[role]
+    result, words = _ROLES[role]
+    known = {"real": t.float64, "none": t.void, **{f"x{n}": t.Array(t.float64, n, "C") for n in (1, 2, 3)}}
+    known["i2"] = t.Array(t.int64, 2, "C")
+    return known[result](*(known[word] for word in words.split()))
+
+
+def _kind(role: str) -> Kind:
+    """The same for code from the disk."""
+    import numpy as np
+
+    real, whole = np.dtype(np.float64).num, np.dtype(np.int64).num
+    known: dict[str, Any] = {"real": "float", "i2": (whole, 2), **{f"x{n}": (real, n) for n in (1, 2, 3)}}
+    return tuple(known[word] for word in _ROLES[role][1].split())
+
+
+_ROLES = {  # what a kernel returns and takes: arrays of numbers x and of whole numbers i, with their dimensions
+    # x, v, indices, parameters, memory, f, w -> energy
+    "force": ("real", "x2 x2 i2 x2 x2 x2 x1"),
+    # x, indices, parameters, memory, blocks
+    "hessian": ("none", "x2 i2 x2 x2 x3"),
+    # x, indices, parameters, memory
+    "remember": ("none", "x2 i2 x2 x2"),
+    # x_before, v_before, acceleration, x, v, free, dt, parameters
+    "impact": ("none", "x2 x2 x2 x2 x2 x2 real x2"),
+    # x, v, f, carried, free, mass, dt, parameters
+    "support": ("none", "x2 x2 x2 x2 x2 x1 real x2"),
+}

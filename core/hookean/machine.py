@@ -1,0 +1,218 @@
+"""Machine code without its compiler: what numba compiled once, later processes load from disk without numba.
+
+Importing numba and its tables takes longer than most solves. So the object code of a compiled function is put on disk,
+with an entry that takes all arguments as one row of numbers; llvmlite alone loads and calls it. The file's name holds
+a digest of all that the code depends on: every source it may inline (in the folder's name), numba, llvmlite, the
+processor and its abilities, numba's settings, the types of the arguments. Where there is no such file, or a damaged
+one, numba compiles; numba runs, too, what cannot be stored (see `emit`).
+"""
+
+from __future__ import annotations
+
+import array
+import ctypes
+import hashlib
+import importlib.util
+import json
+import os
+import struct
+import sys
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+Kind = tuple[Any, ...]
+"""Types of arguments: (numpy's number of the type, dimensions) for an array, a kind for a tuple, else a word."""
+
+_BITS, _REAL = struct.Struct("q"), struct.Struct("d")
+
+
+class Unfit(Exception):
+    """For numba: arguments that a row of numbers does not hold, or code that needs more than a process has."""
+
+
+class Compiled:
+    """A function as machine code. `dispatcher` makes numba's; `kind` is what it takes, None: whatever it is given."""
+
+    def __init__(self, name: str, folder: Path, dispatcher: Callable[[], Any], kind: Kind | None) -> None:
+        self.name, self.folder, self.dispatcher, self.kind = name, folder, dispatcher, kind
+        self.loaded = self.made = 0  # how many were found on disk, and how many were not
+        self._entries: dict[Kind, Entry | None] = {}
+
+    def __call__(self, *values: Any) -> Any:
+        numbers: list[int] = []
+        try:
+            kind = row(values, numbers)
+            if self.kind is not None and kind != self.kind:
+                raise Unfit
+        except Unfit:
+            return self._by_numba(values)
+        try:
+            entry = self._entries[kind]
+        except KeyError:
+            entry = self.entry(kind, values)
+        return self._by_numba(values) if entry is None else entry(numbers)
+
+    def entry(self, kind: Kind, values: tuple[Any, ...] = ()) -> Entry | None:
+        """The code for arguments of a kind, such as `values`; None where only numba can run it."""
+        if kind in self._entries:
+            return self._entries[kind]
+        path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
+        found = _load(path)
+        if found is not None:
+            self.loaded += 1
+        else:
+            self.made += 1
+            with suppress(Unfit, OSError):
+                from hookean.emit import emit
+
+                _store(path, emit(self.dispatcher(), values if self.kind is None else ()))
+                found = _load(path)
+        self._entries[kind] = found
+        return found
+
+    def _by_numba(self, values: tuple[Any, ...]) -> Any:
+        return self.dispatcher()(*values)
+
+
+def row(values: tuple[Any, ...], numbers: list[int]) -> Kind:
+    """Append what an entry reads of each value to `numbers`; returns their kind. Arrays must outlive the call."""
+    kinds: list[Any] = []
+    for value in values:
+        what = type(value)
+        if what is np.ndarray:
+            if not value.flags.carray:
+                raise Unfit
+            numbers.append(id(value))
+            kinds.append((value.dtype.num, value.ndim))
+        elif what is tuple:
+            kinds.append(row(value, numbers))
+        elif what is float or what is np.float64:
+            numbers.append(_BITS.unpack(_REAL.pack(value))[0])
+            kinds.append("float")
+        elif what is bool:
+            numbers.append(value)
+            kinds.append("bool")
+        elif what is int and -(2**63) <= value < 2**63:
+            numbers.append(value)
+            kinds.append("int")
+        else:
+            raise Unfit
+    return tuple(kinds)
+
+
+class Entry:
+    """Code from a file, called with a row of numbers; room for what it returns follows them."""
+
+    def __init__(self, path: Path) -> None:
+        head, _, code = path.read_bytes().partition(b"\n")
+        told = json.loads(head)
+        if hashlib.sha256(code).hexdigest() != told["digest"]:
+            raise ValueError("damaged")
+        self.result: str = told["result"]
+        binding = _llvm()
+        target = binding.Target.from_default_triple().create_target_machine(codemodel="jitdefault", jit=True)
+        self.engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
+        self.engine.add_object_file(binding.ObjectFileRef.from_data(code))
+        self.engine.finalize_object()
+        where = self.engine.get_function_address("hookean_entry")
+        native = self.engine.get_function_address("hookean_native")
+        if not where or not native:
+            raise ValueError("no entry")
+        self.call = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(where)
+        self.address: int = ctypes.c_int64.from_address(native).value  # for numba's own way of calling
+
+    def __call__(self, numbers: list[int]) -> Any:
+        end = len(numbers)
+        numbers.extend(0 for _ in self.result)
+        words = array.array("q", numbers)
+        if self.call(words.buffer_info()[0]):
+            raise MemoryError("compiled code got no memory")
+        found = tuple(_value(code, number) for code, number in zip(self.result, words[end:], strict=True))
+        return found[0] if len(found) == 1 else found or None
+
+
+def _value(code: str, number: int) -> Any:
+    return _REAL.unpack(_BITS.pack(number))[0] if code == "d" else bool(number) if code == "b" else number
+
+
+def _load(path: Path) -> Entry | None:
+    """The code in a file; None where there is none that is whole."""
+    with suppress(Exception):
+        if path.exists() and readable():
+            return Entry(path)
+    return None
+
+
+def _store(path: Path, data: bytes) -> None:
+    """Put a file where other processes find it whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+        file.write(data)
+    os.replace(file.name, path)
+
+
+@cache
+def readable() -> bool:
+    """Whether arrays lie in memory as entries expect: after two words address, dimensions, and a pointer to sizes."""
+    seen = np.zeros((3, 5))
+    words = (ctypes.c_int64 * 5).from_address(id(seen))
+    if ctypes.sizeof(ctypes.c_void_p) != 8 or words[2] != seen.ctypes.data or words[3] & 0xFFFFFFFF != 2:
+        return False
+    return list((ctypes.c_int64 * 2).from_address(words[4])) == [3, 5]
+
+
+@cache
+def surroundings() -> str:
+    """Digest of what machine code depends on besides sources: compiler, processor, settings."""
+    binding = _llvm()
+    told = [binding.get_default_triple(), binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()]
+    told += [f"{k}={v}" for k, v in sorted(os.environ.items()) if k.startswith("NUMBA_")]
+    digest = hashlib.sha256("\n".join(told).encode())
+    for package in ("numba", "llvmlite"):  # their versions, without importing numba
+        found = importlib.util.find_spec(package)
+        assert found is not None and found.origin is not None
+        digest.update(Path(found.origin).with_name("_version.py").read_bytes())
+    return digest.hexdigest()
+
+
+@cache
+def _llvm() -> Any:
+    from llvmlite import binding
+
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    for name, address in helpers().items():
+        binding.add_symbol(name, address)
+    return binding
+
+
+@cache
+def helpers() -> dict[str, int]:
+    """Addresses of the C functions by which numba's code takes memory, reshapes arrays and fails, by their names."""
+    memory, others = _extension("numba.core.runtime._nrt_python"), _extension("numba._helperlib")
+    memory.memsys_use_cpython_allocator()  # as numba has it
+    found = {name if name.startswith("_") else f"NRT_{name}": at for name, at in memory.c_helpers.items()}
+    return {**found, **{f"numba_{name}": at for name, at in others.c_helpers.items()}}
+
+
+def _extension(name: str) -> Any:
+    """An extension module of numba's, without importing numba, which finds it loaded when it is."""
+    if name in sys.modules:
+        return sys.modules[name]
+    home = importlib.util.find_spec("numba")
+    assert home is not None and home.origin is not None
+    *folders, last = name.split(".")[1:]
+    place = Path(home.origin).parent.joinpath(*folders)
+    path = next(p for suffix in EXTENSION_SUFFIXES if (p := place / f"{last}{suffix}").exists())
+    spec = importlib.util.spec_from_file_location(name, path, loader=ExtensionFileLoader(name, str(path)))
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

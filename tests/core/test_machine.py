@@ -1,0 +1,104 @@
+"""Code from the disk is numba's own, to the bit, and a process that has it does without numba."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hookean import kernels
+from hookean.forces.springs import Springs, springs_kernel
+from hookean.machine import Compiled, readable
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32" or not readable(), reason="numba compiles here")
+
+
+def scaled(x, factor, count, twice):  # type: ignore[no-untyped-def]
+    """Arrays, memory, a number, a whole number and a truth in; three of them out."""
+    other = x * factor
+    for i in range(count):
+        for j in range(x.shape[1]):
+            x[i, j] = other[i, j] * (2.0 if twice else 1.0)
+    return x.sum(), count + x.shape[1], not twice
+
+
+def code(folder: Path) -> Compiled:
+    """`scaled` from an empty folder, as a new process sees it."""
+    return Compiled("scaled", folder, lambda: kernels.dispatcher(scaled), None)
+
+
+def test_code_from_the_disk_gives_the_same_bits_as_numba() -> None:
+    """One kernel on the same numbers: numba's machine code and that of its file."""
+    springs, x = Springs.example()
+    block, memory = springs.compile(_Places(x)), np.zeros((4, 1))
+    answers = []
+    for run in (kernels.dispatcher(springs_kernel, "force"), kernels.compiled(springs_kernel, "force")):
+        f, w = np.zeros_like(x), np.zeros(len(x))
+        energy = run(x, 0.1 * x, block.indices, block.parameters, memory, f, w)
+        answers.append((energy, f.tobytes(), w.tobytes()))
+    assert answers[0] == answers[1]
+
+
+class _Places:
+    def __init__(self, x: np.ndarray) -> None:
+        self.x = x
+
+    def elements(self, force: Springs) -> np.ndarray:
+        return np.array(force.particles)
+
+
+def test_values_go_in_and_out_as_they_do_with_numba(tmp_path: Path) -> None:
+    """First made, then found: the same answers, shapes empty ones too."""
+    for made, loaded in ((1, 0), (0, 1)):
+        run = code(tmp_path)
+        x = np.arange(6.0).reshape(3, 2)
+        assert run(x, 0.5, 2, True) == (1.0 + 0.0 + 2.0 + 3.0 + 9.0, 4, False)
+        assert (x == [[0, 1], [2, 3], [4, 5]]).all()
+        assert run(np.zeros((0, 4)), 1.0, 0, False) == (0.0, 4, True)
+        assert (run.made, run.loaded) == (made, loaded)
+
+
+def test_what_the_disk_has_no_code_for_is_left_to_numba(tmp_path: Path) -> None:
+    """Columns apart, which no entry reads, are summed right."""
+    apart = np.arange(12.0).reshape(3, 4)[:, ::2]
+    assert code(tmp_path)(apart, 1.0, 3, False) == (0.0 + 2 + 4 + 6 + 8 + 10, 5, True)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_damaged_file_is_made_anew(tmp_path: Path) -> None:
+    """One byte changed, a file cut off, another entirely: compiled again, and put right."""
+    x = np.ones((2, 2))
+    code(tmp_path)(x, 1.0, 2, False)
+    (file,) = tmp_path.iterdir()
+    whole = file.read_bytes()
+    for damaged in (whole[:-1] + bytes([whole[-1] ^ 1]), whole[: len(whole) // 2], b"", b"nothing"):
+        file.write_bytes(damaged)
+        run = code(tmp_path)
+        assert run(x, 1.0, 2, False) == (4.0, 4, True)
+        assert (run.made, run.loaded) == (1, 0) and file.read_bytes() == whole
+
+
+def test_a_small_cable_relaxes_without_numba_in_the_second_process(tmp_path: Path) -> None:
+    """All of it: reading, compiling, solving and judging a cable imports neither numba nor scipy."""
+    told = (
+        "import sys, hookean\n"
+        "lines = [[[i, 0, 0], [i + 1, 0, 0]] for i in range(10)]\n"
+        "scene = hookean.Scene(forces=[{'kind': 'springs', 'lines': lines}, {'kind': 'self_weight', 'total': 9}],\n"
+        "                      anchors=[{'points': [[0, 0, 0], [10, 0, 0]]}])\n"
+        "result = hookean.relax(scene)\n"
+        "assert result.converged, result.message\n"
+        "print(result.particles.tobytes().hex(), [m for m in ('numba', 'scipy') if m in sys.modules])"
+    )
+    environment = {**os.environ, "HOOKEAN_CACHE": str(tmp_path)}
+    first, second = (
+        subprocess.run(
+            [sys.executable, "-c", told], env=environment, check=True, capture_output=True, text=True, timeout=120
+        ).stdout.split(" ", 1)
+        for _ in range(2)
+    )
+    assert first[0] == second[0]
+    assert second[1] == "[]\n"
