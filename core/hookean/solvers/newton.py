@@ -1,7 +1,8 @@
 """Newton: steps with the exact tangent stiffness, shifted until it is positive definite, with a line search.
 
 (K + s I) dx = f on the free axes. The shift s grows where the tangent is not definite or a step fails and fades where
-steps succeed, so that the last digits come quadratically, and only stable equilibria are accepted.
+steps succeed, so that the last digits come quadratically. Only stable equilibria are accepted: where steps come to one
+from which the energy falls to second order, they go on along a direction of negative curvature.
 Source: Nocedal and Wright, Numerical Optimization, 2006, chapters 3 and 4.
 """
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+ROUNDING = 1e-9  # part of the mean stiffness below which a shift, or a negative curvature, is none
 
 
 class Method(Solver):
@@ -50,7 +53,15 @@ class Method(Solver):
         pattern = self._pattern
         energy, left = _energy_and_left(system, state)
         done, helped = 0, False
-        while done < count and np.sqrt((left**2).sum(axis=1).max()) > goal:
+        while done < count:
+            if np.sqrt((left**2).sum(axis=1).max()) <= goal:
+                # a last step with next to no shift has seen a definite tangent
+                if not done or shift <= ROUNDING or not _leave(system, state, pattern, unit, energy):
+                    break
+                energy, left = _energy_and_left(system, state)
+                done, helped = done + 1, True
+                state.iteration += 1
+                continue
             step, shift = pattern.step(system, state, left, shift, unit)
             if step is None:
                 break
@@ -69,6 +80,23 @@ class Method(Solver):
                 shift = 0.0
         state.scratch["shift"] = np.array([min(shift, 1.0), unit])
         return done if helped else 0
+
+
+def _leave(system: System, state: State, pattern: Pattern, unit: float, energy: float) -> bool:
+    """Move along a direction in which the energy falls from an equilibrium; False where there is none."""
+    direction = pattern.falling(system, state, unit)
+    if direction is None:
+        return False
+    start, length = state.x.copy(), 0.01 * system.size
+    for _ in range(20):
+        for sign in (1.0, -1.0):
+            state.x = start + sign * length * direction
+            now = _energy_and_left(system, state)[0]
+            if np.isfinite(now) and now < energy:
+                return True
+        length *= 0.5
+    state.x = start
+    return False
 
 
 def _energy_and_left(system: System, state: State) -> tuple[float, Floats]:
@@ -170,6 +198,37 @@ class Pattern:
                 return step.reshape(left.shape), shift
             shift = max(shift * 10.0, 1e-9)
         return None, shift
+
+    def falling(self, system: System, state: State, unit: float) -> Floats | None:
+        """A motion (n, 3), its largest part 1, of negative curvature; None where the tangent has none but rounding.
+
+        By inverse iteration with a shift that is little more than the most negative eigenvalue.
+        """
+        values = self.tangent(system, state)
+        seed = 1.0 + 0.5 * np.sin(12.9898 * np.arange(len(self.dofs)))
+
+        def solve(shift: float, b: Floats) -> Floats | None:
+            shifted = values.copy()
+            shifted[self.diagonal] += shift * unit
+            return self.factors.solve(shifted, b)
+
+        if solve(ROUNDING, seed) is not None:
+            return None
+        low, high, found = ROUNDING, 2.0, solve(2.0, seed)
+        for _ in range(12):
+            middle = float(np.sqrt(low * high))
+            solution = solve(middle, seed)
+            if solution is None:
+                low = middle
+            else:
+                high, found = middle, solution
+        for _ in range(4):
+            found = solve(high, found / np.abs(found).max()) if found is not None else None
+        if found is None:
+            return None
+        motion = np.zeros(self.free.size)
+        motion[self.dofs] = found / np.abs(found).max()
+        return motion.reshape(self.free.shape)
 
 
 def _lower(index: Ints) -> Ints:
