@@ -1,7 +1,8 @@
 """Real definitions, in a folder that HOOKEAN_DEFINITIONS names: each is translated, checked, and told about honestly.
 
-Public ones are github.com/naysok/Study-Kangaroo, Tensegrity-1.ghx and Kangaroo1-vs-Kangaroo2.ghx (classic),
-Tensile-Simple.ghx and Bending-Rod.ghx (Kangaroo 2). They carry no licence, so none is kept here.
+Public ones are github.com/naysok/Study-Kangaroo, Tensegrity-1.ghx, Tensegrity-2.ghx and Kangaroo1-vs-Kangaroo2.ghx
+(classic), Tensile-Simple.ghx, Bending-Rod.ghx and 5/Inflation.ghx (Kangaroo 2). They carry no licence, so none is kept
+here.
 """
 
 from __future__ import annotations
