@@ -69,7 +69,7 @@ class Compiled:
             self.loaded += 1
         else:
             self.made += 1
-            with suppress(Unfit, OSError):
+            with suppress(Exception):  # whatever hinders it, numba has made the function and runs it
                 from hookean.emit import emit
 
                 _store(path, emit(self.dispatcher(), values if self.kind is None else ()))

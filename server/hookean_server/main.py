@@ -1,27 +1,15 @@
-"""Running the service until it is told to stop."""
+"""The service from its port and its lock to its end. What answers requests is imported while workers warm up."""
 
 from __future__ import annotations
 
-import os
-import shlex
-import shutil
 import signal
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
-import uvicorn
-
-import hookean
-from hookean_server import logs
-from hookean_server.app import create_app
-from hookean_server.discovery import Found, Held, Lock
-from hookean_server.ending import Activity, Server, Watch
-from hookean_server.limits import Connection, Socket
-from hookean_server.pool import FORKED, context
+from hookean_server.discovery import Held, Lock
+from hookean_server.pool import FORKED, context, end_fork_server
 from hookean_server.ports import Taken, take
-from hookean_server.sessions import wire
 from hookean_server.settings import Settings
 from hookean_server.tokens import Unfit, chosen
 
@@ -61,44 +49,16 @@ def serve(
         print(
             f"Warning: {host} can be reached from other machines, and nothing said to it is encrypted.", file=sys.stderr
         )
-    Connection.header_seconds = settings.header_seconds
-    as_json = logs.begin(settings.log, queued=True)
-    app = create_app(settings)
-    activity = Activity(app)
-    config = uvicorn.Config(
-        activity,
-        log_level="warning",
-        log_config=None if as_json else uvicorn.config.LOGGING_CONFIG,
-        proxy_headers=False,
-        access_log=False,
-        ws=Socket,
-        ws_per_message_deflate=False,
-        ws_max_size=settings.message_limit,
-        server_header=False,
-        date_header=False,
-        http=Connection,
-        h11_max_incomplete_event_size=2 * settings.header_limit,
-        timeout_graceful_shutdown=1,
-        lifespan="on",
-    )
-    server = Server(config, app)
-    found = _found(app.state.instance, settings)
-
-    def on_start() -> None:
-        if place is not None:
-            found.write(place)
-        _say(found.url)
-
-    server.on_start = on_start
-    server.on_end = lambda: found.remove(place) if place is not None else None
-    Watch(server, activity, parent_pid, idle_seconds).start()
     try:
         _start_fork_server()
-        server.run(sockets=[sock])
+        from hookean_server.running import run
+
+        run(settings, sock, place, parent_pid, idle_seconds)
     except KeyboardInterrupt:
         pass
     finally:
-        server.close()
+        end_fork_server()
+        sock.close()
         if lock is not None:
             lock.release()
     return 0
@@ -113,31 +73,6 @@ def _own(state: Path) -> Lock:
         raise Held(f"Another hookean server keeps its sessions in {state}; end it, or give this one another.") from None
     except OSError as error:
         raise Held(f"Sessions cannot be kept in {state} ({error.strerror}).") from None
-
-
-def _found(instance: str, settings: Settings) -> Found:
-    """What clients are told."""
-    name = settings.host if settings.host not in ("0.0.0.0", "::") else "127.0.0.1"
-    url = f"http://{f'[{name}]' if ':' in name else name}:{settings.port}"
-    return Found(
-        os.getpid(), settings.port, url, settings.token, hookean.__version__, instance, time.time(), wire.VERSION,
-        settings.state is not None,
-    )  # fmt: skip
-
-
-def _say(url: str) -> None:
-    """Where it is, and what to try. The token stays out of sight."""
-    scene = '{"particles": [[0,0,0],[1,0,0],[2,0,0]], "anchors": [{"particles": [0,2]}], "forces": ['
-    scene += (
-        '{"kind": "springs", "particles": [[0,1],[1,2]]}, {"kind": "unary", "particles": [1], "vector": [0,0,-9]}]}'
-    )
-    command = shlex.quote(shutil.which("hookean") or str(Path(sys.executable).with_name("hookean")))
-    print(f"hookean serves at {url} (Ctrl-C ends it). Try:")
-    print(
-        f'  curl {url}/v1/relax -H "Authorization: Bearer $({command} token)" '
-        f"-H 'Content-Type: application/json' -d '{scene}'",
-        flush=True,
-    )
 
 
 def _start_fork_server() -> None:

@@ -1,0 +1,86 @@
+"""Running the service on a socket until it is told to stop."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import sys
+import time
+from pathlib import Path
+from socket import socket
+
+import uvicorn
+
+import hookean
+from hookean_server import logs
+from hookean_server.app import create_app
+from hookean_server.discovery import Found
+from hookean_server.ending import Activity, Server, Watch
+from hookean_server.limits import Connection, Socket
+from hookean_server.sessions import wire
+from hookean_server.settings import Settings
+
+
+def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, idle_seconds: float) -> None:
+    """Serve on a socket that listens; see `main.serve`."""
+    Connection.header_seconds = settings.header_seconds
+    as_json = logs.begin(settings.log, queued=True)
+    app = create_app(settings)
+    activity = Activity(app)
+    config = uvicorn.Config(
+        activity,
+        log_level="warning",
+        log_config=None if as_json else uvicorn.config.LOGGING_CONFIG,
+        proxy_headers=False,
+        access_log=False,
+        ws=Socket,
+        ws_per_message_deflate=False,
+        ws_max_size=settings.message_limit,
+        server_header=False,
+        date_header=False,
+        http=Connection,
+        h11_max_incomplete_event_size=2 * settings.header_limit,
+        timeout_graceful_shutdown=1,
+        lifespan="on",
+    )
+    server = Server(config, app)
+    found = _found(app.state.instance, settings)
+
+    def on_start() -> None:
+        if place is not None:
+            found.write(place)
+        _say(found.url)
+
+    server.on_start = on_start
+    server.on_end = lambda: found.remove(place) if place is not None else None
+    Watch(server, activity, parent_pid, idle_seconds).start()
+    try:
+        server.run(sockets=[sock])
+    finally:
+        server.close()
+
+
+def _found(instance: str, settings: Settings) -> Found:
+    """What clients are told."""
+    name = settings.host if settings.host not in ("0.0.0.0", "::") else "127.0.0.1"
+    url = f"http://{f'[{name}]' if ':' in name else name}:{settings.port}"
+    return Found(
+        os.getpid(), settings.port, url, settings.token, hookean.__version__, instance, time.time(), wire.VERSION,
+        settings.state is not None,
+    )  # fmt: skip
+
+
+def _say(url: str) -> None:
+    """Where it is, and what to try. The token stays out of sight."""
+    scene = '{"particles": [[0,0,0],[1,0,0],[2,0,0]], "anchors": [{"particles": [0,2]}], "forces": ['
+    scene += (
+        '{"kind": "springs", "particles": [[0,1],[1,2]]}, {"kind": "unary", "particles": [1], "vector": [0,0,-9]}]}'
+    )
+    command = shlex.quote(shutil.which("hookean") or str(Path(sys.executable).with_name("hookean")))
+    print(f"hookean serves at {url} (Ctrl-C ends it). Try:")
+    print(
+        f'  curl {url}/v1/relax -H "Authorization: Bearer $({command} token)" '
+        f"-H 'Content-Type: application/json' -d '{scene}'",
+        flush=True,
+    )
