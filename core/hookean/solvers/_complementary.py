@@ -19,7 +19,7 @@ Connelly, "Rigidity and energy", 1982.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ from hookean import kernels
 from hookean.forces.anchor_spring import AnchorSpring
 from hookean.forces.springs import Springs
 from hookean.forces.unary import unary_kernel
+from hookean.kernels import device
 from hookean.solvers._profile import factor, first_entries, order, solve
 from hookean.solvers.base import Solver
 
@@ -45,7 +46,9 @@ POLISH = 4
 NEAR = 1e-5  # of the model's size: a last step this short has nothing left to correct
 
 
-def settle(x, ends, q, k, rest, ground, pull, first, starts, matrix, left, gap):  # type: ignore[no-untyped-def]
+@device
+def settle(x: Any, ends: Any, q: Any, k: Any, rest: Any, ground: Any, pull: Any, first: Any, starts: Any, matrix: Any,
+           left: Any, gap: Any) -> Any:  # fmt: skip
     """Move the free particles to where force densities q balance the loads; False where nothing holds them.
 
     `gap` becomes half the squared length of each spring, less that of the length its force density asks for.
@@ -84,8 +87,48 @@ def settle(x, ends, q, k, rest, ground, pull, first, starts, matrix, left, gap):
     return True
 
 
+def share(tension, x, ends, q, k, rest, ground, pull, first, starts, matrix, left, gap):  # type: ignore[no-untyped-def]
+    """Give all springs one tension; how D changes with its logarithm, nan where it holds nothing."""
+    for e in range(ends.shape[0]):
+        q[e] = tension / (rest[e] + tension / k[e]) if rest[e] > 0.0 else k[e]
+    if not settle(x, ends, q, k, rest, ground, pull, first, starts, matrix, left, gap):
+        return np.nan
+    slope = 0.0
+    for e in range(ends.shape[0]):
+        slope += gap[e] * q[e] * (1.0 - q[e] / k[e])
+    return slope
+
+
+def attempt(  # type: ignore[no-untyped-def]
+    part, careful, x, ends, q, dq, k, rest, ground, pull, first, starts, matrix, left, gap, now
+):
+    """Take force densities `now` a part of a step away; how D changes there along the step, nan where nothing holds.
+
+    Where they grow it is the length asked for that grows evenly, so that none reaches k; with care none falls below a
+    tenth of itself.
+    """
+    rate = dq.copy()
+    for e in range(ends.shape[0]):
+        now[e] = q[e] + part * dq[e]
+        if dq[e] > 0.0:
+            # the length asked for is L0 times this, and grows by dq / k times its square
+            grown = 1.0 / (1.0 - q[e] / k[e])
+            more = 1.0 + part * dq[e] / k[e] * grown
+            now[e] = k[e] * (1.0 - 1.0 / (grown * more))
+            rate[e] /= more * more
+        elif careful and q[e] > 0.0 and now[e] < 0.1 * q[e]:
+            now[e] = 0.1 * q[e]
+            rate[e] = 0.0
+    if not settle(x, ends, now, k, rest, ground, pull, first, starts, matrix, left, gap):
+        return np.nan
+    slope = 0.0
+    for e in range(ends.shape[0]):
+        slope += gap[e] * rate[e]
+    return slope
+
+
 def direction(x, ends, q, k, rest, ground, gap, first, starts, matrix, step, dq):  # type: ignore[no-untyped-def]
-    """The Newton step of the force densities; False where the tangent is not positive definite."""
+    """The Newton step of the force densities; how D changes along it, nan where the tangent is not definite."""
     free = ground.shape[0]
     matrix[:] = 0.0
     step[:] = 0.0
@@ -117,8 +160,9 @@ def direction(x, ends, q, k, rest, ground, gap, first, starts, matrix, step, dq)
                         matrix[far + o] += entry
                     matrix[across + o] -= entry
     if not factor(matrix, starts, first):
-        return False
+        return np.nan
     solve(matrix, starts, first, step)
+    slope = 0.0
     for e in range(ends.shape[0]):
         low, high = ends[e, 0], ends[e, 1]
         stretch = gap[e]
@@ -126,7 +170,8 @@ def direction(x, ends, q, k, rest, ground, gap, first, starts, matrix, step, dq)
             other = step[3 * high + c] if high < free else 0.0
             stretch += (x[high, c] - x[low, c]) * (other - step[3 * low + c])
         dq[e] = stiff[e] * stretch
-    return True
+        slope += gap[e] * dq[e]
+    return slope
 
 
 def out_of_balance(x, ends, k, rest, ground, pull, left):  # type: ignore[no-untyped-def]
@@ -176,78 +221,45 @@ class Climb:
         self.starts3 = _starts(self.first3)
         self.matrix, self.matrix3 = np.empty(self.starts[-1]), np.empty(self.starts3[-1])
         self.left, self.step = np.empty((3, free)), np.empty(3 * free)
-        self.q, self.gap, self.dq = np.empty(m), np.empty(m), np.empty(m)
-        self.stretches = net.rest > 0.0
-        self.soft = np.where(self.stretches, 1.0 / net.k, 0.0)
+        self.q, self.gap, self.dq, self.now = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+        self.springs = (net.k, net.rest, net.ground)
+        self.given = (*self.springs, net.pull, net.first, self.starts, self.matrix, self.left, self.gap)
 
-    def settle(self, q: Floats) -> bool:
-        """Take force densities; False where nothing holds the particles then."""
-        net = self.net
-        self.q = q
-        return bool(
-            kernels.compiled(settle)(
-                self.x, net.ends, q, net.k, net.rest, net.ground, net.pull, net.first, self.starts, self.matrix,
-                self.left, self.gap,
-            )
-        )  # fmt: skip
-
-    def same_tension(self, tension: float) -> float:
+    def share(self, tension: float) -> float:
         """Give all springs one tension [force]; how D changes with its logarithm, nan where it holds nothing."""
-        q = self.net.k.copy()
-        np.divide(tension, self.net.rest + tension * self.soft, out=q, where=self.stretches)
-        return float((self.gap * q * (1.0 - q * self.soft)).sum()) if self.settle(q) else np.nan
+        return float(kernels.compiled(share)(tension, self.x, self.net.ends, self.q, *self.given))
 
     def begin(self, tension: float) -> bool:
         """From the best tension that all springs could share, within a factor of 2; False where there is none."""
-        slope = self.same_tension(tension)
+        slope = self.share(tension)
         factor = 4.0 if slope > 0.0 else 0.25
         rising = slope > 0.0
         for _ in range(60):
             if np.isnan(slope) or (slope > 0.0) != rising:
                 break
             tension *= factor
-            slope = self.same_tension(tension)
-        return not np.isnan(self.same_tension(tension / np.sqrt(factor)))
+            slope = self.share(tension)
+        return not np.isnan(self.share(tension / factor**0.5))
 
     def onward(self) -> bool:
         """One Newton step, shortened until D does not fall beyond it; False where there is none."""
-        net = self.net
-        if not kernels.compiled(direction)(
-            self.x, net.ends, self.q, net.k, net.rest, net.ground, self.gap, self.first3, self.starts3, self.matrix3,
-            self.step, self.dq,
-        ):  # fmt: skip
+        ends = self.net.ends
+        slope = kernels.compiled(direction)(
+            self.x, ends, self.q, *self.springs, self.gap, self.first3, self.starts3, self.matrix3, self.step, self.dq
+        )
+        if np.isnan(slope):
             return False
-        slope = float((self.gap * self.dq).sum())
-        q = self.q
         for part, careful in ((1.0, False), *((0.5**i, True) for i in range(10))):
-            now, rate = self.trial(q, part, careful)
-            if self.settle(now) and float((self.gap * rate).sum()) >= -0.9 * slope:
+            there = kernels.compiled(attempt)(part, careful, self.x, ends, self.q, self.dq, *self.given, self.now)
+            if there >= -0.9 * slope:
+                self.q, self.now = self.now, self.q
                 return True
         return False
-
-    def trial(self, q: Floats, part: float, careful: bool) -> tuple[Floats, Floats]:
-        """Force densities a part of a step away, and how they change there.
-
-        Where they grow it is the length asked for that grows evenly, so that none reaches k; with care none falls
-        below a tenth of itself.
-        """
-        # 1 / (1 - q/k) is the length asked for by L0, and grows by dq / k times its square
-        grown = 1.0 / (1.0 - q * self.soft)
-        more = 1.0 + np.maximum(part * self.dq, 0.0) * self.soft * grown
-        up = self.dq > 0.0
-        now = np.where(up, self.net.k * (1.0 - 1.0 / (grown * more)), q + part * self.dq)
-        rate = np.where(up, self.dq / more**2, self.dq)
-        if careful:
-            little = (q > 0.0) & (now < 0.1 * q)
-            now[little], rate[little] = 0.1 * q[little], 0.0
-        return now, rate
 
     def out_of_balance(self) -> float:
         """The largest force left on a particle."""
         net = self.net
-        return float(
-            kernels.compiled(out_of_balance)(self.x, net.ends, net.k, net.rest, net.ground, net.pull, self.left)
-        )
+        return float(kernels.compiled(out_of_balance)(self.x, net.ends, *self.springs, net.pull, self.left))
 
     def polish(self, goal: float) -> bool:
         """Correct positions by what the springs' own law leaves; False, and back, unless that comes to the goal.
@@ -323,43 +335,52 @@ class Method(Solver):
 def _net(system: System, state: State) -> Net | None:
     """The net of a state; none where it is more than chains, or particles are held on some axes alone."""
     held = state.free[:, 0] == 0.0
-    if (held[:, None] != (state.free == 0.0)).any():
+    if not all(np.array_equal(state.free[:, 0], state.free[:, axis]) for axis in (1, 2)):
         return None
     n = len(held)
-    ends, k, rest = _springs(system, held)
-    loads, _, _ = system.evaluate(state, only="load")
-    ground, pull = np.zeros(n), loads
+    one, other, k, rest = _springs(system, held)
+    ground, pull = np.zeros(n), system.evaluate(state, only="load")[0]
     for group in system.groups:
         if group.cls is AnchorSpring:
             particles, p = group.block.indices[:, 0], group.block.parameters
             ground += np.bincount(particles, p[:, 0], n)
             for axis in range(3):
                 pull[:, axis] += np.bincount(particles, p[:, 0] * p[:, 1 + axis], n)
-    springs = np.bincount(ends.ravel(), minlength=n)
+    springs = np.bincount(one, minlength=n) + np.bincount(other, minlength=n)
     # what nothing touches stays where it is
-    free = ~held & ((springs > 0) | (ground > 0) | pull.any(axis=1))
+    free = ~held & ((springs > 0) | (ground > 0) | (pull[:, 0] != 0) | (pull[:, 1] != 0) | (pull[:, 2] != 0))
     count = int(free.sum())
     if not count or not (rest > 0).any() or (springs[free] <= 2).sum() < CHAINS * count:
         return None
     particles = np.concatenate([np.flatnonzero(free), np.flatnonzero(~free)])
-    place = np.empty(n, np.int64)
-    place[particles] = np.arange(n)
-    pairs = place[ends]
-    found = order(count, pairs[(pairs < count).all(axis=1)], WORK)
+    low, high = _numbered(particles, one, other)
+    inner = high < count
+    found = order(count, low[inner], high[inner], WORK)
     if found is None:
         return None
     particles[:count] = particles[found]
-    place[particles] = np.arange(n)
-    pairs = np.sort(place[ends], axis=1)
-    first = first_entries(count, pairs[pairs[:, 1] < count])
+    low, high = _numbered(particles, one, other)
+    inner = high < count
+    first = first_entries(count, low[inner], high[inner])
     chosen = particles[:count]
-    return Net(particles, pairs, k, rest, ground[chosen], np.ascontiguousarray(pull[chosen]), first)
+    ends = np.column_stack([low, high])
+    return Net(particles, ends, k, rest, ground[chosen], np.ascontiguousarray(pull[chosen]), first)
 
 
-def _springs(system: System, held: NDArray[np.bool_]) -> tuple[Ints, Floats, Floats]:
-    """Ends, stiffness and rest length of the springs that do something."""
+def _numbered(particles: Ints, one: Ints, other: Ints) -> tuple[Ints, Ints]:
+    """Ends of the springs, lower first, by their places among `particles`."""
+    place = np.empty(len(particles), np.int64)
+    place[particles] = np.arange(len(particles))
+    return np.minimum(place[one], place[other]), np.maximum(place[one], place[other])
+
+
+def _springs(system: System, held: NDArray[np.bool_]) -> tuple[Ints, Ints, Floats, Floats]:
+    """Both ends, stiffness and rest length of the springs that do something."""
     groups = [g for g in system.groups if g.cls is Springs]
-    ends = np.concatenate([np.zeros((0, 2), np.int64), *(g.block.indices for g in groups)])
-    table = np.concatenate([np.zeros((0, 7)), *(g.block.parameters for g in groups)])
-    acts = (table[:, 0] > 0) & (ends[:, 0] != ends[:, 1]) & ~held[ends].all(axis=1)
-    return ends[acts], table[acts, 0], table[acts, 2] * table[acts, 3]
+    if not groups:
+        return np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0)
+    ends, p = groups[0].block.indices, groups[0].block.parameters  # a system has one group of each force
+    one, other = ends.T
+    acts = np.flatnonzero((p[:, 0] > 0) & (one != other) & ~(held[one] & held[other]))
+    p = p[acts]
+    return one[acts], other[acts], p[:, 0].copy(), p[:, 2] * p[:, 3]

@@ -68,32 +68,33 @@ def profile_work(first, most):  # type: ignore[no-untyped-def]
     return work
 
 
-def first_entries(count: int, pairs: Ints) -> Ints:
-    """First column of each row of a symmetric matrix (count,) with entries at `pairs` (m, 2) and on the diagonal."""
+def first_entries(count: int, low: Ints, high: Ints) -> Ints:
+    """First column of each row of a symmetric matrix (count,) with entries at rows `high` and columns `low` (m,), and
+    on the diagonal."""
     first = np.arange(count)
-    np.minimum.at(first, pairs.max(axis=1), pairs.min(axis=1))
+    np.minimum.at(first, high, low)
     return first
 
 
-def order(count: int, pairs: Ints, most: int) -> Ints | None:
-    """An order of `count` particles joined by `pairs` in which a factor takes at most `most` products a particle.
+def order(count: int, low: Ints, high: Ints, most: int) -> Ints | None:
+    """An order of `count` particles joined in pairs in which a factor takes at most `most` products a particle.
 
     Their own order where that will do, else reverse Cuthill-McKee; none if neither does.
     """
     own = np.arange(count)
-    if _fits(count, pairs, most):
+    if _fits(first_entries(count, low, high), most):
         return own
     import scipy.sparse as sparse
     from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-    ones = np.ones(len(pairs))
-    net = sparse.csr_matrix((ones, (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    net = sparse.csr_matrix((np.ones(len(low)), (low, high)), shape=(count, count))
     found = reverse_cuthill_mckee(net + net.T, symmetric_mode=True).astype(np.int64)
     place = np.empty(count, np.int64)
     place[found] = own
-    return found if _fits(count, place[pairs], most) else None
+    one, other = place[low], place[high]
+    return found if _fits(first_entries(count, np.minimum(one, other), np.maximum(one, other)), most) else None
 
 
-def _fits(count: int, pairs: Ints, most: int) -> bool:
-    limit = most * count
-    return bool(kernels.compiled(profile_work)(first_entries(count, pairs), limit) <= limit)
+def _fits(first: Ints, most: int) -> bool:
+    limit = most * len(first)
+    return bool(kernels.compiled(profile_work)(first, limit) <= limit)
