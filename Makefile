@@ -20,7 +20,8 @@ soak: .venv/test
 	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile
 
 bench: .venv/test
-	$(BIN)/python benchmarks/run.py $(if $(wildcard ../shared/bench),--shared ../shared/bench)
+	$(BIN)/python benchmarks/run.py $(if $(wildcard ../shared/bench),--shared ../shared/bench) \
+		$(if $(BENCH),$(BENCH),--readme README.md)
 
 bench-service: .venv/test
 	$(BIN)/python benchmarks/service.py

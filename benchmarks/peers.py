@@ -6,8 +6,8 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
-import os
 import sys
 import time
 from collections.abc import Callable
@@ -22,15 +22,23 @@ from problems import Floats, Problem, residual
 
 @dataclass
 class Run:
-    """One solve: its seconds, iterations (0: not told), and the shape it ended at."""
+    """One solve: its seconds, iterations (0: not told), the shape it ended at, and passes over all springs."""
 
     seconds: float
     iterations: int
     x: Floats
+    work: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.work = self.work or float(self.iterations)
 
 
 class Unfit(Exception):
     """A peer cannot do this problem; the message says why."""
+
+
+class _Enough(Exception):
+    pass
 
 
 Peer = Callable[[Problem, float, float], Run]
@@ -91,6 +99,150 @@ def numba_dr(p: Problem, target: float, most: float) -> Run:
         aside += time.perf_counter() - paused
 
 
+@numba.njit(fastmath=True)  # type: ignore[untyped-decorator]
+def _momentum(x, v, f, load, inverse, a, b, k, l0, count):  # type: ignore[no-untyped-def]
+    for _ in range(count):
+        for i in range(len(x)):
+            for c in range(3):
+                x[i, c] += v[i, c]
+                f[i, c] = load[i, c]
+        for e in range(len(k)):
+            i, j = a[e], b[e]
+            dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+            q = k[e]
+            if l0[e] > 0.0:
+                q -= k[e] * l0[e] / np.sqrt(dx * dx + dy * dy + dz * dz)
+            f[i, 0] += q * dx
+            f[i, 1] += q * dy
+            f[i, 2] += q * dz
+            f[j, 0] -= q * dx
+            f[j, 1] -= q * dy
+            f[j, 2] -= q * dz
+        for i in range(len(x)):
+            against = 0.0
+            for c in range(3):
+                push = f[i, c] * inverse[i]
+                v[i, c] += push
+                x[i, c] += push
+                against += push * v[i, c]
+            if against < 0.0:
+                for c in range(3):
+                    v[i, c] *= 0.9
+
+
+def numba_k2(p: Problem, target: float, most: float) -> Run:
+    """Kangaroo 2's iteration: weighted means of what springs (weight 2k) and loads (1) propose, with momentum."""
+    begun = time.perf_counter()
+    weight = 2.0 * np.bincount(p.springs.ravel(), np.repeat(p.k, 2), len(p.x)) + p.load.any(axis=1)
+    inverse = 1.0 / weight
+    inverse[p.fixed] = 0.0
+    x, v, f = p.x.copy(), np.zeros_like(p.x), np.zeros_like(p.x)
+    a, b = (np.ascontiguousarray(p.springs[:, c], dtype=np.int32) for c in (0, 1))
+    done, aside = 0, 0.0
+    while True:
+        count = max(10, done // 50)
+        _momentum(x, v, f, p.load, inverse, a, b, p.k, p.l0, count)
+        done += count
+        paused = time.perf_counter()
+        seconds = paused - begun - aside
+        if residual(p, x) <= target or seconds > most:
+            return Run(seconds, done, x)
+        aside += time.perf_counter() - paused
+
+
+def lbfgsb(p: Problem, target: float, most: float) -> Run:
+    """scipy's L-BFGS-B on the energy, with 20 pairs."""
+    from scipy import optimize, sparse
+
+    begun = time.perf_counter()
+    count, free = len(p.springs), np.flatnonzero(p.free)
+    incidence = sparse.csr_array(
+        (np.tile([-1.0, 1.0], count), (np.repeat(np.arange(count), 2), p.springs.ravel())), (count, len(p.x))
+    )
+    back = incidence.T.tocsr()
+    steps, due, aside, run = 0, 0, 0.0, Run(0.0, 0, p.x)
+
+    def placed(u: Floats) -> Floats:
+        x = p.x.copy()
+        x[free] = u.reshape(-1, 3)
+        return x
+
+    def energy(u: Floats) -> tuple[float, Floats]:
+        x = placed(u)
+        d = incidence @ x
+        length = np.sqrt((d * d).sum(axis=1))
+        q = p.k - np.divide(p.k * p.l0, length, out=np.zeros(count), where=length > 0)
+        gradient = back @ (q[:, None] * d) - p.load
+        return float(0.5 * (p.k * (length - p.l0) ** 2).sum() - (p.load * x).sum()), gradient[free].ravel()
+
+    def look(u: Floats) -> None:
+        nonlocal steps, due, aside, run
+        steps += 1
+        if steps >= due:
+            paused = time.perf_counter()
+            run = Run(paused - begun - aside, steps, placed(u))
+            if residual(p, run.x) <= target or run.seconds > most:
+                raise _Enough
+            due = steps + max(10, steps // 50)
+            aside += time.perf_counter() - paused
+
+    with contextlib.suppress(_Enough):
+        options = {"maxcor": 20, "ftol": 0, "gtol": 0, "maxiter": 10**7, "maxfun": 10**7}
+        found = optimize.minimize(
+            energy, p.x[free].ravel(), jac=True, method="L-BFGS-B", callback=look, options=options
+        )
+        run = Run(time.perf_counter() - begun - aside, steps, placed(found.x))
+    return run
+
+
+def scipy_fdm(p: Problem, target: float, most: float) -> Run:
+    """The force density method with scipy's sparse solver: one factor, three right-hand sides."""
+    from scipy import sparse
+    from scipy.sparse.linalg import splu
+
+    _only_linear(p)
+    begun = time.perf_counter()
+    free, n = np.flatnonzero(p.free), len(p.x)
+    a, b = p.springs.T
+    rows, columns = np.concatenate([a, b, a, b]), np.concatenate([a, b, b, a])
+    whole = sparse.csr_array((np.concatenate([p.k, p.k, -p.k, -p.k]), (rows, columns)), (n, n))[free]
+    x = p.x.copy()
+    right = p.load[free] - whole[:, p.fixed] @ x[p.fixed]
+    x[free] = splu(whole[:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve(right)
+    return Run(time.perf_counter() - begun, 1, x)
+
+
+def shapeop(p: Problem, target: float, most: float) -> Run:
+    """ShapeOp (C++, projective dynamics) in its static mode: edge strains of weight k L, anchors of weight 1e6."""
+    from compas_shapeop.shapeop import Solver
+
+    if p.load.any() and np.ptp(p.load, axis=0).any():
+        raise Unfit("loads that differ cost it the square of their number")
+    begun = time.perf_counter()
+    solver = Solver()
+    solver.points = p.x
+    length = np.linalg.norm(p.x[p.springs[:, 1]] - p.x[p.springs[:, 0]], axis=1)
+    for (a, b), w, part in zip(p.springs.tolist(), (p.k * length).tolist(), (p.l0 / length).tolist(), strict=True):
+        solver.add_edge_strain_constraint(a, b, w, part, part)
+    for i in p.fixed.tolist():
+        solver.add_closeness_constraint(i, 1e6)
+    if p.load.any():
+        solver.add_gravity_force(*p.load[0].tolist())
+    solver.init()
+    done, due, aside = 0, 0, 0.0
+    while True:
+        solver.solve(10)
+        done += 10
+        if done < due:
+            continue
+        paused = time.perf_counter()
+        run = Run(paused - begun - aside, done, np.array(solver.points))
+        if residual(p, run.x) <= target or run.seconds > most:
+            return run
+        due = done + done // 50
+        aside += time.perf_counter() - paused
+
+
 def compas_dr(p: Problem, target: float, most: float) -> Run:
     """compas_dr: viscous relaxation with c = 0.02; EA / l0 = k, and a rest length of 0 as a force density k."""
     from compas_dr.numdata import InputData
@@ -121,10 +273,6 @@ def compas_dr(p: Problem, target: float, most: float) -> Run:
     except _Enough:
         return run
     return run
-
-
-class _Enough(Exception):
-    pass
 
 
 def compas_fd(p: Problem, target: float, most: float) -> Run:
@@ -184,6 +332,7 @@ def shared_dr(folder: Path) -> Peer:
 
 
 PACKAGES: dict[str, tuple[str, Peer]] = {
+    "ShapeOp": ("compas_shapeop", shapeop),
     "compas_dr": ("compas_dr", compas_dr),
     "compas_fd": ("compas_fd", compas_fd),
     "jax_fdm": ("jax_fdm", jax_fdm),
@@ -192,12 +341,10 @@ PACKAGES: dict[str, tuple[str, Peer]] = {
 
 def available(shared: Path | None) -> tuple[dict[str, Peer], list[str]]:
     """Peers that can run here, and a sentence for each that cannot."""
-    peers: dict[str, Peer] = {"numba-dr": numba_dr}
-    said = []
-    if shared is not None and os.path.exists(shared / "base.py"):
-        peers["numba-dr (shared)"] = shared_dr(shared)
-    elif shared is not None:
-        said.append(f"numba-dr (shared): there is no base.py in {shared}.")
+    given = shared is not None and (shared / "base.py").exists()
+    peers: dict[str, Peer] = {"numba-dr": shared_dr(shared) if given and shared is not None else numba_dr}
+    peers.update({"numba-k2": numba_k2, "L-BFGS-B": lbfgsb, "scipy FDM": scipy_fdm})
+    said = ["numba-dr is that of the shared bench." if given else "numba-dr is that of peers.py."]
     for name, (module, peer) in PACKAGES.items():
         if importlib.util.find_spec(module) is None:
             said.append(f"{name} is not installed; 'pip install {module}' adds it to the table.")
