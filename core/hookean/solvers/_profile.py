@@ -79,20 +79,32 @@ def first_entries(count: int, low: Ints, high: Ints) -> Ints:
 def order(count: int, low: Ints, high: Ints, most: int) -> Ints | None:
     """An order of `count` particles joined in pairs in which a factor takes at most `most` products a particle.
 
-    Their own order where that will do, else reverse Cuthill-McKee; none if neither does.
+    Their own order where that will do, else one chain after the other and where they meet last, or reverse
+    Cuthill-McKee; none if none of them does.
     """
     own = np.arange(count)
     if _fits(first_entries(count, low, high), most):
         return own
+    meets = np.bincount(low, minlength=count) + np.bincount(high, minlength=count) > 2
+    alone = ~(meets[low] | meets[high])
+    by_chains = _cuthill_mckee(count, low[alone], high[alone])
+    by_chains = np.concatenate([by_chains[~meets[by_chains]], np.flatnonzero(meets)])
+    for found in (by_chains, _cuthill_mckee(count, low, high)):
+        place = np.empty(count, np.int64)
+        place[found] = own
+        one, other = place[low], place[high]
+        if _fits(first_entries(count, np.minimum(one, other), np.maximum(one, other)), most):
+            return found
+    return None
+
+
+def _cuthill_mckee(count: int, low: Ints, high: Ints) -> Ints:
     import scipy.sparse as sparse
     from scipy.sparse.csgraph import reverse_cuthill_mckee
 
     net = sparse.csr_matrix((np.ones(len(low)), (low, high)), shape=(count, count))
-    found = reverse_cuthill_mckee(net + net.T, symmetric_mode=True).astype(np.int64)
-    place = np.empty(count, np.int64)
-    place[found] = own
-    one, other = place[low], place[high]
-    return found if _fits(first_entries(count, np.minimum(one, other), np.maximum(one, other)), most) else None
+    found: Ints = reverse_cuthill_mckee(net + net.T, symmetric_mode=True).astype(np.int64)
+    return found
 
 
 def _fits(first: Ints, most: int) -> bool:
