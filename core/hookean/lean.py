@@ -30,6 +30,8 @@ class Lean:
 
     full: Any
     packed: Any
+    quiet: Any  # the packed ones that change with the places of particles alone
+    lively: Any  # and those that change with their speeds, or at the end of a step
     load: Floats
     calls: tuple[list[Any], list[Any]]  # kernels with their arrays, in full and packed, as the tables have them
 
@@ -39,6 +41,8 @@ def lean(system: System, state: State, *, damped: bool) -> Lean:
     load = np.zeros_like(state.x)
     full: list[Any] = []
     packed: list[Any] = []
+    quiet: list[Any] = []
+    lively: list[Any] = []
     for group, memory in zip(system.groups, state.memory, strict=True):
         b, kernel = group.block, group.cls.kernel
         if group.cls.constant:
@@ -46,7 +50,10 @@ def lean(system: System, state: State, *, damped: bool) -> Lean:
         else:
             full.append((kernel, (b.indices, b.parameters, memory)))
             packed.append((kernel, (*_packed(group, memory, damped), memory)))
-    return Lean(kernels.table("force", full), kernels.table("force", packed), load, (full, packed))
+            (lively if damped and (group.damped or group.yields) else quiet).append(packed[-1])
+    every = kernels.table("force", packed)
+    still = kernels.table("force", quiet) if lively else every
+    return Lean(kernels.table("force", full), every, still, kernels.table("force", lively), load, (full, packed))
 
 
 def contacts(system: System) -> tuple[Any, Any]:

@@ -36,6 +36,21 @@ class Group:
     block: Block
     parts: list[Part]
 
+    @property
+    def damped(self) -> bool:
+        """Whether it reads the velocities."""
+        return self.cls.damped and self._uses("damping")
+
+    @property
+    def yields(self) -> bool:
+        """Whether it may change at the end of a step because of what it remembers."""
+        return self.cls.remembers and self._uses("plasticity")
+
+    def _uses(self, column: str) -> bool:
+        """Whether the parameters of this name are not all zero; yes where there are none of this name."""
+        columns = [i for i, name in enumerate(self.block.names) if name == column]
+        return not columns or any(self.block.parameters[:, i].any() for i in columns)
+
     def of(self, part: Part) -> Block:
         """The part's own rows, as views."""
         b = self.block
@@ -85,12 +100,12 @@ class System:
     @property
     def damped(self) -> bool:
         """Whether any force reads the velocities."""
-        return any(g.cls.damped and _uses(g, "damping") for g in self.groups)
+        return any(g.damped for g in self.groups)
 
     @property
     def yields(self) -> bool:
         """Whether any force may change at the end of a step because of what it remembers."""
-        return any(g.cls.remembers and _uses(g, "plasticity") for g in self.groups)
+        return any(g.yields for g in self.groups)
 
     def start(self) -> State:
         """The state before the first iteration: anchors at their targets, memories empty."""
@@ -176,12 +191,6 @@ class System:
                     sides.append(f.reshape(count, -1))
                 blocks[:, :, 3 * i + c] = (sides[1] - sides[0]) / (2.0 * step)[:, None]
         return 0.5 * (blocks + blocks.transpose(0, 2, 1))
-
-
-def _uses(group: Group, column: str) -> bool:
-    """Whether a group's parameters of this name are not all zero; yes where it has none of this name."""
-    columns = [i for i, name in enumerate(group.block.names) if name == column]
-    return not columns or bool((group.block.parameters[:, columns] != 0).any())
 
 
 def hold(state: State, anchor: Held) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
@@ -40,6 +40,7 @@ class Block:
     parameters: Floats
     memory: Floats
     names: tuple[str, ...] = ()
+    plan: list[Any] = field(default_factory=list)  # what `Force.pack` keeps of the indices, which never change
 
     @classmethod
     def of(cls, indices: Any, *, memory: int = 0, **columns: Any) -> Block:

@@ -12,6 +12,7 @@ from pydantic import Field
 from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.dihedral import SLIVER, fold, fold_angles, wrapped
+from hookean.forces.shell_edges import bend, packed, plan
 
 Complex = NDArray[np.complex128]
 
@@ -27,8 +28,16 @@ STRENGTH, FACTOR, AREA, REST, BOUND, ROWS = 0, 1, 2, 3, 12, 21  # columns of the
 
 def shell_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
+    if indices.shape[0] == 1 and indices.shape[1] != 12:
+        bend(x, indices[0], parameters[0], f)
+        return energy
     g = np.zeros((9, 4, 5))
     active = np.zeros(9, np.bool_)
+    # folds that a neighbour has found already, in the same order; as many as a cache holds
+    places = 16
+    while places < 2 * indices.shape[0] and places < 4096:
+        places *= 2
+    known, angles, folds = np.full((places, 4), -1), np.zeros(places), np.zeros((places, 4, 5))
     for e in range(indices.shape[0]):
         bent_x = 0.0
         bent_y = 0.0
@@ -37,13 +46,20 @@ def shell_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-un
             active[h] = False
             if parameters[e, BOUND + h] == 0.0:
                 continue
-            angle = fold(
-                x, indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]],
-                indices[e, HINGES[h, 3]], g[h],
+            a, b, c, d = (
+                indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]], indices[e, HINGES[h, 3]]
             )  # fmt: skip
+            at = (a * 73856093 ^ b * 19349663 ^ c * 83492791 ^ d * 39916801) & (places - 1)
+            if known[at, 0] != a or known[at, 1] != b or known[at, 2] != c or known[at, 3] != d:
+                known[at, 0], known[at, 1], known[at, 2], known[at, 3] = a, b, c, d
+                angles[at] = fold(x, a, b, c, d, folds[at])
+            angle = angles[at]
             if np.isnan(angle):
                 continue
             active[h] = True
+            for i in range(4):
+                for j in range(5):
+                    g[h, i, j] = folds[at, i, j]
             turn = wrapped(angle - parameters[e, FACTOR] * parameters[e, REST + h])
             bent_x += parameters[e, ROWS + h] * turn
             bent_y += parameters[e, ROWS + 9 + h] * turn
@@ -115,6 +131,21 @@ class Shell(Force):
             bounds=bound,
             rows=rows.reshape(-1, 27),
         )
+
+    @classmethod
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
+        """The edges, each once, then the elements by their edges; see `shell_edges`."""
+        p = block.parameters
+        if not len(p):
+            return None
+        if not block.plan:
+            block.plan.extend(plan(block.indices[:, HINGES], p[:, BOUND:ROWS] != 0.0))
+        index, seen, sign, *before = block.plan
+        if not before or not np.array_equal(before[0], p):
+            rows = np.sqrt(p[:, STRENGTH])[:, None, None] * p[:, ROWS:].reshape(-1, 3, 9)
+            before = [p.copy(), packed(seen, sign, p[:, FACTOR, None] * p[:, REST:BOUND], rows)]
+            block.plan[3:] = before
+        return index, before[1].copy()
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Largest fold of each triangle's edges away from rest [rad], bending moment D |K| per width [force]."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @device
-def start_step(f: Any, x: Any, v: Any, pull: Any, load: Any, drag: Any, dt: Any, seen: Any) -> None:
+def start_step(f: Any, base: Any, x: Any, v: Any, pull: Any, load: Any, drag: Any, dt: Any, seen: Any) -> None:
     """Half a step of speed, a whole one of place; the speed that forces are to see next, and the loads alone.
 
     These passes run over flat arrays; `pull` is 1/m, and 0 on held axes, which go on as fast as their anchor is led.
@@ -32,7 +32,7 @@ def start_step(f: Any, x: Any, v: Any, pull: Any, load: Any, drag: Any, dt: Any,
         v[i] += 0.5 * dt * a
         x[i] += dt * v[i]
         seen[i] = v[i] + 0.5 * dt * a
-        f[i] = load[i]
+        base[i] = load[i]
 
 
 @device
@@ -66,8 +66,8 @@ def only_free(raw: Any, free: Any, f: Any) -> None:
 
 @device
 def start_among_contacts(
-    hits: Any, rests: Any, raw: Any, f: Any, x: Any, v: Any, free: Any, pull: Any, load: Any, mass: Any, carried: Any,
-    x_before: Any, v_before: Any, a: Any, drag: Any, dt: Any, seen: Any,
+    hits: Any, rests: Any, raw: Any, base: Any, f: Any, x: Any, v: Any, free: Any, pull: Any, load: Any, mass: Any,
+    carried: Any, x_before: Any, v_before: Any, a: Any, drag: Any, dt: Any, seen: Any,
 ) -> None:  # fmt: skip
     """`start_step` where contacts carry and catch."""
     only_free(raw, free, f)
@@ -83,32 +83,39 @@ def start_among_contacts(
     for i in range(x.shape[0]):
         for c in range(4):
             seen[i, c] = v[i, c] + 0.5 * dt * a[i, c]
-            raw[i, c] = load[i, c]
+            base[i, c] = load[i, c]
 
 
 def verlet_loop(  # type: ignore[no-untyped-def]
-    packed, hits, rests, noted, x, v, free, pull, load, mass, raw, w, f, carried, x_before, v_before, acceleration,
-    seen, drag, steps, contacts, changing, count,
+    quiet, lively, hits, rests, noted, x, v, free, pull, load, mass, raw, base, w, f, carried, x_before, v_before,
+    acceleration, seen, drag, steps, contacts, count,
 ):  # fmt: skip
     last = count * steps.shape[0] - 1
     started = False
+    changing = len(lively) > 0  # else `raw` and `base` are one array
     size = x.size
     flat_x, flat_v, flat_pull, flat_load = x.reshape(size), v.reshape(size), pull.reshape(size), load.reshape(size)
-    flat_raw, flat_f, flat_seen = raw.reshape(size), f.reshape(size), seen.reshape(size)
+    flat_raw, flat_base, flat_f, flat_seen = raw.reshape(size), base.reshape(size), f.reshape(size), seen.reshape(size)
     for s in range(last + 1):
         dt = steps[s % steps.shape[0]]
         if not started:
-            if s == 0 or changing:
-                raw[:, :] = load
-                forces(packed, x, v, raw, w)
+            if s == 0:
+                base[:, :] = load
+                forces(quiet, x, v, base, w)
+            if changing:
+                raw[:, :] = base
+                forces(lively, x, v, raw, w)
             if contacts:
                 start_among_contacts(
-                    hits, rests, raw, f, x, v, free, pull, load, mass, carried, x_before, v_before, acceleration, drag,
-                    dt, seen,
+                    hits, rests, raw, base, f, x, v, free, pull, load, mass, carried, x_before, v_before, acceleration,
+                    drag, dt, seen,
                 )  # fmt: skip
             else:  # the same in one pass over memory
-                start_step(flat_raw, flat_x, flat_v, flat_pull, flat_load, drag, dt, flat_seen)
-        forces(packed, x, seen, raw, w)
+                start_step(flat_raw, flat_base, flat_x, flat_v, flat_pull, flat_load, drag, dt, flat_seen)
+        forces(quiet, x, seen, base, w)
+        if changing:
+            raw[:, :] = base
+            forces(lively, x, seen, raw, w)
         started = not (contacts or changing or s == last)
         if contacts:
             only_free(raw, free, f)
@@ -139,8 +146,10 @@ class Method(Solver):
         own = lean(system, state, damped=True)
         pull = state.free / system.mass[:, None]
         given = (state.x, state.v, state.free, pull, own.load)
-        x, v, free, pull, load, *rows = self._desk.lay(n, *given, *[None] * (7 if system.contacts else 2))
-        raw, seen, *more = rows
+        x, v, free, pull, load, *rows = self._desk.lay(n, *given, *[None] * (8 if system.contacts else 3))
+        raw, base, seen, *more = rows
+        if not len(own.lively):
+            raw = base
         yields = system.yields
         noted = [
             (g.cls.end_of_step, (g.block.indices, g.block.parameters, memory))
@@ -148,9 +157,9 @@ class Method(Solver):
             if yields and g.cls.end_of_step is not None
         ]
         kernels.compiled(verlet_loop)(
-            own.packed, *contacts(system), kernels.table("remember", noted), x, v, free, pull, load, system.mass, raw,
-            np.zeros(n), *(more or [raw] * 5), seen, system.drag, step * np.array(self.weights), bool(system.contacts),
-            system.damped or yields, count,
+            own.quiet, own.lively, *contacts(system), kernels.table("remember", noted), x, v, free, pull, load,
+            system.mass, raw, base, np.zeros(n), *(more or [raw] * 5), seen, system.drag, step * np.array(self.weights),
+            bool(system.contacts), count,
         )  # fmt: skip
         state.x[:], state.v[:] = x[:, :3], v[:, :3]
         state.iteration += count
