@@ -34,7 +34,7 @@ def warm() -> None:
         ],
         "anchors": [{"particles": [0, 2]}],
     }
-    for settings in ({}, {"solver": "verlet", "max_iterations": 10}):
+    for settings in ({}, {"solver": "relaxation"}, {"solver": "verlet", "max_iterations": 10}):
         relax(Scene.model_validate({**scene, "settings": settings}))
     for name in ("hookean_server.solve", "hookean_server.operations", "hookean.files.compas_json"):
         __import__(name)

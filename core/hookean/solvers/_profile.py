@@ -108,5 +108,7 @@ def _cuthill_mckee(count: int, low: Ints, high: Ints) -> Ints:
 
 
 def _fits(first: Ints, most: int) -> bool:
-    limit = most * len(first)
+    limit, lengths = most * len(first), np.arange(1, len(first) + 1) - first
+    if (lengths * lengths).sum() <= limit:  # at most as many as that
+        return True
     return bool(kernels.compiled(profile_work)(first, limit) <= limit)
