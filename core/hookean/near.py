@@ -28,10 +28,11 @@ class Few:
     def __init__(self, points: Floats) -> None:
         self.points = points
 
-    def query(self, places: Floats, k: int) -> tuple[Floats, Ints]:
+    def query(self, places: Floats, k: int, distance_upper_bound: float = np.inf) -> tuple[Floats, Ints]:
         """Distances (m, k) of the nearest points to each place, nearest first, and which they are.
 
-        Beyond the last point the distance is infinite and the number that of all points.
+        Beyond the last point the distance is infinite and the number that of all points. A bound makes nothing quicker
+        here, and points beyond it are told.
         """
         n = len(self.points)
         near, which = np.full((len(places), k), np.inf), np.full((len(places), k), n, dtype=np.int64)

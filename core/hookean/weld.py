@@ -161,8 +161,8 @@ class Welded:
 
         vertices, data = self.vertices(mesh), self.scene.meshes[mesh]
         # edges of the welded mesh: vertices that became one particle share their edges
-        first = {int(p): i for i, p in reversed(list(enumerate(vertices)))}
-        own = np.array([first[int(p)] for p in vertices], dtype=np.int64)
+        _, first, which_one = np.unique(vertices, return_index=True, return_inverse=True)
+        own = first[which_one]
         plain = Mesh(data.vertices, own[data.faces] if len(data.faces) else data.faces)
         which, _, pattern = choice.partition("_")
         if which in ("warp", "weft"):
@@ -197,7 +197,9 @@ class Welded:
         if not len(self.x) or not len(flat):
             distance, nearest = np.full(len(flat), np.inf), np.full(len(flat), -1)
         else:
-            distances, which = self._tree.query(flat, k=2)
+            distances, which = self._tree.query(flat, k=2, distance_upper_bound=_bound(self.tolerance))
+            lost = distances[:, 0] > self.tolerance  # no bound for these: the report names the nearest
+            distances[lost], which[lost] = self._tree.query(flat[lost], k=2)
             distance, nearest = distances[:, 0], which[:, 0]
             # where more than one is near enough, the first one wins
             for i in np.flatnonzero(distances[:, 1] <= self.tolerance):
@@ -230,7 +232,7 @@ def weld(given: Floats, points: Floats, tolerance: float) -> tuple[Floats, Ints]
     if not len(points):
         return np.array(given, dtype=np.float64).reshape(-1, 3), np.zeros(0, np.int64)
     # equal coordinates first, in one sort; then only true near misses are looked at one by one
-    unique, first, inverse = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
+    unique, first, inverse = _distinct(points + 0.0)
     order = np.argsort(first, kind="stable")
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
@@ -238,14 +240,31 @@ def weld(given: Floats, points: Floats, tolerance: float) -> tuple[Floats, Ints]
     keeper = _keepers(merged, count, tolerance)
     kept = keeper == np.arange(len(merged))
     number = np.cumsum(kept) - 1
-    return np.ascontiguousarray(merged[kept]), number[keeper][count + rank[inverse.ravel()]]
+    return np.ascontiguousarray(merged[kept]), number[keeper][count + rank[inverse]]
+
+
+def _distinct(points: Floats) -> tuple[Floats, Ints, Ints]:
+    """Distinct rows (k, 3), where each is first, and which of them each row is; as `np.unique`, in half the time."""
+    order = np.lexsort(points.T)
+    ordered = points[order]
+    x, y, z = (ordered[1:] != ordered[:-1]).T
+    new = np.concatenate([[True], x | y | z])
+    which = np.empty(len(points), np.int64)
+    which[order] = np.cumsum(new) - 1
+    return ordered[new], order[new], which
+
+
+def _bound(tolerance: float) -> float:
+    """A little more than the tolerance, also squared: what is farther need not be looked for."""
+    return max(tolerance * 1.001, 1e-150)
 
 
 def _keepers(points: Floats, given: int, tolerance: float) -> Ints:
     """For each point the one it becomes: itself, or the first kept point within the tolerance."""
     keeper = np.arange(len(points))
     tree = near.tree(points)
-    for a in np.flatnonzero(tree.query(points, k=2)[0][:, 1] <= tolerance):
+    near_one = tree.query(points, k=2, distance_upper_bound=_bound(tolerance))[0][:, 1] <= tolerance
+    for a in np.flatnonzero(near_one):
         if keeper[a] != a:
             continue
         for b in tree.query_ball_point(points[a], tolerance):

@@ -31,7 +31,7 @@ def as_mesh(obj: Any) -> Mesh:
     finite, or a face that names no vertex or crosses itself.
     """
     if isinstance(obj, Mesh):
-        vertices, faces = obj.vertices, list(obj.faces)
+        vertices, faces = obj.vertices, obj.faces
     elif hasattr(obj, "Vertices") and hasattr(obj, "Faces"):
         vertices = np.array([[p.X, p.Y, p.Z] for p in (obj.Vertices[i] for i in range(len(obj.Vertices)))])
         faces = [obj.Faces[i] for i in range(len(obj.Faces))]
@@ -214,6 +214,9 @@ def _corner_triples(faces: Index) -> Iterable[tuple[Index, Index, Index]]:
 
 
 def _quads(points: Array, faces: Iterable[Any]) -> Index:
+    table = faces if isinstance(faces, np.ndarray) and faces.dtype == np.int64 else np.zeros(0, np.int64)
+    if table.shape[1:] == (4,) and table.size and table.min() >= 0 and table.max() < len(points):
+        return table.copy()
     rows: list[list[int]] = []
     for number, face in enumerate(faces):
         corner = [int(v) for v in face]
