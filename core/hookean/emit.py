@@ -13,15 +13,16 @@ from llvmlite import binding, ir
 from numba.core import cgutils, types
 from numba.core.compiler_lock import global_compiler_lock
 
-from hookean.machine import Unfit, helpers, readable
+from hookean.machine import DIFFERS, Kind, Unfit, helpers, letters, readable
 
 WORD = ir.IntType(64)
-DATA, SIZES = 2, 4  # words of numpy's array: where its numbers are, and its sizes; see `machine.readable`
+TYPE, DATA, DIMENSIONS, SIZES, LETTER, FLAGS = 1, 2, 3, 4, 7, 8  # words of numpy's array; see `machine.readable`
+GOOD = 0x501  # in C order, aligned, may be written
 
 
 @global_compiler_lock  # type: ignore[untyped-decorator]
-def emit(dispatcher: Any, values: tuple[Any, ...]) -> bytes:
-    """The content of a file for arguments like `values` (none: for what it was declared to take).
+def emit(dispatcher: Any, kind: Kind, values: tuple[Any, ...]) -> bytes:
+    """The content of a file for arguments of a kind, such as `values` (none: what it was declared to take).
 
     Raises Unfit where the function takes or returns what a row of numbers does not hold, or calls what it cannot find
     in a process without numba.
@@ -29,7 +30,7 @@ def emit(dispatcher: Any, values: tuple[Any, ...]) -> bytes:
     if sys.platform == "win32" or not readable():
         raise Unfit
     made = _made(dispatcher, values)
-    entry, result = _entry(made)
+    entry, result = _entry(made, kind)
     whole = binding.parse_bitcode(made.library._get_module_for_linking().as_bitcode())
     whole.link_in(binding.parse_assembly(cgutils.normalize_ir_text(entry)))
     machine = made.library.codegen._tm
@@ -64,13 +65,14 @@ def _only_entry(whole: Any, machine: Any) -> None:
     passes.run(whole, binding.create_pass_builder(machine, binding.create_pipeline_tuning_options()))
 
 
-def _entry(made: Any) -> tuple[str, str]:
-    """The function that takes a row of numbers, as LLVM's text, and a letter for each number it returns."""
+def _entry(made: Any, kind: Kind) -> tuple[str, str]:
+    """The function that takes a row of numbers, as LLVM's text, and what it returns, as `struct` has it."""
     context, signature = made.target_context, made.signature
     module = context.codegen()._create_empty_module("hookean_entry")
     entry = ir.Function(module, ir.FunctionType(ir.IntType(32), [WORD.as_pointer()]), "hookean_entry")
-    row = _Row(context, ir.IRBuilder(entry.append_basic_block()), entry.args[0])
-    arguments = [row.read(kind) for kind in signature.args]
+    row = _Row(context, ir.IRBuilder(entry.append_basic_block()), entry.args[0], kind)
+    row.check()
+    arguments = [row.read(one) for one in signature.args]
     function = context.declare_function(module, made.fndesc)
     native = ir.GlobalVariable(module, function.type, "hookean_native")
     native.global_constant, native.initializer = True, function
@@ -82,20 +84,50 @@ def _entry(made: Any) -> tuple[str, str]:
 
 
 class _Row:
-    """The row of numbers, read and written word by word."""
+    """The row of numbers, read and written word by word; see `machine.Entry`."""
 
-    def __init__(self, context: Any, builder: Any, start: Any) -> None:
-        self.context, self.builder, self.start, self.at = context, builder, start, 0
+    def __init__(self, context: Any, builder: Any, start: Any, kind: Kind) -> None:
+        self.context, self.builder, self.start, self.kind = context, builder, start, kind
+        self.letters = letters(kind)
+        self.at = 1 + len(self.letters)
 
-    def word(self) -> Any:
-        """Where the next word is."""
-        self.at += 1
-        return self.builder.gep(self.start, [WORD(self.at - 1)])
+    def word(self, at: int | None = None) -> Any:
+        """Where the next word is, or the one at a place."""
+        if at is None:
+            at, self.at = self.at, self.at + 1
+        return self.builder.gep(self.start, [WORD(at)])
+
+    def check(self) -> None:
+        """Return `DIFFERS` unless every array is one of numpy's, of its type and dimensions."""
+        build, first = self.builder, self.at
+        places = [(build.load(self.word(first + i)), k) for i, k in enumerate(self.kind) if isinstance(k, tuple)]
+        expected = build.load(self.word(0))
+        self._only_if([build.icmp_signed("==", self._field(a, TYPE), expected) for a, _ in places])
+        tests = []
+        for array, (letter, dimensions) in places:
+            own = build.load(self.word(1 + self.letters.index(letter)))
+            flags = build.and_(self._field(array, FLAGS), WORD(GOOD))
+            count = build.and_(self._field(array, DIMENSIONS), WORD(0xFFFFFFFF))
+            tests += [
+                build.icmp_signed("==", self._field(array, LETTER), own),
+                build.icmp_signed("==", flags, WORD(GOOD)),
+                build.icmp_signed("==", count, WORD(dimensions)),
+            ]
+        self._only_if(tests)
+
+    def _only_if(self, tests: list[Any]) -> None:
+        good = ir.IntType(1)(1)
+        for test in tests:
+            good = self.builder.and_(good, test)
+        with self.builder.if_then(self.builder.not_(good)):
+            self.builder.ret(ir.IntType(32)(DIFFERS))
+
+    def _field(self, address: Any, at: int) -> Any:
+        words = self.builder.inttoptr(address, WORD.as_pointer())
+        return self.builder.load(self.builder.gep(words, [WORD(at)]))
 
     def read(self, kind: Any) -> Any:
         """A value of numba's."""
-        if isinstance(kind, types.BaseTuple):  # type: ignore[attr-defined]
-            return self.context.make_tuple(self.builder, kind, [self.read(k) for k in kind.types])
         value = self.builder.load(self.word())
         if isinstance(kind, types.Array) and kind.layout == "C":
             return self._array(kind, value)
@@ -110,10 +142,8 @@ class _Row:
     def _array(self, kind: Any, address: Any) -> Any:
         """An array from the address of numpy's object."""
         build = self.builder
-        words = build.inttoptr(address, WORD.as_pointer())
-        data, sizes = (build.load(build.gep(words, [WORD(i)])) for i in (DATA, SIZES))
-        sizes = build.inttoptr(sizes, WORD.as_pointer())
-        shape = [build.load(build.gep(sizes, [WORD(i)])) for i in range(kind.ndim)]
+        sizes = self._field(address, SIZES)
+        shape = [self._field(sizes, i) for i in range(kind.ndim)]
         item = self.context.get_abi_sizeof(self.context.get_data_type(kind.dtype))
         strides, count = [WORD(item)], WORD(1)
         for size in reversed(shape[1:]):
@@ -123,12 +153,12 @@ class _Row:
         made = self.context.make_array(kind)(self.context, build)
         made.meminfo, made.parent = (cgutils.get_null_value(p.type) for p in (made.meminfo, made.parent))
         made.nitems, made.itemsize = count, WORD(item)
-        made.data = build.inttoptr(data, made.data.type)
+        made.data = build.inttoptr(self._field(address, DATA), made.data.type)
         made.shape, made.strides = (cgutils.pack_array(build, v, ty=WORD) for v in (shape, strides))
         return made._getvalue()
 
     def write(self, kind: Any, value: Any) -> str:
-        """Put what is returned behind what was read; a letter for each word."""
+        """Put what is returned behind what was read; what each word is, as `struct` has it."""
         if kind == types.none:
             return ""
         if isinstance(kind, types.BaseTuple):  # type: ignore[attr-defined]
@@ -137,7 +167,7 @@ class _Row:
         if kind == types.float64:
             letter, value = "d", self.builder.bitcast(value, WORD)
         elif kind == types.boolean:
-            letter, value = "b", self.builder.zext(value, WORD)
+            letter, value = "?7x", self.builder.zext(value, WORD)
         elif kind == types.int64:
             letter = "q"
         else:

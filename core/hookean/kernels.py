@@ -182,8 +182,8 @@ def _kind(role: str) -> Kind:
     """The same for code from the disk."""
     import numpy as np
 
-    real, whole = np.dtype(np.float64).num, np.dtype(np.int64).num
-    known: dict[str, Any] = {"real": "float", "i2": (whole, 2), **{f"x{n}": (real, n) for n in (1, 2, 3)}}
+    real, whole = np.dtype(np.float64).char, np.dtype(np.int64).char
+    known: dict[str, Any] = {"real": float, "i2": (whole, 2), **{f"x{n}": (real, n) for n in (1, 2, 3)}}
     return tuple(known[word] for word in _ROLES[role][1].split())
 
 

@@ -9,7 +9,6 @@ one, numba compiles; numba runs, too, what cannot be stored (see `emit`).
 
 from __future__ import annotations
 
-import array
 import ctypes
 import hashlib
 import importlib.util
@@ -28,7 +27,7 @@ from typing import Any
 import numpy as np
 
 Kind = tuple[Any, ...]
-"""Types of arguments: (numpy's number of the type, dimensions) for an array, a kind for a tuple, else a word."""
+"""Types of arguments: (numpy's letter of the type, dimensions) for an array, else `float`, `int` or `bool`."""
 
 _BITS, _REAL = struct.Struct("q"), struct.Struct("d")
 
@@ -44,27 +43,24 @@ class Compiled:
         self.name, self.folder, self.dispatcher, self.kind = name, folder, dispatcher, kind
         self.loaded = self.made = 0  # how many were found on disk, and how many were not
         self._entries: dict[Kind, Entry | None] = {}
+        self._last: Entry | None = None
 
     def __call__(self, *values: Any) -> Any:
-        numbers: list[int] = []
-        try:
-            kind = row(values, numbers)
-            if self.kind is not None and kind != self.kind:
-                raise Unfit
-        except Unfit:
-            return self._by_numba(values)
-        try:
-            entry = self._entries[kind]
-        except KeyError:
-            entry = self.entry(kind, values)
-        return self._by_numba(values) if entry is None else entry(numbers)
+        if self._last is not None and (found := self._last(values)) is not UNFIT:
+            return found
+        kind = kind_of(values)
+        if kind is not None and (self.kind is None or kind == self.kind):
+            self._last = self.entry(kind, values) or self._last
+            if self._last is not None and (found := self._last(values)) is not UNFIT:
+                return found
+        return self.dispatcher()(*values)
 
     def entry(self, kind: Kind, values: tuple[Any, ...] = ()) -> Entry | None:
         """The code for arguments of a kind, such as `values`; None where only numba can run it."""
         if kind in self._entries:
             return self._entries[kind]
         path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
-        found = _load(path)
+        found = _load(path, kind)
         if found is not None:
             self.loaded += 1
         else:
@@ -72,50 +68,48 @@ class Compiled:
             with suppress(Exception):  # whatever hinders it, numba has made the function and runs it
                 from hookean.emit import emit
 
-                _store(path, emit(self.dispatcher(), values if self.kind is None else ()))
-                found = _load(path)
+                _store(path, emit(self.dispatcher(), kind, values if self.kind is None else ()))
+                found = _load(path, kind)
         self._entries[kind] = found
         return found
 
-    def _by_numba(self, values: tuple[Any, ...]) -> Any:
-        return self.dispatcher()(*values)
 
-
-def row(values: tuple[Any, ...], numbers: list[int]) -> Kind:
-    """Append what an entry reads of each value to `numbers`; returns their kind. Arrays must outlive the call."""
+def kind_of(values: tuple[Any, ...]) -> Kind | None:
+    """The kind of arguments; None where there is one that is for numba."""
     kinds: list[Any] = []
     for value in values:
-        what = type(value)
-        if what is np.ndarray:
-            if not value.flags.carray:
-                raise Unfit
-            numbers.append(id(value))
-            kinds.append((value.dtype.num, value.ndim))
-        elif what is tuple:
-            kinds.append(row(value, numbers))
-        elif what is float or what is np.float64:
-            numbers.append(_BITS.unpack(_REAL.pack(value))[0])
-            kinds.append("float")
-        elif what is bool:
-            numbers.append(value)
-            kinds.append("bool")
-        elif what is int and -(2**63) <= value < 2**63:
-            numbers.append(value)
-            kinds.append("int")
+        if type(value) is np.ndarray and value.flags.carray and value.dtype.isnative:
+            kinds.append((value.dtype.char, value.ndim))
+        elif (scalar := SCALARS.get(type(value))) is not None:
+            kinds.append(scalar)
         else:
-            raise Unfit
+            return None
     return tuple(kinds)
 
 
-class Entry:
-    """Code from a file, called with a row of numbers; room for what it returns follows them."""
+SCALARS: dict[type, type] = {float: float, np.float64: float, int: int, bool: bool}
+UNFIT = object()
 
-    def __init__(self, path: Path) -> None:
+
+def letters(kind: Kind) -> list[str]:
+    """The types of arrays among arguments, in the order in which an entry is told of them."""
+    return sorted({one[0] for one in kind if isinstance(one, tuple)})
+
+
+class Entry:
+    """Code from a file, called with a row of numbers: where numpy's types are, the arguments (of arrays, where they
+    are), and room for what it returns. The code itself looks whether arrays are what it takes."""
+
+    def __init__(self, path: Path, kind: Kind) -> None:
         head, _, code = path.read_bytes().partition(b"\n")
         told = json.loads(head)
         if hashlib.sha256(code).hexdigest() != told["digest"]:
             raise ValueError("damaged")
-        self.result: str = told["result"]
+        self.kinds = tuple(np.ndarray if isinstance(one, tuple) else one for one in kind)
+        self.head = [id(np.ndarray), *(id(np.dtype(letter)) for letter in letters(kind))]
+        self.end = len(self.head) + len(kind)
+        self.returned = struct.Struct(f"={told['result']}")
+        self.row = struct.Struct(f"{self.end}q{self.returned.size}x")
         binding = _llvm()
         target = binding.Target.from_default_triple().create_target_machine(codemodel="jitdefault", jit=True)
         self.engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
@@ -128,25 +122,40 @@ class Entry:
         self.call = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(where)
         self.address: int = ctypes.c_int64.from_address(native).value  # for numba's own way of calling
 
-    def __call__(self, numbers: list[int]) -> Any:
-        end = len(numbers)
-        numbers.extend(0 for _ in self.result)
-        words = array.array("q", numbers)
-        if self.call(words.buffer_info()[0]):
+    def __call__(self, values: tuple[Any, ...]) -> Any:
+        """What the code returns; UNFIT where it does not take these values."""
+        if len(values) != len(self.kinds):
+            return UNFIT
+        numbers = self.head.copy()
+        for value, kind in zip(values, self.kinds, strict=True):
+            if kind is np.ndarray:
+                numbers.append(id(value))
+            elif SCALARS.get(type(value)) is not kind:
+                return UNFIT
+            elif kind is float:
+                numbers.append(_BITS.unpack(_REAL.pack(value))[0])
+            elif -(2**63) <= value < 2**63:
+                numbers.append(value)
+            else:
+                return UNFIT
+        row = self.row.pack(*numbers)  # bytes of nobody else's, so that the code may write at their end
+        ended = self.call(row)
+        if ended == DIFFERS:
+            return UNFIT
+        if ended:
             raise MemoryError("compiled code got no memory")
-        found = tuple(_value(code, number) for code, number in zip(self.result, words[end:], strict=True))
+        found = self.returned.unpack_from(row, 8 * self.end)
         return found[0] if len(found) == 1 else found or None
 
 
-def _value(code: str, number: int) -> Any:
-    return _REAL.unpack(_BITS.pack(number))[0] if code == "d" else bool(number) if code == "b" else number
+DIFFERS = 2  # what an entry returns where an array is not what it takes
 
 
-def _load(path: Path) -> Entry | None:
+def _load(path: Path, kind: Kind) -> Entry | None:
     """The code in a file; None where there is none that is whole."""
     with suppress(Exception):
         if path.exists() and readable():
-            return Entry(path)
+            return Entry(path, kind)
     return None
 
 
@@ -160,12 +169,15 @@ def _store(path: Path, data: bytes) -> None:
 
 @cache
 def readable() -> bool:
-    """Whether arrays lie in memory as entries expect: after two words address, dimensions, and a pointer to sizes."""
+    """Whether arrays lie in memory as entries expect: numpy's object word by word, which no interface promises."""
     seen = np.zeros((3, 5))
-    words = (ctypes.c_int64 * 5).from_address(id(seen))
-    if ctypes.sizeof(ctypes.c_void_p) != 8 or words[2] != seen.ctypes.data or words[3] & 0xFFFFFFFF != 2:
+    if ctypes.sizeof(ctypes.c_void_p) != 8:
         return False
-    return list((ctypes.c_int64 * 2).from_address(words[4])) == [3, 5]
+    words = (ctypes.c_int64 * 9).from_address(id(seen))
+    if (words[1], words[2], words[7]) != (id(np.ndarray), seen.ctypes.data, id(seen.dtype)):
+        return False
+    good = words[3] & 0xFFFFFFFF == 2 and words[8] & 0xFFFFFFFF == seen.flags.num
+    return good and list((ctypes.c_int64 * 2).from_address(words[4])) == [3, 5]
 
 
 @cache
