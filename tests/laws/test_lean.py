@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from hookean import Scene, kernels
 from hookean.forces import KINDS
+from hookean.forces.shell_edges import angle_of
 from hookean.lean import Desk, lean
 from hookean.system import System, compile
 
@@ -93,3 +94,27 @@ def test_rows_on_a_desk_start_apart_and_hold_what_was_given() -> None:
         assert not made[1].any() and not made[0][:, 3].any()
         for array in made:
             array[:] = np.nan
+
+
+def test_a_patched_shell_is_packed_anew() -> None:
+    """Edges are found once, numbers are not: with another stiffness or rest angle the packed forces follow."""
+    system = example_system("shell")
+    state = system.start()
+    state.x[4, 2] += 0.1
+    (group,) = system.groups
+    for column, factor in (("strength", 3.0), ("angle_factor", 0.5), ("strength", 1.0)):
+        group.block.parameters[:, group.block.names.index(column)] *= factor
+        expected, w, _ = system.evaluate(state)
+        x, f = Desk().lay(len(state.x), state.x, None)
+        ((kernel, arrays),) = lean(system, state, damped=True).calls[1]
+        kernels.compiled(kernel, "force")(x, x, *arrays, f, np.zeros(len(x)))
+        assert np.abs(f[:, :3] - expected).max() <= 16.0 * EPS * w.max() * np.abs(state.x).max()
+
+
+@SEEDED
+@given(angle=st.floats(-np.pi, np.pi), size=st.floats(1e-100, 1e100))
+def test_small_angles_are_those_of_arctan2(angle: float, size: float) -> None:
+    """A series below 1/8: it leaves out 2e-16 of the angle; rounding of its sums and arctan2 itself add 4 eps."""
+    for small in (angle, 0.03 * angle, 1e-6 * angle):
+        along, across = size * np.cos(small), size * np.sin(small)
+        assert abs(angle_of(along, across) - np.arctan2(across, along)) <= 4.0 * EPS * abs(small)
