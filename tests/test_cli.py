@@ -15,7 +15,7 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 import hookean
-from hookean import cli
+from hookean import Scene, cli
 from hookean.commands import relax as command
 from hookean.files import threedm
 from hookean.files.threedm import Additions, NewObject
@@ -312,3 +312,24 @@ def test_real_files_without_a_recipe(folder: Path, stem: str) -> None:
     assert (folder / "out.3dm").exists() == (expected == 0)
     assert expected == 0 or "holds nothing to relax" in result.stderr
     assert run("relax", str(source), "--explain").exit_code == 0
+
+
+def test_a_scene_in_json_is_relaxed_without_what_reads_models(folder: Path) -> None:
+    """The quick way from the shell to an answer: no rhino3dm, no scipy, nothing for pictures or the service."""
+    scene = Scene(
+        forces=[
+            {"kind": "springs", "lines": [[[i, 0, 0], [i + 1, 0, 0]] for i in range(4)]},
+            {"kind": "self_weight", "total": 4},
+        ],
+        anchors=[{"points": [[0, 0, 0], [4, 0, 0]]}],
+    )
+    (folder / "scene.json").write_text(scene.canonical)
+    code = (
+        "import sys, hookean.cli\n"
+        "try:\n    hookean.cli.app(['relax', 'scene.json'])\n"
+        "except SystemExit as end:\n    print(end.code)\n"
+        "heavy = ('rhino3dm', 'scipy', 'matplotlib', 'fastapi', 'compas')\n"
+        "print('loaded:', [m for m in heavy if m in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, cwd=folder)
+    assert done.stdout.splitlines()[-2:] == ["0", "loaded: []"], done.stdout + done.stderr

@@ -17,16 +17,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hookean.errors import InputError
-from hookean.files import tables, threedm
-from hookean.files.recipe import parse_recipe, understand
-from hookean.files.recipe_build import Built
-from hookean.files.recipe_drawing import UNIT_NAMES
-from hookean.files.recipe_output import additions
-from hookean.files.recipe_select import count
-from hookean.files.threedm_atomic import check_target, put
+from hookean.files import tables
+from hookean.files.threedm_atomic import check_target, put, read_bytes
 from hookean.scene import Scene
 
 if TYPE_CHECKING:
+    from hookean.files.recipe_build import Built
     from hookean.result import Result
     from hookean.system import System
 
@@ -199,6 +195,10 @@ def _read(source: Path, recipe_text: str | None, recipe_name: str) -> Source:
         return _read_json(source)
     if source.suffix.lower() == ".toml":
         raise InputError(source.name, "is a recipe; give it with -r, and a .3dm file to relax")
+    # loads rhino3dm, which scenes in JSON need not
+    from hookean.files import threedm
+    from hookean.files.recipe import parse_recipe, understand
+
     recipe = None if recipe_text is None else parse_recipe(recipe_text, recipe_name or "recipe")
     model = threedm.read(source)
     with about(recipe_name if recipe is not None else source.name, source.name):
@@ -231,7 +231,6 @@ def about(name: str, source: str = "") -> Iterator[None]:
 def _read_json(source: Path) -> Source:
     from hookean.files import compas_json
     from hookean.files.scene_json import parse
-    from hookean.files.threedm_read import read_bytes
 
     try:
         data = read_bytes(source, source.name)
@@ -267,6 +266,8 @@ def _doubled(parts: list[tables.Section]) -> list[str]:
         if part.internal and part.particles.shape[1] == 2:
             twice = len(part.particles) - len(np.unique(np.sort(part.particles, axis=1), axis=0))
             if twice:
+                from hookean.files.recipe_select import count
+
                 join, pull = ("joins", "pulls") if twice == 1 else ("join", "pull")
                 elements = count(twice, "element")
                 said.append(f"{part.name}: {elements} {join} the same particles as another and {pull} twice")
@@ -303,6 +304,10 @@ def _write(
     if target.suffix.lower() == ".json":
         put(target, _json(_finite(_answer(found, read))), lambda back: None)
         return
+    from hookean.files import threedm
+    from hookean.files.recipe_drawing import UNIT_NAMES
+    from hookean.files.recipe_output import additions
+
     added, refused = additions(system, found.result, parts, read.built, read.unit, read.factor)
     found.warnings += refused
     if read.built is not None:

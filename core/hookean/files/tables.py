@@ -22,20 +22,21 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from hookean.errors import InputError
-from hookean.files.recipe_build import Built
-from hookean.files.recipe_drawing import Item
-from hookean.files.recipe_select import listed, on_layer
-from hookean.files.recipe_shapes import Shape
 from hookean.result import Result
 from hookean.system import System
 from hookean.units import Units
+
+if TYPE_CHECKING:  # what reads models loads rhino3dm
+    from hookean.files.recipe_build import Built
+    from hookean.files.recipe_drawing import Item
+    from hookean.files.recipe_shapes import Shape
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -276,6 +277,8 @@ def exceeded(
 def _mask(part: Section, scope: str, key: str) -> NDArray[np.bool_]:
     count = len(part.particles)
     if scope == "layer":
+        from hookean.files.recipe_select import on_layer
+
         good = [on_layer(item.layer, key) for item in part.items]
         return np.array([o >= 0 and good[o] for o in part.owner.tolist()], dtype=bool).reshape(count)
     if scope == "anchor":
@@ -286,6 +289,8 @@ def _mask(part: Section, scope: str, key: str) -> NDArray[np.bool_]:
 
 
 def _there(parts: Sequence[Section], scope: str) -> str:
+    from hookean.files.recipe_select import listed
+
     if scope == "layer":
         return listed(part.items[o].layer for part in parts for o in np.unique(part.owner) if o >= 0)
     if scope == "anchor":

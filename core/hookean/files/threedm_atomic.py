@@ -6,6 +6,7 @@ import contextlib
 import os
 import secrets
 import shutil
+import stat
 from collections.abc import Callable
 from pathlib import Path
 
@@ -81,3 +82,22 @@ def _sync_folder(folder: Path) -> None:
             os.fsync(handle)
         finally:
             os.close(handle)
+
+
+def read_bytes(path: str | os.PathLike[str], name: str) -> bytes:
+    """The bytes of a regular file; InputError with a sentence if there is none or it cannot be read."""
+    try:
+        mode = os.stat(path).st_mode
+        if stat.S_ISDIR(mode):
+            raise InputError(name, "is a folder; give the path of a .3dm file.")
+        if not stat.S_ISREG(mode):
+            raise InputError(name, "is not a regular file; give the path of a .3dm file.")
+        return Path(path).read_bytes()
+    except FileNotFoundError:
+        raise InputError(name, "no such file; check the path.") from None
+    except OSError as error:
+        raise InputError(name, f"cannot be read ({error.strerror}); check its permissions.") from None
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(name, "is not a possible path of a file; check it for odd characters.") from None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import stat
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from uuid import UUID
 from hookean.errors import InputError
 from hookean.files.archive import Archive, ObjectRecord, scan
 from hookean.files.splice import OLDEST_SPLICED
+from hookean.files.threedm_atomic import read_bytes
 from hookean.files.threedm_model import (
     METRES,
     OWN_KEY,
@@ -69,25 +69,6 @@ def parse(data: bytes, name: str, oldest: int = 2) -> Loaded:
     if model is None:
         raise _unreadable(archive, name)
     return Loaded(data, archive, file, model)
-
-
-def read_bytes(path: str | os.PathLike[str], name: str) -> bytes:
-    """The bytes of a regular file; InputError with a sentence if there is none or it cannot be read."""
-    try:
-        mode = os.stat(path).st_mode
-        if stat.S_ISDIR(mode):
-            raise InputError(name, "is a folder; give the path of a .3dm file.")
-        if not stat.S_ISREG(mode):
-            raise InputError(name, "is not a regular file; give the path of a .3dm file.")
-        return Path(path).read_bytes()
-    except FileNotFoundError:
-        raise InputError(name, "no such file; check the path.") from None
-    except OSError as error:
-        raise InputError(name, f"cannot be read ({error.strerror}); check its permissions.") from None
-    except ValueError as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(name, "is not a possible path of a file; check it for odd characters.") from None
 
 
 def _unreadable(archive: Archive, name: str) -> InputError:
