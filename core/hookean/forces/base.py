@@ -40,7 +40,7 @@ class Block:
     parameters: Floats
     memory: Floats
     names: tuple[str, ...] = ()
-    plan: list[Any] = field(default_factory=list)  # what `Force.pack` keeps of the indices, which never change
+    plan: list[Any] = field(default_factory=list)  # what `Force.pack` keeps for the next time
 
     @classmethod
     def of(cls, indices: Any, *, memory: int = 0, **columns: Any) -> Block:

@@ -145,11 +145,13 @@ class Method(Solver):
         step = system.scene.settings.time_step
         own = lean(system, state, damped=True)
         pull = state.free / system.mass[:, None]
-        given = (state.x, state.v, state.free, pull, own.load)
-        x, v, free, pull, load, *rows = self._desk.lay(n, *given, *[None] * (8 if system.contacts else 3))
-        raw, base, seen, *more = rows
-        if not len(own.lively):
-            raw = base
+        touching, lively = bool(system.contacts), len(own.lively) > 0
+        given = (state.x, state.v, pull, own.load, *([state.free] if touching else []))
+        spare = [None] * (2 + lively + 5 * touching)
+        x, v, pull, load, *rows = self._desk.lay(n, *given, *spare)
+        free = rows.pop(0) if touching else pull  # asked for by contacts alone
+        base, seen = rows.pop(), rows.pop()
+        raw = rows.pop() if lively else base
         yields = system.yields
         noted = [
             (g.cls.end_of_step, (g.block.indices, g.block.parameters, memory))
@@ -158,8 +160,8 @@ class Method(Solver):
         ]
         kernels.compiled(verlet_loop)(
             own.quiet, own.lively, *contacts(system), kernels.table("remember", noted), x, v, free, pull, load,
-            system.mass, raw, base, np.zeros(n), *(more or [raw] * 5), seen, system.drag, step * np.array(self.weights),
-            bool(system.contacts), count,
+            system.mass, raw, base, np.zeros(n), *(rows or [raw] * 5), seen, system.drag, step * np.array(self.weights),
+            touching, count,
         )  # fmt: skip
         state.x[:], state.v[:] = x[:, :3], v[:, :3]
         state.iteration += count
