@@ -30,6 +30,8 @@ def as_mesh(obj: Any) -> Mesh:
     fewer than three corners remain. Raises InputError for an unknown type, a vertex that is not
     finite, or a face that names no vertex or crosses itself.
     """
+    vertices: Any
+    faces: Any
     if isinstance(obj, Mesh):
         vertices, faces = obj.vertices, obj.faces
     elif hasattr(obj, "Vertices") and hasattr(obj, "Faces"):

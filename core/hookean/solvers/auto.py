@@ -1,8 +1,9 @@
 """Auto: picks by the scene, and says what it picked.
 
-Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities. Everything
-else relaxes, and so do nets whose lowest shape those steps do not find; where relaxation is slow or the tolerance
-tight, Newton steps finish, and where those do not help, relaxation goes on.
+Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities, large nets
+of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose lowest shape those steps do not
+find; where relaxation is slow or the tolerance tight, Newton steps finish, and where those do not help, relaxation goes
+on.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hookean.solvers import _complementary, force_density, newton, relaxation
+from hookean.solvers import _complementary, force_density, multilevel, newton, relaxation
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -21,12 +22,14 @@ if TYPE_CHECKING:
 # a tangent larger than this costs more to factor than the relaxation it saves
 LARGEST_NEWTON = 60_000  # unknowns
 LARGEST_BLOCKS = 3_000_000  # entries of all element blocks; a shell's have 36 x 36 each
+LEAST_MULTILEVEL = 4_000  # particles from which on multigrid is quicker than relaxation
 FIRST_NEWTON = 4_000
 NEWTON_STEPS = 60
 
 
 class Method(Solver):
-    """Force density where it is exact, complementary energy for chains, else relaxation with a Newton finish."""
+    """Force density where it is exact, complementary energy for chains, multigrid for large nets, else relaxation
+    with a Newton finish."""
 
     name: ClassVar[str] = "auto"
 
@@ -36,6 +39,8 @@ class Method(Solver):
         self._complementary = _complementary.Method()
         self._relaxation = relaxation.Method()
         self._newton = newton.Method()
+        self._multilevel = multilevel.Method()
+        self._levels = False
 
     def start(self, system: System, state: State) -> None:
         """Look at the system and choose."""
@@ -43,8 +48,12 @@ class Method(Solver):
         self._chains = not self._complementary.refuse(system)
         entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if g.cls.role != "load")
         self._small = 3 * len(state.x) <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS
-        self._relaxation.start(system, state)
-        state.scratch["next_newton"] = np.array([float(state.iteration + FIRST_NEWTON), FIRST_NEWTON])
+        self._levels = len(state.x) >= LEAST_MULTILEVEL and multilevel.suits(system)
+        if self._levels:
+            self._start = state.copy()
+            self._multilevel.start(system, state)
+        else:
+            self._relax_from_here(system, state)
         self.used = []
         self._steps = 0
 
@@ -62,6 +71,8 @@ class Method(Solver):
             if done:
                 self._use("complementary")
                 return done
+        if self._levels:
+            return self._by_levels(system, state, count, goal)
         if self._steps > 0:
             return self._finish(system, state, count, goal)
         due, _ = state.scratch["next_newton"]
@@ -71,6 +82,22 @@ class Method(Solver):
         self._steps, self._pause = NEWTON_STEPS, float(state.scratch["next_newton"][1])
         self._newton.start(system, state)
         return self._finish(system, state, count, goal)
+
+    def _relax_from_here(self, system: System, state: State) -> None:
+        self._relaxation.start(system, state)
+        state.scratch["next_newton"] = np.array([float(state.iteration + FIRST_NEWTON), FIRST_NEWTON])
+
+    def _by_levels(self, system: System, state: State, count: int, goal: float) -> int:
+        """Newton steps by multigrid, where they lead to the shape of least energy; else relaxation from the start."""
+        self._use("multilevel")
+        done = self._multilevel.advance(system, state, min(count, self._multilevel.longest), goal)
+        found = self._multilevel.largest <= goal
+        if self._multilevel.pushed or (found and not multilevel.lowest(system, state)):
+            self._levels = False
+            self.used.remove("multilevel")
+            state.x[:], state.v[:] = self._start.x, self._start.v
+            self._relax_from_here(system, state)
+        return done
 
     def _finish(self, system: System, state: State, count: int, goal: float) -> int:
         """Newton steps from here; relaxation afterwards starts afresh, and waits twice as long before the next."""

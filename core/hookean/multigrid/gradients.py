@@ -1,0 +1,37 @@
+"""Conjugate gradients with a multigrid cycle before each step.
+
+Source: Hestenes and Stiefel 1952; truncated at negative curvature as in Steihaug, SIAM J. Numer. Anal. 20 (1983) 626.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean import kernels
+from hookean.multigrid import kernels as sums
+from hookean.multigrid.hierarchy import Hierarchy
+
+Floats = NDArray[np.float64]
+
+
+def solve(hierarchy: Hierarchy, b: Floats, part: float, most: int) -> tuple[Floats | None, int]:
+    """x (n, 3) with |b - A x| <= part |b|, or after `most` steps; and the steps taken. None where A shows a direction
+    in which it is not positive."""
+    finest = hierarchy.levels[0]
+    matrix = (finest.starts, finest.columns, finest.values)
+    multiply, dot, turn, go_along = (kernels.compiled(f) for f in (sums.multiply, sums.dot, sums.turn, sums.go_along))
+    x, r, q = np.zeros_like(b), b.copy(), np.empty_like(b)
+    z = hierarchy.cycle(r)
+    p = z.copy()
+    falls, goal = dot(r, z), part * part * dot(b, b)
+    for step in range(1, most + 1):
+        bends = multiply(*matrix, p, q)
+        if not (bends > 0.0 and falls > 0.0):
+            return None, step
+        if go_along(x, r, p, q, falls / bends) <= goal:
+            break
+        z = hierarchy.cycle(r)
+        before, falls = falls, dot(r, z)
+        turn(p, z, falls / before)
+    return x, step

@@ -1,0 +1,53 @@
+"""A part of a net by itself: some particles that move, and around them those that hold still."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.forces import Block
+from hookean.state import State
+from hookean.system import Group, System
+
+if TYPE_CHECKING:
+    from hookean.multigrid.blocks import Ints
+
+Chosen = NDArray[np.bool_]
+
+
+def widened(starts: Ints, columns: Ints, chosen: Chosen, rings: int) -> Chosen:
+    """The chosen particles (n,) and those within some rings of neighbours, in a pattern of blocks."""
+    import scipy.sparse as sparse
+
+    n = len(chosen)
+    near = sparse.csr_matrix((np.ones(len(columns), np.int8), columns, starts), shape=(n, n))
+    for _ in range(rings):
+        chosen = (near @ chosen.astype(np.int32)) > 0
+    return chosen
+
+
+def cut(system: System, state: State, moving: Chosen) -> tuple[System, State, NDArray[np.int64]]:
+    """The system and the state of the particles (n,) that move, of all elements that touch them and of the others that
+    these hang on, which hold still; and which particles of the whole they are."""
+    touched = moving.copy()
+    rows = []
+    for group in system.groups:
+        some = np.flatnonzero(moving[group.block.indices].any(axis=1))
+        rows.append(some)
+        touched[group.block.indices[some]] = True
+    particles = np.flatnonzero(touched)
+    number = np.zeros(len(moving), np.int64)
+    number[particles] = np.arange(len(particles))
+    groups, memory = [], []
+    for group, some, own in zip(system.groups, rows, state.memory, strict=True):
+        b = group.block
+        block = Block(number[b.indices[some]], b.parameters[some], b.memory[some], b.names)
+        groups.append(Group(group.cls, block, []))
+        memory.append(own[some])
+    x, v, mass = system.x[particles], system.v[particles], system.mass[particles]
+    part = replace(system, x=x, v=v, mass=mass, groups=groups, held=[], carried=[])
+    free = state.free[particles] * moving[particles][:, None]
+    return part, State(state.x[particles], np.zeros_like(x), free, memory=memory), particles

@@ -1,0 +1,167 @@
+"""Multigrid solves what direct solvers solve, in steps that hardly grow; the multilevel solver ends where others do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sparse
+from scipy.sparse.linalg import spsolve
+
+from hookean import Scene, relax
+from hookean.multigrid.blocks import Blocks
+from hookean.multigrid.gradients import solve
+from hookean.multigrid.hierarchy import Hierarchy
+from hookean.solvers import multilevel, solver
+from hookean.system import compile
+
+
+def net(side, *, axes="xyz", load=-20.0, factor=0.5, ramp=0.0, extra=()):
+    """A square net of side² particles on 10 x 10, held at its corners (and its middle, 2 higher)."""
+    line = np.linspace(0.0, 10.0, side)
+    x, y = np.meshgrid(line, line, indexing="ij")
+    points = np.column_stack([x.ravel(), y.ravel(), ramp * x.ravel()])
+    at = np.arange(side * side).reshape(side, side)
+    springs = [np.stack([at[:-1], at[1:]], -1), np.stack([at[:, :-1], at[:, 1:]], -1)]
+    corners = [0, side - 1, side * (side - 1), side * side - 1]
+    return {
+        "particles": points.tolist(),
+        "forces": [
+            {"kind": "springs", "particles": np.concatenate([s.reshape(-1, 2) for s in springs]).tolist(),
+             "stiffness": 100, "rest_length": 10.0 / (side - 1), "rest_factor": factor},
+            {"kind": "unary", "particles": list(range(side**2)), "vector": [0, 0, load / side**2]},
+            *extra,
+        ],
+        "anchors": [{"particles": corners, "axes": axes}, {"particles": [int(at[side // 2, side // 2])],
+                     "targets": [[*points[at[side // 2, side // 2], :2].tolist(), 2.0]]}],
+    }  # fmt: skip
+
+
+def tangent(spec):
+    """A system bent out of its plane, its free axes, blocks and hierarchy."""
+    system = compile(Scene.read(spec))
+    state = system.start()
+    state.x += 0.05 * np.sin(3.0 * state.x[:, [1, 2, 0]]) * state.free
+    blocks = Blocks(system)
+    blocks.fill(system, system.start())
+    blocks.weigh()
+    hierarchy = Hierarchy(blocks.starts, blocks.columns, blocks.weights, (state.free > 0).any(axis=1))
+    blocks.fill(system, state)
+    return system, state, blocks, hierarchy
+
+
+def sparse_of(blocks, free):
+    n = len(blocks.starts) - 1
+    values = blocks.values.reshape(-1, 3, 3)
+    matrix = sparse.bsr_matrix((values, blocks.columns, blocks.starts), shape=(3 * n, 3 * n)).tocsr()
+    return matrix[free][:, free]
+
+
+@pytest.mark.parametrize("axes", ["xyz", "z"])
+def test_the_blocks_are_the_tangent_that_newton_assembles(axes):
+    """Values on free axes equal the sum of element tangents (assembled here densely); held axes are empty."""
+    system, state, blocks, _ = tangent(net(6, axes=axes))
+    blocks.settle(state, 0.0)
+    n = len(state.x)
+    dense = np.zeros((3 * n, 3 * n))
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        if group.cls.role == "load":
+            continue
+        found = system.stiffness_blocks(group, state, memory)
+        for index, block in zip(group.block.indices, found, strict=True):
+            places = (3 * index[:, None] + np.arange(3)).ravel()
+            dense[np.ix_(places, places)] += block
+    free = state.free.ravel() > 0
+    dense[~free], dense[:, ~free] = 0.0, 0.0
+    mine = sparse.bsr_matrix((blocks.values.reshape(-1, 3, 3), blocks.columns, blocks.starts)).toarray()
+    assert np.abs(mine - dense).max() <= 1e-12 * np.abs(dense).max()
+
+
+@pytest.mark.parametrize("axes", ["xyz", "z"])
+def test_conjugate_gradients_solve_what_a_direct_solver_solves(axes):
+    """To 1e-10 of the right-hand side, the solution is that of SciPy's factor; condition about 1e4 here."""
+    _, state, blocks, hierarchy = tangent(net(30, axes=axes))
+    blocks.settle(state, 0.1)
+    assert hierarchy.fill(blocks.values) and hierarchy.coarse
+    b = np.random.default_rng(3).normal(size=state.x.shape) * state.free
+    x, _ = solve(hierarchy, b, 1e-10, 500)
+    free = np.flatnonzero(state.free.ravel())
+    exact = np.zeros(b.size)
+    exact[free] = spsolve(sparse_of(blocks, free).tocsc(), b.ravel()[free])
+    assert np.abs(x.ravel() - exact).max() <= 1e-6 * np.abs(exact).max()
+
+
+def test_steps_hardly_grow_with_the_net():
+    """Steps to 1e-4 for four times the particles: at most half as many again (a method of one level would double)."""
+    steps = []
+    for side in (40, 80):
+        _, state, blocks, hierarchy = tangent(net(side))
+        blocks.settle(state, 0.1)
+        assert hierarchy.fill(blocks.values)
+        b = np.random.default_rng(1).normal(size=state.x.shape) * state.free
+        steps.append(solve(hierarchy, b, 1e-4, 200)[1])
+    assert steps[1] <= 1.5 * steps[0]
+
+
+def test_a_matrix_that_is_not_positive_definite_is_refused():
+    """Springs pushed to half their length across: no Cholesky, no conjugate gradients."""
+    _, state, blocks, hierarchy = tangent(net(12, factor=4.0))
+    blocks.settle(state, 0.0)
+    b = state.free * [0.0, 0.0, 1.0]
+    assert not hierarchy.fill(blocks.values) or solve(hierarchy, b, 1e-8, 400)[0] is None
+
+
+def sliding():
+    """A net whose first side slides in its plane."""
+    spec = net(12)
+    spec["anchors"].append({"particles": list(range(1, 11)), "axes": "z"})
+    return spec
+
+
+@pytest.mark.parametrize(
+    "spec",
+    [
+        net(20),
+        net(20, factor=1.0, load=-200.0),
+        sliding(),
+        net(20, ramp=0.3, extra=({"kind": "self_weight", "total": 30.0},)),
+    ],
+)
+def test_multilevel_ends_where_relaxation_ends(spec):
+    """The springs pull: there is one shape at rest. Tolerance 1e-9, so shapes agree to 1e-6 of the span."""
+    found = [
+        relax(Scene.read({**spec, "settings": {"solver": name, "tolerance": 1e-9, "max_iterations": 200_000}}))
+        for name in ("multilevel", "relaxation")
+    ]
+    assert all(r.converged for r in found), [r.message for r in found]
+    assert np.abs(found[0].particles - found[1].particles).max() <= 1e-5
+
+
+def test_auto_takes_it_for_a_large_net_and_relaxation_where_springs_push():
+    """4,096 particles that pull; the same pressed together, where many shapes are at rest."""
+    pulled = relax(Scene.read(net(64)))
+    assert pulled.converged and pulled.solver == "auto: multilevel"
+    pressed = net(64, factor=1.3)
+    pressed["settings"] = {"max_iterations": 300}
+    assert relax(Scene.read(pressed)).solver == "auto: relaxation"
+
+
+def test_same_net_same_bits():
+    """Two runs, one of them in pieces of one iteration."""
+    system = compile(Scene.read(net(20)))
+    shapes = []
+    for most in (100, 1):
+        method, state = solver("multilevel"), system.start()
+        method.start(system, state)
+        while state.iteration < 60:
+            method.advance(system, state, min(most, 60 - state.iteration), 1e-12)
+        shapes.append(state.x.tobytes())
+    assert shapes[0] == shapes[1]
+
+
+def test_lowest_is_true_of_pulled_springs_and_false_of_pressed_ones():
+    """A chain under tension has the least energy; a straight one that is pressed could buckle."""
+    for length, known in ((0.5, True), (2.0, False)):
+        springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(4)], "rest_length": length}
+        spec = {"particles": [[i, 0, 0] for i in range(5)], "forces": [springs], "anchors": [{"particles": [0, 4]}]}
+        system = compile(Scene.read(spec))
+        assert multilevel.lowest(system, system.start()) is known
