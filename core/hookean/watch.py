@@ -58,7 +58,8 @@ class Watch:
         self.good = state.copy()
         if self.found.met(self.settings.tolerance) and self._resting(system, state):
             return Status.CONVERGED
-        if idle or state.iteration > 2 * self.best_at - self.first + PATIENCE:
+        stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
+        if idle or (stuck and not self.method.physical):  # what swings may swing for long
             return Status.STALLED
         if state.iteration - self.first >= self.settings.max_iterations:
             return Status.MAX_ITERATIONS

@@ -165,3 +165,29 @@ def test_lowest_is_true_of_pulled_springs_and_false_of_pressed_ones():
         spec = {"particles": [[i, 0, 0] for i in range(5)], "forces": [springs], "anchors": [{"particles": [0, 4]}]}
         system = compile(Scene.read(spec))
         assert multilevel.lowest(system, system.start()) is known
+
+
+def test_bodies_that_hang_on_nothing_are_no_trouble():
+    """Two nets, one of them loose: its Laplacian has no diagonal on the coarser levels. Newton solves the other."""
+    held = net(24)
+    loose = {"kind": "springs", "lines": [[[i, j, 9.0], [i + 1.0, j, 9.0]] for i in range(20) for j in range(20)]}
+    across = {"kind": "springs", "lines": [[[i, j, 9.0], [i, j + 1.0, 9.0]] for i in range(20) for j in range(20)]}
+    held["forces"] += [loose, across]
+    found = relax(Scene.read({**held, "settings": {"solver": "multilevel"}}))
+    assert found.converged, found.message
+
+
+def test_coarse_patterns_hold_all_that_a_coarse_tangent_has():
+    """P^T A P in each level's pattern equals the product by SciPy, to rounding."""
+    _, state, blocks, hierarchy = tangent(net(30))
+    blocks.settle(state, 0.1)
+    assert hierarchy.fill(blocks.values)
+    for level, coarser in zip(hierarchy.levels, hierarchy.levels[1:], strict=False):
+        starts, columns, values = level.prolong
+        shape = (len(level.diagonal), len(coarser.diagonal))
+        p = sparse.kron(sparse.csr_matrix((values, columns, starts), shape=shape), sparse.eye(3))
+        fine, coarse = (
+            sparse.bsr_matrix((net.values.reshape(-1, 3, 3), net.columns, net.starts)) for net in (level, coarser)
+        )
+        difference = np.abs((p.T @ fine @ p - coarse).toarray()).max()
+        assert difference <= 1e-12 * np.abs(coarser.values).max()

@@ -123,7 +123,8 @@ def test_pull_is_warm_and_push_is_cold(tmp_path: Path) -> None:
                 {"kind": "springs", "lines": [[[0, 0, 0], [0, 0, 1]]]},
                 {"kind": "unary", "points": [[0, 0, 1]], "vector": [0, 0, load]},
             ],
-            "anchors": [{"points": [[0, 0, 0]]}],
+            # guided, so that a pressed one stays upright
+            "anchors": [{"points": [[0, 0, 0]]}, {"points": [[0, 0, 1]], "axes": "xy"}],
         }
         pixels = drawn(relax(Scene.read(scene)), tmp_path, size=(1600, 1200))
         return pixels[600, 1408:1424].mean(axis=0)

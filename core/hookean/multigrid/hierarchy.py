@@ -143,7 +143,7 @@ class Hierarchy:
             p.sort_indices()
             laplacian = (p.T @ laplacian @ p).tocsr()
             laplacian.sort_indices()
-            coarser = Level(laplacian.indptr.astype(np.int32), laplacian.indices.astype(np.int32))
+            coarser = Level(*_pattern(level, p))
             level.to(p, coarser)
             self.levels.append(coarser)
             alive = np.ones(count, dtype=bool)
@@ -206,6 +206,18 @@ class Hierarchy:
         kernels.compiled(sums.prolong)(*level.prolong, found, level.x)
         kernels.compiled(sums.smooth_up)(*matrix, level.inverse, b, level.x)
         return level.x
+
+
+def _pattern(level: Level, p: Any) -> tuple[Ints, Ints]:
+    """Where P^T A P has blocks, whatever cancels in the sums of the graph."""
+    import scipy.sparse as sparse
+
+    n = len(level.diagonal)
+    near = sparse.csr_matrix((np.ones(len(level.columns)), level.columns, level.starts), shape=(n, n))
+    gathers = sparse.csr_matrix((np.ones(len(p.indices)), p.indices, p.indptr), shape=p.shape)
+    found = (gathers.T @ near @ gathers).tocsr()
+    found.sort_indices()
+    return found.indptr.astype(np.int32), found.indices.astype(np.int32)
 
 
 def _laplacian(starts: Ints, columns: Ints, weights: Floats) -> Any:
