@@ -245,7 +245,7 @@ class Host:
         self.each = max(1, min(2 * self.each, int(count * SLICE / max(now - began, 1e-6)), 100_000))
         self.left = max(0, self.left - count)
         self.owed = max(0, self.owed - count)
-        done = not (self.left or self.owed or self.fast)
+        done = not (self.left or self.owed or (self.playing and self.fast))
         if done or now >= self.looked_at + (LOOK if self.credit else SELDOM):
             self._judge(simulation)
 
