@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import httpx
@@ -77,12 +78,13 @@ class Served:
         """The processes that solve: children of the fork server or of the server."""
         found = []
         for child in psutil.Process(self.process.pid).children(recursive=True):
-            if (
-                child.status() != psutil.STATUS_ZOMBIE
-                and not child.children()
-                and "tracker" not in " ".join(child.cmdline())
-            ):
-                found.append(child)
+            with suppress(psutil.NoSuchProcess):  # it may end while it is looked at
+                if (
+                    child.status() != psutil.STATUS_ZOMBIE
+                    and not child.children()
+                    and "tracker" not in " ".join(child.cmdline())
+                ):
+                    found.append(child)
         return found
 
     def family(self) -> list[psutil.Process]:
