@@ -13,6 +13,7 @@ from hookean.multigrid.gradients import solve
 from hookean.multigrid.hierarchy import Hierarchy
 from hookean.solvers import multilevel, solver
 from hookean.system import compile
+from hookean.watch import PATIENCE, Watch
 
 
 def net(side, *, axes="xyz", load=-20.0, factor=0.5, ramp=0.0, extra=()):
@@ -191,3 +192,17 @@ def test_coarse_patterns_hold_all_that_a_coarse_tangent_has():
         )
         difference = np.abs((p.T @ fine @ p - coarse).toarray()).max()
         assert difference <= 1e-12 * np.abs(coarser.values).max()
+
+
+def test_patience_begins_anew_with_another_way():
+    """A solver that went back to the start is not called stalled for being worse than the way it left."""
+    system = compile(Scene.read(net(6)))
+    method, state = solver("relaxation"), system.start()
+    watch = Watch(system, state, method)
+    state.iteration = 100
+    watch.look(system, state)
+    watch.best = 0.0  # what was reached on the way that was left
+    state.iteration = 2 * watch.best_at + PATIENCE + 1
+    assert watch.look(system, state) == "stalled"
+    method.anew = state.iteration
+    assert watch.look(system, state) == "running"

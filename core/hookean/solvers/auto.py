@@ -95,6 +95,7 @@ class Method(Solver):
         if self._multilevel.pushed or (found and not multilevel.lowest(system, state)):
             self._levels = False
             self.used.remove("multilevel")
+            self.anew = state.iteration
             state.x[:], state.v[:] = self._start.x, self._start.v
             self._relax_from_here(system, state)
         return done
