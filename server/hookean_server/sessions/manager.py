@@ -346,6 +346,7 @@ class Manager:
                     raise
                 live.topology = secrets.token_hex(8)
                 live.edits = 0
+                live.tell()  # its process may have told the new revision before the new topology was known
             live.label = label or live.label
             self._heard(live, described)
         return live
