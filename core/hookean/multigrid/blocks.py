@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
 from hookean.forces import Block
+from hookean.kernels import device
 from hookean.system import Group
 
 if TYPE_CHECKING:
@@ -18,22 +19,30 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
+SLACK = 1e-3  # part of a block's size that it is taken to pull at least
 CHUNK = 2048  # elements worked out before they are added: their blocks stay in the nearest cache
 
 
 def find_slots(indices, starts, columns, slots):  # type: ignore[no-untyped-def]
-    """Where in the pattern the block of each pair of an element's particles is."""
+    """Where in the pattern the block of each pair of an element's particles is; -1 for those below the diagonal."""
     for e in range(indices.shape[0]):
         for i in range(indices.shape[1]):
             for j in range(indices.shape[1]):
-                low, high = starts[indices[e, i]], starts[indices[e, i] + 1] - 1
-                while low < high:
-                    middle = (low + high) // 2
-                    if columns[middle] < indices[e, j]:
-                        low = middle + 1
-                    else:
-                        high = middle
-                slots[e, i, j] = low
+                row, column = indices[e, i], indices[e, j]
+                slots[e, i, j] = place_of(starts, columns, row, column) if row <= column else -1
+
+
+@device
+def place_of(starts: Any, columns: Any, row: Any, column: Any) -> Any:
+    """Where in a pattern a column of a row is."""
+    low, high = starts[row], starts[row + 1] - 1
+    while low < high:
+        middle = (low + high) // 2
+        if columns[middle] < column:
+            low = middle + 1
+        else:
+            high = middle
+    return low
 
 
 def add_blocks(blocks, slots, values):  # type: ignore[no-untyped-def]
@@ -41,30 +50,35 @@ def add_blocks(blocks, slots, values):  # type: ignore[no-untyped-def]
         for i in range(slots.shape[1]):
             for j in range(slots.shape[1]):
                 s = slots[e, i, j]
-                for a in range(3):
-                    for b in range(3):
-                        values[s, 3 * a + b] += blocks[e, 3 * i + a, 3 * j + b]
+                if s >= 0:
+                    for a in range(3):
+                        for b in range(3):
+                            values[s, 3 * a + b] += blocks[e, 3 * i + a, 3 * j + b]
 
 
-def sizes_of(values, sizes):  # type: ignore[no-untyped-def]
-    """The Frobenius norm of each block."""
-    for s in range(values.shape[0]):
-        total = 0.0
-        for c in range(9):
-            total += values[s, c] * values[s, c]
-        sizes[s] = np.sqrt(total)
+def measure(starts, columns, values, sizes, pulls):  # type: ignore[no-untyped-def]
+    """Of each block off the diagonal its Frobenius norm, and how much it pulls across: the least eigenvalue of -block
+    where two are equal and the third is larger, as a spring's are; else a bound above it."""
+    for i in range(starts.shape[0] - 1):
+        sizes[starts[i]] = pulls[starts[i]] = 0.0
+        for s in range(starts[i] + 1, starts[i + 1]):
+            square = 0.0
+            for c in range(9):
+                square += values[s, c] * values[s, c]
+            mean = -(values[s, 0] + values[s, 4] + values[s, 8]) / 3.0
+            sizes[s] = np.sqrt(square)
+            pulls[s] = mean - np.sqrt(max(square - 3.0 * mean * mean, 0.0) / 6.0)
 
 
-def shift_blocks(starts, columns, diagonal, weights, shift, values):  # type: ignore[no-untyped-def]
+def shift_blocks(starts, columns, weights, shift, values):  # type: ignore[no-untyped-def]
     """Add `shift` times the Laplacian of the weighted graph, the same on all three axes."""
     for i in range(starts.shape[0] - 1):
-        own = diagonal[i]
-        for s in range(starts[i], starts[i + 1]):
-            if s != own:
-                amount = shift * weights[s]
-                for c in range(0, 9, 4):
-                    values[own, c] += amount
-                    values[s, c] -= amount
+        for s in range(starts[i] + 1, starts[i + 1]):
+            amount = shift * weights[s]
+            for c in range(0, 9, 4):
+                values[starts[i], c] += amount
+                values[starts[columns[s]], c] += amount
+                values[s, c] -= amount
 
 
 def hold_axes(starts, columns, free, values):  # type: ignore[no-untyped-def]
@@ -72,16 +86,18 @@ def hold_axes(starts, columns, free, values):  # type: ignore[no-untyped-def]
     for i in range(starts.shape[0] - 1):
         for s in range(starts[i], starts[i + 1]):
             j = columns[s]
-            for a in range(3):
-                for b in range(3):
-                    values[s, 3 * a + b] *= free[i, a] * free[j, b]
+            if free[i, 0] + free[i, 1] + free[i, 2] + free[j, 0] + free[j, 1] + free[j, 2] < 6.0:
+                for a in range(3):
+                    for b in range(3):
+                        values[s, 3 * a + b] *= free[i, a] * free[j, b]
 
 
 class Blocks:
-    """The pattern of a system's tangent, one row of blocks for each particle, and its values.
+    """The pattern of a system's tangent, which is symmetric: of each particle's row of blocks the one on the diagonal,
+    which comes first, and those after it; and its values.
 
-    `starts` (n + 1,), `columns` (k,), `diagonal` (n,) as in a compressed sparse row matrix; `values` (k, 9), the rows
-    of each block after one another.
+    `starts` (n + 1,), `columns` (k,) as in a compressed sparse row matrix; `values` (k, 9), the rows of each block
+    after one another.
     """
 
     def __init__(self, system: System) -> None:
@@ -91,22 +107,19 @@ class Blocks:
         self.groups = [i for i, group in enumerate(system.groups) if group.cls.role != "load"]
         rows, columns = [np.arange(n, dtype=np.int32)], [np.arange(n, dtype=np.int32)]
         for i in self.groups:
-            index = system.groups[i].block.indices
+            index = system.groups[i].block.indices.astype(np.int32)
             for a in range(index.shape[1]):
-                for b in range(index.shape[1]):
-                    if a != b:
-                        rows.append(index[:, a].astype(np.int32))
-                        columns.append(index[:, b].astype(np.int32))
+                for b in range(a):
+                    rows.append(np.minimum(index[:, a], index[:, b]))
+                    columns.append(np.maximum(index[:, a], index[:, b]))
         row, column = np.concatenate(rows), np.concatenate(columns)
         pattern = sparse.csr_matrix((np.ones(len(row), np.int8), (row, column)), shape=(n, n))
         pattern.sort_indices()
         self.starts: Ints = pattern.indptr.astype(np.int32)
         self.columns: Ints = pattern.indices.astype(np.int32)
-        self.rows: Ints = np.repeat(np.arange(n, dtype=np.int32), np.diff(self.starts))
-        self.diagonal: Ints = np.flatnonzero(self.rows == self.columns).astype(np.int32)
         self.slots = [self._slots(system.groups[i]) for i in self.groups]
         self.values: Floats = np.zeros((len(self.columns), 9))
-        self.weights: Floats = np.zeros(len(self.columns))
+        self.sizes: Floats = np.zeros(len(self.columns))
 
     def _slots(self, group: Group) -> Ints:
         index = group.block.indices
@@ -126,14 +139,19 @@ class Blocks:
                 blocks = system.stiffness_blocks(some, state, memory[part])
                 kernels.compiled(add_blocks)(blocks, slots[part], self.values)
 
+    def weights(self) -> Floats:
+        """How strongly particles hold one another across the line between them, as the weights of the graph: there a
+        net is weakest, and differs most with the direction. What pushes or has no tension counts as a little."""
+        sizes, pulls = np.empty(len(self.columns)), np.empty(len(self.columns))
+        kernels.compiled(measure)(self.starts, self.columns, self.values, sizes, pulls)
+        return np.maximum(pulls, SLACK * sizes)
+
     def weigh(self) -> None:
-        """Take the sizes of the blocks as the weights of the graph."""
-        kernels.compiled(sizes_of)(self.values, self.weights)
-        self.weights[self.diagonal] = 0.0
+        """Take the sizes of the blocks as what `settle` adds."""
+        kernels.compiled(measure)(self.starts, self.columns, self.values, self.sizes, np.empty(len(self.columns)))
 
     def settle(self, state: State, shift: float) -> None:
-        """Add `shift` times the Laplacian of the weights, and take held axes out."""
+        """Add `shift` times the Laplacian of the sizes, and take held axes out."""
         if shift > 0.0:
-            pattern = self.starts, self.columns, self.diagonal
-            kernels.compiled(shift_blocks)(*pattern, self.weights, shift, self.values)
+            kernels.compiled(shift_blocks)(self.starts, self.columns, self.sizes, shift, self.values)
         kernels.compiled(hold_axes)(self.starts, self.columns, state.free, self.values)

@@ -21,17 +21,19 @@ def solve(hierarchy: Hierarchy, b: Floats, part: float, most: int) -> tuple[Floa
     finest = hierarchy.levels[0]
     matrix = (finest.starts, finest.columns, finest.values)
     multiply, dot, turn, go_along = (kernels.compiled(f) for f in (sums.multiply, sums.dot, sums.turn, sums.go_along))
-    x, r, q = np.zeros_like(b), b.copy(), np.empty_like(b)
-    z = hierarchy.cycle(r)
-    p = z.copy()
-    falls, goal = dot(r, z), part * part * dot(b, b)
+    size = float(np.abs(b).max(initial=0.0))
+    if size == 0.0:
+        return np.zeros_like(b), 0
+    r = b / size  # cycles are in single precision: a small b would vanish
+    x, p, q = np.zeros_like(b), np.zeros_like(b), np.empty_like(b)
+    goal, before, step = part * part * dot(r, r), np.inf, 0
     for step in range(1, most + 1):
-        bends = multiply(*matrix, p, q)
+        z = hierarchy.cycle(r)
+        falls = dot(r, z)
+        turn(p, z, falls / before)
+        before, bends = falls, multiply(*matrix, p, q)
         if not (bends > 0.0 and falls > 0.0):
             return None, step
         if go_along(x, r, p, q, falls / bends) <= goal:
             break
-        z = hierarchy.cycle(r)
-        before, falls = falls, dot(r, z)
-        turn(p, z, falls / before)
-    return x, step
+    return size * x, step

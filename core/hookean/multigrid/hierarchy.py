@@ -1,8 +1,8 @@
-"""A hierarchy of ever coarser nets: which particles move together, and how smoothly, from the graph alone.
+"""A hierarchy of ever coarser nets: which particles move together, and how smoothly, from a weighted graph alone.
 
 Particles are gathered into aggregates of neighbours with strong connections; each aggregate moves as one on the
 coarser net. Its motion is spread smoothly by one step of Jacobi: P = (I - 2/3 D^-1 L) T, with L the Laplacian of the
-weights. The same P serves all three axes and, since it does not depend on the shape, all steps of a solve.
+strong connections. The same P serves all three axes, and whatever values the pattern has.
 Source: Vanek, Mandel, Brezina, "Algebraic multigrid by smoothed aggregation", Computing 56 (1996) 179.
 """
 
@@ -22,7 +22,8 @@ Ints = NDArray[np.int32]
 SMALLEST = 60  # rows of blocks that are solved directly
 MOST = 20  # levels
 FULLEST = 3.0  # blocks of all levels for each of the finest
-STRONG = 0.1  # a connection is strong if it is at least this part of the strongest of its particle
+STRONG = 0.35  # a connection is strong if it is at least this part of the strongest of its particle;
+WEAKER = 0.5  # on coarser levels, times this for each
 DAMPING = 2.0 / 3.0
 
 
@@ -84,37 +85,41 @@ def aggregate(starts, columns, weights, strong, alive, group):  # type: ignore[n
 
 
 class Level:
-    """One net of the hierarchy: its pattern, what its values are now, and the way to the next coarser one."""
+    """One net of the hierarchy: its pattern (see `Blocks`), its values now, and the way to the next coarser one."""
 
     def __init__(self, starts: Ints, columns: Ints) -> None:
+        n = len(starts) - 1
         self.starts, self.columns = starts, columns
-        rows = np.repeat(np.arange(len(starts) - 1, dtype=np.int32), np.diff(starts))
-        self.diagonal: Ints = np.flatnonzero(rows == columns).astype(np.int32)
-        n = len(self.diagonal)
         self.values: Floats = np.zeros((0, 9))
-        self.inverse: Floats = np.zeros((n, 9))
-        self.b, self.x = np.zeros((n, 3)), np.zeros((n, 3))
+        above = np.ones(len(columns), dtype=bool)
+        above[starts[:-1]] = False
+        places = np.flatnonzero(above).astype(np.int32)
+        self.high = (starts - np.arange(n + 1, dtype=np.int32), columns[above], np.zeros((len(places), 12), np.float32))
+        low = _sparse(places, self.high[1], self.high[0], n).T.tocsr()
+        self.low = (low.indptr.astype(np.int32), low.indices.astype(np.int32), np.zeros((len(places), 12), np.float32))
+        self.mirror: Ints = low.data
+        self.inverse = np.zeros((n, 12), np.float32)
+        self.b, self.x = np.zeros((n, 4), np.float32), np.zeros((n, 4), np.float32)
         self.prolong: tuple[Any, ...] = ()
-        self.restrict: tuple[Any, ...] = ()
-        self.notes: tuple[Any, ...] = ()
-
-    def mirror(self) -> Ints:
-        """Where in the pattern the transposed place of each block is."""
-        import scipy.sparse as sparse
-
-        n = len(self.diagonal)
-        numbers = sparse.csr_matrix((np.arange(len(self.columns), dtype=np.int32), self.columns, self.starts), (n, n))
-        found: Ints = numbers.T.tocsr().data
-        return found
+        self.places: Ints = np.zeros(0, np.int32)
 
     def to(self, p: Any, coarser: Level) -> None:
         """Know the way to the next coarser level."""
-        r = p.T.tocsr()
-        self.prolong = (p.indptr.astype(np.int32), p.indices.astype(np.int32), p.data)
-        self.restrict = (r.indptr.astype(np.int32), r.indices.astype(np.int32), r.data)
-        longest = int(np.diff(coarser.starts).max())
-        self.notes = (coarser.mirror(), np.zeros(len(coarser.diagonal), np.int32), np.zeros((longest, 9)))
+        self.prolong = (p.indptr.astype(np.int32), p.indices.astype(np.int32), p.data.astype(np.float32))
+        count = np.diff(p.indptr)
+        rows = np.repeat(np.arange(len(count)), np.diff(self.starts))
+        products = count[rows] * count[self.columns]
+        products[self.starts[:-1]] = count * (count + 1) // 2
+        self.places = np.zeros(products.sum(), np.int32)
+        pattern = (self.starts, self.columns, *self.prolong[:2], coarser.starts, coarser.columns)
+        kernels.compiled(sums.find_places)(*pattern, self.places)
         coarser.values = np.zeros((len(coarser.columns), 9))
+
+    def lighten(self, scale: float) -> bool:
+        """Make what a cycle works on of the values; False if a diagonal block is not positive definite."""
+        lighten = kernels.compiled(sums.lighten)
+        whole = (self.starts, self.columns, self.values, self.mirror, scale)
+        return bool(lighten(*whole, self.high[2], self.low[2], self.inverse))
 
 
 class Hierarchy:
@@ -125,21 +130,23 @@ class Hierarchy:
 
         self.levels = [Level(starts, columns)]
         laplacian = _laplacian(starts, columns, weights)
-        while len(self.levels[-1].diagonal) > SMALLEST and len(self.levels) < MOST:
+        while len(self.levels[-1].starts) - 1 > SMALLEST and len(self.levels) < MOST:
             level = self.levels[-1]
-            n = len(level.diagonal)
+            n = len(level.starts) - 1
             held = laplacian.diagonal()
             alive = alive & (held > 1e-12 * held.max(initial=0.0))  # the others hang on nothing
             group = np.zeros(n, np.int32)
             pull = np.maximum(-laplacian.data, 0.0)
-            count = kernels.compiled(aggregate)(laplacian.indptr, laplacian.indices, pull, STRONG, alive, group)
+            least = STRONG * WEAKER ** (len(self.levels) - 1)
+            count = kernels.compiled(aggregate)(laplacian.indptr, laplacian.indices, pull, least, alive, group)
             if not 0 < count < 0.8 * n or self.fill_work > FULLEST:
                 break
             some = np.flatnonzero(group >= 0)
             gathered = sparse.csr_matrix((np.ones(len(some)), (some, group[some])), shape=(n, count))
-            diagonal = laplacian.diagonal()
+            strong = _strong(laplacian, least)
+            diagonal = strong.diagonal()
             scale = np.where(alive, DAMPING / np.where(diagonal > 0.0, diagonal, 1.0), 0.0)
-            p = (gathered - sparse.diags(scale) @ (laplacian @ gathered)).tocsr()
+            p = (gathered - sparse.diags(scale) @ (strong @ gathered)).tocsr()
             p.sort_indices()
             laplacian = (p.T @ laplacian @ p).tocsr()
             laplacian.sort_indices()
@@ -162,70 +169,89 @@ class Hierarchy:
     @property
     def coarse(self) -> bool:
         """Whether the coarsest level is small enough to be solved; not where the graph does not gather well."""
-        return len(self.levels[-1].diagonal) <= SMALLEST
+        return len(self.levels[-1].starts) - 1 <= SMALLEST
 
     def fill(self, values: Floats) -> bool:
         """Take the values (k, 9) of the finest level, work out the others; False if not positive definite."""
         self.levels[0].values = values
         for level, coarser in zip(self.levels, self.levels[1:], strict=False):
             pattern = (level.starts, level.columns, level.values)
-            kernels.compiled(sums.coarsen)(
-                *pattern, *level.prolong, *level.restrict, coarser.starts, coarser.columns, coarser.values, *level.notes
-            )
-        for level in self.levels:
-            if not kernels.compiled(sums.invert_diagonal)(level.diagonal, level.values, level.inverse):
-                return False
-        return self._factor()
+            kernels.compiled(sums.coarsen)(*pattern, *level.prolong, level.places, coarser.values)
+        largest = float(values[self.levels[0].starts[:-1], ::4].max(initial=0.0))
+        scale = 1.0 / largest if largest > 0.0 else 1.0  # so that single precision has room
+        return all(level.lighten(scale) for level in self.levels) and self._factor(scale)
 
-    def _factor(self) -> bool:
+    def _factor(self, scale: float) -> bool:
         """Factor the coarsest level; False if it is not positive definite."""
         last = self.levels[-1]
-        n = len(last.diagonal)
+        n = len(last.starts) - 1
         rows = np.repeat(np.arange(n), np.diff(last.starts))
         dense = np.zeros((n, 3, n, 3))
-        dense[rows, :, last.columns, :] = last.values.reshape(-1, 3, 3)
+        blocks = scale * last.values.reshape(-1, 3, 3)
+        dense[last.columns, :, rows, :] = blocks.transpose(0, 2, 1)
+        dense[rows, :, last.columns, :] = blocks
         self.factor = dense.reshape(3 * n, 3 * n)
         empty = self.factor.diagonal() == 0.0
         self.factor[empty, empty] = 1.0
         return bool(kernels.compiled(sums.factor)(self.factor))
 
-    def cycle(self, b: Floats) -> Floats:
-        """About A^-1 b by one symmetric V cycle; the array is used again by the next one."""
+    def cycle(self, b: Floats) -> NDArray[np.float32]:
+        """About A^-1 b (n, 4) by one symmetric V cycle, to a factor; the array is used again by the next one."""
         return self._cycle(0, b)
 
-    def _cycle(self, number: int, b: Floats) -> Floats:
+    def _cycle(self, number: int, b: Any) -> NDArray[np.float32]:
         level = self.levels[number]
         if number == len(self.levels) - 1:
-            kernels.compiled(sums.solve_factored)(self.factor, b.reshape(-1), level.x.reshape(-1))
+            kernels.compiled(sums.solve_factored)(self.factor, b, np.zeros(3 * len(b)), level.x)
             return level.x
         coarser = self.levels[number + 1]
-        matrix = (level.starts, level.columns, level.values, level.diagonal)
-        kernels.compiled(sums.smooth_down)(*matrix, level.inverse, b, level.x)
-        kernels.compiled(sums.restrict)(*matrix, level.x, *level.prolong, coarser.b)
+        kernels.compiled(sums.smooth_down)(*level.low, level.inverse, b, level.x)
+        kernels.compiled(sums.restrict)(*level.high, level.x, *level.prolong, coarser.b)
         found = self._cycle(number + 1, coarser.b)
         kernels.compiled(sums.prolong)(*level.prolong, found, level.x)
-        kernels.compiled(sums.smooth_up)(*matrix, level.inverse, b, level.x)
+        kernels.compiled(sums.smooth_up)(*level.high, *level.low, level.inverse, b, level.x)
         return level.x
 
 
-def _pattern(level: Level, p: Any) -> tuple[Ints, Ints]:
-    """Where P^T A P has blocks, whatever cancels in the sums of the graph."""
+def _sparse(data: Any, columns: Any, starts: Any, n: int) -> Any:
     import scipy.sparse as sparse
 
-    n = len(level.diagonal)
-    near = sparse.csr_matrix((np.ones(len(level.columns)), level.columns, level.starts), shape=(n, n))
-    gathers = sparse.csr_matrix((np.ones(len(p.indices)), p.indices, p.indptr), shape=p.shape)
-    found = (gathers.T @ near @ gathers).tocsr()
+    return sparse.csr_matrix((data, columns, starts), shape=(n, n))
+
+
+def _pattern(level: Level, p: Any) -> tuple[Ints, Ints]:
+    """Where P^T A P has blocks on and above the diagonal, whatever cancels in the sums of the graph."""
+    import scipy.sparse as sparse
+
+    near = _sparse(np.ones(len(level.columns), np.float32), level.columns, level.starts, len(level.starts) - 1)
+    gathers = sparse.csr_matrix((np.ones(len(p.indices), np.float32), p.indices, p.indptr), shape=p.shape)
+    half = gathers.T @ near @ gathers
+    found = sparse.triu(half + half.T, format="csr")
     found.sort_indices()
     return found.indptr.astype(np.int32), found.indices.astype(np.int32)
 
 
 def _laplacian(starts: Ints, columns: Ints, weights: Floats) -> Any:
-    """The Laplacian of a weighted graph as a sparse matrix; `weights` (k,) in the pattern, 0 on its diagonal."""
-    import scipy.sparse as sparse
+    """The Laplacian of a weighted graph as a sparse matrix; `weights` (k,) in a pattern, 0 on its diagonal."""
+    half = _sparse(-weights, columns, starts, len(starts) - 1)
+    return _balanced((half + half.T).tocsr())
 
-    n = len(starts) - 1
-    matrix = sparse.csr_matrix((-weights, columns, starts), shape=(n, n))
-    sums_ = -np.asarray(matrix.sum(axis=1)).ravel()
-    matrix.setdiag(sums_)
+
+def _strong(laplacian: Any, least: float) -> Any:
+    """The Laplacian of the strong connections of a graph alone."""
+    starts, columns = laplacian.indptr, laplacian.indices
+    rows = np.repeat(np.arange(len(starts) - 1, dtype=np.int32), np.diff(starts))
+    pull = np.where(rows == columns, 0.0, -laplacian.data)
+    largest = np.maximum.reduceat(np.append(pull, 0.0), starts[:-1])
+    weak = pull < least * np.maximum(largest[rows], largest[columns])
+    found = _sparse(np.where(weak | (rows == columns), 0.0, -pull), columns, starts, len(starts) - 1).copy()
+    found.eliminate_zeros()
+    return _balanced(found)
+
+
+def _balanced(matrix: Any) -> Any:
+    """A matrix with a diagonal that makes the sums of its rows zero."""
+    matrix.setdiag(0.0)
+    matrix.setdiag(-np.asarray(matrix.sum(axis=1)).ravel())
+    matrix.sort_indices()
     return matrix

@@ -1,6 +1,7 @@
 """The sums of a multigrid cycle and of conjugate gradients on blocks of 3 x 3, each in one pass over memory.
 
-Blocks are rows of nine numbers: (k, 9). Vectors are (n, 3). Everything is summed in one fixed order.
+Blocks are rows of nine numbers, (k, 9), and vectors (n, 3), in double precision; in a cycle, which need not be exact,
+(k, 12) and (n, 4) in single precision. Everything is summed in one fixed order.
 """
 
 from __future__ import annotations
@@ -10,13 +11,19 @@ from typing import Any
 import numpy as np
 
 from hookean.kernels import device
+from hookean.multigrid.blocks import place_of
 
 
-def invert_diagonal(diagonal, values, inverse):  # type: ignore[no-untyped-def]
-    """Inverses of the diagonal blocks; False where one is not positive definite. An axis without stiffness, which is
-    held or on which nothing pulls, stays where it is: zero in the inverse."""
-    for i in range(diagonal.shape[0]):
-        m = values[diagonal[i]]
+def lighten(starts, columns, values, mirror, scale, high, low, inverse):  # type: ignore[no-untyped-def]
+    """What a cycle works on, in single precision: the blocks above and below the diagonal and the inverses of those on
+    it, columns after one another and four numbers each, so that one is a vector of the processor.
+
+    False where a diagonal block is not positive definite. An axis without stiffness, which is held or on which nothing
+    pulls, stays where it is: zero in the inverse. `mirror` tells the block above that each one below is, turned over.
+    """
+    k = 0
+    for i in range(starts.shape[0] - 1):
+        m = values[starts[i]]
         b, c, e = m[3], m[6], m[7]
         a = m[0] if m[0] != 0.0 else 1.0
         d = m[4] if m[4] != 0.0 else 1.0
@@ -25,118 +32,159 @@ def invert_diagonal(diagonal, values, inverse):  # type: ignore[no-untyped-def]
         determinant = a * p + b * q + c * r
         if not (a > 0.0 and a * d - b * b > 0.0 and determinant > 0.0):
             return False
-        scale = 1.0 / determinant
-        inverse[i, 0] = p * scale if m[0] != 0.0 else 0.0
-        inverse[i, 1] = inverse[i, 3] = q * scale
-        inverse[i, 2] = inverse[i, 6] = r * scale
-        inverse[i, 4] = (a * f - c * c) * scale if m[4] != 0.0 else 0.0
-        inverse[i, 5] = inverse[i, 7] = (b * c - a * e) * scale
-        inverse[i, 8] = (a * d - b * b) * scale if m[8] != 0.0 else 0.0
+        unit = 1.0 / determinant / scale
+        inverse[i, 0] = p * unit if m[0] != 0.0 else 0.0
+        inverse[i, 1] = inverse[i, 4] = q * unit
+        inverse[i, 2] = inverse[i, 8] = r * unit
+        inverse[i, 5] = (a * f - c * c) * unit if m[4] != 0.0 else 0.0
+        inverse[i, 6] = inverse[i, 9] = (b * c - a * e) * unit
+        inverse[i, 10] = (a * d - b * b) * unit if m[8] != 0.0 else 0.0
+        for s in range(starts[i] + 1, starts[i + 1]):
+            for a_ in range(3):
+                for b_ in range(3):
+                    high[k, 4 * b_ + a_] = scale * values[s, 3 * a_ + b_]
+            k += 1
+    for t in range(mirror.shape[0]):
+        for a_ in range(3):
+            for b_ in range(3):
+                low[t, 4 * b_ + a_] = scale * values[mirror[t], 3 * b_ + a_]
     return True
 
 
 @device
-def row_times(columns: Any, values: Any, first: Any, last: Any, x: Any) -> Any:
-    """The sum of the blocks `first` to `last` of a row times x."""
-    s0 = s1 = s2 = 0.0
-    for s in range(first, last):
+def row_times(starts: Any, columns: Any, values: Any, i: Any, x: Any) -> Any:
+    """A row of blocks times x."""
+    s0 = s1 = s2 = s3 = np.float32(0.0)
+    for s in range(starts[i], starts[i + np.uint64(1)]):
         k = np.uint64(s)  # unsigned: no index counts from the end
         j = np.uint64(columns[k])
         x0, x1, x2 = x[j, 0], x[j, 1], x[j, 2]
-        s0 += values[k, 0] * x0 + values[k, 1] * x1 + values[k, 2] * x2
-        s1 += values[k, 3] * x0 + values[k, 4] * x1 + values[k, 5] * x2
-        s2 += values[k, 6] * x0 + values[k, 7] * x1 + values[k, 8] * x2
-    return s0, s1, s2
+        s0 += values[k, 0] * x0 + values[k, 4] * x1 + values[k, 8] * x2
+        s1 += values[k, 1] * x0 + values[k, 5] * x1 + values[k, 9] * x2
+        s2 += values[k, 2] * x0 + values[k, 6] * x1 + values[k, 10] * x2
+        s3 += values[k, 3] * x0 + values[k, 7] * x1 + values[k, 11] * x2
+    return s0, s1, s2, s3
 
 
 @device
 def put(inverse: Any, i: Any, r0: Any, r1: Any, r2: Any, x: Any) -> None:
     """x of a row = its inverse block times r."""
-    x[i, 0] = inverse[i, 0] * r0 + inverse[i, 1] * r1 + inverse[i, 2] * r2
-    x[i, 1] = inverse[i, 3] * r0 + inverse[i, 4] * r1 + inverse[i, 5] * r2
-    x[i, 2] = inverse[i, 6] * r0 + inverse[i, 7] * r1 + inverse[i, 8] * r2
+    x[i, 0] = inverse[i, 0] * r0 + inverse[i, 4] * r1 + inverse[i, 8] * r2
+    x[i, 1] = inverse[i, 1] * r0 + inverse[i, 5] * r1 + inverse[i, 9] * r2
+    x[i, 2] = inverse[i, 2] * r0 + inverse[i, 6] * r1 + inverse[i, 10] * r2
+    x[i, 3] = inverse[i, 3] * r0 + inverse[i, 7] * r1 + inverse[i, 11] * r2
 
 
-def multiply(starts, columns, values, x, y):  # type: ignore[no-untyped-def]
-    """y = A x; returns x . y."""
-    total = 0.0
-    for i in range(starts.shape[0] - 1):
-        s0, s1, s2 = row_times(columns, values, starts[i], starts[i + 1], x)
-        y[i, 0], y[i, 1], y[i, 2] = s0, s1, s2
-        total += x[i, 0] * s0 + x[i, 1] * s1 + x[i, 2] * s2
-    return total
-
-
-def smooth_down(starts, columns, values, diagonal, inverse, b, x):  # type: ignore[no-untyped-def]
+def smooth_down(starts, columns, low, inverse, b, x):  # type: ignore[no-untyped-def]
     """One Gauss-Seidel sweep from x = 0, rows in order: only what is before the diagonal counts."""
-    for i in range(starts.shape[0] - 1):
-        s0, s1, s2 = row_times(columns, values, starts[i], diagonal[i], x)
-        put(inverse, i, b[i, 0] - s0, b[i, 1] - s1, b[i, 2] - s2, x)
+    for row in range(starts.shape[0] - 1):
+        i = np.uint64(row)
+        s0, s1, s2, _ = row_times(starts, columns, low, i, x)
+        put(inverse, i, np.float32(b[i, 0]) - s0, np.float32(b[i, 1]) - s1, np.float32(b[i, 2]) - s2, x)
 
 
-def smooth_up(starts, columns, values, diagonal, inverse, b, x):  # type: ignore[no-untyped-def]
+def smooth_up(starts, columns, high, low_starts, low_columns, low, inverse, b, x):  # type: ignore[no-untyped-def]
     """One Gauss-Seidel sweep, rows from the last to the first."""
-    for i in range(starts.shape[0] - 2, -1, -1):
-        s0, s1, s2 = row_times(columns, values, starts[i], diagonal[i], x)
-        t0, t1, t2 = row_times(columns, values, diagonal[i] + 1, starts[i + 1], x)
-        put(inverse, i, b[i, 0] - s0 - t0, b[i, 1] - s1 - t1, b[i, 2] - s2 - t2, x)
+    for row in range(starts.shape[0] - 2, -1, -1):
+        i = np.uint64(row)
+        s0, s1, s2, _ = row_times(low_starts, low_columns, low, i, x)
+        t0, t1, t2, _ = row_times(starts, columns, high, i, x)
+        r0, r1, r2 = np.float32(b[i, 0]), np.float32(b[i, 1]), np.float32(b[i, 2])
+        put(inverse, i, r0 - s0 - t0, r1 - s1 - t1, r2 - s2 - t2, x)
 
 
-def restrict(starts, columns, values, diagonal, x, p_starts, p_columns, p_values, coarse):  # type: ignore[no-untyped-def]
+def restrict(starts, columns, high, x, p_starts, p_columns, p_values, coarse):  # type: ignore[no-untyped-def]
     """coarse = P^T (b - A x) after `smooth_down`: what is before and on the diagonal has cancelled already."""
     coarse[:] = 0.0
-    for i in range(starts.shape[0] - 1):
-        s0, s1, s2 = row_times(columns, values, diagonal[i] + 1, starts[i + 1], x)
-        for s in range(p_starts[i], p_starts[i + 1]):
-            j, p = p_columns[s], p_values[s]
+    for row in range(starts.shape[0] - 1):
+        i = np.uint64(row)
+        s0, s1, s2, s3 = row_times(starts, columns, high, i, x)
+        for s in range(p_starts[i], p_starts[i + np.uint64(1)]):
+            j, p = np.uint64(p_columns[np.uint64(s)]), p_values[np.uint64(s)]
             coarse[j, 0] -= p * s0
             coarse[j, 1] -= p * s1
             coarse[j, 2] -= p * s2
+            coarse[j, 3] -= p * s3
 
 
 def prolong(p_starts, p_columns, p_values, coarse, x):  # type: ignore[no-untyped-def]
     """x += P coarse."""
-    for i in range(p_starts.shape[0] - 1):
-        for s in range(p_starts[i], p_starts[i + 1]):
-            j, p = p_columns[s], p_values[s]
-            x[i, 0] += p * coarse[j, 0]
-            x[i, 1] += p * coarse[j, 1]
-            x[i, 2] += p * coarse[j, 2]
+    for row in range(p_starts.shape[0] - 1):
+        i = np.uint64(row)
+        x0, x1, x2, x3 = x[i, 0], x[i, 1], x[i, 2], x[i, 3]
+        for s in range(p_starts[i], p_starts[i + np.uint64(1)]):
+            j, p = np.uint64(p_columns[np.uint64(s)]), p_values[np.uint64(s)]
+            x0 += p * coarse[j, 0]
+            x1 += p * coarse[j, 1]
+            x2 += p * coarse[j, 2]
+            x3 += p * coarse[j, 3]
+        x[i, 0], x[i, 1], x[i, 2], x[i, 3] = x0, x1, x2, x3
+
+
+def find_places(starts, columns, p_starts, p_columns, c_starts, c_columns, places):  # type: ignore[no-untyped-def]
+    """Where `coarsen` adds each product, in its order: a block of the coarse pattern, or -1 less it turned over."""
+    t = 0
+    for i in range(starts.shape[0] - 1):
+        for s in range(starts[i], starts[i + 1]):
+            j = columns[s]
+            for u in range(p_starts[i], p_starts[i + 1]):
+                for v in range(u if i == j else p_starts[j], p_starts[j + 1]):
+                    row, column = p_columns[u], p_columns[v]
+                    place = place_of(c_starts, c_columns, min(row, column), max(row, column))
+                    places[t] = place if row <= column else -1 - place
+                    t += 1
 
 
 def coarsen(  # type: ignore[no-untyped-def]
-    starts, columns, values, p_starts, p_columns, p_values, r_starts, r_rows, r_values, c_starts, c_columns, c_values,
-    mirror, place, total,
+    starts, columns, values, p_starts, p_columns, p_values, places, coarse
 ):  # fmt: skip
-    """The coarse blocks P^T A P, row by row: those from the diagonal on are summed, the others are their mirrors.
-
-    `place` (coarse rows,) and `total` (longest row, 9) are for notes; `mirror` (blocks,) tells where a block's is.
-    """
-    for row in range(c_starts.shape[0] - 1):
-        first, last = c_starts[row], c_starts[row + 1]
-        for s in range(first, last):
-            place[c_columns[s]] = s - first
-            for c in range(9):
-                total[s - first, c] = 0.0
-        for t in range(r_starts[row], r_starts[row + 1]):
-            i, r = r_rows[t], r_values[t]
-            for s in range(starts[i], starts[i + 1]):
-                j = columns[s]
-                for u in range(p_starts[j], p_starts[j + 1]):
-                    column = p_columns[u]
-                    if column >= row:
-                        q, k = np.uint64(place[column]), np.uint64(s)
-                        weight = r * p_values[u]
+    """The coarse blocks P^T A P."""
+    coarse[:] = 0.0
+    t = np.uint64(0)
+    for i in range(starts.shape[0] - 1):
+        for s in range(starts[i], starts[i + 1]):
+            k, j = np.uint64(s), columns[s]
+            for u in range(p_starts[i], p_starts[i + 1]):
+                for v in range(u if i == j else p_starts[j], p_starts[j + 1]):
+                    weight = np.float64(p_values[u]) * np.float64(p_values[v])
+                    place = places[t]
+                    t += np.uint64(1)
+                    if place >= 0:
+                        q = np.uint64(place)
                         for c in range(9):
-                            total[q, c] += weight * values[k, c]
-        for s in range(first, last):
-            if c_columns[s] >= row:
-                other = mirror[s]
-                for a in range(3):
-                    for b in range(3):
-                        c_values[s, 3 * a + b] = total[s - first, 3 * a + b]
-                        if other != s:
-                            c_values[other, 3 * b + a] = total[s - first, 3 * a + b]
+                            coarse[q, c] += weight * values[k, c]
+                    if place < 0 or (i != j and p_columns[u] == p_columns[v]):
+                        q = np.uint64(place if place >= 0 else -1 - place)
+                        for a in range(3):
+                            for b in range(3):
+                                coarse[q, 3 * a + b] += weight * values[k, 3 * b + a]
+
+
+def multiply(starts, columns, values, x, y):  # type: ignore[no-untyped-def]
+    """y = A x; returns x . y."""
+    y[:] = 0.0
+    total = 0.0
+    for row in range(starts.shape[0] - 1):
+        i, k = np.uint64(row), np.uint64(starts[row])
+        x0, x1, x2 = x[i, 0], x[i, 1], x[i, 2]
+        d0 = values[k, 0] * x0 + values[k, 1] * x1 + values[k, 2] * x2
+        d1 = values[k, 3] * x0 + values[k, 4] * x1 + values[k, 5] * x2
+        d2 = values[k, 6] * x0 + values[k, 7] * x1 + values[k, 8] * x2
+        s0 = s1 = s2 = 0.0
+        for s in range(starts[row] + 1, starts[row + 1]):
+            k = np.uint64(s)
+            j = np.uint64(columns[k])
+            s0 += values[k, 0] * x[j, 0] + values[k, 1] * x[j, 1] + values[k, 2] * x[j, 2]
+            s1 += values[k, 3] * x[j, 0] + values[k, 4] * x[j, 1] + values[k, 5] * x[j, 2]
+            s2 += values[k, 6] * x[j, 0] + values[k, 7] * x[j, 1] + values[k, 8] * x[j, 2]
+            y[j, 0] += values[k, 0] * x0 + values[k, 3] * x1 + values[k, 6] * x2
+            y[j, 1] += values[k, 1] * x0 + values[k, 4] * x1 + values[k, 7] * x2
+            y[j, 2] += values[k, 2] * x0 + values[k, 5] * x1 + values[k, 8] * x2
+        y[i, 0] += d0 + s0
+        y[i, 1] += d1 + s1
+        y[i, 2] += d2 + s2
+        total += x0 * (d0 + 2.0 * s0) + x1 * (d1 + 2.0 * s1) + x2 * (d2 + 2.0 * s2)
+    return total
 
 
 def dot(x, y):  # type: ignore[no-untyped-def]
@@ -144,7 +192,7 @@ def dot(x, y):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(x.shape[0]):
         for c in range(3):
-            total += x[i, c] * y[i, c]
+            total += x[i, c] * np.float64(y[i, c])
     return total
 
 
@@ -163,7 +211,7 @@ def turn(p, z, part):  # type: ignore[no-untyped-def]
     """p = z + part p."""
     for i in range(p.shape[0]):
         for c in range(3):
-            p[i, c] = z[i, c] + part * p[i, c]
+            p[i, c] = np.float64(z[i, c]) + part * p[i, c]
 
 
 def factor(matrix):  # type: ignore[no-untyped-def]
@@ -182,15 +230,16 @@ def factor(matrix):  # type: ignore[no-untyped-def]
     return True
 
 
-def solve_factored(lower, b, x):  # type: ignore[no-untyped-def]
-    """x of L L^T x = b."""
-    n = b.shape[0]
+def solve_factored(lower, b, y, x):  # type: ignore[no-untyped-def]
+    """x (n, 4) of L L^T x = b (n, 3 or 4); `y` (3 n,) is for notes."""
+    n = y.shape[0]
     for i in range(n):
-        total = b[i]
+        total = np.float64(b[i // 3, i % 3])
         for k in range(i):
-            total -= lower[i, k] * x[k]
-        x[i] = total / lower[i, i]
+            total -= lower[i, k] * y[k]
+        y[i] = total / lower[i, i]
     for i in range(n - 1, -1, -1):
-        x[i] /= lower[i, i]
+        y[i] /= lower[i, i]
         for k in range(i):
-            x[k] -= lower[i, k] * x[i]
+            y[k] -= lower[i, k] * y[i]
+        x[i // 3, i % 3] = y[i]

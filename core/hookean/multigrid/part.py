@@ -23,7 +23,8 @@ def widened(starts: Ints, columns: Ints, chosen: Chosen, rings: int) -> Chosen:
     import scipy.sparse as sparse
 
     n = len(chosen)
-    near = sparse.csr_matrix((np.ones(len(columns), np.int8), columns, starts), shape=(n, n))
+    half = sparse.csr_matrix((np.ones(len(columns), np.int8), columns, starts), shape=(n, n))
+    near = half + half.T
     for _ in range(rings):
         chosen = (near @ chosen.astype(np.int32)) > 0
     return chosen

@@ -11,7 +11,6 @@ Cai and Li, SIAM J. Sci. Comput. 33 (2011) 746, for the elimination of what is l
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -21,8 +20,7 @@ from hookean.solvers import relaxation
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
-    from hookean.multigrid.blocks import Blocks
-    from hookean.multigrid.hierarchy import Hierarchy
+    from hookean.multigrid.tangent import Tangent
     from hookean.state import State
     from hookean.system import System
 
@@ -41,14 +39,6 @@ FEW = 1e-3  # so few push where supports are points, and have no room to buckle
 ROUNDS = 3  # smoothings without half the largest force, after which all particles relax
 
 
-@dataclass
-class Ready:
-    """What a solve works out once."""
-
-    blocks: Blocks
-    hierarchy: Hierarchy
-
-
 class Method(Solver):
     """Newton and multigrid for large nets."""
 
@@ -57,7 +47,7 @@ class Method(Solver):
 
     def __init__(self) -> None:
         self._relaxation = relaxation.Method()
-        self._ready: Ready | None = None
+        self._ready: Tangent | None = None
         self.largest = np.inf  # force [force] out of balance after the last Newton step
         self.pushed = False  # whether many springs pushed where Newton steps no longer helped
         self.work = 0.0  # passes over all springs; coarser levels count by their size
@@ -124,17 +114,11 @@ class Method(Solver):
             state.x[particles] = own.x
         return 0.0
 
-    def _readied(self, system: System, state: State) -> Ready:
-        """Pattern and hierarchy from the start of the system, so that they do not depend on when they are made."""
+    def _readied(self, system: System, state: State) -> Tangent:
         if self._ready is None:
-            from hookean.multigrid.blocks import Blocks
-            from hookean.multigrid.hierarchy import Hierarchy
+            from hookean.multigrid.tangent import Tangent
 
-            blocks = Blocks(system)
-            blocks.fill(system, system.start())
-            blocks.weigh()
-            alive = np.asarray((state.free > 0.0).any(axis=1))
-            self._ready = Ready(blocks, Hierarchy(blocks.starts, blocks.columns, blocks.weights, alive))
+            self._ready = Tangent(system, state)
         return self._ready
 
 
@@ -142,7 +126,7 @@ class Step:
     """One Newton step: its direction, and how far to go. `fall` [force length] of the energy, `largest` [force] out of
     balance after it, `work` [passes over all springs]."""
 
-    def __init__(self, system: System, state: State, ready: Ready, shift: float) -> None:
+    def __init__(self, system: System, state: State, ready: Tangent, shift: float) -> None:
         self.system, self.state, self.ready, self.shift = system, state, ready, shift
         self.work, self.fall, self.largest = 0.0, 0.0, np.inf
         self.bent = False  # whether a direction of negative curvature was met
@@ -176,18 +160,12 @@ class Step:
 
     def _direction(self, forces: Floats) -> Floats | None:
         """Where to go, with the smallest shift tried that makes the tangent positive definite."""
-        from hookean.multigrid.gradients import solve
-
-        blocks, hierarchy = self.ready.blocks, self.ready.hierarchy
         while self.shift <= LARGEST_SHIFT:
-            blocks.fill(self.system, self.state)
-            blocks.settle(self.state, self.shift)
-            self.work += 1.0 + hierarchy.fill_work
-            if hierarchy.fill(blocks.values):
-                direction, steps = solve(hierarchy, forces, SOLVED, CONJUGATE)
-                self.work += steps * (1.0 + hierarchy.cycle_work)
-                if direction is not None:
-                    return direction
+            before = self.ready.work
+            direction = self.ready.solve(self.system, self.state, self.shift, forces, SOLVED, CONJUGATE)
+            self.work += self.ready.work - before
+            if direction is not None:
+                return direction
             self.shift, self.bent = max(10.0 * self.shift, 1e-5), True
         return None
 
