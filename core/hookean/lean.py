@@ -48,8 +48,8 @@ def lean(system: System, state: State, *, damped: bool) -> Lean:
         if group.cls.constant:
             kernels.compiled(kernel, "force")(state.x, load, b.indices, b.parameters, memory, load, load[:, 0].copy())
         else:
-            full.append((kernel, (b.indices, b.parameters, memory)))
-            packed.append((kernel, (*_packed(group, memory, damped), memory)))
+            full.append((kernel, group.cls.whole(b, memory)))
+            packed.append((kernel, _packed(group, memory, damped)))
             (lively if damped and (group.damped or group.yields) else quiet).append(packed[-1])
     every = kernels.table("force", packed)
     still = kernels.table("force", quiet) if lively else every
@@ -63,15 +63,15 @@ def contacts(system: System) -> tuple[Any, Any]:
     return kernels.table("impact", impacts), kernels.table("support", supports)
 
 
-def _packed(group: Group, memory: Floats, damped: bool) -> tuple[Any, Any]:
-    """Indices and parameters of a group, packed if its force can."""
+def _packed(group: Group, memory: Floats, damped: bool) -> tuple[Any, Any, Any]:
+    """Indices, parameters and memory of a group, packed if its force can."""
     block = group.block
     if group.cls.pack is not None and (packed := group.cls.pack(block, memory, damped)) is not None:
-        return packed
+        return (*packed, memory)[:3]
     if damped or not group.cls.damped:
-        return block.indices, block.parameters
+        return block.indices, block.parameters, memory
     # kernels see no speed, and need not look for one at every element
-    return block.indices, np.where([name == "damping" for name in block.names], 0.0, block.parameters)
+    return block.indices, np.where([name == "damping" for name in block.names], 0.0, block.parameters), memory
 
 
 class Desk:

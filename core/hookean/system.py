@@ -135,8 +135,7 @@ class System:
             if only and group.cls.role != only:
                 continue
             kernel = kernels.compiled(group.cls.kernel, "force")
-            b = group.block
-            energies[i] = kernel(state.x, v, b.indices, b.parameters, memory, f, w)
+            energies[i] = kernel(state.x, v, *group.cls.whole(group.block, memory), f, w)
         return f, w, energies
 
     def support(self, state: State, f: Floats) -> Floats:

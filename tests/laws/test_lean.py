@@ -111,6 +111,47 @@ def test_a_patched_shell_is_packed_anew() -> None:
         assert np.abs(f[:, :3] - expected).max() <= 16.0 * EPS * w.max() * np.abs(state.x).max()
 
 
+def skins() -> System:
+    """A shell of mixed orientation, with naked edges and a band of one side, and a second one on some of its faces."""
+    around = np.arange(12) * np.pi / 6.0
+    rim = [[np.cos(t) * (2 + r * np.cos(t / 2)), np.sin(t) * (2 + r * np.cos(t / 2)), r * np.sin(t / 2)]
+           for t in around for r in (-0.7, 0.6)]  # fmt: skip
+    faces = []
+    for i in range(12):
+        a, b = 2 * i, 2 * i + 1
+        c, d = (2 * i + 2, 2 * i + 3) if i < 11 else (1, 0)  # half a turn
+        faces += [[a, b, d], [d, c, a] if i % 3 else [a, c, d]]
+    meshes = {"band": {"vertices": rim, "faces": faces}, "part": {"vertices": rim, "faces": faces[3:11]}}
+    shells = [
+        {"kind": "shell", "mesh": "band", "strength": 30.0, "angle_factor": 0.3},
+        {"kind": "shell", "mesh": "part", "strength": 7.0, "angle_factor": 1.0},
+    ]
+    return compile(Scene(particles=rim, meshes=meshes, forces=shells))
+
+
+SKINS = skins()
+
+
+@pytest.mark.parametrize("name", ["example", "skins"])
+@SEEDED
+@given(seed=st.integers(0, 2**32 - 1), part=st.sampled_from([0.0, 0.01, 0.3]))
+def test_a_shell_as_a_whole_is_the_sum_of_its_elements(name: str, seed: int, part: float) -> None:
+    """Forces and energy of element by element, within rounding of stiffness x coordinates; and at most their lumped
+    stiffness, as moments on an edge that are opposite cancel before their size counts."""
+    system, rng = (SKINS if name == "skins" else SYSTEMS["shell"]), np.random.default_rng(seed)
+    state = system.start()
+    state.x += part * system.size * rng.uniform(-1.0, 1.0, state.x.shape)
+    (group,) = system.groups
+    block, kernel = group.block, kernels.compiled(group.cls.kernel, "force")
+    f, w, (energy,) = system.evaluate(state)
+    expected, most = np.zeros_like(f), np.zeros_like(w)
+    summed = kernel(state.x, 0.0 * f, block.indices, block.parameters, state.memory[0], expected, most)
+    size = most.max() * np.abs(state.x).max() + np.abs(expected).max()
+    assert np.abs(f - expected).max() <= 32.0 * EPS * size
+    assert abs(energy - summed) <= 32.0 * EPS * (summed + size * np.abs(state.x).max())
+    assert (w <= most * (1.0 + 1e-9)).all() and (w > 0.0).all()
+
+
 @SEEDED
 @given(angle=st.floats(-np.pi, np.pi), size=st.floats(1e-100, 1e100))
 def test_small_angles_are_those_of_arctan2(angle: float, size: float) -> None:

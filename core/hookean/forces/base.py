@@ -127,13 +127,22 @@ class Force(Model):
         raise TypeError(f"{type(self).__name__} does not say how it compiles")
 
     @classmethod
-    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
-        """Indices and parameters for the loops of solvers, that the kernel knows by their shape; None: as they are.
+    def pack(
+        cls, block: Block, memory: Floats, damped: bool
+    ) -> tuple[Ints, Floats] | tuple[Ints, Floats, Floats] | None:
+        """Indices and parameters for the loops of solvers, that the kernel knows by their shape, and what it takes in
+        the place of `memory` if that is something else; None: as they are.
 
         With them it adds to `f` alone (its stiffness and energy are not asked for), x, v and f have a fourth column of
         zeros, and without `damped` nothing moves. `memory` stays as it is meanwhile.
         """
         return None
+
+    @classmethod
+    def whole(cls, block: Block, memory: Floats) -> tuple[Ints, Floats, Floats]:
+        """Indices, parameters and memory with which the kernel gives forces, stiffness and energy of the whole block,
+        where there is a quicker way than element by element."""
+        return block.indices, block.parameters, memory
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """What a result tells of each element, by the names and units of `outputs`.

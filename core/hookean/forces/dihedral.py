@@ -24,7 +24,14 @@ SLIVER = 1e-8
 
 @device
 def fold(x: Any, a: Any, b: Any, c: Any, d: Any, g: Any) -> Any:
-    """Fold angle [rad] of a, b, c, d; nan for a sliver, and then `g` is not written.
+    """Fold angle [rad] of a, b, c, d, and `g` as in `slopes`; nan for a sliver, and then `g` is not written."""
+    sine, cosine = slopes(x, a, b, c, d, g)
+    return np.arctan2(sine, cosine)
+
+
+@device
+def slopes(x: Any, a: Any, b: Any, c: Any, d: Any, g: Any) -> Any:
+    """Sine and cosine of the fold angle of a, b, c, d, of one size; nan for a sliver, and then `g` is not written.
 
     `g` (4, 5): for a, b, c, d the gradient of the angle; then what one unit of stiffness (g g^T) and one unit of moment
     (the second derivatives of the angle) add at most to the stiffness that each particle feels.
@@ -49,10 +56,10 @@ def fold(x: Any, a: Any, b: Any, c: Any, d: Any, g: Any) -> Any:
     nn = nx * nx + ny * ny + nz * nz
     size = ee + px * px + py * py + pz * pz
     if not mm > SLIVER * SLIVER * size * size:
-        return np.nan
+        return np.nan, np.nan
     size = ee + qx * qx + qy * qy + qz * qz
     if not nn > SLIVER * SLIVER * size * size or not ee * ee > 1e-280:
-        return np.nan
+        return np.nan, np.nan
     length = np.sqrt(ee)
     at_c = length / mm
     at_d = length / nn
@@ -82,7 +89,7 @@ def fold(x: Any, a: Any, b: Any, c: Any, d: Any, g: Any) -> Any:
     for i in range(4):
         g[i, 3] *= first
         g[i, 4] *= second
-    return np.arctan2(length * (nx * px + ny * py + nz * pz), mx * nx + my * ny + mz * nz)
+    return length * (nx * px + ny * py + nz * pz), mx * nx + my * ny + mz * nz
 
 
 @device

@@ -12,7 +12,7 @@ from pydantic import Field
 from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.dihedral import SLIVER, fold, fold_angles, wrapped
-from hookean.forces.shell_edges import bend, packed, plan
+from hookean.forces.shell_edges import Plan, bend
 
 Complex = NDArray[np.complex128]
 
@@ -23,57 +23,49 @@ HINGES = np.array(
     [[0, 1, 2, 3], [1, 2, 0, 4], [2, 0, 1, 5]]
     + [[[i, 3 + i, (i + 1) % 3, 6 + 2 * i], [3 + i, (i + 1) % 3, i, 7 + 2 * i]][j] for i in range(3) for j in range(2)]
 )
-STRENGTH, FACTOR, AREA, REST, BOUND, ROWS = 0, 1, 2, 3, 12, 21  # columns of the parameters
+# Each edge with the other edges of its two triangles, as the triangle sees them: what a part of its fold comes from.
+FIVE = np.array([[i, (i + 1) % 3, (i + 2) % 3, 3 + 2 * i, 4 + 2 * i] for i in range(3)])
+# columns of the parameters
+STRENGTH, FACTOR, AREA, REST, BOUND, AXES, PARTS, ACROSS, END = 0, 1, 2, 3, 12, 21, 30, 45, 48
 
 
 def shell_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
-    energy = 0.0
     if indices.shape[0] == 1 and indices.shape[1] != 12:
-        bend(x, indices[0], parameters[0], f)
-        return energy
+        return bend(x, indices[0], parameters[0], memory[0], f, w)
+    energy = 0.0
     g = np.zeros((9, 4, 5))
-    active = np.zeros(9, np.bool_)
-    # folds that a neighbour has found already, in the same order; as many as a cache holds
-    places = 16
-    while places < 2 * indices.shape[0] and places < 4096:
-        places *= 2
-    known, angles, folds = np.full((places, 4), -1), np.zeros(places), np.zeros((places, 4, 5))
+    turn, bent, on_part = np.zeros(9), np.zeros(3), np.zeros(3)
     for e in range(indices.shape[0]):
-        bent_x = 0.0
-        bent_y = 0.0
-        twist = 0.0
         for h in range(9):
-            active[h] = False
-            if parameters[e, BOUND + h] == 0.0:
-                continue
             a, b, c, d = (
                 indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]], indices[e, HINGES[h, 3]]
             )  # fmt: skip
-            at = (a * 73856093 ^ b * 19349663 ^ c * 83492791 ^ d * 39916801) & (places - 1)
-            if known[at, 0] != a or known[at, 1] != b or known[at, 2] != c or known[at, 3] != d:
-                known[at, 0], known[at, 1], known[at, 2], known[at, 3] = a, b, c, d
-                angles[at] = fold(x, a, b, c, d, folds[at])
-            angle = angles[at]
-            if np.isnan(angle):
-                continue
-            active[h] = True
-            for i in range(4):
-                for j in range(5):
-                    g[h, i, j] = folds[at, i, j]
-            turn = wrapped(angle - parameters[e, FACTOR] * parameters[e, REST + h])
-            bent_x += parameters[e, ROWS + h] * turn
-            bent_y += parameters[e, ROWS + 9 + h] * turn
-            twist += parameters[e, ROWS + 18 + h] * turn
+            turn[h] = np.nan
+            if parameters[e, BOUND + h] != 0.0:
+                angle = fold(x, a, b, c, d, g[h])
+                turn[h] = wrapped(angle - parameters[e, FACTOR] * parameters[e, REST + h])
+        bent[:] = 0.0
+        for i in range(3):
+            part = 0.0
+            for j in range(5):
+                if not np.isnan(turn[FIVE[i, j]]):
+                    part += parameters[e, PARTS + 5 * i + j] * turn[FIVE[i, j]]
+            for k in range(3):
+                bent[k] += parameters[e, AXES + 3 * k + i] * part
         strength = parameters[e, STRENGTH]
-        energy += 0.5 * strength * (bent_x * bent_x + bent_y * bent_y + twist * twist)
+        energy += 0.5 * strength * (bent[0] * bent[0] + bent[1] * bent[1] + bent[2] * bent[2])
+        for i in range(3):
+            on_part[i] = 0.0
+            for k in range(3):
+                on_part[i] += strength * parameters[e, AXES + 3 * k + i] * bent[k]
         for h in range(9):
-            if not active[h]:
+            if np.isnan(turn[h]):
                 continue
-            moment = strength * (
-                parameters[e, ROWS + h] * bent_x
-                + parameters[e, ROWS + 9 + h] * bent_y
-                + parameters[e, ROWS + 18 + h] * twist
-            )
+            moment = 0.0
+            for i in range(3):
+                for j in range(5):
+                    if FIVE[i, j] == h:
+                        moment += parameters[e, PARTS + 5 * i + j] * on_part[i]
             for i in range(4):
                 p = indices[e, HINGES[h, i]]
                 w[p] += strength * parameters[e, BOUND + h] * g[h, i, 3] + np.abs(moment) * g[h, i, 4]
@@ -116,11 +108,13 @@ class Shell(Force):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: D, factor, area, start angles, bounds, and sqrt(A) K by the nine fold angles."""
         corners = triangles(places.x, places.faces(self.mesh))
-        index, there = _elements(corners, f"/meshes/{self.mesh}/faces")
-        rows, area = _curvature_rows(places.x, index, there)
-        bends = (rows != 0).any(axis=(1, 2))
-        index, rows, area = index[bends], rows[bends], area[bends]
+        across = _neighbours(corners, f"/meshes/{self.mesh}/faces")
+        bends = np.asarray((across >= 0).any(axis=1))
+        corners, across = corners[bends], _renumbered(across, bends)
+        index, there = _elements(corners, across)
+        axes, parts, area = _curvature(places.x, index, there, across)
         angles = fold_angles(places.x, index[:, HINGES])
+        rows = _rows(axes, parts)
         bound = np.abs(np.einsum("mkh,mkl->mhl", rows, rows)).sum(axis=2)
         return Block.of(
             index,
@@ -129,31 +123,52 @@ class Shell(Force):
             area=area,
             start_angles=np.where(bound > 0, angles, 0.0),
             bounds=bound,
-            rows=rows.reshape(-1, 27),
+            axes=axes.reshape(-1, 9),
+            parts=parts.reshape(-1, 15),
+            # so that blocks may stand anywhere among others
+            across=np.where(across >= 0, across - np.arange(across.size).reshape(-1, 3), 0),
         )
 
     @classmethod
-    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
-        """The edges, each once, then the elements by their edges; see `shell_edges`."""
-        p = block.parameters
-        if not len(p):
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats, Floats] | None:
+        """The edges and the triangles, each once; see `shell_edges`."""
+        if not len(block.indices):
             return None
+        planned, _, table, room = cls._planned(block)
+        return planned.quick, table, room
+
+    @classmethod
+    def whole(cls, block: Block, memory: Floats) -> tuple[Ints, Floats, Floats]:
+        """The same, with lumped stiffness."""
+        if not len(block.indices):
+            return block.indices, block.parameters, memory
+        planned, _, table, room = cls._planned(block)
+        return planned.whole, table, room
+
+    @staticmethod
+    def _planned(block: Block) -> tuple[Plan, Floats, Floats, Floats]:
+        """What is kept of a block: its plan, its D and angle factors, the numbers that come from them, room."""
+        p, given = block.parameters, block.parameters[:, : FACTOR + 1]
         if not block.plan:
-            block.plan.extend(plan(block.indices[:, HINGES], p[:, BOUND:ROWS] != 0.0))
-        index, seen, sign, *before = block.plan
-        if not before or not np.array_equal(before[0], p):
-            rows = np.sqrt(p[:, STRENGTH])[:, None, None] * p[:, ROWS:].reshape(-1, 3, 9)
-            before = [p.copy(), packed(seen, sign, p[:, FACTOR, None] * p[:, REST:BOUND], rows)]
-            block.plan[3:] = before
-        return index, before[1].copy()
+            place, offset = np.arange(3 * len(p)).reshape(-1, 3), p[:, ACROSS:END].astype(np.int64)
+            made = Plan.of(block.indices[:, :3], np.where(offset != 0, place + offset, -1))
+            block.plan[:] = [made, None, None, made.room()]
+        planned, before, table, room = block.plan
+        if before is None or not np.array_equal(before, given):
+            rest, axes, parts = p[:, REST:BOUND], p[:, AXES:PARTS].reshape(-1, 3, 3), p[:, PARTS:ACROSS]
+            bounds = planned.summed(p[:, STRENGTH, None] * p[:, BOUND:AXES])
+            table = planned.numbers(p[:, STRENGTH], p[:, FACTOR, None] * rest[:, :3], bounds, axes, parts)
+            block.plan[:] = [planned, given.copy(), table, room]
+        return planned, before, table, room
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Largest fold of each triangle's edges away from rest [rad], bending moment D |K| per width [force]."""
         parameters = block.parameters
         rest = parameters[:, FACTOR, None] * parameters[:, REST:BOUND]
         turn = wrapped(fold_angles(x, block.indices[:, HINGES]) - rest)
-        turn = np.where(parameters[:, BOUND:ROWS] > 0, turn, 0.0)
-        bent = np.einsum("mkh,mh->mk", parameters[:, ROWS:].reshape(-1, 3, 9), turn)
+        turn = np.where(parameters[:, BOUND:AXES] > 0, turn, 0.0)
+        rows = _rows(parameters[:, AXES:PARTS].reshape(-1, 3, 3), parameters[:, PARTS:ACROSS].reshape(-1, 3, 5))
+        bent = np.einsum("mkh,mh->mk", rows, turn)
         moment = parameters[:, STRENGTH] * np.linalg.norm(bent, axis=1) / np.sqrt(parameters[:, AREA])
         return {"angle": np.abs(turn[:, :3]).max(axis=1, initial=0.0), "moment": moment}
 
@@ -210,9 +225,15 @@ def _neighbours(corners: Ints, pointer: str) -> Ints:
     return across.reshape(-1, 3)
 
 
-def _elements(corners: Ints, pointer: str) -> tuple[Ints, NDArray[np.bool_]]:
+def _renumbered(across: Ints, kept: NDArray[np.bool_]) -> Ints:
+    """Places across edges when only some triangles are kept."""
+    number = np.cumsum(kept) - 1
+    across = across[kept]
+    return np.where(across >= 0, 3 * number[across // 3] + across % 3, -1)
+
+
+def _elements(corners: Ints, across: Ints) -> tuple[Ints, NDArray[np.bool_]]:
     """Particles (m, 12) of each triangle's element, and which are there; the others repeat the first corner."""
-    across = _neighbours(corners, pointer)
     index = np.repeat(corners[:, :1], 12, axis=1)
     there = np.zeros(index.shape, dtype=bool)
     index[:, :3], there[:, :3] = corners, True
@@ -268,7 +289,7 @@ def _own_part(a: Complex, b: Complex, c: Complex) -> Floats:
 
 
 def _split(x: Floats, index: Ints, there: NDArray[np.bool_], i: int) -> Floats:
-    """The angle at edge i on the side of the triangle, by the element's nine fold angles (m, 9)."""
+    """The angle at edge i on the side of the triangle, by the five fold angles (m, 5) of `FIVE`."""
     j, k = (i + 1) % 3, (i + 2) % 3
     node = [index[:, n] for n in (i, j, k, 3 + i, 3 + j, 3 + k, 6 + 2 * i, 7 + 2 * i)]
     has = [there[:, n] for n in (3 + i, 3 + j, 3 + k, 6 + 2 * i, 7 + 2 * i)]
@@ -287,9 +308,8 @@ def _split(x: Floats, index: Ints, there: NDArray[np.bool_], i: int) -> Floats:
     )
     share = zc.imag / (zc.imag - zd.imag)
     missing = np.where(has[0][:, None], _own_part(za, zb, zc) - share[:, None] * folds[:, 0], 0.0)
-    part = np.zeros((len(index), 9))
-    part[:, [i, j, k, 3 + 2 * i, 4 + 2 * i]] = _least(folds, missing)
-    part[:, i] += np.where(has[0], share, 0.0)
+    part = _least(folds, missing)
+    part[:, 0] += np.where(has[0], share, 0.0)
     return part
 
 
@@ -305,8 +325,9 @@ def _least(folds: Floats, wanted: Floats) -> Floats:
     return found
 
 
-def _curvature_rows(x: Floats, index: Ints, there: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """sqrt(A) K (m, 3, 9) by fold angles, K as (xx, yy, sqrt 2 xy) in the triangle's plane, and the areas (m,)."""
+def _curvature(x: Floats, index: Ints, there: NDArray[np.bool_], across: Ints) -> tuple[Floats, Floats, Floats]:
+    """sqrt(A) K as (xx, yy, sqrt 2 xy) in the triangle's plane by the parts of folds (m, 3, 3), these parts by five
+    folds each (m, 3, 5), and the areas (m,)."""
     za = np.zeros(len(index), complex)
     zb = za + np.linalg.norm(x[index[:, 1]] - x[index[:, 0]], axis=1)
     z = np.stack([za, zb, _place(x, index.T[:3], za, zb, 1.0)], axis=1)
@@ -316,11 +337,32 @@ def _curvature_rows(x: Floats, index: Ints, there: NDArray[np.bool_]) -> tuple[F
     # (2 / h) n n^T = l / A n n^T for each edge
     axes = 2.0 * _tensor(outward) * (np.abs(edges) / area[:, None])[:, :, None]
     parts = np.stack([_split(x, index, there, i) for i in range(3)], axis=1)
-    rows = np.einsum("mik,mih->mkh", axes, parts)
+    _balance(parts, index[:, :3].ravel(), across.ravel())
     naked = np.where(there[:, 3:6, None], 0.0, axes)
     some = ~there[:, 3:6].all(axis=1)
     # the curvature that turning naked edges cannot take away
     left = np.eye(3) - np.linalg.pinv(naked[some], rcond=1e-6) @ naked[some]
-    rows[some] = np.einsum("mkl,mlh->mkh", left, rows[some])
-    rows[~there[:, 3:6].any(axis=1)] = 0.0
-    return np.sqrt(area)[:, None, None] * rows, area
+    axes = axes.transpose(0, 2, 1)
+    axes[some] = left @ axes[some]
+    axes = np.where(there[:, None, 3:6], axes, 0.0)
+    return np.sqrt(area)[:, None, None] * axes, parts, area
+
+
+def _balance(parts: Floats, start: Ints, across: Ints) -> None:
+    """Give the second triangle of every edge what the first leaves of the fold: exactly, not but for rounding."""
+    first = np.flatnonzero(across > np.arange(len(across)))
+    second = across[first]
+    turned = start[first] == start[second]  # see `_elements`
+    seen = np.where(turned[:, None], [0, 4, 3, 2, 1], [0, 3, 4, 1, 2])
+    flat = parts.reshape(-1, 5)
+    flat[second] = -np.take_along_axis(flat[first], seen, axis=1)
+    flat[second, 0] += 1.0
+
+
+def _rows(axes: Floats, parts: Floats) -> Floats:
+    """sqrt(A) K (m, 3, 9) by the nine fold angles."""
+    rows = np.zeros((len(axes), 3, 9))
+    for i in range(3):
+        for j in range(5):
+            rows[:, :, FIVE[i, j]] += axes[:, :, i] * parts[:, i, j, None]
+    return rows

@@ -1,131 +1,299 @@
-"""Edges of shells: packed for the loops of solvers, a shell folds every edge once, though nine elements bend with it.
+"""Edges of shells: packed, a shell takes every normal and every fold once, though nine elements bend with a fold.
 
-A packed shell is one row of whole numbers (number of edges, the four particles of each, the nine edges of each element)
-and one of numbers: the edges, then sqrt(D A) K of each element by the turns of its edges (3, 9). The loops write the
-gradients, turns and moments of the edges into the latter as they go.
+The curvature of a triangle comes from three parts, one of the fold theta of each edge (see `shell`): psi on the side of
+the edge's first triangle, theta - psi on that of the second. psi comes from the edge's own fold and those of the four
+others of its two triangles. So a pass goes from triangles (normals) to edges (folds, then their parts), to triangles
+(moments on the parts), to edges (moments on the folds), and to triangles again: all forces are along their normals.
+
+Packed, a shell is one row of whole numbers, most of them two to a word: how many edges and triangles, whether lumped
+stiffness is asked for; of each edge its ends, its triangles, and the four others; of each triangle its corners and the
+sides of its edges, 2 e that of the first and 2 e + 1 that of the second triangle of edge e; of each edge the tips of
+its triangles. One row of numbers: EDGE of each edge, FACE of each triangle, a bound of each edge's stiffness. And one
+row of room that the passes write. What a naked edge would refer to is one edge more, which never turns.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hookean.forces.base import Floats, Ints
-from hookean.forces.dihedral import SLIVER
+from hookean.forces.dihedral import SLIVER, slopes
 from hookean.kernels import device
 
-# an edge: gradients at both tips (four columns each), their feet, cosine and sine of the rest angle, turn, moment
-TIP_C, TIP_D, FEET, REST, TURN, MOMENT, EDGE = 0, 4, 8, 10, 12, 13, 14
+HEAD, EDGE_WORDS, FACE_WORDS = 3, 4, 3
+# of an edge: cosine and sine of the rest angle; -1 if its second triangle is turned over; what its own fold and those
+# of the others add to psi; what their psi take from its fold
+REST, SIGN, OWN, OTHERS, BACK, EDGE = 0, 2, 3, 4, 8, 12
+FACE = 6  # different numbers of a symmetric matrix
+SQUARE, CORNERS, NORMAL = 3, 4, 7  # of a triangle's room: normal, 1 / its square, the products of sides at its corners
+BATCH = 64
 
 
 @device
-def bend(x: Any, index: Any, table: Any, f: Any) -> None:
-    """Forces of a packed shell: the turns of edges, the moments of elements on them, the forces of edges."""
-    edges = index[0]
+def bend(x: Any, index: Any, table: Any, room: Any, f: Any, w: Any) -> Any:
+    """Forces of a packed shell, and its lumped stiffness if `index` asks for it; returns its energy."""
+    edges, faces = index[0], index[1]
+    end = HEAD + EDGE_WORDS * edges
+    links, corners = index[HEAD:end].reshape(edges, EDGE_WORDS), index[end : end + FACE_WORDS * faces]
+    corners = corners.reshape(faces, FACE_WORDS)
+    numbers, end = table[: EDGE * edges].reshape(edges, EDGE), EDGE * edges
+    products = table[end : end + FACE * faces].reshape(faces, FACE)
+    normals, end = room[: NORMAL * faces].reshape(faces, NORMAL), NORMAL * faces
+    turns, inverse = room[end : end + edges + 1], room[end + edges + 1 : end + 2 * edges + 1]
+    across, end = room[end + 2 * edges + 1 : end + 3 * edges + 2], end + 3 * edges + 2
+    sides, work = room[end : end + 2 * edges + 1], room[end + 2 * edges + 1 :]
+    span(x, corners, normals)
+    turn(x, links, numbers, normals, turns, inverse, work)
+    halve(links, numbers, turns, sides)
+    energy = resist(corners, products, sides)
     for e in range(edges):
-        table[e * EDGE + MOMENT] = 0.0
-        turn_edge(x, index, table, e)
-    first, row = 1 + 4 * edges, edges * EDGE
-    for _ in range((index.size - first) // 9):
-        bent_x, bent_y, twist = 0.0, 0.0, 0.0
-        for h in range(9):
-            turn = table[index[first + h] * EDGE + TURN]
-            bent_x += table[row + h] * turn
-            bent_y += table[row + 9 + h] * turn
-            twist += table[row + 18 + h] * turn
-        for h in range(9):
-            moment = table[row + h] * bent_x + table[row + 9 + h] * bent_y + table[row + 18 + h] * twist
-            table[index[first + h] * EDGE + MOMENT] += moment
-        first += 9
-        row += 27
-    for e in range(edges):
-        at = e * EDGE
-        moment = table[at + MOMENT]
-        foot_c, foot_d = table[at + FEET], table[at + FEET + 1]
-        a, b = np.uint64(index[4 * e + 1]), np.uint64(index[4 * e + 2])
-        c, d = np.uint64(index[4 * e + 3]), np.uint64(index[4 * e + 4])
-        for i in range(4):
-            at_c, at_d = moment * table[at + TIP_C + i], moment * table[at + TIP_D + i]
-            f[a, i] += (1.0 - foot_c) * at_c + (1.0 - foot_d) * at_d
-            f[b, i] += foot_c * at_c + foot_d * at_d
-            f[c, i] -= at_c
-            f[d, i] -= at_d
+        across[e] = sides[2 * e] - sides[2 * e + 1]
+    collect(links, numbers, across, inverse, sides)
+    push(corners, normals, sides, f)
+    if index[2] != 0:
+        weigh(x, links, index[index.size - edges :], table[table.size - edges :], inverse, sides, w)
+    return energy
 
 
 @device
-def angle_of(along: Any, across: Any) -> Any:
+def low(word: Any) -> Any:
+    """The first of two whole numbers in a word; unsigned: no index counts from the end."""
+    return np.uint64(word) & np.uint64(0xFFFFFFFF)
+
+
+@device
+def high(word: Any) -> Any:
+    """The second."""
+    return np.uint64(word) >> np.uint64(32)
+
+
+@device
+def span(x: Any, corners: Any, normals: Any) -> None:
+    """Normals of triangles, 1 / their square (0 for a sliver), and the products of sides at their corners."""
+    for t in range(corners.shape[0]):
+        a, b, c = low(corners[t, 0]), high(corners[t, 0]), low(corners[t, 1])
+        px, py, pz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+        qx, qy, qz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
+        nx, ny, nz = py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx
+        pp, qq, pq = px * px + py * py + pz * pz, qx * qx + qy * qy + qz * qz, px * qx + py * qy + pz * qz
+        nn = nx * nx + ny * ny + nz * nz
+        size = SLIVER * (pp + qq)
+        normals[t, 0], normals[t, 1], normals[t, 2] = nx, ny, nz
+        normals[t, SQUARE] = 1.0 / nn if nn > size * size and nn > 1e-280 else 0.0
+        normals[t, CORNERS], normals[t, CORNERS + 1], normals[t, CORNERS + 2] = pq, pp - pq, qq - pq
+
+
+@device
+def turn(x: Any, links: Any, numbers: Any, normals: Any, turns: Any, inverse: Any, work: Any) -> None:
+    """Turns of edges from their rest angles (see `dihedral`), and 1 / their lengths; 0 beside a sliver.
+
+    By batches: what is fetched from all over goes to `work`, so that the rest takes several edges in one operation.
+    """
+    for first in range(0, links.shape[0], BATCH):
+        last = min(first + BATCH, links.shape[0])
+        for e in range(first, last):
+            k = e - first
+            a, b, s, t = low(links[e, 0]), high(links[e, 0]), low(links[e, 1]), high(links[e, 1])
+            ex, ey, ez = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+            mx, my, mz = normals[s, 0], normals[s, 1], normals[s, 2]
+            nx, ny, nz = normals[t, 0], normals[t, 1], normals[t, 2]
+            work[k] = ex * ex + ey * ey + ez * ez
+            work[k + BATCH] = mx * nx + my * ny + mz * nz
+            work[k + 2 * BATCH] = ex * (ny * mz - nz * my) + ey * (nz * mx - nx * mz) + ez * (nx * my - ny * mx)
+            work[k + 3 * BATCH], work[k + 4 * BATCH] = numbers[e, REST], numbers[e, REST + 1]
+            if normals[s, SQUARE] == 0.0 or normals[t, SQUARE] == 0.0:
+                work[k], work[k + BATCH], work[k + 3 * BATCH], work[k + 4 * BATCH] = np.inf, 1.0, 1.0, 0.0
+        for k in range(BATCH):
+            over = 1.0 / np.sqrt(work[k])
+            cosine, sine = work[k + BATCH], over * work[k + 2 * BATCH]
+            rest_cosine, rest_sine = work[k + 3 * BATCH], work[k + 4 * BATCH]
+            along, aside = cosine * rest_cosine + sine * rest_sine, sine * rest_cosine - cosine * rest_sine
+            work[k], work[k + BATCH], work[k + 2 * BATCH] = over, along, aside
+            work[k + 3 * BATCH] = small(along, aside)
+        large = False
+        for e in range(first, last):
+            k = e - first
+            turns[e], inverse[e] = work[k + 3 * BATCH], work[k]
+            large |= not 8.0 * np.abs(work[k + 2 * BATCH]) < work[k + BATCH]
+        if large:
+            for e in range(first, last):
+                turns[e] = angle_of(work[e - first + BATCH], work[e - first + 2 * BATCH])
+
+
+@device
+def angle_of(along: Any, aside: Any) -> Any:
     """The angle (-pi, pi] of a direction; for the small ones of most edges in a fraction of arctan2's time."""
-    if not 8.0 * np.abs(across) < along:
-        return np.arctan2(across, along)
-    t = across / along
+    return small(along, aside) if 8.0 * np.abs(aside) < along else np.arctan2(aside, along)
+
+
+@device
+def small(along: Any, aside: Any) -> Any:
+    """The same below 1/8: the series of the arctangent; what follows is below 2e-16 of it."""
+    t = aside / along
     s = t * t
-    # the series of the arctangent; what follows is below 2e-16 of it
     return t * (
         1.0 - s * (1 / 3 - s * (1 / 5 - s * (1 / 7 - s * (1 / 9 - s * (1 / 11 - s * (1 / 13 - s * (1 / 15)))))))
     )
 
 
 @device
-def turn_edge(x: Any, index: Any, table: Any, e: Any) -> None:
-    """Turn of a packed edge from its rest angle, and its gradient; none of both for a sliver. See `dihedral.fold`."""
-    a, b = np.uint64(index[4 * e + 1]), np.uint64(index[4 * e + 2])
-    c, d = np.uint64(index[4 * e + 3]), np.uint64(index[4 * e + 4])
-    at = e * EDGE
-    ex, ey, ez = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
-    px, py, pz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
-    qx, qy, qz = x[d, 0] - x[a, 0], x[d, 1] - x[a, 1], x[d, 2] - x[a, 2]
-    mx, my, mz = ey * pz - ez * py, ez * px - ex * pz, ex * py - ey * px
-    nx, ny, nz = qy * ez - qz * ey, qz * ex - qx * ez, qx * ey - qy * ex
-    ee = ex * ex + ey * ey + ez * ez
-    mm = mx * mx + my * my + mz * mz
-    nn = nx * nx + ny * ny + nz * nz
-    size_c = SLIVER * (ee + px * px + py * py + pz * pz)
-    size_d = SLIVER * (ee + qx * qx + qy * qy + qz * qz)
-    if not mm > size_c * size_c or not nn > size_d * size_d or not ee * ee > 1e-280:
-        for i in range(FEET):
-            table[at + i] = 0.0
-        table[at + TURN] = 0.0
-        return
-    length = np.sqrt(ee)
-    at_c, at_d = length / mm, length / nn
-    table[at + TIP_C], table[at + TIP_C + 1], table[at + TIP_C + 2] = mx * at_c, my * at_c, mz * at_c
-    table[at + TIP_D], table[at + TIP_D + 1], table[at + TIP_D + 2] = nx * at_d, ny * at_d, nz * at_d
-    table[at + FEET] = (px * ex + py * ey + pz * ez) / ee
-    table[at + FEET + 1] = (qx * ex + qy * ey + qz * ez) / ee
-    sine, cosine = length * (nx * px + ny * py + nz * pz), mx * nx + my * ny + mz * nz
-    rest_cosine, rest_sine = table[at + REST], table[at + REST + 1]
-    table[at + TURN] = angle_of(cosine * rest_cosine + sine * rest_sine, sine * rest_cosine - cosine * rest_sine)
+def halve(links: Any, numbers: Any, turns: Any, sides: Any) -> None:
+    """The parts of folds on the two sides of their edges."""
+    for e in range(links.shape[0]):
+        g, h, i, j = low(links[e, 2]), high(links[e, 2]), low(links[e, 3]), high(links[e, 3])
+        one = numbers[e, OTHERS] * turns[g] + numbers[e, OTHERS + 1] * turns[h]
+        two = numbers[e, OTHERS + 2] * turns[i] + numbers[e, OTHERS + 3] * turns[j]
+        psi = numbers[e, OWN] * turns[e] + (one + two)
+        sides[2 * e] = psi
+        sides[2 * e + 1] = turns[e] - psi
+    sides[2 * links.shape[0]] = 0.0
 
 
-def plan(corners: Ints, bends: NDArray[np.bool_]) -> tuple[Ints, Ints, Ints]:
-    """What packing keeps of the hinges of elements, `corners` (m, 9, 4) and whether they bend (m, 9).
+@device
+def resist(corners: Any, products: Any, sides: Any) -> Any:
+    """Moments on the parts of folds, in their place; returns the energy."""
+    energy = 0.0
+    for t in range(corners.shape[0]):
+        i, j, k = high(corners[t, 1]), low(corners[t, 2]), high(corners[t, 2])
+        p, q, r = sides[i], sides[j], sides[k]
+        on_p = products[t, 0] * p + products[t, 1] * q + products[t, 2] * r
+        on_q = products[t, 1] * p + products[t, 3] * q + products[t, 4] * r
+        on_r = products[t, 2] * p + products[t, 4] * q + products[t, 5] * r
+        energy += on_p * p + on_q * q + on_r * r
+        sides[i], sides[j], sides[k] = on_p, on_q, on_r
+    return 0.5 * energy
 
-    The whole numbers of `bend`; for each edge the place (element, hinge) that it is first seen at; for each place
-    (m, 9) 1, -1 where it has the tips the other way round, or 0 where nothing bends.
+
+@device
+def collect(links: Any, numbers: Any, across: Any, inverse: Any, sides: Any) -> None:
+    """Moments on folds over the lengths of their edges, as both triangles see them."""
+    for e in range(links.shape[0]):
+        g, h, i, j = low(links[e, 2]), high(links[e, 2]), low(links[e, 3]), high(links[e, 3])
+        one = numbers[e, BACK] * across[g] + numbers[e, BACK + 1] * across[h]
+        two = numbers[e, BACK + 2] * across[i] + numbers[e, BACK + 3] * across[j]
+        moment = (sides[2 * e + 1] + numbers[e, OWN] * across[e] + (one + two)) * inverse[e]
+        sides[2 * e] = moment
+        sides[2 * e + 1] = numbers[e, SIGN] * moment
+
+
+@device
+def push(corners: Any, normals: Any, moments: Any, f: Any) -> None:
+    """Forces of triangles: an edge's moment pushes its tip, and its ends the other way, by where the tip's foot is."""
+    for t in range(corners.shape[0]):
+        a, b, c = low(corners[t, 0]), high(corners[t, 0]), low(corners[t, 1])
+        ab, bc, ca = moments[high(corners[t, 1])], moments[low(corners[t, 2])], moments[high(corners[t, 2])]
+        at_a, at_b, at_c = normals[t, CORNERS], normals[t, CORNERS + 1], normals[t, CORNERS + 2]
+        on_a = normals[t, SQUARE] * ((ab - bc) * at_b + (ca - bc) * at_c)
+        on_b = normals[t, SQUARE] * ((bc - ca) * at_c + (ab - ca) * at_a)
+        for i in range(3):
+            force_a, force_b = on_a * normals[t, i], on_b * normals[t, i]
+            f[a, i] += force_a
+            f[b, i] += force_b
+            f[c, i] -= force_a + force_b
+
+
+@device
+def weigh(x: Any, links: Any, tips: Any, bounds: Any, inverse: Any, moments: Any, w: Any) -> None:
+    """What the stiffness of elements and the moments on folds add to the lumped stiffness."""
+    g = np.zeros((4, 5))
+    for e in range(links.shape[0]):
+        a, b, c, d = low(links[e, 0]), high(links[e, 0]), low(tips[e]), high(tips[e])
+        sine, _ = slopes(x, a, b, c, d, g)
+        if inverse[e] == 0.0 or np.isnan(sine):
+            continue
+        moment = np.abs(moments[2 * e] / inverse[e])
+        w[a] += bounds[e] * g[0, 3] + moment * g[0, 4]
+        w[b] += bounds[e] * g[1, 3] + moment * g[1, 4]
+        w[c] += bounds[e] * g[2, 3] + moment * g[2, 4]
+        w[d] += bounds[e] * g[3, 3] + moment * g[3, 4]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What packing keeps of the triangles of a mesh: the whole numbers of `bend` without and with lumped stiffness.
+
+    A place 3 t + i is the edge from corner i of triangle t. Of each edge the places of its two sides, its four others
+    (their number is the count of edges for a naked one), and the signs of their folds as its first triangle sees them;
+    of each place its edge and the sign of that one's fold as the triangle sees it.
     """
-    hinges = corners.reshape(-1, 4)
-    turned = hinges[:, 0] > hinges[:, 1]  # the fold is the same with both pairs exchanged, and opposite with one
-    hinges = np.where(turned[:, None], hinges[:, [1, 0, 3, 2]], hinges)
-    other = hinges[:, 2] > hinges[:, 3]
-    keys = np.where(other[:, None], hinges[:, [0, 1, 3, 2]], hinges)
-    keys[~bends.ravel()] = -1
-    order = np.lexsort(keys.T[::-1])
-    new = np.ones(len(keys), dtype=bool)
-    new[1:] = (keys[order[1:]] != keys[order[:-1]]).any(axis=1)
-    new &= keys[order, 0] >= 0
-    seen = order[new]  # lexsort is stable: the first of each
-    edge = np.empty(len(keys), np.int64)
-    edge[order] = np.maximum(np.cumsum(new) - 1, 0)
-    sign = np.where(bends.ravel(), np.where(other == other[seen][edge], 1, -1), 0)
-    whole = np.concatenate([[len(seen)], hinges[seen].ravel(), edge])
-    return whole[None], seen, sign.reshape(-1, 9)
+
+    quick: Ints
+    whole: Ints
+    first: Ints
+    second: Ints
+    others: Ints
+    signs: Floats
+    edge: Ints
+    view: Floats
+
+    @classmethod
+    def of(cls, corners: Ints, across: Ints) -> Plan:
+        """Of triangles (m, 3), and the places (m, 3) across their edges, -1 for none."""
+        start, across, place = corners.ravel(), across.ravel(), np.arange(corners.size)
+        first = np.flatnonzero(across > place)
+        second, count = across[first], len(first)
+        edge, side = np.full(corners.size, count), np.full(corners.size, 2 * count)
+        edge[first] = edge[second] = np.arange(count)
+        side[first], side[second] = 2 * edge[first], 2 * edge[first] + 1
+        turned = (
+            start[first] == start[second]
+        )  # neighbours run along their edge in opposite ways, or one is turned over
+        sign = np.where(turned, -1.0, 1.0)
+        view = np.ones(corners.size)
+        view[second] = sign
+        near = [_beside(first, 1), _beside(first, 2)]
+        far = [_beside(second, 1 + turned), _beside(second, 2 - turned)]
+        others = np.stack([edge[q] for q in near + far], axis=1)
+        signs = np.stack([view[q] for q in near] + [sign * view[q] for q in far], axis=1)
+        links = [_pair(start[first], start[_beside(first, 1)]), _pair(first // 3, second // 3)]
+        links += [_pair(others[:, 0], others[:, 1]), _pair(others[:, 2], others[:, 3])]
+        faces = [_pair(corners[:, 0], corners[:, 1]), _pair(corners[:, 2], side[0::3]), _pair(side[1::3], side[2::3])]
+        tips = _pair(start[_beside(first, 2)], start[_beside(second, 2)])
+        parts = [np.column_stack(links).ravel(), np.column_stack(faces).ravel(), tips]
+        quick, whole = (np.concatenate([[count, len(corners), weighs], *parts])[None] for weighs in (0, 1))
+        return cls(quick, whole, first, second, others, signs, edge, view)
+
+    def room(self) -> Floats:
+        """Room for the passes; zeros, as what belongs to the edge that never turns stays."""
+        count, faces = len(self.first), len(self.edge) // 3
+        return np.zeros((1, NORMAL * faces + 5 * count + 3 + 5 * BATCH))
+
+    def summed(self, hinges: Floats) -> Floats:
+        """Sums over edges of what belongs to the nine hinges of elements (m, 9)."""
+        beyond = np.full((len(self.edge), 2), len(self.first))
+        beyond[self.first], beyond[self.second] = self.others[:, 2:], self.others[:, :2]
+        edge = np.concatenate([self.edge.reshape(-1, 3), beyond.reshape(-1, 6)], axis=1)
+        sums: Floats = np.bincount(edge.ravel(), hinges.ravel(), len(self.first) + 1)[:-1].astype(np.float64)
+        return sums
+
+    def numbers(self, strength: Floats, rest: Floats, bounds: Floats, axes: Floats, parts: Floats) -> Floats:
+        """The numbers of `bend` from those of triangles as in `shell`: D, rest angles and bounds of their own edges
+        (m, 3), axes (m, 3, 3), parts (m, 3, 5)."""
+        count = len(self.first)
+        there = self.others < count
+        adds = parts.reshape(-1, 5)[self.first]
+        table, sign, angle = np.zeros((count, EDGE)), self.view[self.second], rest.ravel()[self.first]
+        table[:, REST], table[:, REST + 1], table[:, SIGN] = sign * np.cos(angle), sign * np.sin(angle), sign
+        table[:, OWN] = adds[:, 0]
+        table[:, OTHERS:BACK] = np.where(there, self.signs * adds[:, 1:], 0.0)
+        # edge e is among the others of g as often as g among those of e
+        mine, theirs = np.nonzero(there)[0], self.others[there]
+        back = np.zeros(len(mine))
+        back[np.lexsort((theirs, mine))] = table[:, OTHERS:BACK][there][np.lexsort((mine, theirs))]
+        table[:, BACK:][there] = back
+        signed = axes * np.where(self.edge < count, self.view, 0.0).reshape(-1, 1, 3)
+        product = strength[:, None, None] * np.einsum("tki,tkj->tij", signed, signed)
+        upper = product[:, [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]
+        return np.concatenate([table.ravel(), upper.ravel(), bounds])[None]
 
 
-def packed(seen: Ints, sign: Ints, rest: Floats, rows: Floats) -> Floats:
-    """The numbers of `bend`: `rest` angles (m, 9) and curvatures by fold angles `rows` (m, 3, 9) of elements."""
-    table = np.zeros((len(seen), EDGE))
-    angles = rest.ravel()[seen]
-    table[:, REST], table[:, REST + 1] = np.cos(angles), np.sin(angles)
-    return np.concatenate([table.ravel(), (rows * sign[:, None, :]).ravel()])[None]
+def _beside(places: Ints, by: int | Ints) -> Ints:
+    """The places that many edges on in their triangles."""
+    return places - places % 3 + (places + by) % 3
+
+
+def _pair(a: Ints, b: Ints) -> Ints:
+    return a | b << 32
