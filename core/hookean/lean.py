@@ -74,29 +74,69 @@ def _packed(group: Group, memory: Floats, damped: bool) -> tuple[Any, Any, Any]:
     return block.indices, np.where([name == "damping" for name in block.names], 0.0, block.parameters), memory
 
 
+def same_numbers(a, b):  # type: ignore[no-untyped-def]
+    differ = 0
+    for i in range(a.size):
+        differ |= a[i] != b[i]
+    return differ == 0
+
+
+class Seen:
+    """Remembers what the forces of a system are made of, to say whether any of it has changed."""
+
+    def __init__(self) -> None:
+        self._system: System | None = None
+        self._arrays: list[Floats] = []
+        self._copies: list[Floats] = []
+
+    def same(self, system: System, state: State) -> bool:
+        """Whether all parameters and memories are the arrays and have the numbers they had when last asked."""
+        arrays = [
+            a for g, memory in zip(system.groups, state.memory, strict=True) for a in (g.block.parameters, memory)
+        ]
+        arrays = [a for a in arrays + [g.block.parameters for g in system.contacts] if a.size]
+        if (
+            self._system is system
+            and len(arrays) == len(self._arrays)
+            and all(a is b for a, b in zip(arrays, self._arrays, strict=True))
+            and all(_same(a, b) for a, b in zip(arrays, self._copies, strict=True))
+        ):
+            return True
+        self._system, self._arrays, self._copies = system, arrays, [a.copy() for a in arrays]
+        return False
+
+
+def _same(a: Floats, b: Floats) -> bool:
+    return not a.size or bool(kernels.compiled(same_numbers)(a.reshape(-1), b.reshape(-1)))
+
+
 class Desk:
     """Where a solver lays out its arrays, call after call: new memory of a large net costs as much as several steps."""
 
     def __init__(self) -> None:
-        self._raw = np.zeros(0, np.uint8)
-        self._size = 0
+        self._shape = (0, 0)
+        self._rows: list[Floats] = []
 
     def lay(self, n: int, *rows: Floats | None) -> list[Floats]:
         """Copies of rows (n, 3) with a fourth column of zeros, or zeros (n, 4) for None; starts spread over a page.
         They hold until the next call."""
-        size = -(-32 * n // PAGE) * PAGE + PAGE // len(rows) // LINE * LINE
-        if self._size != size * len(rows):
-            self._size = size * len(rows)
-            self._raw = np.zeros(self._size + PAGE, np.uint8)
-        start = -self._raw.ctypes.data % PAGE
-        made = []
-        for i, given in enumerate(rows):
-            place = start + i * size
-            array = self._raw[place : place + 32 * n].view(np.float64).reshape(n, 4)
+        made, _ = self.keep(n, len(rows))
+        for array, given in zip(made, rows, strict=True):
             if given is None:
                 array[:] = 0.0
             else:
                 array[:, :3] = given
                 array[:, 3] = 0.0
-            made.append(array)
         return made
+
+    def keep(self, n: int, count: int) -> tuple[list[Floats], bool]:
+        """That many rows (n, 4) as the last call left them, and whether they are new: all zeros."""
+        new = (n, count) != self._shape
+        if new:
+            size = -(-32 * n // PAGE) * PAGE + PAGE // count // LINE * LINE
+            raw = np.zeros(size * count + PAGE, np.uint8)
+            start = -raw.ctypes.data % PAGE
+            places = range(start, start + size * count, size)
+            self._shape = (n, count)
+            self._rows = [raw[place : place + 32 * n].view(np.float64).reshape(n, 4) for place in places]
+        return self._rows.copy(), new

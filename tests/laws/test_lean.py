@@ -11,6 +11,7 @@ from hookean import Scene, kernels
 from hookean.forces import KINDS
 from hookean.forces.shell_edges import angle_of
 from hookean.lean import Desk, lean
+from hookean.solvers import solver
 from hookean.system import System, compile
 
 from .cases import example_system
@@ -94,6 +95,48 @@ def test_rows_on_a_desk_start_apart_and_hold_what_was_given() -> None:
         assert not made[1].any() and not made[0][:, 3].any()
         for array in made:
             array[:] = np.nan
+
+
+EDITS = ["nothing", "stiffness", "load", "place", "speed", "held", "floor", "another state"]
+
+
+@pytest.mark.parametrize("damping", [0.0, 5.0])
+@SEEDED
+@given(seed=st.integers(0, 2**32 - 1), edits=st.lists(st.sampled_from(EDITS), min_size=1, max_size=6))
+def test_what_verlet_keeps_between_calls_changes_no_bit(damping: float, seed: int, edits: list[str]) -> None:
+    """A solver that goes on and one made anew for every call take the same steps, whatever is edited between them."""
+    rng = np.random.default_rng(seed)
+    forces = [
+        {"kind": "springs", "particles": [[0, 1], [1, 2], [2, 3], [3, 4]], "stiffness": 50.0, "damping": damping},
+        {"kind": "unary", "particles": [1, 2, 3, 4], "vector": [0.0, 0.1, -1.0]},
+    ]
+    floor = {"point": [0.0, 0.0, -0.2]} if seed % 2 else None
+    settings = {"solver": "verlet", "time_step": 0.01, "floor": floor}
+    system = compile(Scene(particles=rng.normal(size=(5, 3)), forces=forces, settings=settings))
+    state, method = system.start(), solver("verlet")
+    other = state.copy()
+    for edit in edits:
+        size, where = rng.uniform(0.5, 2.0), (int(rng.integers(5)), int(rng.integers(3)))
+        if edit == "stiffness":
+            system.groups[0].block.parameters[where[0] % 4, 0] *= size
+        elif edit == "load":
+            system.groups[1].block.parameters[where[0] % 4] *= size
+        elif edit == "floor" and floor:
+            system.contacts[0].block.parameters[0, 2] -= size
+        elif edit == "another state":
+            state, other = state.copy(), other.copy()
+        for one in (state, other):
+            if edit == "place":
+                one.x[where] += size
+            elif edit == "speed":
+                one.v[where] -= size
+            elif edit == "held":
+                one.free[where[0]], one.v[where[0]] = 0.0, 0.0
+        count = int(rng.integers(1, 4))
+        method.advance(system, state, count, 0.0)
+        solver("verlet").advance(system, other, count, 0.0)
+        assert np.array_equal(state.x, other.x) and np.array_equal(state.v, other.v)
+        assert state.time == other.time
 
 
 def test_a_patched_shell_is_packed_anew() -> None:

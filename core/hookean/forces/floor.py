@@ -15,13 +15,16 @@ def floor_impact(x_before, v_before, acceleration, x, v, free, dt, parameters): 
     # v is the velocity at half step; the path inside a step is x + v t + a t^2 / 2, so free fall bounces exactly
     for p in range(parameters.shape[0]):
         for i in range(x.shape[0]):
-            reach = 0.0
             depth = 0.0
+            for c in range(3):
+                depth += (x[i, c] - parameters[p, c]) * parameters[p, 3 + c]
+            if depth >= 0.0:
+                continue
+            reach = 0.0
             for c in range(3):
                 n = parameters[p, 3 + c]
                 reach += n * n * free[i, c]
-                depth += (x[i, c] - parameters[p, c]) * n
-            if depth >= 0.0 or reach < 1e-12:
+            if reach < 1e-12:
                 continue
             height = 0.0
             speed = 0.0
@@ -81,17 +84,21 @@ def floor_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore
         for i in range(x.shape[0]):
             depth = 0.0
             size = 0.0
+            for c in range(3):
+                n = parameters[p, 3 + c]
+                depth += (x[i, c] - parameters[p, c]) * n
+                size += np.abs(x[i, c] * n) + np.abs(parameters[p, c] * n)
+            if depth > 1e-14 * size:
+                continue
             press = 0.0
             speed = 0.0
             reach = 0.0
             for c in range(3):
                 n = parameters[p, 3 + c]
-                depth += (x[i, c] - parameters[p, c]) * n
-                size += np.abs(x[i, c] * n) + np.abs(parameters[p, c] * n)
                 press -= f[i, c] * n * free[i, c]
                 speed += v[i, c] * n
                 reach += n * n * free[i, c]
-            if depth > 1e-14 * size or press <= 0.0 or reach < 1e-12:
+            if press <= 0.0 or reach < 1e-12:
                 continue
             rest = dt * press / mass[i] if dt > 0.0 else 0.0
             if dt > 0.0 and speed > rest:

@@ -13,7 +13,7 @@ import numpy as np
 
 from hookean import kernels
 from hookean.kernels import device, forces, impacts, notes, supports
-from hookean.lean import Desk, contacts, lean
+from hookean.lean import Desk, Lean, Seen, contacts, lean
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -86,10 +86,26 @@ def start_among_contacts(
             base[i, c] = load[i, c]
 
 
+@device
+def take(given_x: Any, given_v: Any, given_free: Any, mass: Any, x: Any, v: Any, free: Any, pull: Any) -> Any:
+    """Lay out a state in rows of four columns; whether `x` had been there."""
+    moved = 0
+    for i in range(x.shape[0]):
+        for c in range(3):
+            moved |= x[i, c] != given_x[i, c]
+            x[i, c] = given_x[i, c]
+            v[i, c] = given_v[i, c]
+            free[i, c] = given_free[i, c]
+            pull[i, c] = given_free[i, c] / mass[i]
+    return moved == 0
+
+
 def verlet_loop(  # type: ignore[no-untyped-def]
-    quiet, lively, hits, rests, noted, x, v, free, pull, load, mass, raw, base, w, f, carried, x_before, v_before,
-    acceleration, seen, drag, steps, contacts, count,
+    quiet, lively, hits, rests, noted, given_x, given_v, given_free, mass, x, v, free, pull, load, raw, base, w, f,
+    carried, x_before, v_before, acceleration, seen, drag, steps, contacts, known, count,
 ):  # fmt: skip
+    # `base` is known from the end of the last call, unless somebody has moved something since
+    known &= take(given_x, given_v, given_free, mass, x, v, free, pull)
     last = count * steps.shape[0] - 1
     started = False
     changing = len(lively) > 0  # else `raw` and `base` are one array
@@ -99,7 +115,7 @@ def verlet_loop(  # type: ignore[no-untyped-def]
     for s in range(last + 1):
         dt = steps[s % steps.shape[0]]
         if not started:
-            if s == 0:
+            if s == 0 and not known:
                 base[:, :] = load
                 forces(quiet, x, v, base, w)
             if changing:
@@ -127,6 +143,10 @@ def verlet_loop(  # type: ignore[no-untyped-def]
             end_step(flat_raw, flat_v, flat_pull, drag, dt)
         if (s + 1) % steps.shape[0] == 0:
             notes(noted, x)
+    for i in range(x.shape[0]):
+        for c in range(3):
+            given_x[i, c] = x[i, c]
+            given_v[i, c] = v[i, c]
 
 
 class Method(Solver):
@@ -137,35 +157,45 @@ class Method(Solver):
     weights: ClassVar[tuple[float, ...]] = (1.0,)
 
     def __init__(self) -> None:
-        self._desk = Desk()
+        self._desk, self._seen = Desk(), Seen()
+        self._tables: tuple[Any, ...] = ()
+        self._own: Lean | None = None
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Exactly `count` time steps; physical time does not stop early."""
+        if count < 1:
+            return 0
         n = len(state.x)
         step = system.scene.settings.time_step
-        own = lean(system, state, damped=True)
-        pull = state.free / system.mass[:, None]
-        touching, lively = bool(system.contacts), len(own.lively) > 0
-        given = (state.x, state.v, pull, own.load, *([state.free] if touching else []))
-        spare = [None] * (2 + lively + 5 * touching)
-        x, v, pull, load, *rows = self._desk.lay(n, *given, *spare)
-        free = rows.pop(0) if touching else pull  # asked for by contacts alone
-        base, seen = rows.pop(), rows.pop()
-        raw = rows.pop() if lively else base
-        yields = system.yields
-        noted = [
-            (g.cls.end_of_step, (g.block.indices, g.block.parameters, memory))
-            for g, memory in zip(system.groups, state.memory, strict=True)
-            if yields and g.cls.end_of_step is not None
-        ]
+        same = self._seen.same(system, state)
+        if not same or self._own is None:
+            self._own = lean(system, state, damped=True)
+            self._tables = (self._own.quiet, self._own.lively, *contacts(system), _noted(system, state))
+        touching, lively = bool(system.contacts), len(self._own.lively) > 0
+        rows, new = self._desk.keep(n, 6 + lively + 6 * touching)
+        x, v, pull, load, base, seen, *rest = rows
+        raw = rest.pop() if lively else base
+        free, *others = rest or [pull, *[raw] * 5]  # asked for by contacts alone
+        if new or not same:
+            load[:, :3] = self._own.load
         kernels.compiled(verlet_loop)(
-            own.quiet, own.lively, *contacts(system), kernels.table("remember", noted), x, v, free, pull, load,
-            system.mass, raw, base, np.zeros(n), *(rows or [raw] * 5), seen, system.drag, step * np.array(self.weights),
-            touching, count,
+            *self._tables, state.x, state.v, state.free, system.mass, x, v, free, pull, load, raw, base, np.zeros(n),
+            *others, seen, system.drag, step * np.array(self.weights), touching, same and not new, count,
         )  # fmt: skip
-        state.x[:], state.v[:] = x[:, :3], v[:, :3]
         state.iteration += count
         for _ in range(count):
             # one by one: the same bits however the steps are divided into calls
             state.time += step
         return count
+
+
+def _noted(system: System, state: State) -> Any:
+    """Table of what elements remember at the end of a step."""
+    return kernels.table(
+        "remember",
+        [
+            (g.cls.end_of_step, (g.block.indices, g.block.parameters, memory))
+            for g, memory in zip(system.groups, state.memory, strict=True)
+            if system.yields and g.cls.end_of_step is not None
+        ],
+    )
