@@ -50,41 +50,29 @@ class Method(Solver):
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Solve K dx = f on the free axes; none done where some particles hang on nothing that is held."""
-        import scipy.sparse as sparse
-        from scipy.sparse.linalg import splu
+        from hookean.solvers import _front
+        from hookean.solvers._laplacian import laplacian
 
         if count < 1:
             return 0
-        n = len(state.x)
-        rows, columns, values = [], [], []
-        for group in system.groups:
-            k, index = group.block.parameters[:, 0], group.block.indices
-            if group.cls is Springs:
-                a, b = index.T
-                rows += [a, b, a, b]
-                columns += [a, b, b, a]
-                values += [k, k, -k, -k]
-            elif group.cls is AnchorSpring:
-                rows, columns, values = [*rows, index[:, 0]], [*columns, index[:, 0]], [*values, k]
-        whole = sparse.csc_matrix(
-            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(n, n)
-        )
         f, _, _ = system.evaluate(state)
-        touched = whole.diagonal() > 0
         x = state.x.copy()
         left = [0, 1, 2]
         while left:
             # axes on which the same particles are held share one factor
-            axes = [axis for axis in left if np.array_equal(state.free[:, axis], state.free[:, left[0]])]
+            free = np.ascontiguousarray(state.free[:, left[0]])
+            axes = [axis for axis in left if np.array_equal(state.free[:, axis], free)]
             left = [axis for axis in left if axis not in axes]
-            free = np.flatnonzero((state.free[:, axes[0]] > 0) & touched)
-            if len(free):
-                spots = np.ix_(free, np.array(axes))
-                try:
-                    factor = splu(whole[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A")
-                except RuntimeError:  # singular
-                    return 0
-                x[spots] += factor.solve(np.ascontiguousarray(f[spots]))
+            net = laplacian(system, free)
+            if net is None:
+                return 0
+            b = np.zeros((len(net.order), 4))
+            for axis in axes:
+                b[:, axis] = f[net.order, axis]
+            if not _front.solve(net, b):
+                return 0
+            for axis in axes:
+                x[net.order, axis] += b[:, axis]
         if not np.isfinite(x).all():
             return 0
         state.x[:] = x
