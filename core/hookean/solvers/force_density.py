@@ -1,6 +1,8 @@
 """Force density: one sparse linear solve, exact where every internal force is linear in the positions.
 
-With rest length 0 a spring's force density is its stiffness k, and (sum of k (x_j - x_i)) + load = 0 is linear.
+With rest length 0 a spring's force density is its stiffness k, and (sum of k (x_j - x_i)) + load = 0 is linear: one
+matrix, of a number for each pair of particles, serves all axes on which the same particles are held. A front solves it
+where that is quick, conjugate gradients over coarser nets where the front is wide.
 Source: Schek, "The force density method for form finding and computation of general networks", 1974.
 """
 
@@ -9,7 +11,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
+from hookean import kernels
+from hookean.balance import ROUNDING
 from hookean.forces.anchor_spring import AnchorSpring
 from hookean.forces.springs import Springs
 from hookean.solvers.base import Solver
@@ -17,6 +22,12 @@ from hookean.solvers.base import Solver
 if TYPE_CHECKING:
     from hookean.state import State
     from hookean.system import System
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+QUICK = 5_000  # multiplications for each particle up to which a front is quicker than conjugate gradients
+MOST = 1e12  # beyond which a front would take too long, and too much memory
 
 
 class Method(Solver):
@@ -50,31 +61,43 @@ class Method(Solver):
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Solve K dx = f on the free axes; none done where some particles hang on nothing that is held."""
-        from hookean.solvers import _front
-        from hookean.solvers._laplacian import laplacian
-
         if count < 1:
             return 0
         f, _, _ = system.evaluate(state)
         x = state.x.copy()
         left = [0, 1, 2]
         while left:
-            # axes on which the same particles are held share one factor
             free = np.ascontiguousarray(state.free[:, left[0]])
             axes = [axis for axis in left if np.array_equal(state.free[:, axis], free)]
             left = [axis for axis in left if axis not in axes]
-            net = laplacian(system, free)
-            if net is None:
+            if not _solve(system, free, np.array(axes), f, x):
                 return 0
-            b = np.zeros((len(net.order), 4))
-            for axis in axes:
-                b[:, axis] = f[net.order, axis]
-            if not _front.solve(net, b):
-                return 0
-            for axis in axes:
-                x[net.order, axis] += b[:, axis]
         if not np.isfinite(x).all():
             return 0
         state.x[:] = x
         state.iteration += 1
         return 1
+
+
+def _solve(system: System, free: Floats, axes: Ints, f: Floats, x: Floats) -> bool:
+    """Add K^-1 f to x on some axes, on which the particles with `free` (n,) above 0 move; whether that was possible."""
+    from hookean.solvers import _front, _gradients, _laplacian
+
+    net, particles = _laplacian.laplacian(system, free)
+    b = np.empty((len(particles), 4))
+    kernels.compiled(_laplacian.take)(particles, axes, f, b)
+    way = _front.front(net, QUICK * len(particles))
+    if way is None:
+        largest = max(float(x.max()), -float(x.min()))
+        stiffness = net.values[net.diagonal]
+        found = _gradients.solve(net, b.copy(), ROUNDING * largest * float(np.sqrt((stiffness * stiffness).sum())))
+        if found is not None:
+            kernels.compiled(_laplacian.put)(particles, axes, found, x)
+            return True
+        way = _front.front(net, MOST)  # stiffnesses that differ by more than 1e16
+    factor = _front.Factor(net, way) if way is not None and way.held else None
+    if factor is None or not factor.sound:
+        return False
+    factor.solve(b, b)
+    kernels.compiled(_laplacian.put)(particles, axes, b, x)
+    return True
