@@ -10,17 +10,17 @@ scheme for the solution of symmetric linear simultaneous equations", 1966.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
+from hookean.kernels import device
 from hookean.solvers._laplacian import Laplacian
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-
-TOGETHER = 4  # columns
 
 
 @dataclass(frozen=True)
@@ -44,19 +44,24 @@ def front(net: Laplacian, most: float = np.inf) -> Front | None:
 
 
 class Factor:
-    """The Cholesky factor of a net; not `sound` where something hangs on nothing, or rounding leaves it nothing."""
+    """The Cholesky factor of a net; not `sound` where something hangs on nothing, or rounding leaves it nothing.
+
+    A panel of four columns is kept as rows of four, from its own first row to the farthest that one of them reaches:
+    a row is one vector of the processor.
+    """
 
     def __init__(self, net: Laplacian, way: Front) -> None:
-        self.way, self.starts = way, np.empty(len(way.order), np.int64)
-        self.values = np.zeros(kernels.compiled(reserve)(way.reach, self.starts))
+        n = len(way.order)
+        self.way = way
+        self.far, self.where = np.empty((n + 3) // 4, np.int64), np.empty((n + 3) // 4, np.int64)
+        self.values = np.zeros((kernels.compiled(reserve)(way.reach, self.far, self.where), 4))
         rows = (net.starts, net.columns, net.values, way.order, way.place)
-        self.sound = way.held and bool(kernels.compiled(eliminate)(*rows, way.reach, self.starts, self.values))
-        self.room = np.empty((len(way.order), 4))
+        self.sound = way.held and bool(kernels.compiled(eliminate)(*rows, self.far, self.where, self.values))
+        self.room = np.zeros((4 * len(self.far), 4))
 
     def solve(self, b: Floats, x: Floats) -> None:
         """Write x (n, 4) of A x = b (n, 4)."""
-        columns = (self.way.reach, self.starts, self.values)
-        kernels.compiled(substitute)(self.way.order, *columns, self.room, b, x)
+        kernels.compiled(substitute)(self.way.order, self.far, self.where, self.values, self.room, b, x)
 
 
 def sweep(starts, columns, held, order, place, reach, most):  # type: ignore[no-untyped-def]
@@ -102,84 +107,144 @@ def sweep(starts, columns, held, order, place, reach, most):  # type: ignore[no-
     return work
 
 
-def reserve(reach, where):  # type: ignore[no-untyped-def]
-    """Make columns that are taken together reach equally far; `where` row 0 of each would be, and the room of all."""
-    n, size = reach.shape[0], 0
-    for g in range(0, n, TOGETHER):
-        after = min(g + TOGETHER, n)
-        for k in range(g, after):
-            reach[k] = reach[after - 1]
-            where[k] = size - k
-            size += reach[k] - k + 1
+def reserve(reach, far, where):  # type: ignore[no-untyped-def]
+    """The last row `far` of each panel, `where` its row 0 would be, and the rows of all."""
+    size = 0
+    for q in range(far.shape[0]):
+        far[q] = reach[min(4 * q + 3, reach.shape[0] - 1)] | 3
+        where[q] = size - 4 * q
+        size += far[q] + 1 - 4 * q
     return size
 
 
-def eliminate(starts, columns, values, order, place, reach, where, lower):  # type: ignore[no-untyped-def]
-    """Write the columns of the factor, their diagonal inverted; False unless the matrix is positive definite."""
-    n = reach.shape[0]
-    for k in range(n):
-        i = order[k]
+def eliminate(starts, columns, values, order, place, far, where, lower):  # type: ignore[no-untyped-def]
+    """Write the panels of the factor, its diagonal inverted; False unless the matrix is positive definite."""
+    for k in range(order.shape[0]):
+        i, own = order[k], where[k // 4]
         for s in range(starts[i], starts[i + 1]):
             j = place[columns[s]]
             if j >= k:
-                lower[where[k] + j] += values[s]
-    for g in range(0, n, TOGETHER):
-        after, far = min(g + TOGETHER, n), reach[g]
-        for k in range(g, after):
-            own = where[k]
-            pivot = lower[own + k]
-            if not pivot > 0.0:
-                return False
-            root = 1.0 / np.sqrt(pivot)
-            lower[own + k] = root
-            for i in range(k + 1, far + 1):
-                lower[np.uint64(own + i)] *= root
-            for j in range(k + 1, after):
-                other, part = where[j], lower[own + j]
-                for i in range(j, far + 1):
-                    lower[np.uint64(other + i)] -= part * lower[np.uint64(own + i)]
-        if after < n:
-            a, b, c, d = where[g], where[g + 1], where[g + 2], where[g + 3]
-            for j in range(after, far + 1):
-                p, q, r, s = lower[a + j], lower[b + j], lower[c + j], lower[d + j]
-                other = where[j]
-                for i in range(j, far + 1):
-                    lower[np.uint64(other + i)] -= (
-                        p * lower[np.uint64(a + i)]
-                        + q * lower[np.uint64(b + i)]
-                        + r * lower[np.uint64(c + i)]
-                        + s * lower[np.uint64(d + i)]
-                    )
+                lower[own + j, k % 4] += values[s]
+    for k in range(order.shape[0], 4 * far.shape[0]):
+        lower[where[k // 4] + k, k % 4] = 1.0
+    for q in range(far.shape[0]):
+        own = where[q]
+        if not close_panel(lower, own + 4 * q, own + far[q] + 1):
+            return False
+        for h in range(q + 1, far[q] // 4 + 1):
+            take_off(lower, own, where[h], 4 * h, far[q] + 1)
     return True
 
 
-def substitute(order, reach, where, lower, y, b, x):  # type: ignore[no-untyped-def]
-    """Solve with the factor; `y` is for notes."""
-    n = reach.shape[0]
+@device
+def close_panel(lower: Any, first: Any, after: Any) -> Any:
+    """The factor of a panel's rows `first` to `after`, of which the first four are triangular."""
+    for c in range(4):
+        for d in range(c):
+            part = lower[first + c, d]
+            for e in range(d):
+                part -= lower[first + c, e] * lower[first + d, e]
+            lower[first + c, d] = part * lower[first + d, d]
+        pivot = lower[first + c, c]
+        for e in range(c):
+            pivot -= lower[first + c, e] * lower[first + c, e]
+        if not pivot > 0.0:
+            return False
+        lower[first + c, c] = 1.0 / np.sqrt(pivot)
+    m00, m10, m11 = lower[first, 0], lower[first + 1, 0], lower[first + 1, 1]
+    m20, m21, m22 = lower[first + 2, 0], lower[first + 2, 1], lower[first + 2, 2]
+    m30, m31, m32, m33 = lower[first + 3, 0], lower[first + 3, 1], lower[first + 3, 2], lower[first + 3, 3]
+    for s in range(first + 4, after):
+        i = np.uint64(s)  # unsigned: no index counts from the end
+        l0 = lower[i, 0] * m00
+        l1 = (lower[i, 1] - l0 * m10) * m11
+        l2 = (lower[i, 2] - l0 * m20 - l1 * m21) * m22
+        l3 = (lower[i, 3] - l0 * m30 - l1 * m31 - l2 * m32) * m33
+        lower[i, 0], lower[i, 1], lower[i, 2], lower[i, 3] = l0, l1, l2, l3
+    return True
+
+
+@device
+def take_off(lower: Any, own: Any, other: Any, first: Any, after: Any) -> None:
+    """Take a panel off a later one, whose own rows begin at `first`: its rows `first` to `after`."""
+    a, b, c, d = own + first, own + first + 1, own + first + 2, own + first + 3
+    a0, a1, a2, a3 = lower[a, 0], lower[a, 1], lower[a, 2], lower[a, 3]
+    b0, b1, b2, b3 = lower[b, 0], lower[b, 1], lower[b, 2], lower[b, 3]
+    c0, c1, c2, c3 = lower[c, 0], lower[c, 1], lower[c, 2], lower[c, 3]
+    d0, d1, d2, d3 = lower[d, 0], lower[d, 1], lower[d, 2], lower[d, 3]
+    for s in range(first, after):
+        i, j = np.uint64(own + s), np.uint64(other + s)
+        l0, l1, l2, l3 = lower[i, 0], lower[i, 1], lower[i, 2], lower[i, 3]
+        t0 = lower[j, 0] - l0 * a0 - l1 * a1 - l2 * a2 - l3 * a3
+        t1 = lower[j, 1] - l0 * b0 - l1 * b1 - l2 * b2 - l3 * b3
+        t2 = lower[j, 2] - l0 * c0 - l1 * c1 - l2 * c2 - l3 * c3
+        t3 = lower[j, 3] - l0 * d0 - l1 * d1 - l2 * d2 - l3 * d3
+        lower[j, 0], lower[j, 1], lower[j, 2], lower[j, 3] = t0, t1, t2, t3
+
+
+def substitute(order, far, where, lower, y, b, x):  # type: ignore[no-untyped-def]
+    """Solve with the factor; `y` (rows of all panels, 4) is for notes."""
+    n = order.shape[0]
     for k in range(n):
-        i = order[k]
         for c in range(4):
-            y[k, c] = b[i, c]
+            y[k, c] = b[order[k], c]
+    for k in range(n, y.shape[0]):
+        for c in range(4):
+            y[k, c] = 0.0
+    for q in range(far.shape[0]):
+        go_down(lower, where[q], 4 * q, far[q] + 1, y)
+    for q in range(far.shape[0] - 1, -1, -1):
+        go_up(lower, where[q], 4 * q, far[q] + 1, y)
     for k in range(n):
-        own, root = where[k], lower[where[k] + k]
-        y0, y1, y2, y3 = y[k, 0] * root, y[k, 1] * root, y[k, 2] * root, y[k, 3] * root
-        y[k, 0], y[k, 1], y[k, 2], y[k, 3] = y0, y1, y2, y3
-        for i in range(k + 1, reach[k] + 1):
-            part, j = lower[np.uint64(own + i)], np.uint64(i)
-            y[j, 0] -= part * y0
-            y[j, 1] -= part * y1
-            y[j, 2] -= part * y2
-            y[j, 3] -= part * y3
-    for k in range(n - 1, -1, -1):
-        own, root = where[k], lower[where[k] + k]
-        y0, y1, y2, y3 = y[k, 0], y[k, 1], y[k, 2], y[k, 3]
-        for i in range(k + 1, reach[k] + 1):
-            part, j = lower[np.uint64(own + i)], np.uint64(i)
-            y0 -= part * y[j, 0]
-            y1 -= part * y[j, 1]
-            y2 -= part * y[j, 2]
-            y3 -= part * y[j, 3]
-        y0, y1, y2, y3 = y0 * root, y1 * root, y2 * root, y3 * root
-        y[k, 0], y[k, 1], y[k, 2], y[k, 3] = y0, y1, y2, y3
-        i = order[k]
-        x[i, 0], x[i, 1], x[i, 2], x[i, 3] = y0, y1, y2, y3
+        for c in range(4):
+            x[order[k], c] = y[k, c]
+
+
+@device
+def go_down(lower: Any, own: Any, first: Any, after: Any, y: Any) -> None:
+    """Solve a panel's four rows, and take them off the rows that it reaches."""
+    for k in range(4):
+        for d in range(k):
+            for c in range(4):
+                y[first + k, c] -= lower[own + first + k, d] * y[first + d, c]
+        for c in range(4):
+            y[first + k, c] *= lower[own + first + k, k]
+    a0, a1, a2, a3 = y[first, 0], y[first, 1], y[first, 2], y[first, 3]
+    b0, b1, b2, b3 = y[first + 1, 0], y[first + 1, 1], y[first + 1, 2], y[first + 1, 3]
+    c0, c1, c2, c3 = y[first + 2, 0], y[first + 2, 1], y[first + 2, 2], y[first + 2, 3]
+    d0, d1, d2, d3 = y[first + 3, 0], y[first + 3, 1], y[first + 3, 2], y[first + 3, 3]
+    for s in range(first + 4, after):
+        i, j = np.uint64(own + s), np.uint64(s)
+        l0, l1, l2, l3 = lower[i, 0], lower[i, 1], lower[i, 2], lower[i, 3]
+        t0 = y[j, 0] - l0 * a0 - l1 * b0 - l2 * c0 - l3 * d0
+        t1 = y[j, 1] - l0 * a1 - l1 * b1 - l2 * c1 - l3 * d1
+        t2 = y[j, 2] - l0 * a2 - l1 * b2 - l2 * c2 - l3 * d2
+        t3 = y[j, 3] - l0 * a3 - l1 * b3 - l2 * c3 - l3 * d3
+        y[j, 0], y[j, 1], y[j, 2], y[j, 3] = t0, t1, t2, t3
+
+
+@device
+def go_up(lower: Any, own: Any, first: Any, after: Any, y: Any) -> None:
+    """Take the rows that a panel reaches off its own four, and solve those."""
+    a0, a1, a2, a3 = y[first, 0], y[first, 1], y[first, 2], y[first, 3]
+    b0, b1, b2, b3 = y[first + 1, 0], y[first + 1, 1], y[first + 1, 2], y[first + 1, 3]
+    c0, c1, c2, c3 = y[first + 2, 0], y[first + 2, 1], y[first + 2, 2], y[first + 2, 3]
+    d0, d1, d2, d3 = y[first + 3, 0], y[first + 3, 1], y[first + 3, 2], y[first + 3, 3]
+    for s in range(first + 4, after):
+        i, j = np.uint64(own + s), np.uint64(s)
+        y0, y1, y2, y3 = y[j, 0], y[j, 1], y[j, 2], y[j, 3]
+        l0, l1, l2, l3 = lower[i, 0], lower[i, 1], lower[i, 2], lower[i, 3]
+        a0, a1, a2, a3 = a0 - l0 * y0, a1 - l0 * y1, a2 - l0 * y2, a3 - l0 * y3
+        b0, b1, b2, b3 = b0 - l1 * y0, b1 - l1 * y1, b2 - l1 * y2, b3 - l1 * y3
+        c0, c1, c2, c3 = c0 - l2 * y0, c1 - l2 * y1, c2 - l2 * y2, c3 - l2 * y3
+        d0, d1, d2, d3 = d0 - l3 * y0, d1 - l3 * y1, d2 - l3 * y2, d3 - l3 * y3
+    y[first, 0], y[first, 1], y[first, 2], y[first, 3] = a0, a1, a2, a3
+    y[first + 1, 0], y[first + 1, 1], y[first + 1, 2], y[first + 1, 3] = b0, b1, b2, b3
+    y[first + 2, 0], y[first + 2, 1], y[first + 2, 2], y[first + 2, 3] = c0, c1, c2, c3
+    y[first + 3, 0], y[first + 3, 1], y[first + 3, 2], y[first + 3, 3] = d0, d1, d2, d3
+    for k in range(3, -1, -1):
+        for d in range(k + 1, 4):
+            for c in range(4):
+                y[first + k, c] -= lower[own + first + d, k] * y[first + d, c]
+        for c in range(4):
+            y[first + k, c] *= lower[own + first + k, k]

@@ -34,11 +34,12 @@ def solve(net: Laplacian, b: Floats, goal: float) -> Floats | None:
     if not hierarchy.held:
         return None
     onward, go_on = kernels.compiled(turn), kernels.compiled(go_along)
+    finest = hierarchy.levels[0]
     x, p, q = np.zeros_like(b), np.zeros_like(b), np.empty_like(b)
     falls, dots = np.zeros(4), np.zeros(4)
     for _ in range(MOST):
         z, now = hierarchy.cycle(b)
-        onward(*hierarchy.levels[0].rows, z, _parts(now, falls), p, q, dots)
+        onward(*finest.rows, finest.farthest, z, _parts(now, falls), p, q, dots)
         falls = now
         go_on(x, b, p, q, _parts(falls, dots), dots)
         if not np.sqrt(dots.max()) > goal:
@@ -58,8 +59,11 @@ class Level:
     def __init__(self, net: Laplacian) -> None:
         self.net = net
         self.rows = (net.starts, net.columns, net.values, net.diagonal)
+        n = len(net.diagonal)
+        self.nearest, self.farthest = np.empty(n, np.int32), np.empty(n, np.int32)
+        kernels.compiled(span)(net.starts, net.columns, net.diagonal, self.nearest, self.farthest)
         self.inverse: Floats = 1.0 / net.values[net.diagonal]
-        self.b, self.x = np.zeros((len(self.inverse), 4)), np.empty((len(self.inverse), 4))
+        self.b, self.x = np.zeros((n, 4)), np.empty((n, 4))
         self.way: tuple[Any, ...] = ()
 
     def to(self, p: Spreading) -> None:
@@ -110,10 +114,10 @@ class Hierarchy:
         else:
             coarse = self.levels[number + 1].b
         matrix = (*level.rows, level.inverse)
-        kernels.compiled(descend)(*matrix, b, level.x, *level.way, coarse)
+        kernels.compiled(descend)(*matrix, level.farthest, b, level.x, *level.way, coarse)
         if number < len(self.levels) - 1:
             coarse = self._cycle(number + 1, coarse)
-        kernels.compiled(ascend)(*matrix, b, level.x, *level.way, coarse, self._dots)
+        kernels.compiled(ascend)(*matrix, level.nearest, b, level.x, *level.way, coarse, self._dots)
         return level.x
 
 
@@ -136,24 +140,21 @@ def row_times(columns: Any, values: Any, first: Any, last: Any, x: Any) -> Any:
     return s0, s1, s2, s3
 
 
-@device
-def last_of(starts: Any, columns: Any, diagonal: Any, i: Any) -> Any:
-    """The last column of row `i`; behind the last row, none that is ever met."""
-    if i == diagonal.shape[0]:
-        return i
-    most = i
-    for s in range(diagonal[i] + 1, starts[i + 1]):
-        most = max(most, np.int64(columns[np.uint64(s)]))
-    return most
+def span(starts, columns, diagonal, nearest, farthest):  # type: ignore[no-untyped-def]
+    """The first and the last column of each row."""
+    for i in range(diagonal.shape[0]):
+        nearest[i] = farthest[i] = i
+        for s in range(starts[i], starts[i + 1]):
+            nearest[i], farthest[i] = min(nearest[i], columns[s]), max(farthest[i], columns[s])
 
 
 def descend(  # type: ignore[no-untyped-def]
-    starts, columns, values, diagonal, inverse, b, x, p_starts, p_columns, p_values, coarse
+    starts, columns, values, diagonal, inverse, farthest, b, x, p_starts, p_columns, p_values, coarse
 ):  # fmt: skip
     """One Gauss-Seidel sweep from x = 0, rows in order, and coarse = P^T (b - A x), of which what is before and on the
     diagonal has cancelled. A row is passed on as soon as the sweep has met its neighbours, while it is at hand."""
     coarse[:] = 0.0
-    behind, farthest = 0, last_of(starts, columns, diagonal, 0)
+    behind = 0
     for i in range(diagonal.shape[0]):
         s0, s1, s2, s3 = row_times(columns, values, starts[i], diagonal[i], x)
         d = inverse[i]
@@ -161,7 +162,7 @@ def descend(  # type: ignore[no-untyped-def]
         x[i, 1] = (b[i, 1] - s1) * d
         x[i, 2] = (b[i, 2] - s2) * d
         x[i, 3] = (b[i, 3] - s3) * d
-        while farthest <= i:
+        while behind <= i and farthest[behind] <= i:
             s0, s1, s2, s3 = row_times(columns, values, diagonal[behind] + 1, starts[behind + 1], x)
             for s in range(p_starts[behind], p_starts[behind + 1]):
                 j, p = np.uint64(p_columns[np.uint64(s)]), p_values[np.uint64(s)]
@@ -170,20 +171,16 @@ def descend(  # type: ignore[no-untyped-def]
                 coarse[j, 2] -= p * s2
                 coarse[j, 3] -= p * s3
             behind += 1
-            farthest = last_of(starts, columns, diagonal, behind)
 
 
 def ascend(  # type: ignore[no-untyped-def]
-    starts, columns, values, diagonal, inverse, b, x, p_starts, p_columns, p_values, coarse, dots
+    starts, columns, values, diagonal, inverse, nearest, b, x, p_starts, p_columns, p_values, coarse, dots
 ):  # fmt: skip
     """x += P coarse, and one Gauss-Seidel sweep, rows from the last to the first; dots = b . x."""
     t0 = t1 = t2 = t3 = 0.0
     ahead = diagonal.shape[0]
     for i in range(diagonal.shape[0] - 1, -1, -1):
-        least = i
-        for s in range(starts[i], diagonal[i]):
-            least = min(least, columns[np.uint64(s)])
-        while ahead > least:
+        while ahead > nearest[i]:
             ahead -= 1
             s0, s1, s2, s3 = row_times(p_columns, p_values, p_starts[ahead], p_starts[ahead + 1], coarse)
             x[ahead, 0] += s0
@@ -205,14 +202,13 @@ def ascend(  # type: ignore[no-untyped-def]
     dots[0], dots[1], dots[2], dots[3] = t0, t1, t2, t3
 
 
-def turn(starts, columns, values, diagonal, z, part, p, q, dots):  # type: ignore[no-untyped-def]
+def turn(starts, columns, values, diagonal, farthest, z, part, p, q, dots):  # type: ignore[no-untyped-def]
     """p = z + part p, q = A p, dots = p . q."""
     a0, a1, a2, a3 = part[0], part[1], part[2], part[3]
     t0 = t1 = t2 = t3 = 0.0
     ahead = -1
     for i in range(diagonal.shape[0]):
-        farthest = last_of(starts, columns, diagonal, i)
-        while ahead < farthest:
+        while ahead < farthest[i]:
             ahead += 1
             p[ahead, 0] = z[ahead, 0] + a0 * p[ahead, 0]
             p[ahead, 1] = z[ahead, 1] + a1 * p[ahead, 1]
