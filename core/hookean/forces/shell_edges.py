@@ -6,9 +6,9 @@ others of its two triangles. So a pass goes from triangles (normals) to edges (f
 (moments on the parts), to edges (moments on the folds), and to triangles again: all forces are along their normals.
 
 Packed, a shell is one row of whole numbers, most of them two to a word: how many edges and triangles, whether lumped
-stiffness is asked for; of each edge its ends, its triangles, and the four others; of each triangle its corners and the
-sides of its edges, 2 e that of the first and 2 e + 1 that of the second triangle of edge e; of each edge the tips of
-its triangles. One row of numbers: EDGE of each edge, FACE of each triangle, a bound of each edge's stiffness. And one
+stiffness is asked for; of each edge an end and the tip of its first triangle, where in the room its triangles are,
+where the two products that its length comes from, and the four others; of each triangle its corners and the sides of
+its edges, 2 e that of the first and 2 e + 1 that of the second triangle of edge e; of each edge the other end and tip. One row of numbers: EDGE of each edge, FACE of each triangle, a bound of each edge's stiffness. And one
 row of room that the passes write. What a naked edge would refer to is one edge more, which never turns.
 """
 
@@ -23,13 +23,14 @@ from hookean.forces.base import Floats, Ints
 from hookean.forces.dihedral import SLIVER, slopes
 from hookean.kernels import device
 
-HEAD, EDGE_WORDS, FACE_WORDS = 3, 4, 3
+HEAD, EDGE_WORDS, FACE_WORDS = 3, 5, 3
 # of an edge: cosine and sine of the rest angle; -1 if its second triangle is turned over; what its own fold and those
 # of the others add to psi; what their psi take from its fold
 REST, SIGN, OWN, OTHERS, BACK, EDGE = 0, 2, 3, 4, 8, 12
 FACE = 6  # different numbers of a symmetric matrix
 SQUARE, CORNERS, NORMAL = 3, 4, 7  # of a triangle's room: normal, 1 / its square, the products of sides at its corners
 BATCH = 64
+ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(SQUARE)
 
 
 @device
@@ -41,12 +42,13 @@ def bend(x: Any, index: Any, table: Any, room: Any, f: Any, w: Any) -> Any:
     corners = corners.reshape(faces, FACE_WORDS)
     numbers, end = table[: EDGE * edges].reshape(edges, EDGE), EDGE * edges
     products = table[end : end + FACE * faces].reshape(faces, FACE)
-    normals, end = room[: NORMAL * faces].reshape(faces, NORMAL), NORMAL * faces
+    known, end = room[: NORMAL * faces], NORMAL * faces
+    normals = known.reshape(faces, NORMAL)
     turns, inverse = room[end : end + edges + 1], room[end + edges + 1 : end + 2 * edges + 1]
     across, end = room[end + 2 * edges + 1 : end + 3 * edges + 2], end + 3 * edges + 2
     sides, work = room[end : end + 2 * edges + 1], room[end + 2 * edges + 1 :]
     span(x, corners, normals)
-    turn(x, links, numbers, normals, turns, inverse, work)
+    turn(x, links, numbers, known, turns, inverse, work)
     halve(links, numbers, turns, sides)
     energy = resist(corners, products, sides)
     for e in range(edges):
@@ -77,50 +79,52 @@ def span(x: Any, corners: Any, normals: Any) -> None:
         a, b, c = low(corners[t, 0]), high(corners[t, 0]), low(corners[t, 1])
         px, py, pz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
         qx, qy, qz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
+        rx, ry, rz = x[c, 0] - x[b, 0], x[c, 1] - x[b, 1], x[c, 2] - x[b, 2]
         nx, ny, nz = py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx
-        pp, qq, pq = px * px + py * py + pz * pz, qx * qx + qy * qy + qz * qz, px * qx + py * qy + pz * qz
+        at_a, at_b = px * qx + py * qy + pz * qz, -(px * rx + py * ry + pz * rz)
+        at_c = qx * rx + qy * ry + qz * rz
         nn = nx * nx + ny * ny + nz * nz
-        size = SLIVER * (pp + qq)
+        size = SLIVER * (2.0 * at_a + at_b + at_c)
         normals[t, 0], normals[t, 1], normals[t, 2] = nx, ny, nz
         normals[t, SQUARE] = 1.0 / nn if nn > size * size and nn > 1e-280 else 0.0
-        normals[t, CORNERS], normals[t, CORNERS + 1], normals[t, CORNERS + 2] = pq, pp - pq, qq - pq
+        normals[t, CORNERS], normals[t, CORNERS + 1], normals[t, CORNERS + 2] = at_a, at_b, at_c
 
 
 @device
-def turn(x: Any, links: Any, numbers: Any, normals: Any, turns: Any, inverse: Any, work: Any) -> None:
+def turn(x: Any, links: Any, numbers: Any, known: Any, turns: Any, inverse: Any, work: Any) -> None:
     """Turns of edges from their rest angles (see `dihedral`), and 1 / their lengths; 0 beside a sliver.
 
     By batches: what is fetched from all over goes to `work`, so that the rest takes several edges in one operation.
     """
     for first in range(0, links.shape[0], BATCH):
         last = min(first + BATCH, links.shape[0])
+        odd = False  # whether there is a sliver or a large turn
         for e in range(first, last):
             k = e - first
-            a, b, s, t = low(links[e, 0]), high(links[e, 0]), low(links[e, 1]), high(links[e, 1])
-            ex, ey, ez = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
-            mx, my, mz = normals[s, 0], normals[s, 1], normals[s, 2]
-            nx, ny, nz = normals[t, 0], normals[t, 1], normals[t, 2]
-            work[k] = ex * ex + ey * ey + ez * ez
-            work[k + BATCH] = mx * nx + my * ny + mz * nz
-            work[k + 2 * BATCH] = ex * (ny * mz - nz * my) + ey * (nz * mx - nx * mz) + ez * (nx * my - ny * mx)
+            a, c, s, t = low(links[e, 0]), high(links[e, 0]), low(links[e, 1]), high(links[e, 1])
+            nx, ny, nz = known[t], known[t + ONE], known[t + TWO]
+            px, py, pz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
+            work[k] = known[low(links[e, 2])] + known[high(links[e, 2])]
+            work[k + BATCH] = known[s] * nx + known[s + ONE] * ny + known[s + TWO] * nz
+            work[k + 2 * BATCH] = px * nx + py * ny + pz * nz
             work[k + 3 * BATCH], work[k + 4 * BATCH] = numbers[e, REST], numbers[e, REST + 1]
-            if normals[s, SQUARE] == 0.0 or normals[t, SQUARE] == 0.0:
-                work[k], work[k + BATCH], work[k + 3 * BATCH], work[k + 4 * BATCH] = np.inf, 1.0, 1.0, 0.0
+            odd |= known[s + THREE] == 0.0 or known[t + THREE] == 0.0
         for k in range(BATCH):
-            over = 1.0 / np.sqrt(work[k])
-            cosine, sine = work[k + BATCH], over * work[k + 2 * BATCH]
+            length = np.sqrt(work[k])
+            cosine, sine = work[k + BATCH], length * work[k + 2 * BATCH]
             rest_cosine, rest_sine = work[k + 3 * BATCH], work[k + 4 * BATCH]
             along, aside = cosine * rest_cosine + sine * rest_sine, sine * rest_cosine - cosine * rest_sine
-            work[k], work[k + BATCH], work[k + 2 * BATCH] = over, along, aside
+            work[k], work[k + BATCH], work[k + 2 * BATCH] = 1.0 / length, along, aside
             work[k + 3 * BATCH] = small(along, aside)
-        large = False
         for e in range(first, last):
             k = e - first
             turns[e], inverse[e] = work[k + 3 * BATCH], work[k]
-            large |= not 8.0 * np.abs(work[k + 2 * BATCH]) < work[k + BATCH]
-        if large:
+            odd |= not 8.0 * np.abs(work[k + 2 * BATCH]) < work[k + BATCH]
+        if odd:
             for e in range(first, last):
                 turns[e] = angle_of(work[e - first + BATCH], work[e - first + 2 * BATCH])
+                if known[low(links[e, 1]) + THREE] == 0.0 or known[high(links[e, 1]) + THREE] == 0.0:
+                    turns[e], inverse[e] = 0.0, 0.0
 
 
 @device
@@ -143,7 +147,7 @@ def small(along: Any, aside: Any) -> Any:
 def halve(links: Any, numbers: Any, turns: Any, sides: Any) -> None:
     """The parts of folds on the two sides of their edges."""
     for e in range(links.shape[0]):
-        g, h, i, j = low(links[e, 2]), high(links[e, 2]), low(links[e, 3]), high(links[e, 3])
+        g, h, i, j = low(links[e, 3]), high(links[e, 3]), low(links[e, 4]), high(links[e, 4])
         one = numbers[e, OTHERS] * turns[g] + numbers[e, OTHERS + 1] * turns[h]
         two = numbers[e, OTHERS + 2] * turns[i] + numbers[e, OTHERS + 3] * turns[j]
         psi = numbers[e, OWN] * turns[e] + (one + two)
@@ -171,7 +175,7 @@ def resist(corners: Any, products: Any, sides: Any) -> Any:
 def collect(links: Any, numbers: Any, across: Any, inverse: Any, sides: Any) -> None:
     """Moments on folds over the lengths of their edges, as both triangles see them."""
     for e in range(links.shape[0]):
-        g, h, i, j = low(links[e, 2]), high(links[e, 2]), low(links[e, 3]), high(links[e, 3])
+        g, h, i, j = low(links[e, 3]), high(links[e, 3]), low(links[e, 4]), high(links[e, 4])
         one = numbers[e, BACK] * across[g] + numbers[e, BACK + 1] * across[h]
         two = numbers[e, BACK + 2] * across[i] + numbers[e, BACK + 3] * across[j]
         moment = (sides[2 * e + 1] + numbers[e, OWN] * across[e] + (one + two)) * inverse[e]
@@ -196,11 +200,11 @@ def push(corners: Any, normals: Any, moments: Any, f: Any) -> None:
 
 
 @device
-def weigh(x: Any, links: Any, tips: Any, bounds: Any, inverse: Any, moments: Any, w: Any) -> None:
+def weigh(x: Any, links: Any, others: Any, bounds: Any, inverse: Any, moments: Any, w: Any) -> None:
     """What the stiffness of elements and the moments on folds add to the lumped stiffness."""
     g = np.zeros((4, 5))
     for e in range(links.shape[0]):
-        a, b, c, d = low(links[e, 0]), high(links[e, 0]), low(tips[e]), high(tips[e])
+        a, b, c, d = low(links[e, 0]), low(others[e]), high(links[e, 0]), high(others[e])
         sine, _ = slopes(x, a, b, c, d, g)
         if inverse[e] == 0.0 or np.isnan(sine):
             continue
@@ -248,11 +252,13 @@ class Plan:
         far = [_beside(second, 1 + turned), _beside(second, 2 - turned)]
         others = np.stack([edge[q] for q in near + far], axis=1)
         signs = np.stack([view[q] for q in near] + [sign * view[q] for q in far], axis=1)
-        links = [_pair(start[first], start[_beside(first, 1)]), _pair(first // 3, second // 3)]
+        room = NORMAL * (first // 3) + CORNERS
+        links = [_pair(start[first], start[_beside(first, 2)]), NORMAL * _pair(first // 3, second // 3)]
+        links += [_pair(room + first % 3, room + (first + 1) % 3)]
         links += [_pair(others[:, 0], others[:, 1]), _pair(others[:, 2], others[:, 3])]
         faces = [_pair(corners[:, 0], corners[:, 1]), _pair(corners[:, 2], side[0::3]), _pair(side[1::3], side[2::3])]
-        tips = _pair(start[_beside(first, 2)], start[_beside(second, 2)])
-        parts = [np.column_stack(links).ravel(), np.column_stack(faces).ravel(), tips]
+        rest = _pair(start[_beside(first, 1)], start[_beside(second, 2)])
+        parts = [np.column_stack(links).ravel(), np.column_stack(faces).ravel(), rest]
         quick, whole = (np.concatenate([[count, len(corners), weighs], *parts])[None] for weighs in (0, 1))
         return cls(quick, whole, first, second, others, signs, edge, view)
 
