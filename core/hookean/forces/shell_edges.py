@@ -8,8 +8,9 @@ others of its two triangles. So a pass goes from triangles (normals) to edges (f
 Packed, a shell is one row of whole numbers, most of them two to a word: how many edges and triangles, whether lumped
 stiffness is asked for; of each edge an end and the tip of its first triangle, where in the room its triangles are,
 where the two products that its length comes from, and the four others; of each triangle its corners and the sides of
-its edges, 2 e that of the first and 2 e + 1 that of the second triangle of edge e; of each edge the other end and tip. One row of numbers: EDGE of each edge, FACE of each triangle, a bound of each edge's stiffness. And one
-row of room that the passes write. What a naked edge would refer to is one edge more, which never turns.
+its edges, 2 e that of the first and 2 e + 1 that of the second triangle of edge e; of each edge the other end and tip.
+One row of numbers: EDGE of each edge, FACE of each triangle, a bound of each edge's stiffness. And one row of room that
+the passes write. What a naked edge would refer to is one edge more, which never turns.
 """
 
 from __future__ import annotations
