@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.forces import Block
 from hookean.forces.base import lengths
 from hookean.state import State
-from hookean.system import System
+from hookean.system import Group, System
 
 Floats = NDArray[np.float64]
 
+CHUNK = 4096  # elements
 ROUNDING = float(np.finfo(np.float64).eps) / 2.0
 
 
@@ -69,14 +72,26 @@ def force_scale(system: System, state: State, loads: Floats) -> float:
     total, count = 0.0, 0
     for group, memory in zip(system.groups, state.memory, strict=True):
         if group.cls.role != "load" and len(group.block.indices):
-            forces = system.element_forces(group, state, memory)
-            # column by column: reducing an axis of two or three is slow
-            sizes = reduce(np.maximum, (lengths(forces[:, i]) for i in range(forces.shape[1])))
-            total, count = total + float(sizes.sum()), count + len(sizes)
+            for sizes in _element_sizes(system, group, state, memory):
+                total, count = total + float(sizes.sum()), count + len(sizes)
     now = total / count if count else 0.0
     # where stress dies out at equilibrium, the scale must not die with it
     state.force_scale = max(state.force_scale, now)
     return max(now, 1e-3 * state.force_scale)
+
+
+def _element_sizes(system: System, group: Group, state: State, memory: Floats) -> Iterator[Floats]:
+    """The largest force that each element puts on one of its particles."""
+    if group.cls.arity != 2:
+        forces = system.element_forces(group, state, memory)
+        # column by column: reducing an axis of two or three is slow
+        yield reduce(np.maximum, (lengths(forces[:, i]) for i in range(forces.shape[1])))
+        return
+    b = group.block
+    for first in range(0, len(b.indices), CHUNK):  # few enough to stay in the nearest cache
+        part = slice(first, first + CHUNK)
+        some = Group(group.cls, Block(b.indices[part], b.parameters[part], b.memory[part]), [])
+        yield lengths(system.element_forces(some, state, memory[part])[:, 0])  # the other end bears the same
 
 
 def _load_size(system: System, state: State) -> Floats:

@@ -44,7 +44,17 @@ class Method(Solver):
 
     def start(self, system: System, state: State) -> None:
         """Look at the system and choose."""
+        self.used, self._steps = [], 0
         self._one_solve = not self._linear.refuse(system)
+        self._prepared = False
+        if self._one_solve:
+            self._linear.start(system, state)
+        else:
+            self._prepare(system, state)
+
+    def _prepare(self, system: System, state: State) -> None:
+        """Choose among the ways that take more than one solve."""
+        self._prepared = True
         self._chains = not self._complementary.refuse(system)
         entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if g.cls.role != "load")
         self._small = 3 * len(state.x) <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS
@@ -54,8 +64,6 @@ class Method(Solver):
             self._multilevel.start(system, state)
         else:
             self._relax_from_here(system, state)
-        self.used = []
-        self._steps = 0
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Some iterations of whatever is due."""
@@ -65,6 +73,8 @@ class Method(Solver):
             if done:
                 self._use("force_density")
                 return done
+        if not self._prepared:
+            self._prepare(system, state)
         if self._chains:
             self._chains = False
             done = self._complementary.advance(system, state, count, goal)
