@@ -35,11 +35,11 @@ def find_slots(indices, starts, columns, slots):  # type: ignore[no-untyped-def]
 @device
 def place_of(starts: Any, columns: Any, row: Any, column: Any) -> Any:
     """Where in a pattern a column of a row is."""
-    low, high = starts[row], starts[row + 1] - 1
+    low, high = np.uint64(starts[row]), np.uint64(starts[row + 1] - 1)  # unsigned: no index counts from the end
     while low < high:
-        middle = (low + high) // 2
+        middle = (low + high) >> np.uint64(1)
         if columns[middle] < column:
-            low = middle + 1
+            low = middle + np.uint64(1)
         else:
             high = middle
     return low
