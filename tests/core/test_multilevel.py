@@ -12,6 +12,7 @@ from hookean.multigrid.blocks import Blocks
 from hookean.multigrid.gradients import solve
 from hookean.multigrid.hierarchy import Hierarchy
 from hookean.solvers import multilevel, solver
+from hookean.state import State
 from hookean.system import compile
 from hookean.watch import PATIENCE, Watch
 
@@ -156,16 +157,19 @@ def test_auto_takes_it_for_a_large_net_and_relaxation_where_springs_push():
 
 
 def test_same_net_same_bits():
-    """Two runs, one of them in pieces of one iteration."""
-    system = compile(Scene.read(net(20)))
+    """Three runs, one of them in pieces of one iteration, one by a new solver at each from the state in a file."""
+    system = compile(Scene.read(net(20, factor=1.0, load=-200.0)))
     shapes = []
-    for most in (100, 1):
+    for most, anew in ((100, False), (1, False), (1, True)):
         method, state = solver("multilevel"), system.start()
         method.start(system, state)
         while state.iteration < 60:
+            if anew:
+                method, state = solver("multilevel"), State.of(state.arrays())
             method.advance(system, state, min(most, 60 - state.iteration), 1e-12)
+        assert "gathered" in state.scratch  # the hierarchy is another than that of the start
         shapes.append(state.x.tobytes())
-    assert shapes[0] == shapes[1]
+    assert shapes[0] == shapes[1] == shapes[2]
 
 
 def test_lowest_is_true_of_pulled_springs_and_false_of_pressed_ones():

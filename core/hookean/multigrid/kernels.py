@@ -215,7 +215,13 @@ def turn(p, z, part):  # type: ignore[no-untyped-def]
 
 
 def factor(matrix):  # type: ignore[no-untyped-def]
-    """The Cholesky factor of a dense matrix, written into its lower triangle; False if it is not positive definite."""
+    """The Cholesky factor of a dense matrix, written into its lower triangle; False if it is not positive definite.
+
+    What hangs on nothing has no stiffness but for rounding, by which single precision must not be divided: it is held.
+    """
+    least = 0.0
+    for i in range(matrix.shape[0]):
+        least = max(least, 1e-10 * matrix[i, i])
     for i in range(matrix.shape[0]):
         for j in range(i + 1):
             total = matrix[i, j]
@@ -223,8 +229,10 @@ def factor(matrix):  # type: ignore[no-untyped-def]
                 total -= matrix[i, k] * matrix[j, k]
             if i > j:
                 matrix[i, j] = total / matrix[j, j]
-            elif total > 0.0:
+            elif total > least:
                 matrix[i, i] = np.sqrt(total)
+            elif total >= -least:
+                matrix[i, i] = np.inf
             else:
                 return False
     return True

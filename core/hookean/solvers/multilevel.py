@@ -88,6 +88,7 @@ class Method(Solver):
             rounds = 0.0 if left else rounds
         state.scratch["newton"] = np.array([step.shift, taken + step.fall])
         state.scratch["smoothing"] = np.array([np.ceil(left), budget, best, rounds])
+        self._readied(system, state).keep(state)
         return 1
 
     def _smooth(self, system: System, state: State, budget: float, goal: float) -> float:
