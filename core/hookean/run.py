@@ -66,6 +66,8 @@ def relax_state(
     used = getattr(method, "used", None)
     name = f"auto: {', '.join(used) or 'nothing to do'}" if used is not None else method.name
     message = watch.sentence(system, status)
+    if status is Status.CONVERGED and method.remark:
+        message = f"{message} {method.remark}"
     return gather(system, state, watch.found, status, message, name, moving=method.physical)
 
 

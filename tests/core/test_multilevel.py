@@ -11,7 +11,7 @@ from hookean import Scene, relax
 from hookean.multigrid.blocks import Blocks
 from hookean.multigrid.gradients import solve
 from hookean.multigrid.hierarchy import Hierarchy
-from hookean.solvers import multilevel, solver
+from hookean.solvers import auto, multilevel, solver
 from hookean.state import State
 from hookean.system import compile
 from hookean.watch import PATIENCE, Watch
@@ -147,13 +147,43 @@ def test_multilevel_ends_where_relaxation_ends(spec):
     assert np.abs(found[0].particles - found[1].particles).max() <= 1e-5
 
 
-def test_auto_takes_it_for_a_large_net_and_relaxation_where_springs_push():
-    """4,096 particles that pull; the same pressed together, where many shapes are at rest."""
+def crossed(side):
+    """A net of side^2 particles with both diagonals of each face, shortened to 0.9 and loaded: its edges crease."""
+    spec = net(side, factor=0.9, load=-500.0)
+    at = np.arange(side * side).reshape(side, side)
+    pairs = np.concatenate([np.stack([at[:-1, :-1], at[1:, 1:]], -1).reshape(-1, 2),
+                            np.stack([at[1:, :-1], at[:-1, 1:]], -1).reshape(-1, 2)])  # fmt: skip
+    spacing = 10.0 / (side - 1)
+    spec["forces"].append({"kind": "springs", "particles": pairs.tolist(), "stiffness": 100,
+                           "rest_length": 2**0.5 * spacing, "rest_factor": 0.9})  # fmt: skip
+    spec["anchors"].pop()
+    return spec
+
+
+def test_auto_takes_it_for_a_large_net_and_relaxation_where_another_shape_may_be_lower(monkeypatch):
+    """4,096 particles that pull; the same pressed together, which may be at rest in many shapes; and again where
+    relaxation would take too long: told so."""
     pulled = relax(Scene.read(net(64)))
     assert pulled.converged and pulled.solver == "auto: multilevel"
-    pressed = net(64, factor=1.3)
-    pressed["settings"] = {"max_iterations": 300}
-    assert relax(Scene.read(pressed)).solver == "auto: relaxation"
+    pressed = Scene.read(net(64, factor=1.3, load=-2000.0))
+    second = relax(pressed)
+    assert second.converged and second.solver == "auto: relaxation"
+    monkeypatch.setattr(auto, "MANY", 4096)
+    third = relax(pressed)
+    assert third.converged and third.solver == "auto: multilevel" and auto.CREASED in third.message
+    assert auto.CREASED not in second.message + relax(Scene.read(net(64))).message
+
+
+def test_a_sheet_that_creases_is_certain(monkeypatch):
+    """A fifth of its springs push, and Newton steps take turns with relaxation; the form of its force densities is
+    positive definite all the same, so that its shape is the lowest (Connelly 1982): that of relaxation."""
+    monkeypatch.setattr(auto, "LEAST_MULTILEVEL", 1000)
+    spec = crossed(32)
+    found = relax(Scene.read({**spec, "settings": {"tolerance": 1e-8}}))
+    assert found.converged and found.solver == "auto: multilevel"
+    slow = relax(Scene.read({**spec, "settings": {"solver": "relaxation", "tolerance": 1e-8, "max_iterations": 10**6}}))
+    assert slow.converged and np.abs(found.particles - slow.particles).max() <= 1e-4
+    assert (np.concatenate([f["force"] for f in found.forces if "strain" in f]) < -1e-3).mean() > 0.1
 
 
 def test_same_net_same_bits():

@@ -155,3 +155,16 @@ class Blocks:
         if shift > 0.0:
             kernels.compiled(shift_blocks)(self.starts, self.columns, self.sizes, shift, self.values)
         kernels.compiled(hold_axes)(self.starts, self.columns, state.free, self.values)
+
+    def turned(self, x: Floats, step: Floats) -> Floats:
+        """The largest angle (n,) [rad] by which a step (n, 3) would turn, to first order, an element's side between
+        each particle of a shape (n, 3) and a neighbour."""
+        rows = np.repeat(np.arange(len(x), dtype=np.int32), np.diff(self.starts))
+        side = x[self.columns] - x[rows]
+        square = np.einsum("ij,ij->i", side, side)
+        across = np.cross(side, step[self.columns] - step[rows])
+        angle = np.sqrt(np.einsum("ij,ij->i", across, across)) / np.where(square > 0.0, square, np.inf)
+        largest = np.zeros(len(x))
+        np.maximum.at(largest, rows, angle)
+        np.maximum.at(largest, self.columns, angle)
+        return largest

@@ -19,7 +19,8 @@ FIRST, LATER = 10.0, 3.0  # steps of conjugate gradients after which to gather a
 
 class Tangent:
     """Blocks, and a hierarchy over them: gathered for the start of a system and anew for the shape it has got, seldom,
-    for that takes as long as ten steps of conjugate gradients. `work` [passes over all springs] is what all took.
+    for that takes as long as ten steps of conjugate gradients. `steps` of these were taken, and `work` [passes over all
+    springs] is what all took.
 
     What it knows of the way is in `state.scratch` after `keep`, and one made later goes on from there.
     """
@@ -29,7 +30,7 @@ class Tangent:
         self.blocks.fill(system, system.start())  # not the state, which depends on when this is made
         self.blocks.weigh()
         self.work = 0.0
-        self._steps, self._due = state.scratch.get("gathering", np.array([0.0, FIRST]))
+        self.steps, self._due = state.scratch.get("gathering", np.array([0.0, FIRST]))
         self._shape = state.scratch.get("gathered")
         if self._shape is not None:
             then = state.copy()
@@ -39,7 +40,7 @@ class Tangent:
 
     def keep(self, state: State) -> None:
         """Let the state know for which shape the hierarchy is, and when it is due again."""
-        state.scratch["gathering"] = np.array([self._steps, self._due])
+        state.scratch["gathering"] = np.array([self.steps, self._due])
         if self._shape is not None:
             state.scratch["gathered"] = self._shape
 
@@ -47,7 +48,7 @@ class Tangent:
         """x (n, 3) of (K + shift L) x = b on free axes, to `part` of b or by `most` steps; None if that is not positive
         definite. K is the tangent of the state, L the Laplacian of the tangent's graph at the start."""
         self.blocks.fill(system, state)
-        if self._steps >= self._due:
+        if self.steps >= self._due:
             self._due *= LATER
             self.work += self.hierarchy.fill_work
             found = self._gathered(state)
@@ -58,7 +59,7 @@ class Tangent:
         if not self.hierarchy.fill(self.blocks.values):
             return None
         x, steps = solve(self.hierarchy, b, part, most)
-        self._steps += steps
+        self.steps += steps
         self.work += steps * (1.0 + self.hierarchy.cycle_work)
         return x
 

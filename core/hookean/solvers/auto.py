@@ -1,9 +1,9 @@
 """Auto: picks by the scene, and says what it picked.
 
 Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities, large nets
-of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose lowest shape those steps do not
-find; where relaxation is slow or the tolerance tight, Newton steps finish, and where those do not help, relaxation goes
-on.
+of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose shape by those steps may not be the
+lowest, unless they are too large to wait for relaxation; where relaxation is slow or the tolerance tight, Newton
+steps finish, and where those do not help, relaxation goes on.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 LARGEST_NEWTON = 60_000  # unknowns
 LARGEST_BLOCKS = 3_000_000  # entries of all element blocks; a shell's have 36 x 36 each
 LEAST_MULTILEVEL = 4_000  # particles from which on multigrid is quicker than relaxation
+MANY = 8_000  # particles from which on relaxation takes seconds to minutes, and creases as well
+CREASED = "Springs that push crease such a net: it is at rest in many shapes, and this is one of them."
 FIRST_NEWTON = 4_000
 NEWTON_STEPS = 60
 
@@ -102,7 +104,9 @@ class Method(Solver):
         self._use("multilevel")
         done = self._multilevel.advance(system, state, min(count, self._multilevel.longest), goal)
         found = self._multilevel.largest <= goal
-        if self._multilevel.pushed or (found and not multilevel.lowest(system, state)):
+        if found and len(state.x) >= MANY:
+            self.remark = "" if multilevel.pulled(system, state) else CREASED
+        elif found and not multilevel.lowest(system, state):
             self._levels = False
             self.used.remove("multilevel")
             self.anew = state.iteration

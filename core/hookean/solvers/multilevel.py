@@ -1,10 +1,11 @@
-"""Multilevel: Newton steps solved by multigrid, with relaxation where they do not help, for large nets.
+"""Multilevel: Newton steps solved by multigrid, and relaxation of what creases, for large nets.
 
 A step solves (K + s L) dx = f on the free axes by conjugate gradients preconditioned by algebraic multigrid: K the
 exact tangent, L the Laplacian of its graph. The shift s is large where the start has no stiffness across itself (a flat
 net) and fades as steps succeed; being a Laplacian it holds smooth motions no more than they need, however fine the
-mesh. What Newton's line search crawls along, such as an edge that folds over, is mostly local: the particles that are
-farthest out of balance are relaxed among the others, which hold still; all of them where that does not help.
+mesh. Where Newton steps crawl, as along edges that crease and fold over, they take turns with relaxation of the
+particles whose springs turn most in a step and those farthest out of balance, among the others, which hold still: a
+creased strip is soft, and soft across few particles is what relaxation is quick at.
 Sources: Nocedal and Wright, Numerical Optimization, 2006, chapter 7; Vanek, Mandel, Brezina, Computing 56 (1996) 179;
 Cai and Li, SIAM J. Sci. Comput. 33 (2011) 746, for the elimination of what is locally not linear.
 """
@@ -30,26 +31,28 @@ FIRST_SHIFT, LEAST_SHIFT, LARGEST_SHIFT = 1.0, 1e-8, 1e4
 WORTH = 1e-3  # a Newton step is worth another while it takes this part of the energy that all took
 QUICK = 0.25  # or the largest force to this part
 SOLVED = 0.1  # part of the forces that a linear system may leave
-CONJUGATE = 25  # steps of conjugate gradients in one of them
-OUT, RINGS, SHARE = 0.1, 4, 0.3  # local: forces from this part of the largest on, and what is around; of all at most
-SMOOTHING = 100  # passes over all springs that relaxation may first take between Newton steps
-LONGEST = 3000  # iterations of a local one
-PUSHED = 0.01  # of all springs: nets that buckle have many shapes at rest
+CONJUGATE, MOST = 25, 200  # steps of conjugate gradients in one of them: at first, and where Newton is about to end
+GENTLE = 1e-3  # least shift of steps that take turns with relaxation
+STRAIGHT = 1e-3  # angle [rad] up to which springs turn where Newton alone may end
+TURNED, OUT, RINGS = 0.5, 0.1, 8  # what creases: parts of the largest turn and force, and the rings around
+SHARE = 0.4  # of all particles, at most
+SMOOTHING = 100  # passes over all springs that relaxation may take between Newton steps
+LONGEST = 5000  # iterations of a local one
+SLOW = 2  # Newton steps not worth another, after which they take turns
+ROUNDS = 12  # turns without half the largest force, after which all particles relax
 FEW = 1e-3  # so few push where supports are points, and have no room to buckle
-ROUNDS = 3  # smoothings without half the largest force, after which all particles relax
 
 
 class Method(Solver):
     """Newton and multigrid for large nets."""
 
     name: ClassVar[str] = "multilevel"
-    longest: ClassVar[int] = SMOOTHING
+    longest: ClassVar[int] = 100
 
     def __init__(self) -> None:
         self._relaxation = relaxation.Method()
         self._ready: Tangent | None = None
         self.largest = np.inf  # force [force] out of balance after the last Newton step
-        self.pushed = False  # whether many springs pushed where Newton steps no longer helped
         self.work = 0.0  # passes over all springs; coarser levels count by their size
 
     def refuse(self, system: System) -> str:
@@ -60,60 +63,90 @@ class Method(Solver):
         """Start from rest, with Newton steps."""
         self._relaxation.start(system, state)
         self._ready = None
-        self.pushed, self.largest = False, np.inf
-        state.scratch["newton"] = np.array([FIRST_SHIFT, 0.0])
-        state.scratch["smoothing"] = np.array([0.0, SMOOTHING, np.inf, 0.0])
+        self.largest = np.inf
+        state.scratch["newton"] = np.array([FIRST_SHIFT, CONJUGATE, 0.0])
+        state.scratch["turns"] = np.array([0.0, 1.0, 0.0, 0.0, np.inf])
+        state.scratch["all"] = np.array([0.0, SMOOTHING])
+        state.scratch["creased"] = np.zeros(len(state.x))
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
-        """At most `count` iterations: each a Newton step, a local relaxation, or an iteration of relaxation."""
-        left, budget, best, rounds = state.scratch["smoothing"]
-        if left > 0 or not self._readied(system, state).hierarchy.coarse:
-            left = max(left, 1.0)
-            done = self._relaxation.advance(system, state, min(count, int(left)), goal)
+        """At most `count` iterations: each a Newton step with what relaxes after it, or an iteration of relaxation."""
+        left = state.scratch["all"][0]
+        ready = self._readied(system, state)
+        if left > 0 or not ready.hierarchy.coarse:
+            done = self._relaxation.advance(system, state, min(count, int(left) or count), goal)
             self.work += done
-            state.scratch["smoothing"][0] = left - done if done else 0.0
+            state.scratch["all"][0] = left - done if done and left else 0.0
             return max(done, 1)
-        shift, taken = state.scratch["newton"]
-        step = Step(system, state, self._readied(system, state), shift)
+        shift, most, taken = state.scratch["newton"]
+        gentle = state.scratch["turns"][0] > 0
+        step = Step(system, state, ready, max(shift, GENTLE) if gentle else shift, CONJUGATE if gentle else int(most))
+        before = state.x.copy()
         again = step.take(taken, goal)
+        state.iteration += 1
         self.work += step.work
         self.largest = step.largest
-        state.iteration += 1
-        if not again:
-            self.pushed = self.pushed or _share_pushed(system, state) > PUSHED
-            rounds = 0.0 if step.largest < 0.5 * best else rounds + 1.0
-            best = min(best, step.largest)
-            left = self._smooth(system, state, budget, goal) if rounds < ROUNDS else budget
-            budget *= 1.5 if rounds else 1.0
-            rounds = 0.0 if left else rounds
-        state.scratch["newton"] = np.array([step.shift, taken + step.fall])
-        state.scratch["smoothing"] = np.array([np.ceil(left), budget, best, rounds])
-        self._readied(system, state).keep(state)
+        if not gentle and step.cut and step.length >= 1.0:
+            most, again = min(2.0 * most, MOST), True
+        state.scratch["newton"] = np.array([step.shift, most, taken + step.fall])
+        if step.largest > goal:
+            turned = ready.blocks.turned(before, step.direction)
+            if self._takes_turns(state, step, float(turned.max()), again):
+                self._smooth(system, state, turned, goal)
+        ready.keep(state)
         return 1
 
-    def _smooth(self, system: System, state: State, budget: float, goal: float) -> float:
-        """Relax the particles farthest out of balance; the iterations that all should have instead if they are many."""
+    def _takes_turns(self, state: State, step: Step, turned: float, again: bool) -> bool:
+        """Whether relaxation is due: for one turn, two, four ... each time that Newton alone did not go on well, and
+        until springs turn little."""
+        turns, patience, slow, rounds, best = state.scratch["turns"]
+        straight = step.length >= 1.0 and not step.bent
+        if turns > 0:
+            turns = max(turns - 1.0, 0.0 if straight and turned < STRAIGHT else 1.0)
+            if turns == 0.0:
+                state.scratch["newton"][:2] = 0.1 * GENTLE, CONJUGATE
+        else:
+            slow = 0.0 if again else slow + 1.0 if straight else SLOW
+            if slow >= SLOW:
+                turns, patience, slow, rounds, best = patience, 2.0 * patience, 0.0, 0.0, np.inf
+        rounds = 0.0 if step.largest < 0.5 * best else rounds + 1.0
+        state.scratch["turns"] = np.array([turns, patience, slow, rounds, min(best, step.largest)])
+        return bool(turns > 0)
+
+    def _smooth(self, system: System, state: State, turned: Floats, goal: float) -> None:
+        """Relax what creases; all particles, from the next iteration on, where that is many or has not helped."""
         from hookean.multigrid.part import cut, widened
 
         blocks = self._readied(system, state).blocks
         f = system.evaluate(state)[0] * state.free
         size = np.sqrt((f * f).sum(axis=1))
         largest = float(size.max())
-        moving = widened(blocks.starts, blocks.columns, size > OUT * largest, RINGS)
-        moving &= (state.free > 0.0).any(axis=1)
-        share = float(moving.mean())
+        now = (turned > TURNED * turned.max()) | (size > OUT * largest)
+        now = widened(blocks.starts, blocks.columns, now, RINGS) & (state.free > 0.0).any(axis=1)
+        creased = state.scratch["creased"] > 0.0
+        creased = next((some for some in (creased | now, now, creased) if some.mean() <= SHARE), creased)
+        state.scratch["creased"] = creased.astype(float)
         self.work += 1.0
-        if share > SHARE:
-            self._relaxation.start(system, state)
-            return budget
-        part, own, particles = cut(system, state, moving)
+        if state.scratch["turns"][3] >= ROUNDS or not creased.any():
+            self._all(system, state)
+            return
+        part, own, particles = cut(system, state, creased)
         method = relaxation.Method()
         method.start(part, own)
-        done = method.advance(part, own, int(min(LONGEST, budget / share)), max(0.003 * largest, 0.5 * goal))
+        share = float(creased.mean())
+        done = method.advance(part, own, int(min(LONGEST, SMOOTHING / share)), max(0.001 * largest, 0.5 * goal))
         self.work += done * share
         if np.isfinite(own.x).all():
             state.x[particles] = own.x
-        return 0.0
+
+    def _all(self, system: System, state: State) -> None:
+        """Relax all particles from the next iteration on."""
+        kept = dict(state.scratch)
+        self._relaxation.start(system, state)
+        state.scratch.update({name: value for name, value in kept.items() if name not in state.scratch})
+        budget = state.scratch["all"][1]
+        state.scratch["all"] = np.array([budget, 1.5 * budget])
+        state.scratch["turns"][3:] = 0.0, np.inf
 
     def _readied(self, system: System, state: State) -> Tangent:
         if self._ready is None:
@@ -124,13 +157,15 @@ class Method(Solver):
 
 
 class Step:
-    """One Newton step: its direction, and how far to go. `fall` [force length] of the energy, `largest` [force] out of
-    balance after it, `work` [passes over all springs]."""
+    """One Newton step: its `direction` (n, 3) [length], and the `length` to go along it [-], 0 where none helps.
+    `fall` [force length] of the energy, `largest` [force] out of balance after it, `work` [passes over all springs]."""
 
-    def __init__(self, system: System, state: State, ready: Tangent, shift: float) -> None:
-        self.system, self.state, self.ready, self.shift = system, state, ready, shift
-        self.work, self.fall, self.largest = 0.0, 0.0, np.inf
+    def __init__(self, system: System, state: State, ready: Tangent, shift: float, most: int) -> None:
+        self.system, self.state, self.ready, self.shift, self.most = system, state, ready, shift, most
+        self.work, self.fall, self.largest, self.length = 0.0, 0.0, np.inf, 0.0
+        self.direction = np.zeros_like(state.x)
         self.bent = False  # whether a direction of negative curvature was met
+        self.cut = False  # whether conjugate gradients ended before they were done
 
     def take(self, taken: float, goal: float) -> bool:
         """Take the step; whether another one is worth it after energy has fallen by `taken` in all before."""
@@ -142,8 +177,9 @@ class Step:
         direction = self._direction(forces)
         if direction is None:
             return False
-        start = state.x.copy()
+        start, self.direction = state.x.copy(), direction
         length, now, left = self._search(start, direction, energy, float((forces * direction).sum()), before)
+        self.length = length
         if length == 0.0:
             state.x[:] = start
             self.shift = min(max(10.0 * self.shift, 1e-4), FIRST_SHIFT)
@@ -162,10 +198,11 @@ class Step:
     def _direction(self, forces: Floats) -> Floats | None:
         """Where to go, with the smallest shift tried that makes the tangent positive definite."""
         while self.shift <= LARGEST_SHIFT:
-            before = self.ready.work
-            direction = self.ready.solve(self.system, self.state, self.shift, forces, SOLVED, CONJUGATE)
-            self.work += self.ready.work - before
+            work, steps = self.ready.work, self.ready.steps
+            direction = self.ready.solve(self.system, self.state, self.shift, forces, SOLVED, self.most)
+            self.work += self.ready.work - work
             if direction is not None:
+                self.cut = self.ready.steps - steps >= self.most
                 return direction
             self.shift, self.bent = max(10.0 * self.shift, 1e-5), True
         return None
@@ -206,6 +243,11 @@ def suits(system: System) -> bool:
     return plain and not system.contacts
 
 
+def pulled(system: System, state: State) -> bool:
+    """Whether all springs pull, but for a few at supports."""
+    return bool((_densities(system, state)[1] < 0.0).mean() <= FEW)
+
+
 def lowest(system: System, state: State) -> bool:
     """Whether a shape at rest of plain springs and constant loads is the one of least energy, as far as can be told.
 
@@ -216,11 +258,9 @@ def lowest(system: System, state: State) -> bool:
     """
     from hookean.factor import Factors
 
-    pairs, density = _densities(system, state)
-    if (density < 0.0).mean() <= FEW:
+    if pulled(system, state):
         return True
-    if (density < 0.0).mean() > PUSHED:
-        return False
+    pairs, density = _densities(system, state)
     import scipy.sparse as sparse
 
     n = len(state.x)
@@ -232,10 +272,6 @@ def lowest(system: System, state: State) -> bool:
     form = form[free][:, free].tocsc()
     form.sort_indices()
     return Factors(form.indices, form.indptr).solve(form.data, np.ones(len(free))) is not None
-
-
-def _share_pushed(system: System, state: State) -> float:
-    return float((_densities(system, state)[1] < 0.0).mean())
 
 
 def _densities(system: System, state: State) -> tuple[NDArray[np.int64], Floats]:
