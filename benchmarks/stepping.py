@@ -32,10 +32,14 @@ def stepping(sizes: tuple[int, ...] = SIZES, rounds: int = ROUNDS) -> dict[tuple
         compiled = compile_c(Path(folder))
         for size in sizes:
             p = problems.make("membrane", size)
-            ways: dict[str, Stepper] = {"hookean verlet": verlet(p)}
+            ways: dict[str, Stepper] = {
+                "hookean verlet": verlet(p),
+                f"in calls of {SUB_STEPS}": in_frames(verlet(p)),
+                "with damped springs": verlet(p, damping=0.1),
+            }
             if compiled is not None:
                 ways["C, scalar"] = scalar(p, compiled)
-            count = max(1, int(2_000_000 / len(p.x)))
+            count = max(1, int(2_000_000 / len(p.x) / SUB_STEPS)) * SUB_STEPS
             for name, rate in _rates(ways, count, rounds).items():
                 found[name, size] = rate * len(p.x)
     return found
@@ -54,13 +58,23 @@ def _rates(ways: dict[str, Stepper], count: int, rounds: int) -> dict[str, float
     return {name: count / statistics.median(seconds) for name, seconds in times.items()}
 
 
-def verlet(p: Problem) -> Stepper:
-    """hookean's time steps, with the step a stable part of the period, without damping."""
+def in_frames(step: Stepper) -> Stepper:
+    """The same steps, as few in a call as a live frame takes."""
+
+    def several(count: int) -> None:
+        for _ in range(count // SUB_STEPS):
+            step(SUB_STEPS)
+
+    return several
+
+
+def verlet(p: Problem, damping: float = 0.0) -> Stepper:
+    """hookean's time steps, with the step a stable part of the period."""
     from hookean.scene import Scene
     from hookean.solvers import solver
     from hookean.system import compile
 
-    springs = {"kind": "springs", "particles": p.springs, "stiffness": p.k, "rest_length": p.l0, "damping": 0.0}
+    springs = {"kind": "springs", "particles": p.springs, "stiffness": p.k, "rest_length": p.l0, "damping": damping}
     load = {"kind": "unary", "particles": np.arange(len(p.x)), "vector": p.load}
     scene = Scene.read(
         {"particles": p.x, "forces": [springs, load], "anchors": [{"particles": p.fixed}],

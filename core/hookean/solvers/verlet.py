@@ -22,17 +22,17 @@ if TYPE_CHECKING:
 
 
 @device
-def start_step(f: Any, base: Any, x: Any, v: Any, pull: Any, load: Any, drag: Any, dt: Any, seen: Any) -> None:
-    """Half a step of speed, a whole one of place; the speed that forces are to see next, and the loads alone.
+def start_step(f: Any, x: Any, v: Any, pull: Any, drag: Any, dt: Any, seen: Any) -> None:
+    """Half a step of speed, a whole one of place; the speed that forces are to see next.
 
-    These passes run over flat arrays; `pull` is 1/m, and 0 on held axes, which go on as fast as their anchor is led.
+    All passes run over flat arrays, few at a time, so that they take several numbers in one operation; `pull` is 1/m,
+    and 0 on held axes, which go on as fast as their anchor is led.
     """
     for i in range(x.size):
         a = (f[i] - drag * v[i]) * pull[i]
         v[i] += 0.5 * dt * a
         x[i] += dt * v[i]
         seen[i] = v[i] + 0.5 * dt * a
-        base[i] = load[i]
 
 
 @device
@@ -57,33 +57,39 @@ def turn(f: Any, x: Any, v: Any, pull: Any, load: Any, drag: Any, ended: Any, dt
 
 
 @device
-def only_free(raw: Any, free: Any, f: Any) -> None:
-    """Forces on free axes; anchors carry the others."""
-    for i in range(raw.shape[0]):
-        for c in range(4):
-            f[i, c] = raw[i, c] * free[i, c]
+def copy(given: Any, to: Any) -> None:
+    """The same numbers; many times as quick as a slice."""
+    for i in range(given.size):
+        to[i] = given[i]
 
 
 @device
-def start_among_contacts(
-    hits: Any, rests: Any, raw: Any, base: Any, f: Any, x: Any, v: Any, free: Any, pull: Any, load: Any, mass: Any,
-    carried: Any, x_before: Any, v_before: Any, a: Any, drag: Any, dt: Any, seen: Any,
-) -> None:  # fmt: skip
-    """`start_step` where contacts carry and catch."""
-    only_free(raw, free, f)
-    supports(rests, x, v, f, carried, free, mass, dt)
-    for i in range(x.shape[0]):
-        for c in range(4):
-            a[i, c] = (f[i, c] - drag * v[i, c]) * pull[i, c]
-            x_before[i, c] = x[i, c]
-            v_before[i, c] = v[i, c]
-            v[i, c] += 0.5 * dt * a[i, c]
-            x[i, c] += dt * v[i, c]
-    impacts(hits, x_before, v_before, a, x, v, free, dt)
-    for i in range(x.shape[0]):
-        for c in range(4):
-            seen[i, c] = v[i, c] + 0.5 * dt * a[i, c]
-            base[i, c] = load[i, c]
+def only_free(raw: Any, free: Any, f: Any) -> None:
+    """Forces on free axes; anchors carry the others."""
+    for i in range(raw.size):
+        f[i] = raw[i] * free[i]
+
+
+@device
+def accelerate(f: Any, v: Any, pull: Any, drag: Any, a: Any) -> None:
+    """Accelerations at the start of a step, drag included."""
+    for i in range(f.size):
+        a[i] = (f[i] - drag * v[i]) * pull[i]
+
+
+@device
+def fly(x: Any, v: Any, a: Any, dt: Any) -> None:
+    """Half a step of speed, a whole one of place."""
+    for i in range(x.size):
+        v[i] += 0.5 * dt * a[i]
+        x[i] += dt * v[i]
+
+
+@device
+def foresee(v: Any, a: Any, dt: Any, seen: Any) -> None:
+    """The speed that forces are to see next."""
+    for i in range(v.size):
+        seen[i] = v[i] + 0.5 * dt * a[i]
 
 
 @device
@@ -108,33 +114,42 @@ def verlet_loop(  # type: ignore[no-untyped-def]
     known &= take(given_x, given_v, given_free, mass, x, v, free, pull)
     last = count * steps.shape[0] - 1
     started = False
-    changing = len(lively) > 0  # else `raw` and `base` are one array
+    resting, changing = len(quiet) > 0, len(lively) > 0  # without the one `base` is `load`, without the other `raw`
     size = x.size
     flat_x, flat_v, flat_pull, flat_load = x.reshape(size), v.reshape(size), pull.reshape(size), load.reshape(size)
     flat_raw, flat_base, flat_f, flat_seen = raw.reshape(size), base.reshape(size), f.reshape(size), seen.reshape(size)
+    flat_free, flat_a = free.reshape(size), acceleration.reshape(size)
     for s in range(last + 1):
         dt = steps[s % steps.shape[0]]
         if not started:
             if s == 0 and not known:
-                base[:, :] = load
+                copy(flat_load, flat_base)
                 forces(quiet, x, v, base, w)
             if changing:
-                raw[:, :] = base
+                copy(flat_base, flat_raw)
                 forces(lively, x, v, raw, w)
             if contacts:
-                start_among_contacts(
-                    hits, rests, raw, base, f, x, v, free, pull, load, mass, carried, x_before, v_before, acceleration,
-                    drag, dt, seen,
-                )  # fmt: skip
-            else:  # the same in one pass over memory
-                start_step(flat_raw, flat_base, flat_x, flat_v, flat_pull, flat_load, drag, dt, flat_seen)
+                only_free(flat_raw, flat_free, flat_f)
+                supports(rests, x, v, f, carried, free, mass, dt)
+                accelerate(flat_f, flat_v, flat_pull, drag, flat_a)
+                copy(flat_x, x_before.reshape(size))
+                copy(flat_v, v_before.reshape(size))
+                fly(flat_x, flat_v, flat_a, dt)
+                impacts(hits, x_before, v_before, acceleration, x, v, free, dt)
+                foresee(flat_v, flat_a, dt, flat_seen)
+            elif changing:
+                start_step(flat_raw, flat_x, flat_v, flat_pull, drag, dt, flat_seen)
+            else:  # nothing has ended
+                turn(flat_raw, flat_x, flat_v, flat_pull, flat_load, drag, 0.0, dt)
+            if resting and (contacts or changing):
+                copy(flat_load, flat_base)
         forces(quiet, x, seen, base, w)
         if changing:
-            raw[:, :] = base
+            copy(flat_base, flat_raw)
             forces(lively, x, seen, raw, w)
         started = not (contacts or changing or s == last)
         if contacts:
-            only_free(raw, free, f)
+            only_free(flat_raw, flat_free, flat_f)
             supports(rests, x, v, f, carried, free, mass, dt)
             end_step(flat_f, flat_v, flat_pull, drag, dt)
         elif started:
@@ -174,6 +189,8 @@ class Method(Solver):
         touching, lively = bool(system.contacts), len(self._own.lively) > 0
         rows, new = self._desk.keep(n, 6 + lively + 6 * touching)
         x, v, pull, load, base, seen, *rest = rows
+        if not len(self._own.quiet):
+            base = load  # nothing is ever added to it
         raw = rest.pop() if lively else base
         free, *others = rest or [pull, *[raw] * 5]  # asked for by contacts alone
         if new or not same:
