@@ -16,7 +16,7 @@ from hookean.system import Group, System
 
 Floats = NDArray[np.float64]
 
-CHUNK = 4096  # elements
+CHUNK = 8192  # elements
 ROUNDING = float(np.finfo(np.float64).eps) / 2.0
 
 
@@ -95,6 +95,8 @@ def _element_sizes(system: System, group: Group, state: State, memory: Floats) -
 
 
 def _load_size(system: System, state: State) -> Floats:
+    if all(group.cls.role != "load" for group in system.groups):
+        return np.zeros(len(state.x))
     loads, _, _ = system.evaluate(state, only="load")
     return lengths(loads * state.free)
 

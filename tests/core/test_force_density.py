@@ -154,6 +154,16 @@ def test_a_net_in_a_saddle_frame_is_the_saddle(side: int) -> None:
     assert np.abs(result.particles - expected).max() <= 16.0 * EPS * side * side / 8.0
 
 
+@pytest.mark.parametrize("side", [40, 150])
+def test_any_tolerance_is_met_by_solves_alone(side: int) -> None:
+    """A second solve, of what rounding left in the first (Wilkinson 1963), comes to the floor that float64 allows."""
+    scene, _ = grid(side, lambda u, v: np.exp(u) * np.sin(3.0 * v))
+    settings = scene.settings.model_copy(update={"tolerance": 1e-16})
+    result = relax(scene.model_copy(update={"settings": settings}))
+    assert result.converged and result.residual <= result.rounding_floor < 1e-12
+    assert result.solver == "auto: force_density" and result.iterations <= 2
+
+
 def test_steps_do_not_grow_with_the_net(monkeypatch: pytest.MonkeyPatch) -> None:
     """Conjugate gradients to rounding: at most 4 steps more for nine times the particles, and 22 in all. A step takes
     away nine tenths of what is left, so 16 digits of forces take 16, and some more as the net has more of them."""

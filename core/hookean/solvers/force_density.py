@@ -88,9 +88,10 @@ def _solve(system: System, free: Floats, axes: Ints, f: Floats, x: Floats) -> bo
     kernels.compiled(_laplacian.take)(particles, axes, f, b)
     way = _front.front(net, QUICK * len(particles))
     if way is None:
-        largest = max(float(x.max()), -float(x.min()))
-        stiffness = net.values[net.diagonal]
-        found = _gradients.solve(net, b.copy(), ROUNDING * largest * float(np.sqrt((stiffness * stiffness).sum())))
+        # |A| |x| is twice the stiffness times what is largest of x: that rounds
+        largest, stiffness = max(float(x.max()), -float(x.min())), net.values[net.diagonal]
+        goal = ROUNDING * largest * float(np.sqrt((stiffness * stiffness).sum()))
+        found = _gradients.solve(net, b.copy(), goal)
         if found is not None:
             kernels.compiled(_laplacian.put)(particles, axes, found, x)
             return True
