@@ -200,8 +200,12 @@ def couple(  # type: ignore[no-untyped-def]
                         end += 1
                     total[column] += part * p_values[np.uint64(u)]
         if end <= room:
-            found = c_columns[first:end]
-            found.sort()
+            for s in range(first, end):
+                column, t = c_columns[s], s
+                while t > first and c_columns[t - 1] > column:
+                    c_columns[t] = c_columns[t - 1]
+                    t -= 1
+                c_columns[t] = column
             for s in range(first, end):
                 c_values[s] = total[c_columns[s]]
     c_starts[c_starts.shape[0] - 1] = end

@@ -40,14 +40,14 @@ def lighten(starts, columns, values, mirror, scale, high, low, inverse):  # type
         inverse[i, 6] = inverse[i, 9] = (b * c - a * e) * unit
         inverse[i, 10] = (a * d - b * b) * unit if m[8] != 0.0 else 0.0
         for s in range(starts[i] + 1, starts[i + 1]):
-            for a_ in range(3):
-                for b_ in range(3):
-                    high[k, 4 * b_ + a_] = scale * values[s, 3 * a_ + b_]
+            for u in range(3):
+                for v in range(3):
+                    high[k, 4 * v + u] = scale * values[s, 3 * u + v]
             k += 1
     for t in range(mirror.shape[0]):
-        for a_ in range(3):
-            for b_ in range(3):
-                low[t, 4 * b_ + a_] = scale * values[mirror[t], 3 * b_ + a_]
+        for u in range(3):
+            for v in range(3):
+                low[t, 4 * v + u] = scale * values[mirror[t], 3 * v + u]
     return True
 
 
