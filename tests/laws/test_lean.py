@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean import Scene, kernels
-from hookean.forces import KINDS
+from hookean.forces import KINDS, Block
 from hookean.forces.shell_edges import angle_of
 from hookean.lean import Desk, lean
 from hookean.solvers import solver
@@ -193,6 +193,25 @@ def test_a_shell_as_a_whole_is_the_sum_of_its_elements(name: str, seed: int, par
     assert np.abs(f - expected).max() <= 32.0 * EPS * size
     assert abs(energy - summed) <= 32.0 * EPS * (summed + size * np.abs(state.x).max())
     assert (w <= most * (1.0 + 1e-9)).all() and (w > 0.0).all()
+
+
+@SEEDED
+@given(kept=st.lists(st.booleans(), min_size=40, max_size=40))
+def test_some_triangles_of_a_shell_bend_as_they_did_among_all(kept: list[bool]) -> None:
+    """Forces, stiffness and energy of a part of the elements, whichever, as the kernel gives them one by one."""
+    system = skins()
+    state, (group,) = system.start(), system.groups
+    state.x += 0.1 * np.random.default_rng(4).normal(size=state.x.shape)
+    some = np.flatnonzero(kept[: len(group.block.indices)])
+    group.block = Block(group.block.indices[some], group.block.parameters[some], group.block.memory[some])
+    state.memory = [group.block.memory]
+    f, w, (energy,) = system.evaluate(state)
+    expected, most = np.zeros_like(f), np.zeros_like(w)
+    kernel = kernels.compiled(group.cls.kernel, "force")
+    summed = kernel(state.x, 0.0 * f, group.block.indices, group.block.parameters, state.memory[0], expected, most)
+    size = most.max() * np.abs(state.x).max() + np.abs(expected).max()
+    assert np.abs(f - expected).max() <= 32.0 * EPS * size
+    assert abs(energy - summed) <= 32.0 * EPS * (summed + size * np.abs(state.x).max())
 
 
 @SEEDED

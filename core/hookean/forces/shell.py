@@ -12,7 +12,7 @@ from pydantic import Field
 from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.dihedral import SLIVER, fold, fold_angles, wrapped
-from hookean.forces.shell_edges import Plan, bend
+from hookean.forces.shell_edges import Plan, bend, places
 
 Complex = NDArray[np.complex128]
 
@@ -132,34 +132,30 @@ class Shell(Force):
     @classmethod
     def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats, Floats] | None:
         """The edges and the triangles, each once; see `shell_edges`."""
-        if not len(block.indices):
-            return None
-        planned, _, table, room = cls._planned(block)
-        return planned.quick, table, room
+        planned, table, room = cls._planned(block)
+        return None if planned is None else (planned.quick, table, room)
 
     @classmethod
     def whole(cls, block: Block, memory: Floats) -> tuple[Ints, Floats, Floats]:
         """The same, with lumped stiffness."""
-        if not len(block.indices):
-            return block.indices, block.parameters, memory
-        planned, _, table, room = cls._planned(block)
-        return planned.whole, table, room
+        planned, table, room = cls._planned(block)
+        return (block.indices, block.parameters, memory) if planned is None else (planned.whole, table, room)
 
     @staticmethod
-    def _planned(block: Block) -> tuple[Plan, Floats, Floats, Floats]:
-        """What is kept of a block: its plan, its D and angle factors, the numbers that come from them, room."""
+    def _planned(block: Block) -> tuple[Plan | None, Floats, Floats]:
+        """Plan, numbers and room of a block; no plan where it lacks triangles that others of it bend with."""
         p, given = block.parameters, block.parameters[:, : FACTOR + 1]
         if not block.plan:
-            place, offset = np.arange(3 * len(p)).reshape(-1, 3), p[:, ACROSS:END].astype(np.int64)
-            made = Plan.of(block.indices[:, :3], np.where(offset != 0, place + offset, -1))
-            block.plan[:] = [made, None, None, made.room()]
+            across = places(block.indices, p[:, ACROSS:END].astype(np.int64), p[:, FACTOR])
+            made = Plan.of(block.indices[:, :3], across) if across is not None else None
+            block.plan[:] = [made, given * np.nan, given, made.room() if made else given]
         planned, before, table, room = block.plan
-        if before is None or not np.array_equal(before, given):
+        if planned is not None and not np.array_equal(before, given):
             rest, axes, parts = p[:, REST:BOUND], p[:, AXES:PARTS].reshape(-1, 3, 3), p[:, PARTS:ACROSS]
             bounds = planned.summed(p[:, STRENGTH, None] * p[:, BOUND:AXES])
             table = planned.numbers(p[:, STRENGTH], p[:, FACTOR, None] * rest[:, :3], bounds, axes, parts)
             block.plan[:] = [planned, given.copy(), table, room]
-        return planned, before, table, room
+        return planned, table, room
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Largest fold of each triangle's edges away from rest [rad], bending moment D |K| per width [force]."""

@@ -297,6 +297,19 @@ class Plan:
         return np.concatenate([table.ravel(), upper.ravel(), bounds])[None]
 
 
+def places(index: Ints, offset: Ints, factor: Floats) -> Ints | None:
+    """Places across the edges of elements (m, 12), so many further on (m, 3), -1 for none; None where some of them are
+    not among the elements, or of another shell, with another factor (m,) on its start angles."""
+    other = np.arange(offset.size).reshape(-1, 3) + offset
+    if not len(index) or not ((other >= 0) & (other < offset.size)).all():
+        return None
+    t, i = other // 3, other % 3
+    start, end, mine, after = index[t, i], index[t, (i + 1) % 3], index[:, :3], index[:, [1, 2, 0]]
+    fits = ((start == mine) & (end == after)) | ((start == after) & (end == mine))
+    fits &= (index[t, (i + 2) % 3] == index[:, 3:6]) & (offset[t, i] == -offset) & (factor[t] == factor[:, None])
+    return np.where(offset != 0, other, -1) if (fits | (offset == 0)).all() else None
+
+
 def _beside(places: Ints, by: int | Ints) -> Ints:
     """The places that many edges on in their triangles."""
     return places - places % 3 + (places + by) % 3
