@@ -62,7 +62,8 @@ class Level:
         n = len(net.diagonal)
         self.nearest, self.farthest = np.empty(n, np.int32), np.empty(n, np.int32)
         kernels.compiled(span)(net.starts, net.columns, net.diagonal, self.nearest, self.farthest)
-        self.inverse: Floats = 1.0 / net.values[net.diagonal]
+        with np.errstate(over="ignore"):  # of a stiffness near the smallest number there is
+            self.inverse: Floats = 1.0 / net.values[net.diagonal]
         self.b, self.x = np.zeros((n, 4)), np.empty((n, 4))
         self.way: tuple[Any, ...] = ()
 

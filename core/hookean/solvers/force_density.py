@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 QUICK = 5_000  # multiplications for each particle up to which a front is quicker than conjugate gradients
-MOST = 1e12  # beyond which a front would take too long, and too much memory
+MOST = 1e11  # beyond which it would take half a minute, and more than a gigabyte
 
 
 class Method(Solver):
