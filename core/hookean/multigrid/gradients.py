@@ -32,7 +32,7 @@ def solve(hierarchy: Hierarchy, b: Floats, part: float, most: int) -> tuple[Floa
         falls = dot(r, z)
         turn(p, z, falls / before)
         before, bends = falls, multiply(*matrix, p, q)
-        if not (bends > 0.0 and falls > 0.0):
+        if not (0.0 < bends < np.inf and 0.0 < falls < np.inf):
             return None, step
         if go_along(x, r, p, q, falls / bends) <= goal:
             break
