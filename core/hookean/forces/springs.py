@@ -149,10 +149,12 @@ def springs_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-
             if limit > 0.0 and np.abs(stretch) > limit:
                 across = along * np.copysign(limit, stretch) / length
                 along = 0.0
-        part = (along - across) / (length * length) if length > 0.0 else 0.0  # one division serves all
+        inverse = 1.0 / length if length > 0.0 else 0.0  # one division serves all; that of a square might overflow
+        for c in range(3):
+            d[c] *= inverse
         for i in range(3):
             for j in range(3):
-                entry = part * d[i] * d[j] + (across if i == j else 0.0)
+                entry = (along - across) * d[i] * d[j] + (across if i == j else 0.0)
                 blocks[e, i, j] = entry
                 blocks[e, 3 + i, 3 + j] = entry
                 blocks[e, i, 3 + j] = -entry
