@@ -100,18 +100,19 @@ class Method(Solver):
         """Whether relaxation is due: for one turn, two, four ... each time that Newton alone did not go on well, and
         until springs turn little."""
         turns, patience, slow, rounds, best = state.scratch["turns"]
-        straight = step.length >= 1.0 and not step.bent
+        straight, once = step.length >= 1.0 and not step.bent, False
         if turns > 0:
             turns = max(turns - 1.0, 0.0 if straight and turned < STRAIGHT else 1.0)
             if turns == 0.0:
-                state.scratch["newton"][:2] = 0.1 * GENTLE, CONJUGATE
+                state.scratch["newton"][:2] = GENTLE, CONJUGATE
         else:
-            slow = 0.0 if again else slow + 1.0 if straight else SLOW
-            if slow >= SLOW:
+            slow = 0.0 if again else slow + 1.0 if straight and patience == 1.0 else SLOW
+            once = slow >= SLOW and straight and turned < STRAIGHT
+            if slow >= SLOW and not once:
                 turns, patience, slow, rounds, best = patience, 2.0 * patience, 0.0, 0.0, np.inf
         rounds = 0.0 if step.largest < 0.5 * best else rounds + 1.0
         state.scratch["turns"] = np.array([turns, patience, slow, rounds, min(best, step.largest)])
-        return bool(turns > 0)
+        return bool(turns > 0 or once)
 
     def _smooth(self, system: System, state: State, turned: Floats, goal: float) -> None:
         """Relax what creases; all particles, from the next iteration on, where that is many or has not helped."""
@@ -185,10 +186,18 @@ class Step:
             self.shift = min(max(10.0 * self.shift, 1e-4), FIRST_SHIFT)
             return False
         self.fall, self.largest = max(energy - now, 0.0), _largest(left)
-        self.shift *= (0.1 if not self.bent else 0.5) if length >= 1.0 else 1.0 if length >= 0.5 else 4.0
+        self.shift *= self._eased(before)
         if self.shift < LEAST_SHIFT:
             self.shift = 0.0
         return bool(self.largest < QUICK * before or self.fall > WORTH * (taken + self.fall))
+
+    def _eased(self, before: float) -> float:
+        """By how much the next shift is smaller or larger. One that is small stays while forces fall quickly."""
+        if self.length < 1.0:
+            return 1.0 if self.length >= 0.5 else 4.0
+        if self.bent:
+            return 0.5
+        return 1.0 if self.shift <= GENTLE and self.largest < QUICK * before else 0.1
 
     def _judge(self) -> tuple[float, Floats]:
         self.work += 1.0
