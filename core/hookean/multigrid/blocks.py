@@ -92,6 +92,21 @@ def hold_axes(starts, columns, free, values):  # type: ignore[no-untyped-def]
                         values[s, 3 * a + b] *= free[i, a] * free[j, b]
 
 
+def turn_sides(starts, columns, x, step, largest):  # type: ignore[no-untyped-def]
+    """`Blocks.turned`, into `largest` (n,) of zeros."""
+    for i in range(starts.shape[0] - 1):
+        for s in range(starts[i] + 1, starts[i + 1]):
+            j = columns[s]
+            a, b, c = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+            d, e, f = step[j, 0] - step[i, 0], step[j, 1] - step[i, 1], step[j, 2] - step[i, 2]
+            square = a * a + b * b + c * c
+            if square > 0.0:
+                p, q, r = b * f - c * e, c * d - a * f, a * e - b * d
+                angle = np.sqrt(p * p + q * q + r * r) / square
+                largest[i] = max(largest[i], angle)
+                largest[j] = max(largest[j], angle)
+
+
 class Blocks:
     """The pattern of a system's tangent, which is symmetric: of each particle's row of blocks the one on the diagonal,
     which comes first, and those after it; and its values.
@@ -159,12 +174,6 @@ class Blocks:
     def turned(self, x: Floats, step: Floats) -> Floats:
         """The largest angle (n,) [rad] by which a step (n, 3) would turn, to first order, an element's side between
         each particle of a shape (n, 3) and a neighbour."""
-        rows = np.repeat(np.arange(len(x), dtype=np.int32), np.diff(self.starts))
-        side = x[self.columns] - x[rows]
-        square = np.einsum("ij,ij->i", side, side)
-        across = np.cross(side, step[self.columns] - step[rows])
-        angle = np.sqrt(np.einsum("ij,ij->i", across, across)) / np.where(square > 0.0, square, np.inf)
         largest = np.zeros(len(x))
-        np.maximum.at(largest, rows, angle)
-        np.maximum.at(largest, self.columns, angle)
+        kernels.compiled(turn_sides)(self.starts, self.columns, x, step, largest)
         return largest
