@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 LARGEST_NEWTON = 60_000  # unknowns
 LARGEST_BLOCKS = 3_000_000  # entries of all element blocks; a shell's have 36 x 36 each
 LEAST_MULTILEVEL = 4_000  # particles from which on multigrid is quicker than relaxation
-MANY = 8_000  # particles from which on relaxation takes seconds to minutes, and creases as well
+MANY = 30_000  # particles from which on relaxation takes minutes, and creases as well
 CREASED = "Some springs push, and may crease the net: other shapes of it may be at rest, too."
 FIRST_NEWTON = 4_000
 NEWTON_STEPS = 60

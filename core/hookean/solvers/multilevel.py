@@ -22,6 +22,7 @@ from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
     from hookean.multigrid.tangent import Tangent
+    from hookean.solvers._laplacian import Laplacian
     from hookean.state import State
     from hookean.system import System
 
@@ -32,14 +33,15 @@ WORTH = 1e-3  # a Newton step is worth another while it takes this part of the e
 QUICK = 0.25  # or the largest force to this part
 SOLVED = 0.1  # part of the forces that a linear system may leave
 CONJUGATE, MOST = 25, 200  # steps of conjugate gradients in one of them: at first, and where Newton is about to end
-GENTLE = 1e-3  # least shift of steps that take turns with relaxation
+GENTLE = 3e-4  # least shift of steps that take turns with relaxation
 STRAIGHT = 1e-3  # angle [rad] up to which springs turn where Newton alone may end
-TURNED, OUT, RINGS = 0.5, 0.1, 8  # what creases: parts of the largest turn and force, and the rings around
+TURNED, OUT, RINGS = 0.5, 0.2, 8  # what creases: parts of the largest turn and force, and the rings around
 SHARE = 0.4  # of all particles, at most
 SMOOTHING = 100  # passes over all springs that relaxation may take between Newton steps
 LONGEST = 5000  # iterations of a local one
 SLOW = 2  # Newton steps not worth another, after which they take turns
 ROUNDS = 12  # turns without half the largest force, after which all particles relax
+CERTAIN = 1e9  # multiplications that it may take to find whether a shape is the lowest
 FEW = 1e-3  # so few push where supports are points, and have no room to buckle
 
 
@@ -265,22 +267,32 @@ def lowest(system: System, state: State) -> bool:
     always where all springs pull.
     Source: Connelly, Rigidity and energy, Inventiones mathematicae 66 (1982) 11.
     """
-    from hookean.factor import Factors
+    from hookean.solvers import _front
 
     if pulled(system, state):
         return True
-    pairs, density = _densities(system, state)
+    net = _form(*_densities(system, state), np.asarray((state.free > 0.0).any(axis=1)))
+    way = _front.front(net, CERTAIN)
+    return way is not None and way.held and _front.Factor(net, way).sound
+
+
+def _form(pairs: NDArray[np.int64], density: Floats, free: NDArray[np.bool_]) -> Laplacian:
+    """The quadratic form of force densities on the free particles."""
     import scipy.sparse as sparse
 
-    n = len(state.x)
-    low, high = pairs.min(axis=1), pairs.max(axis=1)
+    from hookean.solvers._laplacian import Laplacian
+
+    n = len(free)
+    both, held = free[pairs].all(axis=1), np.zeros(n, np.int8)
+    held[pairs[free[pairs].any(axis=1) & ~both]] = 1
     diagonal = np.bincount(pairs.ravel(), np.repeat(density, 2), n)
-    rows, columns = np.concatenate([high, np.arange(n)]), np.concatenate([low, np.arange(n)])
-    form = sparse.csc_matrix((np.concatenate([-density, diagonal]), (rows, columns)), shape=(n, n))
-    free = np.flatnonzero((state.free > 0.0).any(axis=1))
-    form = form[free][:, free].tocsc()
+    a, b = pairs[both].T
+    rows, columns = np.concatenate([a, b, np.arange(n)]), np.concatenate([b, a, np.arange(n)])
+    values = np.concatenate([-density[both], -density[both], diagonal])
+    form = sparse.csr_matrix((values, (rows, columns)), shape=(n, n))[free][:, free]
     form.sort_indices()
-    return Factors(form.indices, form.indptr).solve(form.data, np.ones(len(free))) is not None
+    spot = np.flatnonzero(form.indices == np.repeat(np.arange(form.shape[0]), np.diff(form.indptr)))
+    return Laplacian(form.indptr, form.indices, form.data, spot.astype(np.int32), held[free])
 
 
 def _densities(system: System, state: State) -> tuple[NDArray[np.int64], Floats]:
