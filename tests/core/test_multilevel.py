@@ -165,9 +165,9 @@ def test_auto_takes_it_for_a_large_net_and_relaxation_where_another_shape_may_be
     relaxation would take too long: told so."""
     pulled = relax(Scene.read(net(64)))
     assert pulled.converged and pulled.solver == "auto: multilevel"
-    pressed = Scene.read(net(64, factor=1.3, load=-2000.0))
+    pressed = Scene.read({**net(64, factor=1.3), "settings": {"max_iterations": 100_000}})
     second = relax(pressed)
-    assert second.converged and second.solver == "auto: relaxation"
+    assert second.converged and second.solver.startswith("auto: relaxation")
     monkeypatch.setattr(auto, "MANY", 4096)
     third = relax(pressed)
     assert third.converged and third.solver == "auto: multilevel" and auto.CREASED in third.message

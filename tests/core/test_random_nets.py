@@ -48,11 +48,13 @@ class Rest:
 
 
 @cache
-def solved(seed: int, method: str) -> Rest:
+def solved(seed: int, method: str, tolerance: float | None = None) -> Rest:
     """The net of a seed by one solver; `slow` is relaxation to 1e-11, or as far as its iterations go."""
     spec = random_net(seed)
     slow = {"solver": "relaxation", "tolerance": 1e-11, "max_iterations": 300_000 if seed < 190 else 30_000}
     spec["settings"] = {**spec.get("settings", {}), **(slow if method == "slow" else {"solver": method})}
+    if tolerance is not None:
+        spec["settings"]["tolerance"] = tolerance
     scene = Scene.read(spec)
     result, system = relax(scene), compile(scene)
     state = system.start()
@@ -123,12 +125,19 @@ def test_nothing_can_fall(seed: int, method: str) -> None:
     -r times its particles' distances from its middle, summed, and by displacement at least -2 r over a spring's length.
     """
     rest = found(seed, method)
-    if rest.result.converged:
-        pairs = np.concatenate([f["particles"] for f in rest.spec["forces"] if f["kind"] == "springs"])
-        shortest = np.linalg.norm(rest.state.x[pairs[:, 1]] - rest.state.x[pairs[:, 0]], axis=1).min()
-        matrix = tangent(rest)
-        allowed = NEGLIGIBLE * float(matrix.diagonal().max()) + 2.0 * float(np.abs(rest.left).max()) / shortest
-        assert definite(matrix, allowed), family(seed)
+    if rest.result.converged and not stands(rest):
+        finer = solved(seed, method, 1e-9)  # what forces left over make, goes with them
+        near = np.abs(finer.state.x - rest.state.x).max() <= 1e-4 * rest.system.size
+        assert finer.result.converged and near and stands(finer), family(seed)
+
+
+def stands(rest: Rest) -> bool:
+    """Whether no eigenvalue is as low as the test above says."""
+    pairs = np.concatenate([f["particles"] for f in rest.spec["forces"] if f["kind"] == "springs"])
+    shortest = np.linalg.norm(rest.state.x[pairs[:, 1]] - rest.state.x[pairs[:, 0]], axis=1).min()
+    matrix = tangent(rest)
+    allowed = NEGLIGIBLE * float(matrix.diagonal().max()) + 2.0 * float(np.abs(rest.left).max()) / shortest
+    return definite(matrix, allowed)
 
 
 @pytest.mark.parametrize("method", METHODS)
