@@ -161,6 +161,12 @@ class Blocks:
         kernels.compiled(measure)(self.starts, self.columns, self.values, sizes, pulls)
         return np.maximum(pulls, SLACK * sizes)
 
+    def pushing(self) -> float:
+        """The part of the connections that push."""
+        pulls = np.empty(len(self.columns))
+        kernels.compiled(measure)(self.starts, self.columns, self.values, np.empty(len(self.columns)), pulls)
+        return float((pulls < 0.0).mean())
+
     def weigh(self) -> None:
         """Take the sizes of the blocks as what `settle` adds."""
         kernels.compiled(measure)(self.starts, self.columns, self.values, self.sizes, np.empty(len(self.columns)))

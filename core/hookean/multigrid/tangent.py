@@ -15,12 +15,13 @@ if TYPE_CHECKING:
     from hookean.system import System
 
 FIRST, LATER = 10.0, 3.0  # steps of conjugate gradients after which to gather anew, and times as many for the next time
+PUSHED = 0.05  # of all connections: else the graph of the start does as well
 
 
 class Tangent:
-    """Blocks, and a hierarchy over them: gathered for the start of a system and anew for the shape it has got, seldom,
-    for that takes as long as ten steps of conjugate gradients. `steps` of these were taken, and `work` [passes over all
-    springs] is what all took.
+    """Blocks, and a hierarchy over them: gathered for the start of a system, and anew for the shape it has got where
+    that pushes; seldom, for it takes as long as ten steps of conjugate gradients. `steps` of these were taken, and
+    `work` [passes over all springs] is what all took.
 
     What it knows of the way is in `state.scratch` after `keep`, and one made later goes on from there.
     """
@@ -50,9 +51,9 @@ class Tangent:
         self.blocks.fill(system, state)
         if self.steps >= self._due:
             self._due *= LATER
-            self.work += self.hierarchy.fill_work
-            found = self._gathered(state)
-            if found.coarse:
+            found = self._gathered(state) if self.blocks.pushing() > PUSHED else None
+            if found is not None and found.coarse:
+                self.work += self.hierarchy.fill_work
                 self.hierarchy, self._shape = found, state.x.copy()
         self.blocks.settle(state, shift)
         self.work += 1.0 + self.hierarchy.fill_work

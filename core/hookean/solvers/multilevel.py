@@ -35,7 +35,7 @@ SOLVED = 0.1  # part of the forces that a linear system may leave
 CONJUGATE, MOST = 25, 200  # steps of conjugate gradients in one of them: at first, and where Newton is about to end
 GENTLE = 3e-4  # least shift of steps that take turns with relaxation
 STRAIGHT = 1e-3  # angle [rad] up to which springs turn where Newton alone may end
-TURNED, OUT, RINGS = 0.5, 0.2, 8  # what creases: parts of the largest turn and force, and the rings around
+TURNED, OUT, RINGS = 0.5, 0.2, 6  # what creases: parts of the largest turn and force, and the rings around
 SHARE = 0.4  # of all particles, at most
 SMOOTHING = 100  # passes over all springs that relaxation may take between Newton steps
 LONGEST = 5000  # iterations of a local one
@@ -82,7 +82,7 @@ class Method(Solver):
             return max(done, 1)
         shift, most, taken = state.scratch["newton"]
         gentle = state.scratch["turns"][0] > 0
-        step = Step(system, state, ready, max(shift, GENTLE) if gentle else shift, CONJUGATE if gentle else int(most))
+        step = Step(system, state, ready, GENTLE if gentle else shift, CONJUGATE if gentle else int(most))
         before = state.x.copy()
         again = step.take(taken, goal)
         state.iteration += 1
