@@ -188,7 +188,7 @@ def test_a_sheet_that_creases_is_certain(monkeypatch):
 
 def test_same_net_same_bits():
     """Three runs, one of them in pieces of one iteration, one by a new solver at each from the state in a file."""
-    system = compile(Scene.read(net(20, factor=1.0, load=-200.0)))
+    system = compile(Scene.read(crossed(24)))
     shapes = []
     for most, anew in ((100, False), (1, False), (1, True)):
         method, state = solver("multilevel"), system.start()
