@@ -47,7 +47,7 @@ class Method(Solver):
 
     def start(self, system: System, state: State) -> None:
         """Look at the system and choose."""
-        self.used, self._steps = [], 0
+        self.used, self._steps, self.remark = [], 0, ""
         self._solves = 0 if self._linear.refuse(system) else SOLVES
         self._prepared = False
         if self._solves:
