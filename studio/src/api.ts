@@ -1,0 +1,81 @@
+// The service over HTTP. Every refusal is a Refused with the service's own sentence.
+import type { Action, Anchor, Example, Kind, Result, Scene, Summary, Topology } from "./model";
+
+/** What the service refused, in its own words; status 0: it could not be reached. */
+export class Refused extends Error {
+  constructor(
+    readonly status: number,
+    sentence: string,
+    readonly slug = "",
+    readonly errors: { pointer: string; detail: string }[] = [],
+  ) {
+    super(sentence);
+  }
+}
+
+/** The Refused of a problem document (RFC 9457). */
+export function refusal(status: number, problem: Record<string, unknown>): Refused {
+  const errors = (problem["errors"] ?? []) as { pointer: string; detail: string }[];
+  const slug = String(problem["type"] ?? "").replace(/^.*\//, "");
+  return new Refused(status, String(problem["detail"] ?? `The service answered with ${status}.`), slug, errors);
+}
+
+async function ask(path: string, options: RequestInit = {}): Promise<Response> {
+  let answer: Response;
+  try {
+    answer = await fetch(path, { credentials: "same-origin", ...options });
+  } catch {
+    throw new Refused(0, "The service does not answer; is it still running?", "unreachable");
+  }
+  if (answer.ok) return answer;
+  const problem = (await answer.json().catch(() => ({}))) as Record<string, unknown>;
+  throw refusal(answer.status, problem);
+}
+
+const read = async <T>(path: string): Promise<T> => (await (await ask(path)).json()) as T;
+
+const send = async <T>(method: string, path: string, body: unknown): Promise<T> => {
+  const headers = { "content-type": "application/json" };
+  return (await (await ask(path, { method, headers, body: JSON.stringify(body) })).json()) as T;
+};
+
+const at = (key: string) => `/v1/sessions/${encodeURIComponent(key)}`;
+const labelled = (label: string) => (label ? `?label=${encodeURIComponent(label.slice(0, 200))}` : "");
+
+/** Exchange the token that was behind the # of the address for a cookie. */
+export const login = (token: string) => ask("/v1/login", { method: "POST", headers: { authorization: `Bearer ${token}` } });
+
+export const sessions = async () => (await read<{ sessions: Summary[] }>("/v1/sessions")).sessions;
+export const summary = (key: string) => read<Summary>(at(key));
+export const topology = (key: string) => read<Topology>(`${at(key)}/topology`);
+export const anchors = async (key: string) => (await read<{ anchors: Anchor[] }>(`${at(key)}/anchors`)).anchors;
+export const scene = (key: string) => read<Scene>(`${at(key)}/scene`);
+export const result = (key: string) => read<Result>(`${at(key)}/state`);
+export const act = (key: string, action: Action) => ask(`${at(key)}/${action}`, { method: "POST" });
+export const forget = (key: string) => ask(at(key), { method: "DELETE" });
+
+/** Give a session another scene; particles that start where one did before stay where they are. */
+export const replace = (key: string, scene: unknown) => send<Summary>("PUT", at(key), scene);
+
+/** A new session of a scene. */
+export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1/sessions${labelled(label)}`, scene);
+
+/** A new session of a file: .3dm, .obj, COMPAS JSON or a scene. */
+export async function open(file: File): Promise<Summary & { warnings?: string[] }> {
+  const body = new FormData();
+  body.append("file", file, file.name);
+  const answer = await ask(`/v1/sessions${labelled(file.name)}`, { method: "POST", body });
+  return (await answer.json()) as Summary;
+}
+
+export const FORMATS = ["3dm", "obj", "compas", "csv", "npz", "json"] as const;
+export type Format = (typeof FORMATS)[number];
+
+/** The session as a file of another program. */
+export const exported = async (key: string, format: Format) => (await ask(`${at(key)}/state?format=${format}`)).blob();
+
+/** The catalogue of forces: fields, units, defaults, bounds. */
+export const catalogue = async () => (await read<{ forces: Kind[] }>("/v1/forces")).forces;
+
+export const examples = async () => (await read<{ examples: Example[] }>("/v1/examples")).examples;
+export const exampleScene = (id: string) => read<Scene>(`/v1/examples/${encodeURIComponent(id)}/scene`);

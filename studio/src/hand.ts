@@ -1,0 +1,70 @@
+// What a hand does with particles. Whoever points decides where; this decides which edits that makes.
+import type { Anchor, Patch, Point } from "./model";
+import type { Session } from "./session";
+
+let gestures = 0;
+
+/** A name for one gesture: its edits are taken back as one. */
+export const gesture = (what: string) => `${what}-${performance.timeOrigin.toString(36)}-${++gestures}`;
+
+/** The anchor that holds a particle. */
+export const holder = (anchors: Anchor[], particle: number) => anchors.find((a) => a.particles.includes(particle));
+
+/** Edits of which only the newest counts: one is on its way at a time, later ones replace each other meanwhile. */
+export class Newest {
+  private next: Patch | null = null;
+  private running: Promise<void> | null = null;
+
+  constructor(private readonly session: Session) {}
+
+  /** Make this edit as soon as the one before it is acknowledged. */
+  put(patch: Patch): void {
+    this.next = patch;
+    this.running ??= this.run().finally(() => (this.running = null));
+  }
+
+  /** When all that was put is acknowledged or refused. */
+  async settled(): Promise<void> {
+    while (this.running) await this.running;
+  }
+
+  private async run(): Promise<void> {
+    while (this.next) {
+      const patch = this.next;
+      this.next = null;
+      await this.session.tell(patch);
+    }
+  }
+}
+
+/** A particle in the hand: an anchored one takes its anchor along, a free one is pulled and let go at the end. */
+export class Grip {
+  private readonly edits: Newest;
+  private readonly gesture = gesture("drag");
+  private readonly axes: string;
+  readonly anchored: boolean;
+
+  constructor(private readonly session: Session, readonly particle: number) {
+    const anchor = holder(session.anchors.value, particle);
+    this.anchored = anchor !== undefined;
+    this.axes = anchor?.axes ?? "xyz";
+    this.edits = new Newest(session);
+  }
+
+  /** Take it to `target` [length]. */
+  lead(target: Point): void {
+    this.edits.put({ pin: [{ particles: [this.particle], targets: [target], axes: this.axes }], gesture: this.gesture });
+  }
+
+  /** Let go: an anchor stays where it was led, a free particle is free again. */
+  async drop(): Promise<void> {
+    await this.edits.settled();
+    if (!this.anchored) await this.session.tell({ release: [this.particle], gesture: this.gesture });
+  }
+}
+
+/** Hold a particle where it is. */
+export const pin = (session: Session, particle: number) => session.tell({ pin: [{ particles: [particle] }] });
+
+/** Let a particle go. */
+export const release = (session: Session, particle: number) => session.tell({ release: [particle] });

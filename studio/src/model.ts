@@ -1,0 +1,129 @@
+// What the service tells of a session, as JSON has it. Arrays are lists.
+import type { Status } from "./wire";
+
+export type Point = [number, number, number];
+
+export interface Units {
+  length: string;
+  force: string;
+  time: string;
+}
+
+/** How a session stands. */
+export interface Summary {
+  key: string;
+  label: string;
+  revision: number;
+  iteration: number;
+  /** [time] */
+  time: number;
+  /** [-] */
+  residual: number;
+  status: Status;
+  /** One sentence on the status. */
+  message: string;
+  playing: boolean;
+  particles: number;
+  /** Edits that can be taken back, and made again. */
+  undo: number;
+  redo: number;
+  awake: boolean;
+  /** Sentences of the report. */
+  warnings?: string[];
+  /** In total [force length] */
+  energy?: number | null;
+  units?: Units;
+}
+
+/** What stays while a session runs. */
+export interface Topology {
+  particles: number;
+  start: Point[];
+  /** Particles at the two ends of each spring. */
+  springs: [number, number][];
+  /** The force of the scene that each spring belongs to, by its number. */
+  spring_forces: number[];
+  forces: { kind: string; name: string; role: string }[];
+  /** Faces of three or four corners; a triangle repeats its last one. */
+  meshes: Record<string, { faces: number[][] }>;
+  geometry: { name: string; kind: string; particles: number[] | number[][]; faces?: number[][] }[];
+  loads: { force: number; particles: number[]; vectors: Point[] }[];
+  units: Units;
+}
+
+/** Particles that are held, as they are now. */
+export interface Anchor {
+  /** Place in the scene; -1 for one pinned while running. */
+  number: number;
+  name: string;
+  particles: number[];
+  /** [length] */
+  targets: Point[];
+  /** Of x, y and z, those that are held. */
+  axes: string;
+}
+
+/** A scene as edits have left it: what the page reads of it. */
+export interface Scene {
+  forces: SceneForce[];
+  settings: Record<string, number | string | boolean | null | Record<string, unknown>>;
+  units: Units;
+  [field: string]: unknown;
+}
+
+export type SceneForce = { kind: string; name: string } & Record<string, unknown>;
+
+/** Everything about the present shape. */
+export interface Result {
+  status: Status;
+  message: string;
+  particles: Point[];
+  forces: ({ kind: string; name: string } & Record<string, unknown>)[];
+  reactions: { particles: number[]; force: Point[]; names: string[] };
+  energy: Record<string, number>;
+  report: { merged: number; unmatched: unknown[]; warnings: string[] };
+  units: Units;
+}
+
+/** An edit of a running session: pin, release, move, forces, settings; all of it lands or nothing. */
+export interface Patch {
+  pin?: { particles: number[]; targets?: Point[]; axes?: string }[];
+  release?: number[];
+  move?: { anchor: number | string; targets?: Point[]; shift?: Point }[];
+  forces?: Record<string, Record<string, unknown>>;
+  settings?: Record<string, unknown>;
+  /** Edits of one gesture are taken back as one. */
+  gesture?: string;
+}
+
+export type Action = "play" | "pause" | "step" | "reset" | "undo" | "redo";
+
+/** A kind of force in the catalogue. */
+export interface Kind {
+  kind: string;
+  title: string;
+  summary: string;
+  role: string;
+  fields: Field[];
+}
+
+/** A column of a force. */
+export interface Field {
+  name: string;
+  description: string;
+  /** In words: force, length, time; "-" for none. */
+  unit: string;
+  type: string;
+  default: unknown;
+  bounds?: { minimum?: number; maximum?: number; above?: number; below?: number };
+  choices?: string[];
+}
+
+/** A figure of the gallery. */
+export interface Example {
+  id: string;
+  figure: string;
+  title: string;
+  summary?: string;
+  picture: string;
+}

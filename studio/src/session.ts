@@ -1,0 +1,271 @@
+// A session as this page watches it: its frames, how it stands, and edits with their answers. It comes back by itself.
+import { batch, signal } from "@preact/signals";
+import * as api from "./api";
+import { decode, type Frame } from "./frame";
+import type { Action, Anchor, Patch, Scene, Summary, Topology } from "./model";
+import { note, stats } from "./stats";
+
+/** connecting: the first time; live: numbers are of now; silent: connected, but it plays and nothing comes;
+ * lost: it is tried again; locked: no cookie; gone: forgotten by the service; broken: no frame that can be read. */
+export type Connection = "connecting" | "live" | "silent" | "lost" | "locked" | "gone" | "broken";
+
+const FIRST_WAIT = 250;
+const LONGEST_WAIT = 4000;
+const SILENCE = 2000;
+
+interface Waiting {
+  resolve: (summary: Summary) => void;
+  reject: (error: Error) => void;
+}
+
+type Order = { edit: Patch } | { do: Action; frames?: number; fast?: boolean };
+
+export class Session {
+  readonly connection = signal<Connection>("connecting");
+  readonly summary = signal<Summary | null>(null);
+  readonly topology = signal<Topology | null>(null);
+  /** As of the last revision that was read. */
+  readonly anchors = signal<Anchor[]>([]);
+  readonly scene = signal<Scene | null>(null);
+  /** What went wrong last, in a sentence; "" for nothing. */
+  readonly said = signal("");
+  /** Counts frames: what shows numbers of the frame reads it, at most ten times a second. */
+  readonly ticks = signal(0);
+  /** The newest frame; null until the first, and while another scene is read. */
+  frame: Frame | null = null;
+
+  private socket: WebSocket | null = null;
+  private readonly waiting = new Map<number, Waiting>();
+  private readonly watchers = new Set<(frame: Frame) => void>();
+  private orders = 0;
+  private tag: string | null = null;
+  private topologyTag: string | null = null;
+  private acknowledged = 0;
+  private wait = FIRST_WAIT;
+  private heard = 0;
+  private ticked = 0;
+  private described = -1;
+  private describing = false;
+  private unacknowledged: number[] = [];
+  private timers: number[] = [];
+  private retry = 0;
+  private closed = false;
+
+  constructor(readonly key: string) {
+    this.timers.push(window.setInterval(() => this.listen(), 500));
+    document.addEventListener("visibilitychange", this.seen);
+    this.connect();
+  }
+
+  /** Called with every frame that may be shown; returns how to stop it. */
+  onFrame(watcher: (frame: Frame) => void): () => void {
+    this.watchers.add(watcher);
+    if (this.frame) watcher(this.frame);
+    return () => this.watchers.delete(watcher);
+  }
+
+  /** Make an edit. A form at rest goes on, one that was paused by hand stays paused. Rejects with Refused. */
+  async edit(patch: Patch): Promise<Summary> {
+    const before = this.summary.value;
+    const made = await this.order({ edit: patch });
+    const rested = before !== null && !before.playing && before.status !== "running";
+    return rested && !made.playing ? this.order({ do: "play" }) : made;
+  }
+
+  /** Play, pause, step, reset, undo or redo. Rejects with Refused. */
+  async act(action: Action, options: { frames?: number; fast?: boolean } = {}): Promise<Summary> {
+    const before = this.summary.value;
+    const made = await this.order({ do: action, ...options });
+    const rested = before !== null && !before.playing && before.status !== "running";
+    return (action === "undo" || action === "redo") && rested && !made.playing ? this.order({ do: "play" }) : made;
+  }
+
+  /** Edit or act for a control: what is refused is said instead of thrown. */
+  async tell(what: Patch | Action, options: { frames?: number; fast?: boolean } = {}): Promise<boolean> {
+    try {
+      await (typeof what === "string" ? this.act(what, options) : this.edit(what));
+      this.said.value = "";
+      return true;
+    } catch (error) {
+      this.said.value = error instanceof Error ? error.message : String(error);
+      return false;
+    }
+  }
+
+  /** Stop watching. The session goes on. */
+  close(): void {
+    this.closed = true;
+    this.timers.forEach(clearInterval);
+    clearTimeout(this.retry);
+    document.removeEventListener("visibilitychange", this.seen);
+    this.socket?.close();
+    this.lose("This page has left the session.");
+    this.watchers.clear();
+  }
+
+  private connect(): void {
+    const socket = new WebSocket(`ws://${location.host}/v1/sessions/${encodeURIComponent(this.key)}/frames`);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = (event) => this.take(event.data as string | ArrayBuffer);
+    socket.onclose = (event) => void this.closing(socket, event);
+    this.socket = socket;
+  }
+
+  private take(data: string | ArrayBuffer): void {
+    this.heard = performance.now();
+    if (this.connection.value === "silent") this.connection.value = "live";
+    if (typeof data !== "string") return this.framed(data);
+    const message = JSON.parse(data) as Record<string, unknown>;
+    if ("hello" in message) this.greeted(message["session"] as Summary, message["topology"] as string);
+    else if ("state" in message) this.stands(message["state"] as Summary, message["topology"] as string);
+    else this.answered(message);
+  }
+
+  private greeted(summary: Summary, tag: string): void {
+    const lost = this.waiting.size;
+    this.lose("");
+    // numbers of frames and revisions begin anew with the connection: the service may be another one
+    this.acknowledged = stats.revisionAcknowledged = 0;
+    this.described = -1;
+    this.wait = FIRST_WAIT;
+    batch(() => {
+      if (lost) this.said.value = `The connection was lost with ${lost} edits on their way; check that they are there.`;
+      this.connection.value = "live";
+      this.stands(summary, tag);
+    });
+  }
+
+  private stands(summary: Summary, tag: string): void {
+    this.summary.value = summary;
+    if (tag && tag !== this.tag) {
+      this.tag = tag;
+      this.frame = null;
+    }
+    void this.describe();
+  }
+
+  /** Read what goes by HTTP, if it is not that of the present revision. One reading at a time. */
+  private async describe(): Promise<void> {
+    const revision = this.summary.value?.revision ?? 0;
+    if (this.describing || (revision === this.described && this.tag === this.topologyTag)) return;
+    this.describing = true;
+    const tag = this.tag;
+    try {
+      const topology = tag === this.topologyTag ? this.topology.value : await api.topology(this.key);
+      const [anchors, scene] = await Promise.all([api.anchors(this.key), api.scene(this.key)]);
+      batch(() => {
+        this.topologyTag = tag;
+        this.described = revision;
+        this.topology.value = topology;
+        this.anchors.value = anchors;
+        this.scene.value = scene;
+      });
+      if (this.frame) this.show(this.frame);
+    } catch {
+      // the connection tells what is the matter; the next state or tick asks again
+    } finally {
+      this.describing = false;
+    }
+  }
+
+  private framed(data: ArrayBuffer): void {
+    const began = performance.now();
+    let frame: Frame;
+    try {
+      frame = decode(data);
+    } catch (error) {
+      this.said.value = error instanceof Error ? error.message : String(error);
+      this.connection.value = "broken";
+      this.socket?.close();
+      return;
+    }
+    note(stats.decodeMilliseconds, performance.now() - began);
+    stats.framesReceived += 1;
+    this.unacknowledged.push(frame.number);
+    if (!document.hidden) this.seen();
+    if (frame.revision < this.acknowledged) stats.framesLeftOut += 1;
+    else this.show(frame);
+  }
+
+  private show(frame: Frame): void {
+    this.frame = frame;
+    const topology = this.topology.value;
+    const fits = topology?.particles === frame.positions.length / 3 && this.topologyTag === this.tag;
+    if (!fits) return;
+    this.watchers.forEach((watcher) => watcher(frame));
+    if (performance.now() - this.ticked > 100) this.tick();
+  }
+
+  private tick(): void {
+    this.ticked = performance.now();
+    this.ticks.value += 1;
+  }
+
+  private readonly seen = (): void => {
+    const last = this.unacknowledged.at(-1);
+    if (document.hidden || last === undefined || this.socket?.readyState !== WebSocket.OPEN) return;
+    this.unacknowledged = [];
+    this.socket.send(JSON.stringify({ ack: last }));
+  };
+
+  private order(order: Order): Promise<Summary> {
+    return new Promise((resolve, reject) => {
+      if (this.socket?.readyState !== WebSocket.OPEN) {
+        reject(new api.Refused(0, "Not done: there is no connection to the service now.", "unreachable"));
+        return;
+      }
+      const id = ++this.orders;
+      this.waiting.set(id, { resolve, reject });
+      this.socket.send(JSON.stringify({ id, ...order }));
+    });
+  }
+
+  private answered(message: Record<string, unknown>): void {
+    const waiting = this.waiting.get(message["id"] as number);
+    this.waiting.delete(message["id"] as number);
+    if ("problem" in message) {
+      const problem = message["problem"] as Record<string, unknown>;
+      waiting?.reject(api.refusal(Number(problem["status"] ?? 400), problem));
+      return;
+    }
+    const summary = message["session"] as Summary;
+    this.acknowledged = Math.max(this.acknowledged, summary.revision);
+    stats.revisionAcknowledged = this.acknowledged;
+    if (this.frame && this.frame.revision < this.acknowledged) this.frame = null;
+    this.summary.value = summary;
+    waiting?.resolve(summary);
+  }
+
+  private async closing(socket: WebSocket, event: CloseEvent): Promise<void> {
+    if (socket !== this.socket || this.closed || this.connection.value === "broken") return;
+    this.unacknowledged = [];
+    this.lose("The connection was lost before the service answered; it is not known whether this was done.");
+    this.connection.value = event.code === 4404 ? "gone" : "lost";
+    if (event.code === 4404) return;
+    if (event.code === 4429) this.said.value = event.reason;
+    const found = await api.summary(this.key).then(() => 200, (error: api.Refused) => error.status);
+    if (this.closed) return;
+    if (found === 401 || found === 403) this.connection.value = "locked";
+    else if (found === 404) this.connection.value = "gone";
+    else this.retry = window.setTimeout(() => this.connect(), this.wait);
+    this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+  }
+
+  private lose(sentence: string): void {
+    const error = new api.Refused(0, sentence, "unreachable");
+    this.waiting.forEach((waiting) => waiting.reject(error));
+    this.waiting.clear();
+  }
+
+  /** Twice a second: whether frames still come, and the last one's numbers. */
+  private listen(): void {
+    const quiet = performance.now() - this.heard > SILENCE;
+    if (this.connection.value === "live" && this.summary.value?.playing && quiet) this.connection.value = "silent";
+    if (this.connection.value !== "live") return;
+    this.tick();
+    const frame = this.frame;
+    const summary = this.summary.value;
+    if (frame && summary && frame.revision > summary.revision) this.summary.value = { ...summary, revision: frame.revision };
+    void this.describe();
+  }
+}

@@ -1,0 +1,64 @@
+// What the view shows and is told: signals that panels set and the view follows, and what it gives back.
+import { type Signal, signal } from "@preact/signals";
+
+export type Colouring = "force" | "strain" | "plain";
+export type Lock = "view" | "x" | "y" | "z" | "xy" | "xz" | "yz";
+export type Look = "perspective" | "top" | "front" | "right";
+export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "reactions" | "floor";
+
+/** What is picked. */
+export type Picked = { kind: "particle" | "spring"; index: number } | null;
+
+/** Which number a colour stands for. */
+export interface Legend {
+  /** Force or strain. */
+  title: string;
+  /** As written beside the numbers; "-" for none. */
+  unit: string;
+  low: number;
+  high: number;
+  /** CSS colours from low to high, evenly spaced. */
+  colours: string[];
+}
+
+/** What a person has chosen to see: of this page alone, the session knows nothing of it. */
+export interface Options {
+  colouring: Signal<Colouring>;
+  layers: Signal<Record<Layer, boolean>>;
+  /** Along what a drag goes: the plane that faces the eye, an axis, a plane. */
+  lock: Signal<Lock>;
+  picked: Signal<Picked>;
+  /** Particles to be marked, such as those a warning speaks of. */
+  marked: Signal<number[]>;
+  /** Rest length of each spring [length], for strain; null: not known yet. */
+  restLengths: Signal<Float32Array | null>;
+  dark: Signal<boolean>;
+}
+
+export const options = (): Options => ({
+  colouring: signal<Colouring>("force"),
+  layers: signal({ mesh: true, springs: true, particles: true, anchors: true, loads: true, reactions: true, floor: true }),
+  lock: signal<Lock>("view"),
+  picked: signal<Picked>(null),
+  marked: signal<number[]>([]),
+  restLengths: signal<Float32Array | null>(null),
+  dark: signal(false),
+});
+
+export interface View {
+  readonly legend: Signal<Legend | null>;
+  /** Frames drawn in the last second. */
+  readonly rate: Signal<number>;
+  /** All of the form into view. */
+  fit(): void;
+  look(from: Look): void;
+  /** Bring particles into view. */
+  show(particles: number[]): void;
+  /** What is seen now, in full quality. */
+  png(): Promise<Blob>;
+  /** Where a particle is drawn [CSS pixels of the page]; null behind the eye. */
+  project(particle: number): { x: number; y: number } | null;
+  /** What is drawn: x y z of each particle [length]. */
+  particles(): Float32Array;
+  dispose(): void;
+}
