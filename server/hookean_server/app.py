@@ -14,7 +14,16 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 import hookean
-from hookean_server import ending, openapi, routes_about, routes_discretize, routes_geometry, routes_hops, routes_relax
+from hookean_server import (
+    ending,
+    openapi,
+    routes_about,
+    routes_discretize,
+    routes_geometry,
+    routes_hops,
+    routes_page,
+    routes_relax,
+)
 from hookean_server.guard import Guard, Origins
 from hookean_server.jobs import routes as job_routes
 from hookean_server.jobs.manager import Jobs
@@ -80,6 +89,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         routes_discretize,
         routes_geometry,
         routes_hops,
+        routes_page,
         session_routes,
         frames,
         job_routes,

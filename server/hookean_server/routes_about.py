@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
-from pathlib import Path
 from typing import Any
 
 from fastapi import APIRouter, Request
@@ -18,8 +17,6 @@ from hookean_server.problems import CATALOGUE, Problem, page
 from hookean_server.tokens import cookie_name, cookies, set_cookie
 
 router = APIRouter(tags=["about"])
-
-PAGE = {"index.html": "text/html", "login.js": "text/javascript"}
 
 
 @router.get(
@@ -91,25 +88,6 @@ async def logout(request: Request) -> Response:
     name = _cookie(request)
     request.app.state.tokens.logout(cookies(request.headers.get("cookie", ""), name))
     return Response(status_code=204, headers={"set-cookie": set_cookie(name, "")})
-
-
-@router.get("/page/{name}", include_in_schema=False)
-async def page_file(name: str) -> Response:
-    """A file of the page."""
-    if name not in PAGE:
-        raise Problem("not-found", "There is no such file.")
-    return page_response(name)
-
-
-def page_response(name: str) -> Response:
-    """A file of the page, which loads nothing from elsewhere and is shown in no other page."""
-    headers = {
-        "content-security-policy": "default-src 'self'; img-src data:; frame-ancestors 'none'; base-uri 'none'",
-        "referrer-policy": "no-referrer",
-        "x-content-type-options": "nosniff",
-        "cache-control": "no-cache",
-    }
-    return Response((Path(__file__).parent / "page" / name).read_bytes(), media_type=PAGE[name], headers=headers)
 
 
 def _cookie(request: Request) -> str:

@@ -14,7 +14,7 @@ from hookean_server.handling import compute
 from hookean_server.hops import FUNCTIONS
 from hookean_server.operations import uses_rhino
 from hookean_server.problems import Problem
-from hookean_server.routes_about import page_response
+from hookean_server.routes_page import start_page
 
 router = APIRouter(tags=["hops"])
 
@@ -23,11 +23,11 @@ router = APIRouter(tags=["hops"])
 async def root(request: Request) -> Response:
     """A browser, which asks for text/html, gets the page; Hops, which does not say, gets its functions."""
     if "text/html" in request.headers.get("accept", ""):
-        answer = page_response("index.html")
-    else:
-        answer = JSONResponse([function.described(name) for name, function in FUNCTIONS.items()])
-    answer.headers["vary"] = "Accept"
-    return answer
+        return start_page(request)
+    return JSONResponse([function.described(name) for name, function in FUNCTIONS.items()], headers={"vary": "Accept"})
+
+
+router.head("/", include_in_schema=False)(root)
 
 
 @router.post("/solve", summary="Run a function for Hops", **openapi.hops_solve())

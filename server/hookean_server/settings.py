@@ -70,6 +70,8 @@ class Settings:
     """Time a client has to send the headers of a request."""
     hosts: tuple[str, ...] = ()
     """Further names the service answers to, besides 127.0.0.1, localhost and [::1]."""
+    page: Path | str = field(default_factory=lambda: Path(__file__).with_name("page"))
+    """The folder of the page that browsers get."""
 
     @property
     def lanes(self) -> int:

@@ -31,8 +31,12 @@ JSON_LIMIT = 2**20
 
 
 @pytest.fixture(scope="module")
-def served() -> Iterator[Served]:
-    found = Served(origins=(FRIEND,), workers=1, json_limit=JSON_LIMIT, body_seconds=3.0, header_seconds=2.0)
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    page = tmp_path_factory.mktemp("page")
+    (page / "index.html").write_text('<title>hookean</title><script type="module" src="/page/app.js"></script>')
+    (page / "app.js").write_text("export {};")
+    limits = {"json_limit": JSON_LIMIT, "body_seconds": 3.0, "header_seconds": 2.0}
+    found = Served(origins=(FRIEND,), workers=1, page=str(page), **limits)
     found.ready()
     assert found.client.put("/v1/sessions/a", json=CABLE).status_code == 201
     yield found
@@ -136,7 +140,7 @@ def test_every_address_needs_the_token_but_for_the_open_ones(served: Served) -> 
         assert nobody.get("/v1/openapi.json").status_code == 401
         assert nobody.get("/v1/nothing").status_code == nobody.post("/nothing").status_code == 401
         assert nobody.get("/nothing").status_code == 404  # a function of Hops that there is not
-        assert nobody.get("/page/login.js").status_code == 200
+        assert nobody.get("/page/app.js").status_code == 200
     hops = {("get", "/"), ("get", "/{function}"), ("post", "/solve")}
     assert opened == {("get", "/v1/health"), ("get", "/problems/{slug}"), *hops}
 
@@ -224,7 +228,9 @@ def test_the_page_is_closed_to_other_pages(served: Served) -> None:
         assert page.headers["content-type"].startswith("text/html") and "hookean" in page.text
         assert "default-src 'self'" in page.headers["content-security-policy"]
         assert served.token not in page.text and "<script>" not in page.text
-        for path in re.findall(r'src="(/.*?)"', page.text):
+        scripts = re.findall(r'src="(/.*?)"', page.text)
+        assert scripts
+        for path in scripts:
             assert browser.get(path).status_code == 200
         for path in ("/page/guard.py", "/page/..%2fguard.py", "/page/%2e%2e/guard.py", "/page/"):
             assert browser.get(path).status_code in (401, 404), path
