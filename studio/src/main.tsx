@@ -1,0 +1,14 @@
+import { render } from "preact";
+
+function Page() {
+  return (
+    <main>
+      <h1>hookean</h1>
+    </main>
+  );
+}
+
+const place = document.getElementById("page");
+if (place) {
+  render(<Page />, place);
+}
