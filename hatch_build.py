@@ -51,7 +51,8 @@ def build() -> None:
     """Builds the page with the packages of the lock file."""
     installed = STUDIO / "node_modules" / ".package-lock.json"
     if not installed.is_file() or installed.stat().st_mtime < (STUDIO / "package-lock.json").stat().st_mtime:
-        run("npm", "ci", "--omit=dev", "--ignore-scripts")
+        checks = (STUDIO / "node_modules" / "typescript").is_dir()  # somebody works on the page
+        run("npm", "ci", "--ignore-scripts", *([] if checks else ["--omit=dev"]))
     run("node", "node_modules/vite/bin/vite.js", "build", "--logLevel", "warn")
     BUILT_FROM.write_text(digest())
 
