@@ -56,6 +56,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         pool.start()
         store.start()
+        await app.state.tokens.start()
         await sessions.start()
         about = {"version": hookean.__version__, "instance": app.state.instance, "port": settings.port}
         log.info("started", extra={"fields": about})
@@ -81,7 +82,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.settings, app.state.pool, app.state.instance = settings, pool, secrets.token_hex(16)
     app.state.store, app.state.sessions, app.state.jobs = store, sessions, jobs
-    app.state.tokens, app.state.metrics = Tokens(settings.token or chosen()), Metrics(app.state)
+    app.state.tokens, app.state.metrics = Tokens(settings.token or chosen(), store), Metrics(app.state)
     for part in (
         routes_about,
         ending,

@@ -110,6 +110,11 @@ def acted() -> dict[int | str, dict[str, Any]]:
     return problems(SESSION, live=True)
 
 
+def forgotten() -> dict[int | str, dict[str, Any]]:
+    """Responses of taking something back that is stored."""
+    return {**problems(), 507: problems(live=True)[507]}
+
+
 def branched() -> dict[str, Any]:
     """What the route of branches says of itself."""
     return {"responses": {**problems(None, live=True), 201: {"description": "The branch", "content": SESSION}}}

@@ -77,16 +77,17 @@ async def metrics(request: Request) -> Response:
 @router.post("/v1/login", status_code=204, summary="A cookie for a page", responses=openapi.problems())
 async def login(request: Request) -> Response:
     """For the page that was opened with the token behind the # of its address: it sends the token as programs do, once,
-    and its browser keeps a cookie that scripts cannot read and other sites' pages cannot use."""
-    value = request.app.state.tokens.login()
+    and its browser keeps a cookie that scripts cannot read and other sites' pages cannot use. It stays valid
+    when the service is started again, until it was not used for 30 days or is taken back."""
+    value = await request.app.state.tokens.login()
     return Response(status_code=204, headers={"set-cookie": set_cookie(_cookie(request), value)})
 
 
-@router.delete("/v1/login", status_code=204, summary="Take the cookie back", responses=openapi.problems())
+@router.delete("/v1/login", status_code=204, summary="Take the cookie back", responses=openapi.forgotten())
 async def logout(request: Request) -> Response:
     """The cookie is worth nothing from now on, wherever it is kept."""
     name = _cookie(request)
-    request.app.state.tokens.logout(cookies(request.headers.get("cookie", ""), name))
+    await request.app.state.tokens.logout(cookies(request.headers.get("cookie", ""), name))
     return Response(status_code=204, headers={"set-cookie": set_cookie(name, "")})
 
 

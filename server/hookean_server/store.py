@@ -75,6 +75,13 @@ CREATE TABLE answers (
     idle REAL NOT NULL
 );
 """
+LATER = """
+CREATE TABLE IF NOT EXISTS logins (
+    hash TEXT PRIMARY KEY,       -- SHA-256 of a cookie's value
+    used REAL NOT NULL           -- seconds since 1970
+);
+"""
+"""Tables that files of this version may not have yet; who does not know them leaves them alone."""
 Work = Callable[[sqlite3.Connection], Any]
 
 
@@ -204,4 +211,5 @@ def _prepared(connection: sqlite3.Connection, version: int = 0) -> sqlite3.Conne
     else:
         for table in ("sessions", "edits", "jobs", "items", "answers"):
             connection.execute(f"SELECT * FROM {table} LIMIT 0")
+    connection.executescript(LATER)
     return connection

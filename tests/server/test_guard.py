@@ -21,7 +21,7 @@ from hookean_server.app import create_app
 from hookean_server.limits import BodyLimit
 from hookean_server.refusals import Problems
 from hookean_server.settings import Settings
-from hookean_server.tokens import LOGINS, Tokens, Unfit, chosen
+from hookean_server.tokens import Unfit, chosen
 from serving import CABLE, wait_for
 
 from .conftest import Served, problem
@@ -200,13 +200,6 @@ def test_a_page_logs_in_once_and_out(served: Served) -> None:
         assert out.status_code == 204 and "Max-Age=0" in out.headers["set-cookie"]
         problem(page.get("/v1/sessions", headers=cookie), 401, "unauthorized")
         problem(page.post("/v1/login", headers={"authorization": "Bearer no"}), 401, "unauthorized")
-
-
-def test_old_cookies_make_room() -> None:
-    tokens = Tokens("t" * 20)
-    given = [tokens.login() for _ in range(LOGINS + 1)]
-    assert [tokens.logged_in([g]) for g in given] == [False] + [True] * LOGINS
-    assert len(set(given)) == len(given) and not tokens.logged_in([]) and not tokens.logged_in([""])
 
 
 def test_tokens_are_random_or_as_set(monkeypatch: pytest.MonkeyPatch) -> None:
