@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(p for top in ("core", "server", "components", "canvas") for p in (ROOT / top).rglob("*.py"))
+
+PAGE = sorted(p for p in (ROOT / "studio" / "src").rglob("*") if p.suffix in (".ts", ".tsx", ".css"))
 
 
 def imports(path: Path) -> set[str]:
@@ -38,10 +41,24 @@ def test_imports_point_one_way(path: Path):
         assert not found & {"hookean", "hookean_server", "numpy"}
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
+@pytest.mark.parametrize("path", SOURCES + PAGE, ids=lambda p: str(p.relative_to(ROOT)))
 def test_a_file_is_one_idea(path: Path):
     """No source file above 20 kB."""
     assert path.stat().st_size <= 20_000
+
+
+@pytest.mark.parametrize("path", PAGE, ids=lambda p: str(p.relative_to(ROOT)))
+def test_the_pages_sources_keep_to_the_line(path: Path):
+    """120 characters a line; no type is given up, and no comment turns a check off."""
+    text = path.read_text(encoding="utf-8")
+    assert max(map(len, text.splitlines())) <= 120
+    assert not re.search(r"\bas any\b|: any\b|<any>|@ts-(ignore|nocheck|expect-error)", text)
+
+
+def test_the_page_loads_nothing_from_elsewhere():
+    """No address outside the service is in its sources."""
+    text = "".join(path.read_text(encoding="utf-8") for path in [*PAGE, ROOT / "studio" / "index.html"])
+    assert not re.findall(r"https?://(?!www\.w3\.org/)[^\s\"'`]*", text)
 
 
 def test_solvers_and_forces_import_without_numba():

