@@ -43,7 +43,8 @@ const at = (key: string) => `/v1/sessions/${encodeURIComponent(key)}`;
 const labelled = (label: string) => (label ? `?label=${encodeURIComponent(label.slice(0, 200))}` : "");
 
 /** Exchange the token that was behind the # of the address for a cookie. */
-export const login = (token: string) => ask("/v1/login", { method: "POST", headers: { authorization: `Bearer ${token}` } });
+export const login = (token: string) =>
+  ask("/v1/login", { method: "POST", headers: { authorization: `Bearer ${token}` } });
 
 export const sessions = async () => (await read<{ sessions: Summary[] }>("/v1/sessions")).sessions;
 export const summary = (key: string) => read<Summary>(at(key));

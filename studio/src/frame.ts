@@ -1,4 +1,5 @@
-import { header, type Header, MAGIC, POSITIONS, REACTIONS, SCALARS, SIZE, type Status, STATUSES, VERSION } from "./wire";
+import { header, type Header, MAGIC, POSITIONS, REACTIONS, SCALARS, SIZE, VERSION } from "./wire";
+import { type Status, STATUSES } from "./wire";
 
 /** A frame of a session: what moves. Its arrays are views of the message: nothing is copied. */
 export interface Frame {

@@ -53,7 +53,8 @@ export class Grip {
 
   /** Take it to `target` [length]. */
   lead(target: Point): void {
-    this.edits.put({ pin: [{ particles: [this.particle], targets: [target], axes: this.axes }], gesture: this.gesture });
+    const held = { particles: [this.particle], targets: [target], axes: this.axes };
+    this.edits.put({ pin: [held], gesture: this.gesture });
   }
 
   /** Let go: an anchor stays where it was led, a free particle is free again. */

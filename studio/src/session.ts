@@ -265,7 +265,8 @@ export class Session {
     this.tick();
     const frame = this.frame;
     const summary = this.summary.value;
-    if (frame && summary && frame.revision > summary.revision) this.summary.value = { ...summary, revision: frame.revision };
+    if (frame && summary && frame.revision > summary.revision)
+      this.summary.value = { ...summary, revision: frame.revision };
     void this.describe();
   }
 }

@@ -37,7 +37,15 @@ export interface Options {
 
 export const options = (): Options => ({
   colouring: signal<Colouring>("force"),
-  layers: signal({ mesh: true, springs: true, particles: true, anchors: true, loads: true, reactions: true, floor: true }),
+  layers: signal({
+    mesh: true,
+    springs: true,
+    particles: true,
+    anchors: true,
+    loads: true,
+    reactions: true,
+    floor: true,
+  }),
   lock: signal<Lock>("view"),
   picked: signal<Picked>(null),
   marked: signal<number[]>([]),
