@@ -16,13 +16,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from hookean.errors import InputError
 from hookean.sheet import Graph, Panel, sheet
+
+if TYPE_CHECKING:
+    from hookean.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -79,11 +82,13 @@ class Expected(BaseModel):
 
 
 class Expectations(BaseModel):
-    """The file expected.json: title, figures of the chapter it stands for, numbers by name."""
+    """The file expected.json: title, what to see and try in a sentence, figures of the chapter it stands for, numbers
+    by name."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     title: str
+    sentence: str
     figures: tuple[str, ...]
     kind: Literal["chapter", "essay"] = "chapter"
     numbers: Annotated[dict[str, Expected], Field(min_length=1)]
@@ -111,6 +116,34 @@ class Example:
     def original(self) -> bool:
         """Whether it is one of the project's, not a copy that was made to be changed."""
         return self.folder.resolve().parent == home().resolve()
+
+    @property
+    def figure(self) -> str:
+        """What of the chapter it is, such as `Figures 9.4 and 9.5`."""
+        return "The essay" if self.expected.kind == "essay" else _figures(self.expected.figures)
+
+    @property
+    def picture(self) -> Path:
+        """Its picture (PNG): as the studio shows it, where there is one, else as it is drawn."""
+        shown = self.folder / "studio.png"
+        return shown if shown.is_file() else self.folder / "picture.png"
+
+    @property
+    def input(self) -> tuple[Path, Path | None] | None:
+        """The files its scene is read from: a scene, or a model and its recipe; None for one that has no scene."""
+        if (self.folder / "scene.json").is_file():
+            return self.folder / "scene.json", None
+        model, recipe = self.folder / "model.3dm", self.folder / "recipe.toml"
+        return (model, recipe) if model.is_file() and recipe.is_file() else None
+
+    def scene(self) -> Scene:
+        """Its scene, made fit to move (see `stability.in_motion`); InputError where it has none."""
+        from hookean.files.relax_file import read_scene
+        from hookean.stability import in_motion
+
+        if self.input is None:
+            raise InputError(self.name, "is no scene; its script computes it")
+        return in_motion(read_scene(*self.input))[0]
 
     def run(self) -> Outcome:
         """Run the example afresh."""
@@ -176,11 +209,10 @@ def gallery(known: Sequence[Example]) -> str:
     """The page of pictures, in Markdown."""
     parts = []
     for example in known:
-        expected = example.expected
-        what = "The essay" if expected.kind == "essay" else _figures(expected.figures)
+        title = example.expected.title
         parts.append(
-            f"## [{what}]({example.name}): {expected.title}\n\n"
-            f'<a href="{example.name}"><img src="{example.name}/picture.png" width="640" alt="{expected.title}"></a>\n'
+            f"## [{example.figure}]({example.name}): {title}\n\n"
+            f'<a href="{example.name}"><img src="{example.name}/picture.png" width="640" alt="{title}"></a>\n'
         )
     return INTRODUCTION + "\n".join(parts)
 

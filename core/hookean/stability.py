@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from hookean.state import State
 from hookean.system import System
 
+if TYPE_CHECKING:
+    from hookean.scene import Scene
+
 Floats = NDArray[np.float64]
+MOST_STEPS = 200  # in a frame of a simulation, where that is chosen here
 
 
 def critical_time_step(omega: float, damping_ratio: float = 0.0) -> float:
@@ -80,6 +84,30 @@ def warning(system: System, state: State) -> str:
         f"/settings/time_step: {given:g} {unit} is too large for this stiffness, mass and damping; the motion will "
         f"explode. Steps up to {_down(holds):.4g} {unit} hold: use one of those, more mass or less stiffness"
     )
+
+
+def in_motion(scene: Scene) -> tuple[Scene, str]:
+    """A scene for a simulation: where nobody chose its time step and the usual one would explode, with one that holds,
+    and a sentence on it; else the scene as it is, and "".
+
+    The step is four fifths of what holds at the start, as springs that are stretched are stiffer. Where nobody chose
+    how many make a frame, it is as long as usual, in at most MOST_STEPS.
+    """
+    from hookean.system import compile
+
+    settings = scene.settings
+    if "time_step" in settings.model_fields_set or settings.solver not in ("auto", "verlet", "yoshida"):
+        return scene, ""
+    system = compile(scene)
+    state = system.start()
+    if not warning(system, state):
+        return scene, ""
+    step = float(f"{_down(0.8 * stable_time_step(system, state)):.4g}")
+    changed: dict[str, float] = {"time_step": step}
+    if "sub_iterations" not in settings.model_fields_set:
+        changed["sub_iterations"] = min(round(settings.sub_iterations * settings.time_step / step), MOST_STEPS)
+    said = f"time goes on in steps of {step:g} {scene.units.time}; longer ones explode with this stiffness and mass"
+    return scene.model_copy(update={"settings": settings.model_copy(update=changed)}), said
 
 
 def _bounds(system: System, state: State) -> tuple[float, float]:

@@ -35,12 +35,12 @@ async def compute(request: Request, task: str, options: dict[str, Any], *, once:
         body = await read_json(request)
         single = once(body) if callable(once) else bool(once)
         job = Job(task, options, body, settings.solve_seconds + settings.grace_seconds, single)
-        return _response(await answered(request, pool, job))
+        return respond(await answered(request, pool, job))
 
 
 async def compute_upload(request: Request, task: str, options: dict[str, Any]) -> Response:
     """Run a task on the multipart body of a request, which is streamed to disk; the worker is replaced afterwards."""
-    return _response(await _uploaded(request, task, options))
+    return respond(await _uploaded(request, task, options))
 
 
 async def uploaded_scene(request: Request) -> tuple[bytes, list[str]]:
@@ -92,7 +92,8 @@ async def answered(request: Request, pool: Pool, job: Job) -> Reply:
                 await task
 
 
-def _response(reply: Reply) -> Response:
+def respond(reply: Reply) -> Response:
+    """A worker's answer as a response."""
     timing = ", ".join(f"{name};dur={1000 * seconds:.3f}" for name, seconds in reply.head["timing"].items())
     headers = {**reply.head["headers"], "cache-control": "no-store", "server-timing": timing}
     return Response(reply.body, media_type=reply.head["type"], headers=headers)

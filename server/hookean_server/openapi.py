@@ -16,6 +16,8 @@ HEALTH = {"application/json": {"schema": {"$ref": "#/components/schemas/Health"}
 SESSION = {"application/json": {"schema": {"$ref": "#/components/schemas/Session"}}}
 SESSIONS = {"application/json": {"schema": {"$ref": "#/components/schemas/Sessions"}}}
 FORCES = {"application/json": {"schema": {"$ref": "#/components/schemas/Catalogue"}}}
+GALLERY = {"application/json": {"schema": {"$ref": "#/components/schemas/Examples"}}}
+PICTURE = {"image/png": {"schema": {"type": "string", "format": "binary"}}}
 METRICS = {"text/plain": {"schema": {"type": "string"}}}
 _ALWAYS = (401, 403, 404, 405, 431, 500)
 _COMPUTED = (*_ALWAYS, 408, 413, 415, 422, 503, 504, 507)
@@ -65,6 +67,13 @@ def relax() -> dict[str, Any]:
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/Result"}}}
     scene = {"$ref": "#/components/schemas/Scene"}
     return {"responses": problems(success, computed=True), "openapi_extra": _takes(scene, EXAMPLES["relax"])}
+
+
+def example_scene() -> dict[str, Any]:
+    """What the route of an example's scene says of itself."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Scene"}}}
+    found = problems(success)
+    return {"responses": {**found, **{code: problems(computed=True)[code] for code in (503, 504)}}}
 
 
 def relax_file() -> dict[str, Any]:

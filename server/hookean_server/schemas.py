@@ -110,6 +110,12 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         workers={"type": "object"},
         requests={"type": "object"},
     ),
+    "Examples": _object(
+        examples={
+            "type": "array",
+            "items": _object(id=_TEXT, figure=_TEXT, title=_TEXT, sentence=_TEXT, picture=_TEXT, scene=_TEXT),
+        }
+    ),
     "Catalogue": _object(forces={"type": "array", "items": {"type": "object"}}),
     "Result": _object(
         status={"enum": ["converged", "stalled", "diverged", "max_iterations", "time_limit", "cancelled"]},

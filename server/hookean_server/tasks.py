@@ -72,7 +72,7 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
 
 
 def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
-    from hookean_server import files, hops, operations, solve
+    from hookean_server import files, hops, operations, routes_examples, solve
     from hookean_server.jobs import work
 
     return {
@@ -82,6 +82,7 @@ def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
         "file": files.relax_upload,
         "scene": files.scene_upload,
         "geometry": files.geometry_upload,
+        "example": routes_examples.read_example,
         "job": work.check,
         "batch": work.batch,
         "item": work.item,

@@ -7,7 +7,7 @@ import pytest
 
 from hookean import Scene, Simulation, simulate
 from hookean.result import Status
-from hookean.stability import critical_time_step, stable_time_step
+from hookean.stability import MOST_STEPS, critical_time_step, in_motion, stable_time_step
 from hookean.system import compile
 
 
@@ -103,3 +103,39 @@ def test_a_step_that_holds_at_the_start_only_is_told_in_the_result():
     while running.state.x[1, 0] < 1.06:
         running.step()
     assert any(w.startswith("/settings/time_step") for w in running.result().report.warnings)
+
+
+def chain(**settings: object) -> Scene:
+    """Links of 1e6 N/m and 1 kg: the usual step of 0.01 s is ten times what holds, 2 / sqrt(4 k / m) = 0.001 s."""
+    return Scene(
+        particles=[[float(i), 0.0, 0.0] for i in range(40)],
+        forces=[
+            {"kind": "springs", "particles": [[i, i + 1] for i in range(39)], "stiffness": 1e6},
+            {"kind": "unary", "particles": list(range(40)), "vector": [0.0, 0.0, -10.0]},
+        ],
+        anchors=[{"particles": [0, 39]}],
+        settings=settings,
+    )
+
+
+def test_a_scene_is_made_fit_to_move():
+    """As it is it explodes; with the step found it swings, and a frame is as long as usual: 0.2 s in 0.0008 s each,
+    were it not for the most steps."""
+    assert Simulation(chain()).step(10) is Status.DIVERGED
+    scene, said = in_motion(chain())
+    assert scene.settings.time_step == pytest.approx(0.8 * 2.0 / 2e3, rel=0.01) and "steps of 0.000" in said
+    assert scene.settings.sub_iterations == MOST_STEPS
+    moving = Simulation(Scene.read(scene.canonical))
+    assert moving.step(50) is Status.RUNNING and not moving.system.report.warnings
+    assert in_motion(chain(sub_iterations=7))[0].settings.sub_iterations == 7
+
+
+@pytest.mark.parametrize("settings", [{"time_step": 0.01}, {"solver": "relaxation"}, {"solver": "momentum"}])
+def test_what_was_chosen_stays(settings):
+    scene = chain(**settings)
+    assert in_motion(scene) == (scene, "")
+
+
+def test_a_scene_that_holds_stays():
+    scene = chain(drag=0).model_copy(update={"forces": chain().forces[1:]})
+    assert in_motion(scene) == (scene, "")
