@@ -1,0 +1,38 @@
+// Numbers on the graphics card: a column for what changes with each frame, read by shaders by its row.
+import { DataTexture, FloatType, NearestFilter, type PixelFormat, RedFormat, RGBFormat, type WebGLRenderer } from "three";
+
+const WIDTH = 1024;
+
+/** Rows of one or three float32 in a texture. */
+export class Column {
+  readonly texture: DataTexture;
+  private readonly format: PixelFormat;
+
+  constructor(readonly rows: number, private readonly components: 1 | 3) {
+    this.format = components === 1 ? RedFormat : RGBFormat;
+    this.texture = new DataTexture(null, WIDTH, Math.max(1, Math.ceil(rows / WIDTH)), this.format, FloatType);
+    this.texture.internalFormat = components === 1 ? "R32F" : "RGB32F";
+    this.texture.minFilter = this.texture.magFilter = NearestFilter;
+    this.texture.source.dataReady = false; // room alone: `put` fills it
+    this.texture.needsUpdate = true;
+  }
+
+  /** Hand rows to the card at once, straight from `values`. */
+  put(renderer: WebGLRenderer, values: Float32Array): void {
+    const gl = renderer.getContext() as WebGL2RenderingContext;
+    renderer.initTexture(this.texture);
+    const found = renderer.properties.get(this.texture) as { __webglTexture: WebGLTexture };
+    renderer.state.bindTexture(gl.TEXTURE_2D, found.__webglTexture);
+    const format = this.components === 1 ? gl.RED : gl.RGB;
+    const rows = Math.min(this.rows, values.length / this.components);
+    const whole = Math.floor(rows / WIDTH);
+    const rest = rows - whole * WIDTH;
+    if (whole) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, WIDTH, whole, format, gl.FLOAT, values, 0);
+    if (rest) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, rest, 1, format, gl.FLOAT, values, whole * WIDTH * this.components);
+    renderer.state.unbindTexture();
+  }
+
+  dispose(): void {
+    this.texture.dispose();
+  }
+}

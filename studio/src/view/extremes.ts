@@ -1,0 +1,48 @@
+// The two ends of a scale of colours, which stay while numbers waver a little.
+const PAUSE = 250;
+const SHRINKING = 1500;
+
+/** The extremes of finite numbers; [NaN, NaN] where there are none. */
+export function extremes(values: ArrayLike<number>): [number, number] {
+  let low = Infinity;
+  let high = -Infinity;
+  for (let i = 0; i < values.length; i++) {
+    const value = values[i]!;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low <= high ? [low, high] : [NaN, NaN];
+}
+
+/** Extremes that grow when they must, shrink when they are far too wide, and are exact at rest. */
+export class Extremes {
+  low = NaN;
+  high = NaN;
+  private changed = -Infinity;
+
+  /** Whether a change may be due at all [ms]. */
+  due(now: number): boolean {
+    return now - this.changed >= PAUSE;
+  }
+
+  /** Tell what is now; whether the ends have moved. */
+  take(low: number, high: number, resting: boolean, now: number): boolean {
+    if (Object.is(low, this.low) && Object.is(high, this.high)) return false;
+    const span = this.high - this.low;
+    const first = !(span >= 0);
+    const wide = high - low < 0.6 * span && now - this.changed > SHRINKING;
+    if (first || resting || wide || !(low <= high)) return this.set(low, high, now);
+    if (low >= this.low - 0.02 * span && high <= this.high + 0.02 * span) return false;
+    return this.set(Math.min(low, this.low), Math.max(high, this.high), now);
+  }
+
+  /** As for something else. */
+  forget(): void {
+    this.set(NaN, NaN, -Infinity);
+  }
+
+  private set(low: number, high: number, now: number): true {
+    [this.low, this.high, this.changed] = [low, high, now];
+    return true;
+  }
+}

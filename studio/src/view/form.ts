@@ -1,0 +1,106 @@
+// What a topology has to show, by particles: springs, faces, edges and lines that no spring shows.
+import type { Topology } from "../model";
+
+export interface Form {
+  particles: number;
+  /** Pairs of particles. */
+  springs: Int32Array;
+  /** Pairs of particles: edges of faces and pieces of polylines where there is no spring. */
+  edges: Int32Array;
+  strokes: Int32Array;
+  triangles: Uint32Array;
+  /** Sum of the loads on each loaded particle [force] */
+  loaded: Int32Array;
+  loads: Float32Array;
+  /** Between particles that are joined, in the middle [length]; 0 where none are. */
+  spacing: number;
+}
+
+/** What there is to draw of a topology. */
+export function form(topology: Topology): Form {
+  const known = new Set<number>();
+  const key = (a: number, b: number) => Math.min(a, b) * topology.particles + Math.max(a, b);
+  const fresh = (a: number, b: number) => a !== b && a >= 0 && b >= 0 && !known.has(key(a, b)) && known.add(key(a, b));
+  const springs = Int32Array.from(topology.springs.flat());
+  topology.springs.forEach(([a, b]) => known.add(key(a, b)));
+  const strokes: number[] = [];
+  for (const [a, b] of pieces(topology)) if (fresh(a, b)) strokes.push(a, b);
+  const all = faces(topology);
+  const edges: number[] = [];
+  for (const face of all) face.forEach((a, i) => fresh(a, face[(i + 1) % face.length]!) && edges.push(a, face[(i + 1) % face.length]!));
+  const ends = springs.length ? springs : edges;
+  return {
+    particles: topology.particles,
+    springs,
+    edges: Int32Array.from(edges),
+    strokes: Int32Array.from(strokes),
+    triangles: triangles(all),
+    ...summed(topology),
+    spacing: median(topology, ends),
+  };
+}
+
+/** Faces of all meshes, each once, by particles. A mesh that is carried is mostly one that forces act on, too. */
+function faces(topology: Topology): number[][] {
+  const carried = topology.geometry.filter((item) => item.kind === "mesh" && item.faces).map((item) => {
+    const riders = item.particles.flat();
+    return item.faces!.map((face) => face.map((corner) => riders[corner] ?? -1));
+  });
+  const seen = new Set<string>();
+  const found: number[][] = [];
+  for (const face of [...Object.values(topology.meshes).map((mesh) => mesh.faces), ...carried].flat()) {
+    const name = face.join();
+    if (face.some((corner) => corner < 0) || seen.has(name)) continue;
+    seen.add(name);
+    found.push(face);
+  }
+  return found;
+}
+
+/** Pairs of neighbours on polylines, curves and lines. */
+function pieces(topology: Topology): [number, number][] {
+  const found: [number, number][] = [];
+  for (const { kind, particles } of topology.geometry) {
+    const riders = particles.flat();
+    const [step, last] = kind === "lines" ? [2, riders.length - 1] : [1, riders.length - 1];
+    if (kind === "mesh" || kind === "points") continue;
+    for (let i = 0; i < last; i += step) found.push([riders[i]!, riders[i + 1]!]);
+  }
+  return found;
+}
+
+function triangles(all: number[][]): Uint32Array {
+  const corners = new Uint32Array(6 * all.length);
+  let count = 0;
+  for (const [a, b, c, d] of all as [number, number, number, number?][]) {
+    corners.set([a, b, c], count);
+    count += 3;
+    if (d === undefined || d === c) continue;
+    corners.set([a, c, d], count);
+    count += 3;
+  }
+  return corners.slice(0, count);
+}
+
+function summed(topology: Topology): { loaded: Int32Array; loads: Float32Array } {
+  const sums = new Map<number, [number, number, number]>();
+  for (const { particles, vectors } of topology.loads) {
+    particles.forEach((particle, i) => {
+      const sum = sums.get(particle) ?? [0, 0, 0];
+      vectors[i]!.forEach((value, axis) => (sum[axis as 0 | 1 | 2] += value));
+      sums.set(particle, sum);
+    });
+  }
+  const acting = [...sums].filter(([, sum]) => sum.some((value) => value !== 0));
+  return { loaded: Int32Array.from(acting, ([particle]) => particle), loads: Float32Array.from(acting.flatMap(([, sum]) => sum)) };
+}
+
+function median(topology: Topology, ends: ArrayLike<number>): number {
+  const lengths: number[] = [];
+  const step = 2 * Math.max(1, Math.floor(ends.length / 2000));
+  for (let i = 0; i + 1 < ends.length; i += step) {
+    const [p, q] = [topology.start[ends[i]!]!, topology.start[ends[i + 1]!]!];
+    lengths.push(Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+  }
+  return lengths.sort((a, b) => a - b)[lengths.length >> 1] ?? 0;
+}

@@ -1,0 +1,243 @@
+// All that is drawn of a session: made from its topology, filled from its frames, dressed as the options say.
+import { Box3, Vector3 } from "three";
+import type { Frame } from "../frame";
+import type { Anchor } from "../model";
+import { Arrows } from "./arrows";
+import { channels, type Palette, palette, type Ramp } from "./colours";
+import { Column } from "./columns";
+import type { Form } from "./form";
+import { Marks } from "./marks";
+import { Plane } from "./plane";
+import { Segments } from "./segments";
+import { Skin } from "./skin";
+import type { Stage } from "./stage";
+import type { Colouring, Layer } from "./types";
+
+const ARROW = 0.13;
+const MANY_ARROWS = 60;
+const MOST_ARROWS = 1500;
+const FLOOR_REACH = 1.6;
+
+export interface Dress {
+  colouring: Colouring;
+  layers: Record<Layer, boolean>;
+  dark: boolean;
+  ramp: Ramp;
+  /** Length of a CSS pixel. */
+  pixel: number;
+}
+
+interface Parts {
+  springs: Segments;
+  edges: Segments;
+  strokes: Segments;
+  skin: Skin;
+  loads: Arrows;
+}
+
+export class Picture {
+  form: Form | null = null;
+  /** Diagonal of the form [length]. */
+  size = 1;
+  readonly anchors: Marks;
+  readonly partial: Marks;
+  readonly dots: Marks;
+  readonly floor: Plane;
+  reactions: Arrows | null = null;
+  private held: number[] = [];
+  private parts: Parts | null = null;
+  private positions: Column | null = null;
+  private forces: Column | null = null;
+  private rest: Column | null = null;
+  private readonly box = new Box3();
+
+  constructor(private readonly stage: Stage) {
+    this.floor = new Plane(stage.common, 1);
+    this.dots = new Marks(stage.common, "disc", 4);
+    this.anchors = new Marks(stage.common, "square", 5);
+    this.partial = new Marks(stage.common, "diamond", 5);
+    stage.group.add(this.floor.mesh, this.dots.points, this.anchors.points, this.partial.points);
+  }
+
+  /** Another form. */
+  build(form: Form): void {
+    this.strip();
+    const { common, group } = this.stage;
+    this.form = form;
+    this.positions = new Column(form.particles, 3);
+    this.forces = new Column(form.springs.length / 2, 1);
+    common.positions.value = this.positions.texture;
+    const kept = Math.ceil(form.loaded.length / MOST_ARROWS);
+    const parts = (this.parts = {
+      springs: new Segments(common, form.springs, 3),
+      edges: new Segments(common, form.edges, 2),
+      strokes: new Segments(common, form.strokes, 2),
+      skin: new Skin(common, form.triangles),
+      loads: new Arrows(common, form.loaded.filter((_, i) => i % kept === 0), false),
+    });
+    parts.springs.style.forces.value = this.forces.texture;
+    parts.loads.put(this.stage.renderer, form.loads.filter((_, i) => Math.floor(i / 3) % kept === 0));
+    group.add(parts.springs.mesh, parts.edges.mesh, parts.strokes.mesh, parts.skin.mesh, parts.loads.mesh);
+    this.dots.put(Int32Array.from({ length: form.particles }, (_, i) => i));
+  }
+
+  /** A frame of this form. */
+  put(frame: Frame): void {
+    const { renderer } = this.stage;
+    this.positions!.put(renderer, frame.positions);
+    if (frame.springForces.length) this.forces!.put(renderer, frame.springForces);
+    if (!this.reactions || frame.reactions.length !== 3 * this.held.length) return;
+    this.reactions.put(renderer, frame.reactions);
+  }
+
+  /** How large the form is now, and where. */
+  survey(frame: Frame): void {
+    this.box.setFromArray(frame.positions);
+    const size = this.box.getSize(new Vector3()).length() || 1;
+    if (Math.abs(size / this.size - 1) > 0.2) this.size = size;
+    const middle = this.box.getCenter(new Vector3());
+    const { centre } = this.stage.common;
+    if (centre.value.distanceTo(middle) > 0.2 * this.size) centre.value.copy(middle);
+    this.stage.group.position.copy(centre.value);
+  }
+
+  /** The anchors now. */
+  hold(anchors: Anchor[]): void {
+    const axes = new Map<number, Set<string>>();
+    for (const anchor of anchors) {
+      for (const particle of anchor.particles) {
+        const held = axes.get(particle) ?? new Set();
+        for (const axis of anchor.axes) held.add(axis);
+        axes.set(particle, held);
+      }
+    }
+    const all = [...axes].filter(([, held]) => held.size);
+    this.anchors.put(all.filter(([, held]) => held.size === 3).map(([particle]) => particle));
+    this.partial.put(all.filter(([, held]) => held.size < 3).map(([particle]) => particle));
+    this.held = all.map(([particle]) => particle).sort((a, b) => a - b);
+    if (this.reactions) {
+      this.stage.group.remove(this.reactions.mesh);
+      this.reactions.dispose();
+    }
+    this.reactions = new Arrows(this.stage.common, Int32Array.from(this.held), true);
+    this.stage.group.add(this.reactions.mesh);
+  }
+
+  /** Rest lengths [length], for strains. */
+  know(lengths: Float32Array | null): void {
+    this.rest?.dispose();
+    this.rest = null;
+    if (!lengths || !this.parts || lengths.length !== this.parts.springs.count) return;
+    this.rest = new Column(lengths.length, 1);
+    this.rest.put(this.stage.renderer, lengths);
+    this.parts.springs.style.restLengths.value = this.rest.texture;
+  }
+
+  /** Whether strains are known. */
+  get strained(): boolean {
+    return this.rest !== null;
+  }
+
+  /** Colours, sizes and what is shown. */
+  dress(dress: Dress): void {
+    const { form, parts } = this;
+    if (!form || !parts) return;
+    const colours = palette(dress.dark);
+    const { layers } = dress;
+    const gap = form.spacing / dress.pixel;
+    this.stage.renderer.setClearColor(colours.ground);
+    parts.skin.mesh.visible = layers.mesh && form.triangles.length > 0;
+    parts.skin.style.shade.value = channels(colours.skin);
+    this.lines(parts, dress, colours, gap);
+    this.marks(dress, colours, gap);
+    const spread = form.loaded.length > MANY_ARROWS ? 2.2 * form.spacing * Math.sqrt(Math.ceil(form.loaded.length / MOST_ARROWS)) : 0;
+    this.arrows(parts.loads, layers.loads, colours.load, spread);
+    if (this.reactions) this.arrows(this.reactions, layers.reactions, colours.reaction, this.held.length > MANY_ARROWS ? 6 * form.spacing : 0);
+    this.floor.style.shade.value = channels(colours.floor);
+    this.floor.style.strength.value = dress.dark ? 0.75 : 0.9;
+  }
+
+  /** Through a point across a normal [length]; null for none. */
+  lay(floor: { point: Vector3; normal: Vector3 } | null, shown: boolean): void {
+    this.floor.mesh.visible = floor !== null && shown;
+    if (!floor) return;
+    const middle = this.box.isEmpty() ? floor.point : this.box.getCenter(new Vector3());
+    this.floor.lay(floor.point, floor.normal, middle, FLOOR_REACH * this.size);
+  }
+
+  dispose(): void {
+    this.strip();
+    this.reactions?.dispose();
+    for (const part of [this.floor, this.dots, this.anchors, this.partial]) part.dispose();
+  }
+
+  private lines(parts: Parts, dress: Dress, colours: Palette, gap: number): void {
+    const { springs, edges, strokes } = parts;
+    const { style } = springs;
+    const { colours: stops, first, last } = dress.ramp;
+    springs.mesh.visible = dress.layers.springs && springs.count > 0;
+    style.width.value = clamp(0.1 * gap, 1.5, 3.4);
+    style.colouring.value = dress.colouring === "force" ? 1 : dress.colouring === "strain" && this.rest ? 2 : 0;
+    [style.low.value, style.high.value] = [first, last];
+    style.slack.value = 1e-9 * Math.max(Math.abs(first), Math.abs(last));
+    stops.forEach((stop, i) => style.stops.value[i]!.set(...channels(stop)));
+    style.count.value = stops.length;
+    style.plain.value = [...channels(colours.plain), 1];
+    style.slackColour.value = channels(colours.slack);
+    edges.mesh.visible = dress.layers.mesh && edges.count > 0 && gap > 3;
+    edges.style.width.value = 1;
+    edges.style.plain.value = [...channels(colours.edge), clamp((gap - 3) / 12, 0, 0.7)];
+    strokes.mesh.visible = dress.layers.springs && strokes.count > 0;
+    strokes.style.width.value = 1.8;
+    strokes.style.plain.value = [...channels(colours.ink), 0.9];
+  }
+
+  private marks(dress: Dress, colours: Palette, gap: number): void {
+    const { dots, anchors, partial, form } = this;
+    const ink = channels(colours.ink);
+    dots.points.visible = dress.layers.particles && this.dotted(dress.pixel);
+    dots.style.diameter.value = form!.springs.length || form!.triangles.length ? clamp(0.2 * gap, 3.5, 8) : clamp(400 / Math.sqrt(form!.particles), 3, 10);
+    dots.style.fill.value = [...channels(colours.dot), 1];
+    dots.style.outline.value = [...ink, 1];
+    for (const mark of [anchors, partial]) {
+      mark.points.visible = dress.layers.anchors && mark.points.geometry.drawRange.count > 0;
+      mark.style.diameter.value = clamp(0.7 * gap, 8, 14);
+      mark.style.outline.value = [...channels(colours.ground), 1];
+      mark.style.fill.value = [...ink, 1];
+    }
+    partial.style.fill.value = [...channels(colours.accent), 1];
+    partial.style.outline.value = [...ink, 1];
+  }
+
+  /** Whether single particles can be told apart, so that each has its dot. */
+  dotted(pixel: number): boolean {
+    const { form } = this;
+    if (!form) return false;
+    return form.particles <= 60 || form.spacing / pixel > 14 || !(form.springs.length || form.triangles.length);
+  }
+
+  private arrows(arrows: Arrows, shown: boolean, colour: string, most: number): void {
+    arrows.mesh.visible = shown && arrows.particles.length > 0 && arrows.largest > 0;
+    const reach = Math.min(ARROW * this.size, most || Infinity);
+    arrows.style.scale.value = reach / (arrows.largest || 1);
+    const few = arrows.particles.length <= MANY_ARROWS;
+    arrows.style.width.value = few ? 2.2 : 1.2;
+    arrows.style.head.value = few ? 11 : 6;
+    arrows.style.shade.value = channels(colour);
+  }
+
+  private strip(): void {
+    const { parts } = this;
+    this.positions?.dispose();
+    this.forces?.dispose();
+    this.know(null);
+    if (!parts) return;
+    for (const part of Object.values(parts) as { mesh: Segments["mesh"] | Skin["mesh"]; dispose(): void }[]) {
+      this.stage.group.remove(part.mesh);
+      part.dispose();
+    }
+    this.parts = null;
+  }
+}
+
+const clamp = (value: number, low: number, high: number) => Math.min(high, Math.max(low, value));

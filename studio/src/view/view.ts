@@ -1,0 +1,258 @@
+// The view of a session: what is on the canvas. A picture is drawn only when something has changed.
+import { effect, signal } from "@preact/signals";
+import { Vector3 } from "three";
+import type { Frame } from "../frame";
+import type { Scene } from "../model";
+import type { Session } from "../session";
+import { note, stats } from "../stats";
+import { Eye } from "./camera";
+import { ramp } from "./colours";
+import { Extremes, extremes } from "./extremes";
+import { form } from "./form";
+import { Picture } from "./picture";
+import { Stage } from "./stage";
+import type { Legend, Look, Options, View } from "./types";
+
+const REST = 220;
+
+/** Show `session` on `canvas`. An Error says in a sentence why it cannot be shown here. */
+export function createView(canvas: HTMLCanvasElement, session: Session, options: Options): View {
+  return new Drawing(canvas, session, options);
+}
+
+class Drawing implements View {
+  readonly legend = signal<Legend | null>(null);
+  readonly rate = signal(0);
+  private readonly stage: Stage;
+  private readonly eye: Eye;
+  private readonly picture: Picture;
+  private readonly scale = new Extremes();
+  private readonly undo: (() => void)[] = [];
+  private frame: Frame | null = null;
+  private drawn: Frame | null = null;
+  private fitted = false;
+  private asked = 0;
+  private last = 0;
+  private rest = 0;
+  private counting = 0;
+  private count = 0;
+
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly session: Session, private readonly options: Options) {
+    this.stage = new Stage(canvas);
+    this.eye = new Eye(canvas, this.ask);
+    this.picture = new Picture(this.stage);
+    this.watchCanvas();
+    this.watchSession();
+  }
+
+  fit(): void {
+    if (this.drawn) this.eye.fit(this.drawn.positions);
+  }
+
+  look(from: Look): void {
+    if (this.drawn) this.eye.fit(this.drawn.positions, from);
+  }
+
+  show(particles: number[]): void {
+    const { positions } = this.drawn ?? { positions: [] };
+    if (particles.length) this.eye.fit(particles.flatMap((i) => [positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!]));
+  }
+
+  async png(): Promise<Blob> {
+    this.dress();
+    const made = this.stage.png(this.eye.camera);
+    this.ask();
+    return made;
+  }
+
+  project(particle: number): { x: number; y: number } | null {
+    const positions = this.particles();
+    if (!(particle >= 0 && 3 * particle + 2 < positions.length)) return null;
+    this.eye.camera.updateMatrixWorld();
+    const at = new Vector3().fromArray(positions, 3 * particle).applyMatrix4(this.eye.camera.matrixWorldInverse);
+    if (at.z >= 0) return null;
+    at.applyMatrix4(this.eye.camera.projectionMatrix);
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    return { x: left + ((at.x + 1) / 2) * width, y: top + ((1 - at.y) / 2) * height };
+  }
+
+  particles(): Float32Array {
+    return this.drawn?.positions ?? new Float32Array();
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.asked);
+    clearTimeout(this.rest);
+    clearTimeout(this.counting);
+    this.undo.reverse().forEach((undo) => undo());
+    this.eye.dispose();
+    this.picture.dispose();
+    this.stage.dispose();
+  }
+
+  private watchCanvas(): void {
+    const observer = new ResizeObserver(() => this.resize());
+    observer.observe(this.canvas);
+    this.undo.push(() => observer.disconnect());
+    const restored = () => {
+      this.drawn = null;
+      this.ask();
+    };
+    this.canvas.addEventListener("webglcontextrestored", restored);
+    this.undo.push(() => this.canvas.removeEventListener("webglcontextrestored", restored));
+    this.resize();
+  }
+
+  private watchSession(): void {
+    const { session, options, picture } = this;
+    this.undo.push(
+      effect(() => {
+        const topology = session.topology.value;
+        if (!topology) return;
+        picture.build(form(topology));
+        this.frame = this.drawn = null;
+        this.scale.forget();
+      }),
+      effect(() => {
+        void session.topology.value;
+        picture.hold(session.anchors.value);
+        this.drawn = null;
+        this.ask();
+      }),
+      effect(() => {
+        void session.topology.value;
+        picture.know(options.restLengths.value);
+        this.scale.forget();
+        this.ask();
+      }),
+      effect(() => {
+        void options.colouring.value;
+        this.scale.forget();
+        this.ask();
+      }),
+      effect(() => {
+        for (const option of [options.layers, options.dark, options.picked, options.marked, session.scene]) void option.value;
+        this.ask();
+      }),
+      session.onFrame((frame) => {
+        this.frame = frame;
+        this.ask();
+      }),
+    );
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    this.stage.resize(clientWidth, clientHeight);
+    this.eye.shape(this.stage.width, this.stage.height);
+    this.ask();
+  }
+
+  /** Something has changed: draw soon. */
+  private readonly ask = (): void => {
+    this.asked ||= requestAnimationFrame(this.tick);
+  };
+
+  private readonly tick = (now: number): void => {
+    this.asked = 0;
+    const glides = this.eye.step(now);
+    if (!this.draw(false)) return;
+    if (now - this.last < 250) this.stage.pace.note(now - this.last);
+    this.last = now;
+    clearTimeout(this.rest);
+    if (glides) this.ask();
+    else this.rest = window.setTimeout(() => this.draw(true), REST);
+  };
+
+  /** Draw what is newest; whether that was possible. */
+  private draw(finely: boolean): boolean {
+    const { frame, picture, stage, eye } = this;
+    if (!frame || frame.positions.length !== 3 * (picture.form?.particles ?? -1)) return false;
+    // an edit is acknowledged and its first frame is on its way
+    if (frame.revision < stats.revisionAcknowledged || stage.renderer.getContext().isContextLost()) return false;
+    if (this.drawn !== frame) this.upload(frame);
+    this.survey(frame, finely);
+    if (!this.fitted) {
+      this.fitted = true;
+      eye.first(frame.positions);
+    }
+    this.dress();
+    eye.reach(stage.common.centre.value, picture.size * 2);
+    stage.draw(eye.camera, finely);
+    this.counted(frame);
+    return true;
+  }
+
+  private upload(frame: Frame): void {
+    const began = performance.now();
+    this.picture.put(frame);
+    note(stats.uploadMilliseconds, performance.now() - began);
+    if (!this.drawn) this.picture.survey(frame);
+    this.drawn = frame;
+  }
+
+  /** Now and then: how large all is, and which numbers occur. */
+  private survey(frame: Frame, finely: boolean): void {
+    const now = performance.now();
+    const resting = finely || !frame.playing;
+    if (!resting && !this.scale.due(now)) return;
+    this.picture.survey(frame);
+    const [low, high] = extremes(this.numbers(frame));
+    if (this.scale.take(low, high, resting, now)) this.relabel();
+  }
+
+  private numbers(frame: Frame): ArrayLike<number> {
+    const { restLengths, colouring } = this.options;
+    if (colouring.value === "force") return frame.springForces;
+    const lengths = restLengths.value;
+    const ends = this.picture.form!.springs;
+    if (colouring.value === "plain" || !lengths || !this.picture.strained) return [];
+    const p = frame.positions;
+    return lengths.map((rest, i) => {
+      const [a, b] = [3 * ends[2 * i]!, 3 * ends[2 * i + 1]!];
+      return rest > 0 ? Math.hypot(p[a]! - p[b]!, p[a + 1]! - p[b + 1]!, p[a + 2]! - p[b + 2]!) / rest - 1 : NaN;
+    });
+  }
+
+  private relabel(): void {
+    const { low, high } = this.scale;
+    const force = this.options.colouring.value === "force";
+    const { colours, first, last } = ramp(low, high, this.options.dark.value);
+    const unit = force ? (this.session.topology.value?.units.force ?? "") : "-";
+    this.legend.value = low <= high ? { title: force ? "Force" : "Strain", unit, low: first, high: last, colours } : null;
+  }
+
+  private dress(): void {
+    const { options, picture, eye, stage, scale } = this;
+    picture.dress({
+      colouring: options.colouring.value,
+      layers: options.layers.value,
+      dark: options.dark.value,
+      ramp: ramp(scale.low, scale.high, options.dark.value),
+      pixel: eye.pixel(stage.height),
+    });
+    picture.lay(floorOf(this.session.scene.value), options.layers.value.floor);
+  }
+
+  private counted(frame: Frame): void {
+    stats.framesDrawn += 1;
+    stats.revisionDrawn = frame.revision;
+    if (frame.revision < stats.revisionAcknowledged) stats.staleFramesDrawn += 1;
+    this.count += 1;
+    this.counting ||= window.setTimeout(this.tally, 1000);
+  }
+
+  private readonly tally = (): void => {
+    this.rate.value = this.count;
+    this.counting = this.count ? window.setTimeout(this.tally, 1000) : 0;
+    this.count = 0;
+  };
+}
+
+/** The floor of a scene's settings; null for none. */
+function floorOf(scene: Scene | null): { point: Vector3; normal: Vector3 } | null {
+  const floor = scene?.settings["floor"];
+  if (!floor) return null;
+  const { point, normal } = floor as { point?: number[]; normal?: number[] };
+  return { point: new Vector3(...(point ?? [0, 0, 0])), normal: new Vector3(...(normal ?? [0, 0, 1])) };
+}
