@@ -1,14 +1,9 @@
 import { render } from "preact";
+import "uplot/dist/uPlot.min.css";
+import "./style.css";
+import { App } from "./ui/app";
+import { begin } from "./ui/place";
 
-function Page() {
-  return (
-    <main>
-      <h1>hookean</h1>
-    </main>
-  );
-}
-
-const place = document.getElementById("page");
-if (place) {
-  render(<Page />, place);
-}
+begin();
+const page = document.getElementById("page");
+if (page) render(<App />, page);

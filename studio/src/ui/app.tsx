@@ -1,0 +1,31 @@
+// The whole page: a start page, and one for each session; files can be dropped on both.
+import { Entry } from "./entry";
+import { Notices } from "./notices";
+import { Dropping } from "./opening";
+import { entries, entry, place } from "./place";
+import { Start } from "./start";
+import { SessionPage } from "./studio";
+
+export function App() {
+  return (
+    <>
+      <a class="skip" href="#main" onClick={skip}>Skip to the content</a>
+      <Shown />
+      <Notices />
+      <Dropping />
+    </>
+  );
+}
+
+function Shown() {
+  if (entry.value === "out") return <Entry />;
+  if (entry.value === "asking") return <main id="main" class="entry" tabIndex={-1}><p>Asking the service ...</p></main>;
+  const key = place.value;
+  return key ? <SessionPage key={`${key} ${entries.value}`} name={key} /> : <Start />;
+}
+
+// the part behind # says which session is shown, so the link moves the focus itself
+function skip(event: Event): void {
+  event.preventDefault();
+  document.getElementById("main")?.focus();
+}

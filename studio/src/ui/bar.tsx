@@ -1,0 +1,85 @@
+// The bar on top: which session, whether it is heard, and what makes it go.
+import type { Connection } from "../session";
+import type { Action } from "../model";
+import { type Mark, Icon } from "./icons";
+import { go } from "./place";
+import type { Studio } from "./studio";
+import { ThemeChoice } from "./themechoice";
+
+const CHIPS: Record<Connection, string> = {
+  connecting: "Connecting ...",
+  live: "Live",
+  silent: "Nothing heard",
+  lost: "Reconnecting ...",
+  locked: "Not logged in",
+  gone: "Gone",
+  broken: "Not readable",
+};
+
+export function Bar({ studio, title }: { studio: Studio; title: string }) {
+  const connection = studio.session.connection.value;
+  return (
+    <header class="bar">
+      <a
+        class="back"
+        href={location.pathname}
+        onClick={(event) => {
+          event.preventDefault();
+          go("");
+        }}
+      >
+        All sessions
+      </a>
+      <h1 title={title}>{title}</h1>
+      <span class={`chip ${connection}`} role="status">{CHIPS[connection]}</span>
+      <Transport studio={studio} />
+      <ThemeChoice />
+    </header>
+  );
+}
+
+interface Control {
+  name: string;
+  mark: Mark;
+  action: Action;
+  fast?: boolean;
+  hint: string;
+  keys?: string;
+}
+
+const CONTROLS: Control[] = [
+  { name: "Play", mark: "play", action: "play", hint: "On by itself, in time", keys: "Space" },
+  { name: "Pause", mark: "pause", action: "pause", hint: "Stop where it is", keys: "Space" },
+  { name: "Step", mark: "step", action: "step", hint: "One frame on", keys: "." },
+  { name: "To rest", mark: "rest", action: "play", fast: true, hint: "As quickly as it can, until it is at rest" },
+  { name: "Reset", mark: "reset", action: "reset", hint: "Back to the start; edits stay" },
+  { name: "Undo", mark: "undo", action: "undo", hint: "Take the last edit back", keys: "Control+Z" },
+  { name: "Redo", mark: "redo", action: "redo", hint: "Make it again", keys: "Control+Shift+Z" },
+];
+
+function Transport({ studio: { session } }: { studio: Studio }) {
+  const summary = session.summary.value;
+  const live = session.connection.value === "live" || session.connection.value === "silent";
+  const able = (action: Action) =>
+    live && (action === "undo" ? summary?.undo !== 0 : action === "redo" ? summary?.redo !== 0 : true);
+  const pressed = (name: string) =>
+    name === "Play" ? summary?.playing === true : name === "Pause" ? summary?.playing === false : undefined;
+  return (
+    <div class="transport" role="group" aria-label="Time">
+      {CONTROLS.map(({ name, mark, action, fast, hint, keys }) => (
+        <button
+          key={name}
+          type="button"
+          disabled={!able(action)}
+          aria-pressed={pressed(name)}
+          aria-keyshortcuts={keys}
+          title={keys ? `${hint} (${keys})` : hint}
+          onClick={() => void session.tell(action, fast ? { fast } : {})}
+        >
+          <Icon mark={mark} />
+          {name}
+        </button>
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,50 @@
+// What was refused or done, in sentences that stay until they are closed or the next one comes.
+import { signal } from "@preact/signals";
+import { Refused } from "../api";
+
+interface Notice {
+  kind: "refused" | "done";
+  sentence: string;
+  details: string[];
+}
+
+const notice = signal<Notice | null>(null);
+
+/** Say what went wrong, with the places the service named. */
+export function refuse(error: unknown, before = ""): void {
+  const sentence = error instanceof Error ? error.message : String(error);
+  const errors = error instanceof Refused ? error.errors : [];
+  const details = errors.map((e) => `${e.pointer}: ${e.detail}`).filter((detail) => !sentence.includes(detail));
+  notice.value = { kind: "refused", sentence: before + sentence, details };
+}
+
+/** Say what was done. */
+export function tell(sentence: string, details: string[] = []): void {
+  notice.value = { kind: "done", sentence, details };
+}
+
+export const quiet = () => (notice.value = null);
+
+export function Notices() {
+  const now = notice.value;
+  return (
+    <div class="notices">
+      <div role="alert">{now?.kind === "refused" && <Said notice={now} />}</div>
+      <div role="status">{now?.kind === "done" && <Said notice={now} />}</div>
+    </div>
+  );
+}
+
+function Said({ notice }: { notice: Notice }) {
+  return (
+    <div class={`notice ${notice.kind}`}>
+      <div>
+        <p>{notice.sentence}</p>
+        {notice.details.length > 0 && <ul>{notice.details.map((detail) => <li key={detail}>{detail}</li>)}</ul>}
+      </div>
+      <button type="button" class="plain" aria-label="Close the notice" onClick={quiet}>
+        ×
+      </button>
+    </div>
+  );
+}

@@ -1,0 +1,89 @@
+// Files become sessions: dropped anywhere, or chosen.
+import { signal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import * as api from "../api";
+import { quiet, refuse, tell } from "./notices";
+import { go, met } from "./place";
+
+const over = signal(false);
+const opening = signal("");
+
+const KINDS = ".3dm,.obj,.json";
+
+/** Open a file as a new session and go there. */
+async function openFile(file: File): Promise<void> {
+  opening.value = file.name;
+  quiet();
+  try {
+    const made = await api.open(file);
+    go(made.key);
+    const warnings = made.warnings ?? [];
+    if (warnings.length) tell(`${file.name} is open. What was noticed in it:`, warnings);
+  } catch (error) {
+    met(error);
+    refuse(error, `${file.name} was not opened. `);
+  } finally {
+    opening.value = "";
+  }
+}
+
+/** A button to choose a file, which also says where to drop one. */
+export function FileButton() {
+  const input = useRef<HTMLInputElement>(null);
+  return (
+    <div class="drop">
+      <p>Drop a file anywhere on this page: a Rhino model (.3dm), an OBJ mesh, a COMPAS document or a scene (.json).</p>
+      <button type="button" disabled={opening.value !== ""} onClick={() => input.current?.click()}>
+        {opening.value ? `Opening ${opening.value} ...` : "Open a file ..."}
+      </button>
+      <input
+        ref={input}
+        class="unseen"
+        type="file"
+        accept={KINDS}
+        aria-label="File to open"
+        tabIndex={-1}
+        onChange={(event) => {
+          const [file] = event.currentTarget.files ?? [];
+          event.currentTarget.value = "";
+          if (file) void openFile(file);
+        }}
+      />
+    </div>
+  );
+}
+
+/** Takes what is dropped on the page, and shows that it may be. */
+export function Dropping() {
+  useEffect(() => {
+    const end = new AbortController();
+    const listen = { signal: end.signal };
+    window.addEventListener("dragover", dragged, listen);
+    window.addEventListener("dragleave", (event) => event.relatedTarget === null && (over.value = false), listen);
+    window.addEventListener("drop", dropped, listen);
+    return () => end.abort();
+  }, []);
+  return (
+    <>
+      {over.value && <div class="dropping" aria-hidden="true"><p>Drop it: it becomes a session</p></div>}
+      <p class="unseen" role="status">{opening.value && `Opening ${opening.value} ...`}</p>
+    </>
+  );
+}
+
+const holdsFiles = (event: DragEvent) => event.dataTransfer?.types.includes("Files") === true;
+
+function dragged(event: DragEvent): void {
+  if (!holdsFiles(event)) return;
+  event.preventDefault();
+  over.value = true;
+}
+
+function dropped(event: DragEvent): void {
+  if (!holdsFiles(event)) return;
+  event.preventDefault();
+  over.value = false;
+  const files = [...(event.dataTransfer?.files ?? [])];
+  if (files.length > 1) refuse(new Error(`${files.length} files were dropped; drop one at a time.`));
+  else if (files[0]) void openFile(files[0]);
+}

@@ -1,0 +1,72 @@
+// Where the page is, which the address says: #s=KEY is a session, nothing the start page; #t=TOKEN logs in.
+import { signal } from "@preact/signals";
+import * as api from "../api";
+
+/** Key of the session that is shown; "" on the start page. */
+export const place = signal("");
+/** Whether the service lets this browser in, as far as it is known. */
+export const entry = signal<"asking" | "in" | "out">("asking");
+/** Counts log-ins: what was refused before one is tried anew after it. */
+export const entries = signal(0);
+/** Why a token was refused; "" for nothing. */
+export const refusedEntry = signal("");
+
+/** The address of a session on this page, which opens it wherever it is pasted. */
+export const linkTo = (key: string) => `#s=${encodeURIComponent(key)}`;
+
+/** Show a session; the page before is a step back away. */
+export function go(key: string): void {
+  history.pushState(null, "", key ? linkTo(key) : location.pathname);
+  read();
+}
+
+/** Follow the address from now on, and log in where it has a token. */
+export function begin(): void {
+  window.addEventListener("popstate", () => read());
+  window.addEventListener("hashchange", () => read());
+  if (!read()) void look();
+}
+
+/** Log in with a token, or with the whole address that has one. */
+export async function enter(told: string): Promise<void> {
+  const token = told.trim().replace(/^.*#(.*&)?t=([^&]*).*$/, "$2");
+  try {
+    await api.login(token);
+    refusedEntry.value = "";
+    entry.value = "in";
+    entries.value += 1;
+  } catch (error) {
+    refusedEntry.value = error instanceof Error ? error.message : String(error);
+    entry.value = "out";
+  }
+}
+
+/** To be told of what the service refused: a log-in that is no more leads to the door. */
+export function met(error: unknown): void {
+  if (error instanceof api.Refused && (error.status === 401 || error.status === 403)) entry.value = "out";
+}
+
+/** Read the address; whether it had a token. */
+function read(): boolean {
+  const told = new URLSearchParams(location.hash.slice(1));
+  const token = told.get("t");
+  const key = told.get("s") ?? "";
+  if (token) {
+    // neither the history nor a copied address keeps the token
+    history.replaceState(null, "", key ? linkTo(key) : location.pathname);
+    void enter(token);
+  }
+  place.value = key;
+  return token !== null;
+}
+
+async function look(): Promise<void> {
+  try {
+    await api.sessions();
+    if (entry.value === "asking") entry.value = "in";
+  } catch (error) {
+    met(error);
+    // a service that does not answer is told by what asks next
+    if (entry.value === "asking") entry.value = "in";
+  }
+}

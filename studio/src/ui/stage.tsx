@@ -1,0 +1,38 @@
+// The canvas, and what is said over it.
+import { useEffect, useRef, useState } from "preact/hooks";
+import { expose } from "../view/automation";
+import { createView } from "../view/view";
+import { dark } from "./theme";
+import { Report } from "./report";
+import type { Studio } from "./studio";
+
+export function Stage({ studio }: { studio: Studio }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [fault, setFault] = useState("");
+  useEffect(() => {
+    if (!canvas.current) return;
+    try {
+      const view = createView(canvas.current, studio.session, studio.options);
+      expose(studio.session, view);
+      studio.view.value = view;
+      return () => {
+        studio.view.value = null;
+        view.dispose();
+      };
+    } catch (error) {
+      setFault(`This browser cannot draw the form: ${error instanceof Error ? error.message : String(error)}`);
+      return;
+    }
+  }, [studio]);
+  const now = dark.value;
+  useEffect(() => {
+    studio.options.dark.value = now;
+  }, [studio, now]);
+  return (
+    <>
+      <canvas ref={canvas} tabIndex={0} role="img" aria-label="The form as it is now; the panels tell it in numbers" />
+      {fault && <p class="fault over" role="alert">{fault}</p>}
+      <Report studio={studio} />
+    </>
+  );
+}

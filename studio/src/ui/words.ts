@@ -1,0 +1,53 @@
+// Numbers and units in words.
+import type { Units } from "../model";
+
+/** A number as people read it, with so many digits that count. */
+export function said(value: number, digits = 4): string {
+  if (!Number.isFinite(value)) return "-";
+  const size = Math.abs(value);
+  if (size === 0) return "0";
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(Math.max(0, digits - 2));
+  return String(Number(value.toPrecision(digits)));
+}
+
+/** The same with as many places as its neighbours of this size have, so that digits stay where they are. */
+export function placed(value: number, scale: number): string {
+  if (!Number.isFinite(value)) return "-";
+  const places = Math.min(9, Math.max(0, 4 - Math.floor(Math.log10(Math.max(scale, 1e-9)))));
+  return value.toFixed(places);
+}
+
+const POWERS: Record<string, string> = { "2": "²", "3": "³", "4": "⁴" };
+
+/** A unit of the catalogue, such as force/length, in those of a scene, such as kN/m; "" for none. */
+export function unit(words: string, units: Units | undefined): string {
+  if (words === "-" || words === "") return "";
+  const names: Record<string, string> = units ? { ...units, moment: `${units.force}·${units.length}`, angle: "rad" } : {};
+  return words
+    .replace(/[a-z]+/g, (word) => names[word] ?? word)
+    .replace(/\^(\d)/g, (_, power: string) => POWERS[power] ?? `^${power}`)
+    .replace(/ /g, "·");
+}
+
+/** A number with its unit. */
+export const measured = (value: number, unit: string) => (unit ? `${said(value)} ${unit}` : said(value));
+
+/** A field or kind of the catalogue as a heading: rest_factor is Rest factor. */
+export const titled = (name: string) => (name.charAt(0).toUpperCase() + name.slice(1)).replaceAll("_", " ");
+
+/** Counted things. */
+export const counted = (count: number, one: string) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;
+
+const NUMBERED = /\b(particle|spring)s? (\d+(?:(?:, and |, | and )\d+)*)/g;
+
+/** The particles a sentence speaks of, those at the ends of its springs included. */
+export function particlesOf(sentence: string, springs: [number, number][]): number[] {
+  const found = new Set<number>();
+  for (const [, what, numbers] of sentence.matchAll(NUMBERED)) {
+    for (const number of numbers!.split(/\D+/).map(Number)) {
+      const all = what === "particle" ? [number] : (springs[number] ?? []);
+      all.forEach((particle) => found.add(particle));
+    }
+  }
+  return [...found];
+}
