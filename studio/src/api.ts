@@ -78,5 +78,8 @@ export const exported = async (key: string, format: Format) => (await ask(`${at(
 /** The catalogue of forces: fields, units, defaults, bounds. */
 export const catalogue = async () => (await read<{ forces: Kind[] }>("/v1/forces")).forces;
 
+/** What the service takes and gives, as OpenAPI has it. */
+export const openapi = () => read<{ components: { schemas: Record<string, unknown> } }>("/v1/openapi.json");
+
 export const examples = async () => (await read<{ examples: Example[] }>("/v1/examples")).examples;
 export const exampleScene = (id: string) => read<Scene>(`/v1/examples/${encodeURIComponent(id)}/scene`);

@@ -107,7 +107,15 @@ export interface Kind {
   fields: Field[];
 }
 
-/** A column of a force. */
+/** What a number may be; more_than and less_than are bounds it does not reach. */
+export interface Bounds {
+  minimum?: number;
+  maximum?: number;
+  more_than?: number;
+  less_than?: number;
+}
+
+/** A column of a force, or a setting. */
 export interface Field {
   name: string;
   description: string;
@@ -115,7 +123,7 @@ export interface Field {
   unit: string;
   type: string;
   default: unknown;
-  bounds?: { minimum?: number; maximum?: number; above?: number; below?: number };
+  bounds?: Bounds;
   choices?: string[];
 }
 

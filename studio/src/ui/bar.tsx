@@ -2,6 +2,7 @@
 import type { Connection } from "../session";
 import type { Action } from "../model";
 import { type Mark, Icon } from "./icons";
+import { Keys } from "./keys";
 import { go } from "./place";
 import type { Studio } from "./studio";
 import { ThemeChoice } from "./themechoice";
@@ -33,6 +34,7 @@ export function Bar({ studio, title }: { studio: Studio; title: string }) {
       <h1 title={title}>{title}</h1>
       <span class={`chip ${connection}`} role="status">{CHIPS[connection]}</span>
       <Transport studio={studio} />
+      <Keys studio={studio} />
       <ThemeChoice />
     </header>
   );

@@ -1,6 +1,30 @@
-// What is beside the canvas.
+// What is beside the canvas, or below it where the screen is narrow.
+import type { ComponentChildren } from "preact";
+import { Charts } from "./charts";
+import { Forces } from "./forces";
+import { OutPanel } from "./out";
+import { PickedPanel } from "./picked";
+import { SeePanel } from "./see";
 import type { Studio } from "./studio";
 
-export function Panels({ studio: _studio, title: _title }: { studio: Studio; title: string }) {
-  return <aside class="panels" aria-label="Panels" />;
+export function Panels({ studio, title }: { studio: Studio; title: string }) {
+  return (
+    <aside class="panels" aria-label="Panels">
+      <Panel name="Picked"><PickedPanel studio={studio} /></Panel>
+      <Panel name="Forces"><Forces studio={studio} /></Panel>
+      <Panel name="See"><SeePanel studio={studio} /></Panel>
+      <Panel name="Charts"><Charts studio={studio} /></Panel>
+      <Panel name="Out"><OutPanel studio={studio} title={title} /></Panel>
+    </aside>
+  );
+}
+
+function Panel({ name, children }: { name: string; children: ComponentChildren }) {
+  const narrow = window.matchMedia("(max-width: 820px)").matches;
+  return (
+    <details class="panel" open={!narrow || name === "Picked" || name === "Forces"}>
+      <summary><h2>{name}</h2></summary>
+      <div class="inside">{children}</div>
+    </details>
+  );
 }

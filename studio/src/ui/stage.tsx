@@ -4,6 +4,7 @@ import { expose } from "../view/automation";
 import { createView } from "../view/view";
 import { dark } from "./theme";
 import { Report } from "./report";
+import { LegendBox, Looks } from "./see";
 import type { Studio } from "./studio";
 
 export function Stage({ studio }: { studio: Studio }) {
@@ -32,6 +33,8 @@ export function Stage({ studio }: { studio: Studio }) {
     <>
       <canvas ref={canvas} tabIndex={0} role="img" aria-label="The form as it is now; the panels tell it in numbers" />
       {fault && <p class="fault over" role="alert">{fault}</p>}
+      <Looks studio={studio} />
+      <LegendBox studio={studio} />
       <Report studio={studio} />
     </>
   );

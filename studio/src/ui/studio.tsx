@@ -1,12 +1,16 @@
 // The page of a session: the canvas, what drives it, and the panels.
-import { type Signal, signal } from "@preact/signals";
+import { effect, type Signal, signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { Session } from "../session";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
 import { Panels } from "./panels";
 import { entry } from "./place";
+import { Readings } from "./readings";
 import { Stage } from "./stage";
+import { remember, remembered } from "./theme";
+
+const LAYERS = "hookean-layers";
 
 /** All that the parts of this page share. */
 export interface Studio {
@@ -14,14 +18,23 @@ export interface Studio {
   options: Options;
   /** Null until there is a canvas, and where the browser cannot draw. */
   view: Signal<View | null>;
+  readings: Readings;
 }
 
 export function SessionPage({ name }: { name: string }) {
   const [studio, setStudio] = useState<Studio | null>(null);
   useEffect(() => {
     const session = new Session(name);
-    setStudio({ session, options: options(), view: signal(null) });
-    return () => session.close();
+    const chosen = options();
+    chosen.layers.value = { ...chosen.layers.value, ...remembered(LAYERS, {}) };
+    const forget = effect(() => remember(LAYERS, chosen.layers.value));
+    const readings = new Readings(session, chosen);
+    setStudio({ session, options: chosen, view: signal(null), readings });
+    return () => {
+      forget();
+      readings.dispose();
+      session.close();
+    };
   }, [name]);
   return studio && <Work studio={studio} />;
 }

@@ -10,13 +10,6 @@ export function said(value: number, digits = 4): string {
   return String(Number(value.toPrecision(digits)));
 }
 
-/** The same with as many places as its neighbours of this size have, so that digits stay where they are. */
-export function placed(value: number, scale: number): string {
-  if (!Number.isFinite(value)) return "-";
-  const places = Math.min(9, Math.max(0, 4 - Math.floor(Math.log10(Math.max(scale, 1e-9)))));
-  return value.toFixed(places);
-}
-
 const POWERS: Record<string, string> = { "2": "²", "3": "³", "4": "⁴" };
 
 /** A unit of the catalogue, such as force/length, in those of a scene, such as kN/m; "" for none. */

@@ -1,0 +1,116 @@
+// The last minute of a session as small charts, each with its newest number.
+import { useEffect, useRef } from "preact/hooks";
+import uPlot from "uplot";
+import type { Units } from "../model";
+import type { Session } from "../session";
+import { Recording, type Sample } from "./recording";
+import type { Studio } from "./studio";
+import { dark } from "./theme";
+import { measured, said } from "./words";
+
+interface Line {
+  name: string;
+  of: Exclude<keyof Sample, "at">;
+  unit: (units: Units | undefined) => string;
+  log?: boolean;
+}
+
+const energy = (units: Units | undefined) => (units ? `${units.force}·${units.length}` : "");
+
+const LINES: Line[] = [
+  { name: "Time", of: "time", unit: (units) => units?.time ?? "" },
+  { name: "Iteration", of: "iteration", unit: () => "" },
+  { name: "Residual", of: "residual", unit: () => "", log: true },
+  { name: "Kinetic energy", of: "kinetic", unit: energy },
+  { name: "Total energy", of: "total", unit: energy },
+];
+
+export function Charts({ studio: { session } }: { studio: Studio }) {
+  const recording = useRef<Recording | null>(null);
+  recording.current ??= new Recording(session);
+  useEffect(() => recording.current!.begin(), []);
+  return (
+    <div class="charts">
+      {LINES.map((line) => <Chart key={line.of} line={line} session={session} recording={recording.current!} />)}
+    </div>
+  );
+}
+
+interface Shown {
+  line: Line;
+  session: Session;
+  recording: Recording;
+}
+
+function Chart({ line, session, recording }: Shown) {
+  const place = useRef<HTMLDivElement>(null);
+  const isDark = dark.value;
+  useEffect(() => {
+    if (!place.current) return;
+    const plot = plotted(line, place.current);
+    const show = () => {
+      plot.setData([recording.times(), recording.of(line.of)]);
+    };
+    const sizes = new ResizeObserver(([entry]) => {
+      const width = Math.floor(entry?.contentRect.width ?? 0);
+      if (width > 0 && width !== plot.width) plot.setSize({ width, height: HEIGHT });
+    });
+    sizes.observe(place.current);
+    const stop = recording.onNew(show);
+    show();
+    return () => {
+      stop();
+      sizes.disconnect();
+      plot.destroy();
+    };
+  }, [isDark, recording]);
+  return (
+    <div class="chart">
+      <Newest line={line} session={session} recording={recording} />
+      <div class="plot" ref={place} aria-hidden="true" />
+    </div>
+  );
+}
+
+/** The newest number, and between what it was: what the chart shows, in words. */
+function Newest({ line, session, recording }: Shown) {
+  void session.ticks.value;
+  const last = recording.last.value;
+  const value = last?.[line.of] ?? null;
+  const unit = line.unit(session.topology.value?.units);
+  const [low, high] = recording.span(line.of);
+  const stale = session.connection.value !== "live" || !session.frame;
+  return (
+    <p class={stale ? "stale" : ""}>
+      <span>{line.name}</span>{" "}
+      <output class="number" aria-live="off">{value === null ? "-" : measured(value, unit)}</output>
+      {low < high && <span class="faint between">{said(low, 3)} to {measured(Number(high.toPrecision(3)), unit)} in the last minute</span>}
+    </p>
+  );
+}
+
+const HEIGHT = 40;
+
+function plotted(line: Line, place: HTMLElement): uPlot {
+  const { color, borderBottomColor } = getComputedStyle(place);
+  return new uPlot(
+    {
+      width: Math.max(60, place.clientWidth),
+      height: HEIGHT,
+      padding: [4, 2, 4, 2],
+      legend: { show: false },
+      cursor: { show: false },
+      scales: {
+        x: { time: false, range: (_, __, last) => [last - 60, last] },
+        y: line.log ? { distr: 3 } : { range: (_, low, high) => (low === high ? [low - 1, high + 1] : [low, high]) },
+      },
+      axes: [
+        { show: false },
+        { show: true, size: 0, ticks: { show: false }, grid: { stroke: borderBottomColor, width: 1 }, values: () => [], gap: 0, space: 14 },
+      ],
+      series: [{}, { stroke: color, width: 1.5, points: { show: false } }],
+    },
+    [[], []],
+    place,
+  );
+}

@@ -1,0 +1,81 @@
+// What keys do on the page of a session, and the list of them.
+import { useEffect, useRef } from "preact/hooks";
+import { holder, pin, release } from "../hand";
+import { LOOKS } from "./see";
+import type { Studio } from "./studio";
+
+const LIST: [string, string][] = [
+  ["Space", "Play or pause"],
+  [".", "One step"],
+  ["Ctrl Z", "Undo"],
+  ["Ctrl Shift Z", "Redo"],
+  ["f", "Fit"],
+  ["1 2 3 4", "Perspective, top, front, right"],
+  ["p", "Pin or release what is picked"],
+  ["Esc", "Pick nothing"],
+  ["?", "This list"],
+];
+
+export function Keys({ studio }: { studio: Studio }) {
+  const dialog = useRef<HTMLDialogElement>(null);
+  useEffect(() => {
+    const pressed = (event: KeyboardEvent) => {
+      if (event.defaultPrevented || dialog.current?.open || isTaken(event)) return;
+      if (event.key === "?") dialog.current?.showModal();
+      else if (!obeyed(studio, event)) return;
+      event.preventDefault();
+    };
+    window.addEventListener("keydown", pressed);
+    return () => window.removeEventListener("keydown", pressed);
+  }, [studio]);
+  return (
+    <>
+      <button type="button" class="help" aria-keyshortcuts="?" onClick={() => dialog.current?.showModal()}>Keys</button>
+      <dialog ref={dialog} aria-labelledby="keys-title">
+        <h2 id="keys-title">Keys</h2>
+        <dl>
+          {LIST.map(([key, does]) => (
+            <div key={key}>
+              <dt>{key.split(" ").map((part) => <kbd key={part}>{part}</kbd>)}</dt>
+              <dd>{does}</dd>
+            </div>
+          ))}
+        </dl>
+        <form method="dialog"><button type="submit" class="first">Close</button></form>
+      </dialog>
+    </>
+  );
+}
+
+/** Whether what has the focus wants the key for itself. */
+function isTaken(event: KeyboardEvent): boolean {
+  const focus = event.target as HTMLElement;
+  if (focus.matches("textarea, select, [contenteditable], input:not([type=range], [type=checkbox], [type=radio])")) return true;
+  return event.key === " " && focus.matches("button, a, summary, input:not([type=range])");
+}
+
+/** Do what a key stands for; whether it stands for anything. */
+function obeyed(studio: Studio, event: KeyboardEvent): boolean {
+  const { session, view } = studio;
+  if (event.altKey) return false;
+  if (event.ctrlKey || event.metaKey) {
+    if (event.key.toLowerCase() !== "z") return false;
+    void session.tell(event.shiftKey ? "redo" : "undo");
+    return true;
+  }
+  const look = LOOKS[Number(event.key) - 1];
+  if (look) view.value?.look(look[0]);
+  else if (event.key === " ") void session.tell(session.summary.value?.playing ? "pause" : "play");
+  else if (event.key === ".") void session.tell("step");
+  else if (event.key === "f") view.value?.fit();
+  else if (event.key === "p") hold(studio);
+  else if (event.key === "Escape") studio.options.picked.value = null;
+  else return false;
+  return true;
+}
+
+function hold({ session, options }: Studio): void {
+  const picked = options.picked.value;
+  if (picked?.kind !== "particle") return;
+  void (holder(session.anchors.value, picked.index) ? release : pin)(session, picked.index);
+}

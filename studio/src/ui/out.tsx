@@ -1,0 +1,85 @@
+// The session as files of other programs, as a picture, and as a link.
+import { useSignal } from "@preact/signals";
+import * as api from "../api";
+import { refuse } from "./notices";
+import { linkTo, met } from "./place";
+import type { Studio } from "./studio";
+
+const FILES: { format: api.Format; seen: string; ending: string; hint: string }[] = [
+  { format: "3dm", seen: "Rhino .3dm", ending: ".3dm", hint: "Particles, lines and meshes with their forces, on layers" },
+  { format: "obj", seen: "OBJ", ending: ".obj", hint: "Meshes, or the lines of springs" },
+  { format: "compas", seen: "COMPAS JSON", ending: "-compas.json", hint: "A Mesh, or a Graph of the springs" },
+  { format: "csv", seen: "CSV", ending: ".csv", hint: "A table of forces and reactions" },
+  { format: "npz", seen: "npz", ending: ".npz", hint: "The whole simulation for Python: Simulation.load" },
+];
+
+export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
+  const { session, view } = studio;
+  const done = useSignal("");
+  const link = useSignal("");
+  const busy = useSignal("");
+  const name = title.normalize("NFKD").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "") || "session";
+  const take = async (seen: string, file: string, made: () => Promise<Blob>) => {
+    busy.value = seen;
+    done.value = "";
+    try {
+      keep(await made(), file);
+      done.value = `${file} is among your downloads.`;
+    } catch (error) {
+      met(error);
+      refuse(error, `${file} was not made. `);
+    } finally {
+      busy.value = "";
+    }
+  };
+  const copy = async () => {
+    const address = `${location.origin}/${linkTo(session.key)}`;
+    link.value = "";
+    try {
+      await navigator.clipboard.writeText(address);
+      done.value = "The link is in the clipboard; it opens in a browser that is logged in.";
+    } catch {
+      link.value = address;
+      done.value = "Copy the link below; it opens in a browser that is logged in.";
+    }
+  };
+  const live = session.connection.value === "live";
+  return (
+    <>
+      <div class="row">
+        {FILES.map(({ format, seen, ending, hint }) => (
+          <button
+            key={format} type="button" title={hint} disabled={!live || busy.value !== ""} aria-busy={busy.value === seen}
+            onClick={() => void take(seen, name + ending, () => api.exported(session.key, format))}
+          >
+            {seen}
+          </button>
+        ))}
+        <button
+          type="button" title="What is seen now" disabled={!view.value || busy.value !== ""} aria-busy={busy.value === "PNG"}
+          onClick={() => void take("PNG", `${name}.png`, () => view.value!.png())}
+        >
+          PNG
+        </button>
+        <button type="button" onClick={() => void copy()}>Copy link</button>
+      </div>
+      <p role="status" class="done">{done.value}</p>
+      {link.value && (
+        <input
+          type="text" readOnly aria-label="Link to this session" value={link.value}
+          ref={(field) => field?.select()}
+        />
+      )}
+    </>
+  );
+}
+
+function keep(blob: Blob, file: string): void {
+  const address = URL.createObjectURL(blob);
+  const anchor = document.createElement("a");
+  anchor.href = address;
+  anchor.download = file;
+  anchor.click();
+  // the download has begun with the click's task
+  window.setTimeout(() => URL.revokeObjectURL(address), 10_000);
+}

@@ -1,0 +1,110 @@
+// A slider with its number. A drag, or strokes of keys in a row, are one gesture: taken back as one.
+import { useSignal } from "@preact/signals";
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import { gesture, Newest } from "../hand";
+import type { Bounds, Patch } from "../model";
+import type { Session } from "../session";
+import { around, outgrown, type Range, rounded, stepOf } from "./amounts";
+import { NumberField } from "./number";
+import { measured } from "./words";
+
+interface Led {
+  session: Session;
+  /** What it leads, such as "net stiffness", and what stands before it. */
+  name: string;
+  seen: string;
+  value: number;
+  unit: string;
+  hint: string;
+  /** Said below, such as of how many it is the largest. */
+  note?: string;
+  bounds: Bounds | undefined;
+  log: boolean;
+  whole?: boolean;
+  patch: (value: number) => Patch;
+}
+
+const IN_A_ROW = 1000;
+
+export function Slider({ session, name, seen, value, unit, hint, note, bounds, log, whole, patch }: Led) {
+  const hand = useHand(session, value, patch);
+  const range = useRange(value, bounds, log, hand.held);
+  const shown = hand.value ?? value;
+  const live = session.connection.value === "live";
+  const step = whole && !range.log ? 1 : stepOf(range);
+  const at = (x: number) => (range.log ? Math.log10(x) : x);
+  const from = (position: number) => {
+    const found = range.log ? rounded(10 ** position) : position;
+    return whole ? Math.round(found) : found;
+  };
+  return (
+    <div class={live ? "slider" : "slider stale"}>
+      <NumberField
+        name={name} seen={seen} value={shown} unit={unit} hint={hint} bounds={bounds} whole={whole === true}
+        disabled={!live} stale={!live}
+        done={(typed) => typed !== null && hand.lead(typed)}
+      />
+      <input
+        type="range"
+        aria-label={name}
+        aria-valuetext={measured(shown, unit)}
+        title={hint}
+        disabled={!live}
+        min={at(range.low)}
+        max={at(range.high)}
+        step={step}
+        value={at(Math.min(range.high, Math.max(range.low, shown)))}
+        onPointerDown={hand.press}
+        onInput={(event) => hand.lead(from(event.currentTarget.valueAsNumber))}
+        onChange={hand.let}
+      />
+      {note && <p class="note">{note}</p>}
+    </div>
+  );
+}
+
+/** What the hand wants, until the session tells the same: `value` is null where it wants nothing. */
+function useHand(session: Session, value: number, patch: (value: number) => Patch) {
+  const wanted = useSignal<number | null>(null);
+  const edits = useMemo(() => new Newest(session), [session]);
+  const held = useRef(false);
+  const last = useRef(0);
+  const named = useRef("");
+  const timer = useRef(0);
+  useEffect(() => {
+    if (!held.current && performance.now() - last.current > 100) wanted.value = null;
+  }, [value]);
+  useEffect(() => () => clearTimeout(timer.current), []);
+  const renew = () => (named.current = gesture("slider"));
+  const lead = (to: number) => {
+    if (!held.current && performance.now() - last.current > IN_A_ROW) renew();
+    last.current = performance.now();
+    wanted.value = to;
+    edits.put({ ...patch(to), gesture: named.current });
+    if (!held.current) settle();
+  };
+  const settle = () => {
+    clearTimeout(timer.current);
+    void edits.settled().then(() => {
+      // the scene with the new value is read within a second; where it was refused, the old one stands
+      timer.current = window.setTimeout(() => (wanted.value = null), session.said.value ? 0 : IN_A_ROW);
+    });
+  };
+  const press = () => {
+    held.current = true;
+    renew();
+  };
+  const release = () => {
+    held.current = false;
+    settle();
+  };
+  return { value: wanted.value, held: held.current, lead, press, let: release };
+}
+
+/** A range that stays while a hand is on the slider, and grows where the hand came to its end. */
+function useRange(value: number, bounds: Bounds | undefined, log: boolean, held: boolean): Range {
+  const range = useRef<Range | null>(null);
+  range.current ??= around(value, bounds, log);
+  if (!held && outgrown(range.current, value, bounds)) range.current = around(value, bounds, log);
+  return range.current;
+}
