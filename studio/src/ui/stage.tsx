@@ -1,6 +1,5 @@
 // The canvas, and what is said over it.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { expose } from "../view/automation";
 import { createView } from "../view/view";
 import { dark } from "./theme";
 import { Report } from "./report";
@@ -14,7 +13,6 @@ export function Stage({ studio }: { studio: Studio }) {
     if (!canvas.current) return;
     try {
       const view = createView(canvas.current, studio.session, studio.options);
-      expose(studio.session, view);
       studio.view.value = view;
       return () => {
         studio.view.value = null;
