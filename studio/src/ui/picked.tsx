@@ -2,6 +2,7 @@
 import { Grip, holder, pin, release } from "../hand";
 import type { Anchor, Point } from "../model";
 import type { Session } from "../session";
+import type { View } from "../view/types";
 import { NumberField } from "./number";
 import type { Studio } from "./studio";
 import { measured, said } from "./words";
@@ -13,7 +14,7 @@ export function PickedPanel({ studio }: { studio: Studio }) {
   const choose = (kind: "particle" | "spring") => (index: number | null) => {
     options.picked.value = index === null ? null : { kind, index };
     const particles = index === null ? [] : kind === "particle" ? [index] : (topology?.springs[index] ?? []);
-    if (particles.length) view.value?.show([...particles]);
+    if (!particles.every((particle) => isSeen(view.value, particle))) view.value?.show([...particles]);
   };
   const number = (kind: "particle" | "spring", seen: string, count: number) => (
     <NumberField
@@ -33,6 +34,13 @@ export function PickedPanel({ studio }: { studio: Studio }) {
       {picked?.kind === "spring" && <Spring key={picked.index} studio={studio} index={picked.index} />}
     </>
   );
+}
+
+/** Whether a particle is drawn somewhere on the screen. */
+function isSeen(view: View | null, particle: number): boolean {
+  const at = view?.project(particle);
+  const canvas = document.querySelector("canvas")?.getBoundingClientRect();
+  return !!at && !!canvas && at.x > canvas.left && at.x < canvas.right && at.y > canvas.top && at.y < canvas.bottom;
 }
 
 interface Shown {
