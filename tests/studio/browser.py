@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from playwright.sync_api import BrowserContext, ConsoleMessage, Page, Response
+from playwright.sync_api import BrowserContext, ConsoleMessage, Page, Request, Response
 
 from .service import Service
 
@@ -43,12 +43,17 @@ class Studio:
         """Note from now on what goes wrong."""
         self.page.on("console", self._said)
         self.page.on("pageerror", lambda error: self.wrong.append(f"exception: {error}"))
-        self.page.on("requestfailed", lambda request: self.wrong.append(f"failed: {request.url} {request.failure}"))
+        self.page.on("requestfailed", self._failed)
         self.page.on("response", self._answered)
 
     def _said(self, message: ConsoleMessage) -> None:
-        if message.type in ("error", "warning"):
+        # how fast the graphics of a machine without a card are is not the page's
+        if message.type in ("error", "warning") and "GL Driver Message (OpenGL, Performance" not in message.text:
             self.wrong.append(f"console {message.type}: {message.text}")
+
+    def _failed(self, request: Request) -> None:
+        if request.failure != "net::ERR_ABORTED":  # left for another page
+            self.wrong.append(f"failed: {request.url} {request.failure}")
 
     def _answered(self, response: Response) -> None:
         if response.status >= 400:
@@ -75,6 +80,18 @@ class Studio:
             "() => window.hookean?.particles().length > 0 && window.hookean.stats.framesDrawn > 0"
         )
 
+    def choose(self, name: str) -> str:
+        """A figure of the gallery, by the title its card has; the key of its session."""
+        listed = self.service.client.get("/v1/examples").json()["examples"]
+        [card] = [f"{example['figure']} {example['title']}" for example in listed if example["id"] == name]
+        self.page.get_by_role("button", name=card).click()
+        self.drawing()
+        return self.key
+
+    def press(self, name: str) -> None:
+        """A button, by its name."""
+        self.page.get_by_role("button", name=name, exact=True).click()
+
     @property
     def key(self) -> str:
         """The session whose link the address is."""
@@ -97,6 +114,22 @@ class Studio:
         found = self.page.evaluate("(particle) => window.hookean.project(particle)", particle)
         assert found, f"particle {particle} is behind the eye"
         return found["x"], found["y"]
+
+    def drag(self, particle: int, across: float, down: float, steps: int = 12) -> tuple[float, float]:
+        """Take a particle by mouse and let it go so many CSS pixels away; where that is."""
+        x, y = self.place(particle)
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        for step in range(1, steps + 1):
+            self.page.mouse.move(x + across * step / steps, y + down * step / steps)
+            self.page.wait_for_timeout(20)
+        self.page.mouse.up()
+        return x + across, y + down
+
+    def rests_at(self, truth: NDArray[np.float64], within: float = 1e-4) -> None:
+        """Wait until every particle is drawn where it belongs [length]."""
+        drawn = self.particles
+        self.until(lambda: (now := drawn()).shape == truth.shape and np.abs(now - truth).max() < within, 60.0)
 
     def until(self, true: Callable[[], Any], seconds: float = 20.0, what: str = "") -> Any:
         """What `true()` is, once it is; the page goes on meanwhile."""

@@ -16,7 +16,7 @@ import numpy as np
 import psutil
 from numpy.typing import NDArray
 
-from hookean import Scene, relax
+from hookean import Scene, Simulation
 from serving import living, wait_for
 
 
@@ -86,6 +86,10 @@ class Service:
     def scene(self, key: str) -> dict[str, Any]:
         return self._done(self.client.get(f"/v1/sessions/{key}/scene"))
 
+    def example(self, name: str) -> dict[str, Any]:
+        """The scene of a figure of the gallery."""
+        return self._done(self.client.get(f"/v1/examples/{name}/scene"))
+
     def anchors(self, key: str) -> list[dict[str, Any]]:
         found: list[dict[str, Any]] = self._done(self.client.get(f"/v1/sessions/{key}/anchors"))["anchors"]
         return found
@@ -107,8 +111,11 @@ class Service:
         return found
 
 
-def equilibrium(scene: dict[str, Any]) -> NDArray[np.float64]:
-    """Where the particles of a scene come to rest, by the Python API alone."""
-    result = relax(Scene.model_validate(scene))
+def equilibrium(scene: dict[str, Any], *patches: dict[str, Any]) -> NDArray[np.float64]:
+    """Where the particles of a scene come to rest after these edits, by the Python API alone."""
+    simulation = Simulation(Scene.model_validate(scene))
+    for patch in patches:
+        simulation.patch(patch)
+    result = simulation.relax()
     assert result.status == "converged", result.message
     return np.asarray(result.particles, float)

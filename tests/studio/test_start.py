@@ -1,9 +1,148 @@
-"""The start page: who is let in, what it offers."""
+"""The start page: who is let in, the figures, the sessions that there are, and files that become sessions."""
 
 from __future__ import annotations
 
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from serving import CABLE
+
 from .browser import Studio
+from .conftest import Opened
+from .service import equilibrium
+
+ROOT = Path(__file__).parents[2]
+RHINO = ROOT.parent / "shared" / "data" / "rhino"
 
 
-def test_the_page_comes_up(studio: Studio):
-    assert studio.page.title()
+def drop(studio: Studio, name: str, content: bytes) -> None:
+    """Let a file fall on the page, as from the desktop."""
+    files = """([name, bytes]) => {
+        const carried = new DataTransfer();
+        carried.items.add(new File([new Uint8Array(bytes)], name));
+        for (const what of ["dragenter", "dragover", "drop"]) {
+            const event = new DragEvent(what, { dataTransfer: carried, bubbles: true, cancelable: true });
+            (document.querySelector("main") ?? document.body).dispatchEvent(event);
+        }
+    }"""
+    studio.page.evaluate(files, [name, list(content)])
+
+
+# who is let in
+
+
+def test_the_token_logs_in_once_and_leaves_the_address(studio: Studio):
+    """Neither address nor history keeps the token; the cookie cannot be read by scripts; a reload needs no token."""
+    page, token = studio.page, studio.service.token
+    page.get_by_role("heading", name="Figures").wait_for()
+    assert token not in page.url and token not in page.content()
+    assert token not in page.evaluate("() => document.cookie + JSON.stringify(localStorage)")
+    page.reload()
+    page.get_by_role("heading", name="Figures").wait_for()
+
+
+def test_who_has_no_token_is_told_what_to_do(open_studio: Opened):
+    """The door says which command prints the address; a wrong token is refused in a sentence, the right one let in."""
+    studio = open_studio(login=False)
+    studio.allowed = ["401"]
+    page = studio.page
+    page.goto(studio.service.url)
+    page.get_by_text("hookean token --url").wait_for()
+    page.get_by_label(re.compile("token", re.I)).fill("not-the-token-of-this-service")
+    studio.press("Log in")
+    page.get_by_role("alert").filter(has_text=re.compile("token", re.I)).wait_for()
+    page.get_by_label(re.compile("token", re.I)).fill(studio.service.token)
+    studio.press("Log in")
+    page.get_by_role("heading", name="Figures").wait_for()
+
+
+def test_a_link_needs_a_login_of_its_own(open_studio: Opened):
+    """The link to a session holds no secret: in another browser it leads to the door."""
+    studio = open_studio(login=False)
+    studio.allowed = ["401"]
+    studio.service.put("linked", CABLE)
+    studio.page.goto(f"{studio.service.url}/#s=linked")
+    studio.page.get_by_text("hookean token --url").wait_for()
+
+
+# figures and sessions
+
+
+def test_every_figure_is_in_the_gallery_with_its_picture(studio: Studio):
+    page = studio.page
+    listed = studio.service.client.get("/v1/examples").json()["examples"]
+    assert len(listed) > 20
+    for example in listed:
+        card = page.get_by_role("button", name=f"{example['figure']} {example['title']}")
+        card.scroll_into_view_if_needed()
+        picture = card.locator("img").element_handle()
+        page.wait_for_function("image => image.complete && image.naturalWidth > 0", arg=picture)
+
+
+def test_a_session_that_another_program_made_is_listed_and_shown(studio: Studio):
+    """Grasshopper makes sessions by PUT, under keys of its own."""
+    key = "roof.gh:4f8c-11"
+    studio.service.put(key, CABLE)
+    studio.page.get_by_role("link", name=key).click()
+    studio.drawing()
+    studio.rests_at(np.array(CABLE["particles"], float))
+    studio.page.go_back()
+    studio.page.get_by_role("heading", name="Figures").wait_for()
+
+
+def test_a_session_is_forgotten_when_that_is_confirmed(studio: Studio):
+    studio.service.put("forgotten", CABLE)
+    studio.page.on("dialog", lambda dialog: dialog.accept())
+    studio.page.get_by_role("button", name="Forget forgotten").click()
+    studio.page.get_by_role("link", name="forgotten", exact=True).wait_for(state="detached")
+    assert "forgotten" not in [session["key"] for session in studio.service.summaries()]
+
+
+# files
+
+
+@pytest.mark.parametrize("name", ["v7_my_mesh.3dm", "v7_my_curves.3dm"])
+def test_a_rhino_file_is_dropped_and_becomes_a_session(studio: Studio, name: str):
+    """What is drawn is what the service read of the file, where it is in the file."""
+    if not RHINO.is_dir():
+        pytest.skip("the files of Rhino are not here")
+    drop(studio, name, (RHINO / name).read_bytes())
+    studio.drawing()
+    drawn = studio.service.particles(studio.key)
+    assert len(drawn) > 1
+    studio.rests_at(drawn, 1e-3 * np.ptp(drawn))
+
+
+def test_a_model_of_a_figure_is_dropped_and_becomes_a_session(studio: Studio):
+    drop(studio, "model.3dm", (ROOT / "gh_examples" / "9.4-cable" / "model.3dm").read_bytes())
+    studio.drawing()
+    assert len(studio.particles()) == len(studio.service.particles(studio.key))
+
+
+def test_an_obj_and_a_scene_are_opened_from_a_file(studio: Studio, tmp_path: Path):
+    square = tmp_path / "square.obj"
+    square.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    studio.page.get_by_label("File to open").set_input_files(square)
+    studio.drawing()
+    assert len(studio.particles()) == 4
+    scene = tmp_path / "cable.json"
+    scene.write_text(json.dumps(CABLE))
+    studio.page.goto(studio.service.url)
+    studio.page.get_by_label("File to open").set_input_files(scene)
+    studio.drawing()
+    studio.press("To rest")
+    studio.rests_at(equilibrium(CABLE))
+
+
+@pytest.mark.parametrize("content", [b"", b"not a model at all", b"3D Geometry File Format " + bytes(200)])
+def test_a_file_that_is_none_is_refused_in_a_sentence(studio: Studio, content: bytes):
+    studio.allowed = [r"\b4\d\d\b"]
+    drop(studio, "broken.3dm", content)
+    alert = studio.page.get_by_role("alert").filter(has_text="broken.3dm")
+    alert.wait_for()
+    assert "Traceback" not in alert.inner_text() and len(alert.inner_text()) < 500
+    assert "#s=" not in studio.page.url

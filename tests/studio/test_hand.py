@@ -1,0 +1,84 @@
+"""The hand: what is dragged, pinned and pulled in the page is what the service solves and the Python API finds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from .browser import Studio
+from .service import equilibrium
+
+CABLE = "9.4-cable"
+
+
+def test_an_anchor_is_dragged_and_the_form_follows(studio: Studio):
+    """Gallery, cable, an anchor taken by mouse: the particles follow while it moves, and come to rest where the figure
+    with that anchor moved comes to rest by the Python API."""
+    key = studio.choose(CABLE)
+    scene, service = studio.service.example(CABLE), studio.service
+    studio.press("To rest")
+    studio.rests_at(equilibrium(scene))
+    before = studio.particles()
+
+    x, y = studio.place(0)
+    studio.page.mouse.move(x, y)
+    studio.page.mouse.down()
+    for step in range(1, 13):
+        studio.page.mouse.move(x + 8 * step, y + 5 * step)
+        studio.page.wait_for_timeout(20)
+    followed = lambda: np.abs(studio.particles() - before).max(axis=1)[:-1].min() > 1e-3  # noqa: E731
+    studio.until(followed, what="all but the other anchor to follow")
+    studio.until(lambda: np.hypot(*np.subtract(studio.place(0), (x + 96, y + 60))) < 3, what="the anchor in the hand")
+    studio.page.mouse.up()
+
+    [held] = [anchor for anchor in service.anchors(key) if 0 in anchor["particles"]]
+    target = held["targets"][held["particles"].index(0)]
+    assert np.abs(target - before[0]).max() > 0.1
+    studio.rests_at(equilibrium(scene, {"pin": [{"particles": [0], "targets": [target]}]}))
+    assert np.abs(studio.particles()[0] - target).max() < 1e-6
+    assert service.summary(key)["undo"] == 1  # a gesture is one edit
+
+
+def test_pause_step_undo_redo_and_reset(studio: Studio):
+    """Each does in the service what its name says, and the page shows it."""
+    key, service = studio.choose(CABLE), studio.service
+    start = np.array(service.client.get(f"/v1/sessions/{key}/topology").json()["start"])
+    studio.press("Play")
+    studio.until(lambda: service.summary(key)["playing"])
+    studio.until(lambda: np.abs(studio.particles() - start).max() > 1e-3, what="motion")
+    studio.press("Pause")
+    studio.until(lambda: not service.summary(key)["playing"])
+    paused = service.summary(key)["iteration"]
+    studio.rests_at(service.particles(key))
+    studio.press("Step")
+    studio.until(lambda: service.summary(key)["iteration"] > paused)
+    studio.rests_at(service.particles(key))
+    stepped = service.summary(key)["iteration"]
+    studio.page.wait_for_timeout(300)
+    assert service.summary(key)["iteration"] == stepped
+
+    ends = service.anchors(key)
+    studio.drag(0, 60, 40)
+    moved = studio.until(lambda: (now := service.anchors(key)) != ends and now)
+    studio.press("Undo")
+    studio.until(lambda: service.anchors(key) == ends)
+    studio.press("Redo")
+    studio.until(lambda: service.anchors(key) == moved)
+    studio.press("Pause")
+    studio.press("Reset")
+    studio.until(lambda: service.summary(key)["iteration"] == 0)
+    studio.rests_at(service.particles(key))
+
+
+def test_the_same_picture_after_loading_anew(studio: Studio):
+    """The page holds no state: what it shows is what the service has."""
+    key = studio.choose(CABLE)
+    studio.press("To rest")
+    studio.until(lambda: studio.service.summary(key)["status"] == "converged")
+    studio.rests_at(studio.service.particles(key))
+    drawn, places = studio.particles(), [studio.place(particle) for particle in range(11)]
+    studio.page.reload()
+    studio.drawing()
+    assert studio.key == key
+    studio.rests_at(drawn, 1e-12)
+    assert [studio.place(particle) for particle in range(11)] == [pytest.approx(place, abs=0.01) for place in places]

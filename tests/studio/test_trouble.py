@@ -1,0 +1,101 @@
+"""Trouble: the service dies, forgets, or is edited by two; the page says so, goes on, and shows nothing old as new."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from serving import CABLE
+
+from .browser import Studio
+from .conftest import Opened
+from .service import Service, equilibrium
+
+GONE = ["ERR_CONNECTION", "WebSocket", "502", "failed: "]
+
+
+@pytest.fixture
+def mortal(tmp_path: Path, browser: object) -> Iterator[Service]:
+    """A service that no other test uses."""
+    found = Service(tmp_path)
+    yield found
+    found.end()
+
+
+def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, mortal: Service):
+    """kill -9: the page says that it is reconnecting, and is there again by itself, on the same revision, logged in;
+    what was edited before is there, what is edited after arrives."""
+    mortal.put("cable", CABLE)
+    studio = open_studio(mortal)
+    studio.allowed = GONE
+    studio.open("cable")
+    studio.press("To rest")
+    truth = equilibrium(CABLE)
+    studio.rests_at(truth)
+    studio.drag(0, 40, 30)
+    edited = studio.until(lambda: (now := mortal.summary("cable"))["undo"] == 1 and now)
+    ends = mortal.anchors("cable")
+
+    mortal.kill()
+    studio.page.get_by_text("Reconnecting").wait_for()
+    assert not studio.page.get_by_text("Live", exact=True).is_visible()
+    mortal.start()
+    studio.page.get_by_text("Live", exact=True).wait_for(timeout=30_000)
+    assert mortal.summary("cable")["revision"] == edited["revision"]
+    assert mortal.anchors("cable") == ends
+    studio.rests_at(mortal.particles("cable"))
+    studio.press("Undo")
+    studio.until(lambda: mortal.summary("cable")["undo"] == 0)
+    studio.press("To rest")
+    studio.rests_at(truth)
+
+
+def test_a_session_that_is_forgotten_elsewhere_is_told_to_be_gone(studio: Studio):
+    studio.allowed = ["404", "WebSocket"]
+    studio.service.put("short-lived", CABLE)
+    studio.open("short-lived")
+    studio.service.client.delete("/v1/sessions/short-lived")
+    studio.page.get_by_text("Gone", exact=True).wait_for()
+
+
+def test_a_link_to_no_session_says_so(studio: Studio):
+    studio.allowed = ["404", "WebSocket"]
+    studio.page.goto(f"{studio.service.url}/#s=never-made")
+    studio.page.get_by_text("Gone", exact=True).wait_for()
+
+
+def test_two_people_edit_one_session(open_studio: Opened):
+    """Each sees what the other did; at the end both show the same, and that is what the service has."""
+    one, other = open_studio(), open_studio()
+    service = one.service
+    service.put("shared", CABLE)
+    one.open("shared")
+    other.open("shared")
+    one.press("To rest")
+    truth = equilibrium(CABLE)
+    one.rests_at(truth)
+    other.rests_at(truth)
+    one.drag(0, 50, 30)
+    other.until(lambda: np.abs(other.particles()[0] - truth[0]).max() > 0.05, what="what the other did")
+    other.drag(5, -50, 30)
+    one.until(lambda: np.abs(one.particles()[5] - truth[5]).max() > 0.05, what="what the other did")
+    held = [{"particles": a["particles"], "targets": a["targets"]} for a in service.anchors("shared")]
+    rest = equilibrium(CABLE, {"pin": held})
+    one.rests_at(rest)
+    other.rests_at(rest)
+
+
+def test_grasshopper_gives_the_session_another_scene(studio: Studio):
+    """A scene with other particles under the same key: the page shows it, and nothing of the one before."""
+    studio.service.put("redrawn", CABLE)
+    studio.open("redrawn")
+    longer = {**CABLE, "particles": [*CABLE["particles"], [12.0, 0.0, 0.0]]}
+    longer["forces"] = [{**CABLE["forces"][0], "particles": [[i, i + 1] for i in range(6)]}, CABLE["forces"][1]]
+    longer["anchors"] = [{"particles": [0, 6]}]
+    studio.service.put("redrawn", longer)
+    studio.until(lambda: len(studio.particles()) == 7)
+    studio.press("To rest")
+    studio.rests_at(equilibrium(longer))
