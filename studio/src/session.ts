@@ -127,6 +127,7 @@ export class Session {
     // numbers of frames and revisions begin anew with the connection: the service may be another one
     this.acknowledged = stats.revisionAcknowledged = 0;
     this.described = -1;
+    if (tag !== this.tag) this.frame = null;
     this.wait = FIRST_WAIT;
     batch(() => {
       if (lost) this.said.value = `The connection was lost with ${lost} edits on their way; check that they are there.`;
@@ -139,7 +140,8 @@ export class Session {
     this.summary.value = summary;
     if (tag && tag !== this.tag) {
       this.tag = tag;
-      this.frame = null;
+      // a frame may come before the state that tells of its scene
+      if (this.frame && this.frame.revision < summary.revision) this.frame = null;
     }
     void this.describe();
   }
