@@ -1,4 +1,4 @@
-"""Uploaded .3dm files: the form is taken apart, read and solved in a worker that is then replaced."""
+"""Uploaded files: the form is taken apart, read and solved in a worker that is then replaced."""
 
 from __future__ import annotations
 
@@ -8,13 +8,16 @@ import json
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hookean.errors import InputError
 from hookean_server import answers
 from hookean_server.problems import Problem
 from hookean_server.tasks import Cancelled, Clock, Done
 from hookean_server.workers import limited
+
+if TYPE_CHECKING:
+    from hookean.scene import Scene
 
 MODEL = "model/vnd.3dm"
 RECIPE_LIMIT = 2**20
@@ -29,7 +32,7 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
     """
     clock = Clock()
     with _beside(options["path"]) as folder:
-        data, recipe = parts(Path(options["path"]), options["content_type"])
+        data, recipe, _ = parts(Path(options["path"]), options["content_type"])
         clock.lap("decode")
         source, target = Path(folder) / "upload.3dm", Path(folder) / "relaxed.3dm"
         source.write_bytes(data)
@@ -49,19 +52,37 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
 
 
 def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
-    """The scene that an uploaded file holds, as JSON, warnings in a header; options and faults as `relax_upload`."""
-    from hookean.files.relax_file import open_file
+    """The scene that an uploaded .3dm, .obj or .json file holds, as JSON, fit to move, warnings in a header; options
+    and faults as `relax_upload`."""
+    from hookean.files.opened import kind, scene_in
+    from hookean.stability import in_motion
 
     with _beside(options["path"]) as folder:
-        data, recipe = parts(Path(options["path"]), options["content_type"])
-        source = Path(folder) / "upload.3dm"
-        source.write_bytes(data)
+        data, recipe, name = parts(Path(options["path"]), options["content_type"])
+        try:
+            drawing = kind(data, name) == "3dm"
+        except InputError as error:
+            raise InputError("/file", error.sentence) from None
+        if recipe is not None and not drawing:
+            raise InputError("/recipe", "recipes go with .3dm files; other files say everything themselves")
         try:
             with limited(options["read_seconds"]):
-                read = open_file(source, recipe, "recipe" if recipe is not None else "")
+                scene, warnings = _drawing(data, recipe, folder) if drawing else scene_in(data, name)
+                scene, said = in_motion(scene)
         except InputError as error:
-            raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
-    return Done(read.scene.canonical.encode(), headers=_told(read.warnings))
+            pointer = _place(error.pointer, recipe) if drawing else f"/file{error.pointer.rstrip('/')}"
+            raise InputError(pointer, error.sentence.replace(folder, "")) from None
+    return Done(scene.canonical.encode(), headers=_told([*warnings, *([said] if said else [])]))
+
+
+def _drawing(data: bytes, recipe: str | None, folder: str) -> tuple[Scene, list[str]]:
+    """The scene of a .3dm file, and what a person should know of it."""
+    from hookean.files.relax_file import open_file
+
+    source = Path(folder) / "upload.3dm"
+    source.write_bytes(data)
+    read = open_file(source, recipe, "recipe" if recipe is not None else "")
+    return read.scene, list(read.warnings)
 
 
 def geometry_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
@@ -71,7 +92,7 @@ def geometry_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) 
     from hookean.files.threedm_read import parse
 
     clock = Clock()
-    data, recipe = parts(Path(options["path"]), options["content_type"])
+    data, recipe, _ = parts(Path(options["path"]), options["content_type"])
     if recipe is not None:
         raise InputError("/recipe", "a file is read without a recipe; the form has the part file only")
     clock.lap("decode")
@@ -97,11 +118,12 @@ def _beside(path: str) -> Iterator[str]:
         tempfile.tempdir = before
 
 
-def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:
-    """The bytes of the part `file` and the text of the part `recipe` of a multipart form on disk."""
+def parts(path: Path, content_type: str) -> tuple[bytes, str | None, str]:
+    """The bytes of the part `file`, the text of the part `recipe` and the file's name of a multipart form on disk."""
     from python_multipart import exceptions, parse_form
 
     found: dict[str, bytes] = {}
+    name = ""
 
     def put(name: bytes | None, value: bytes) -> None:
         key = (name or b"").decode("utf-8", "replace")
@@ -111,6 +133,9 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:
         found[key] = value
 
     def on_file(file: Any) -> None:
+        nonlocal name
+        if file.field_name == b"file":
+            name = (file.file_name or b"").decode("utf-8", "replace")
         file.file_object.seek(0)
         put(file.field_name, file.file_object.read())
 
@@ -123,12 +148,12 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None]:
             raise
         raise InputError("/", "the body is no multipart form; send it as multipart/form-data with a boundary") from None
     if not found.get("file"):
-        raise InputError("/file", "the form needs a part named file with a .3dm file")
+        raise InputError("/file", "the form needs a part named file with the file in it")
     recipe = found.get("recipe")
     if recipe is not None and len(recipe) > RECIPE_LIMIT:
         raise InputError("/recipe", f"longer than {RECIPE_LIMIT} bytes")
     try:
-        return found["file"], recipe.decode("utf-8") if recipe else None
+        return found["file"], recipe.decode("utf-8") if recipe else None, name
     except UnicodeDecodeError:
         raise InputError("/recipe", "the text is not UTF-8") from None
 

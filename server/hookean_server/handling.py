@@ -44,7 +44,7 @@ async def compute_upload(request: Request, task: str, options: dict[str, Any]) -
 
 
 async def uploaded_scene(request: Request) -> tuple[bytes, list[str]]:
-    """The scene, as JSON, of the .3dm file in a form, and what a person should know of the file."""
+    """The scene, as JSON, of the file in a form, and what a person should know of the file."""
     reply = await _uploaded(request, "scene", {})
     return reply.body, json.loads(reply.head["headers"].get("hookean-warnings", "[]"))
 

@@ -52,14 +52,15 @@ def _takes(schema: dict[str, Any], examples: dict[str, Any], kind: str = "applic
     return {"requestBody": {"required": True, "content": {kind: content}}}
 
 
-_FORM = {
-    "type": "object",
-    "properties": {
-        "file": {"type": "string", "format": "binary", "description": "The .3dm file"},
-        "recipe": {"type": "string", "description": "What to make of it, as JSON text; none: as drawn"},
-    },
-    "required": ["file"],
-}
+def _form(file: str) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "properties": {
+            "file": {"type": "string", "format": "binary", "description": file},
+            "recipe": {"type": "string", "description": "What to make of a .3dm file, as JSON text; none: as drawn"},
+        },
+        "required": ["file"],
+    }
 
 
 def relax() -> dict[str, Any]:
@@ -82,7 +83,10 @@ def relax_file() -> dict[str, Any]:
         "model/vnd.3dm": {"schema": {"type": "string", "format": "binary"}},
         "application/json": {"schema": {"type": "object"}},
     }
-    return {"responses": problems(success, computed=True), "openapi_extra": _takes(_FORM, {}, "multipart/form-data")}
+    return {
+        "responses": problems(success, computed=True),
+        "openapi_extra": _takes(_form("The .3dm file"), {}, "multipart/form-data"),
+    }
 
 
 def discretize(name: str) -> dict[str, Any]:
@@ -103,7 +107,8 @@ def session_body(*codes: int) -> dict[str, Any]:
     found = problems(None, live=True)
     found.update({code: {"description": "The session", "content": SESSION} for code in codes})
     extra = _takes({"$ref": "#/components/schemas/Scene"}, EXAMPLES["relax"])
-    extra["requestBody"]["content"]["multipart/form-data"] = {"schema": _FORM}
+    form = _form("A .3dm or .obj file, or a .json file with a scene or COMPAS documents")
+    extra["requestBody"]["content"]["multipart/form-data"] = {"schema": form}
     return {"responses": found, "openapi_extra": extra}
 
 

@@ -32,7 +32,7 @@ def manager(request: Request) -> Manager:
 
 
 async def _body(request: Request) -> tuple[bytes, list[str]]:
-    """A scene as JSON; from a form with a .3dm file it is read in a worker that is then replaced, with warnings."""
+    """A scene as JSON; the file in a form is read in a worker that is then replaced, with warnings."""
     if media_type(request.headers) == "multipart/form-data":
         return await uploaded_scene(request)
     return await read_json(request), []
@@ -45,11 +45,11 @@ def _answer(live: Live, status: int = 200, warnings: list[str] | None = None) ->
     return JSONResponse({**summary(live), **({"warnings": warnings} if warnings else {})}, status, headers)
 
 
-@router.post(
-    "/v1/sessions", status_code=201, summary="A session of a scene or a .3dm file", **openapi.session_body(201)
-)
+@router.post("/v1/sessions", status_code=201, summary="A session of a scene or a file", **openapi.session_body(201))
 async def create(request: Request, label: Label = "") -> Response:
-    """A new session under a random key, paused."""
+    """A new session under a random key, paused. A form takes a .3dm file, an .obj file, or a .json file with a scene or
+    with COMPAS documents; what has no recipe and names no forces is taken as drawn: lines become springs with their
+    loose ends held, meshes membranes with their naked vertices held."""
     body, warnings = await _body(request)
     live, _ = await manager(request).put(None, body, label)
     return _answer(live, 201, warnings)
