@@ -1,4 +1,4 @@
-// Values of columns as one amount that a slider can lead: of an array it is the largest, and the rest keep in proportion.
+// Values of columns as one amount that a slider leads: of an array the largest, and the rest keep in proportion.
 import type { Bounds, Point } from "../model";
 
 /** A number, one for each element, a vector, or one for each element. */
@@ -8,7 +8,9 @@ export type Value = number | number[] | number[][];
 export function isValue(value: unknown): value is Value {
   if (typeof value === "number") return true;
   if (!Array.isArray(value) || value.length === 0) return false;
-  return value.every((row) => typeof row === "number" || (Array.isArray(row) && row.every((n) => typeof n === "number")));
+  return value.every(
+    (row) => typeof row === "number" || (Array.isArray(row) && row.every((n) => typeof n === "number")),
+  );
 }
 
 /** How a value is seen: `vectors` have a length, plain numbers a sign. */
@@ -54,7 +56,8 @@ export interface Range {
 export function around(value: number, bounds: Bounds | undefined, log: boolean): Range {
   const least = bounds?.minimum ?? bounds?.more_than ?? -Infinity;
   const most = bounds?.maximum ?? bounds?.less_than ?? Infinity;
-  if (log && value > 0) return { low: Math.max(value / 100, least > 0 ? least : 0), high: Math.min(value * 100, most), log };
+  if (log && value > 0)
+    return { low: Math.max(value / 100, least > 0 ? least : 0), high: Math.min(value * 100, most), log };
   const reach = nice(2 * Math.abs(value) || 1);
   const high = most - Math.max(least, 0) <= 10 ? most : Math.min(reach, most);
   return { low: least >= -reach ? least : -reach, high, log: false };

@@ -9,7 +9,9 @@ import { SessionPage } from "./studio";
 export function App() {
   return (
     <>
-      <a class="skip" href="#main" onClick={skip}>Skip to the content</a>
+      <a class="skip" href="#main" onClick={skip}>
+        Skip to the content
+      </a>
       <Shown />
       <Notices />
       <Dropping />
@@ -19,7 +21,12 @@ export function App() {
 
 function Shown() {
   if (entry.value === "out") return <Entry />;
-  if (entry.value === "asking") return <main id="main" class="entry" tabIndex={-1}><p>Asking the service ...</p></main>;
+  if (entry.value === "asking")
+    return (
+      <main id="main" class="entry" tabIndex={-1}>
+        <p>Asking the service ...</p>
+      </main>
+    );
   const key = place.value;
   return key ? <SessionPage key={`${key} ${entries.value}`} name={key} /> : <Start />;
 }

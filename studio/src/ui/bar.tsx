@@ -32,7 +32,9 @@ export function Bar({ studio, title }: { studio: Studio; title: string }) {
         All sessions
       </a>
       <h1 title={title}>{title}</h1>
-      <span class={`chip ${connection}`} role="status">{CHIPS[connection]}</span>
+      <span class={`chip ${connection}`} role="status">
+        {CHIPS[connection]}
+      </span>
       <Transport studio={studio} />
       <Keys studio={studio} />
       <ThemeChoice />

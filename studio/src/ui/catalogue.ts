@@ -37,7 +37,8 @@ interface Property {
   exclusiveMaximum?: number;
 }
 
-const fields = (described: Described) => Object.entries(described.properties).map(([name, property]) => field(name, property));
+const fields = (described: Described) =>
+  Object.entries(described.properties).map(([name, property]) => field(name, property));
 
 function field(name: string, property: Property): Field {
   const description = property.description ?? "";
@@ -46,5 +47,13 @@ function field(name: string, property: Property): Field {
   const told: [string, number | undefined][] = Object.entries({ minimum, maximum, more_than, less_than });
   const bounds: Bounds = Object.fromEntries(told.filter(([, bound]) => bound !== undefined));
   const type = property.type === "integer" ? "whole number" : (property.type ?? "object");
-  return { name, description, unit, type, default: property.default, bounds, ...(property.enum && { choices: property.enum }) };
+  return {
+    name,
+    description,
+    unit,
+    type,
+    default: property.default,
+    bounds,
+    ...(property.enum && { choices: property.enum }),
+  };
 }

@@ -31,7 +31,9 @@ export function Charts({ studio: { session } }: { studio: Studio }) {
   useEffect(() => recording.current!.begin(), []);
   return (
     <div class="charts">
-      {LINES.map((line) => <Chart key={line.of} line={line} session={session} recording={recording.current!} />)}
+      {LINES.map((line) => (
+        <Chart key={line.of} line={line} session={session} recording={recording.current!} />
+      ))}
     </div>
   );
 }
@@ -83,8 +85,14 @@ function Newest({ line, session, recording }: Shown) {
   return (
     <p class={stale ? "stale" : ""}>
       <span>{line.name}</span>{" "}
-      <output class="number" aria-live="off">{value === null ? "-" : measured(value, unit)}</output>
-      {low < high && <span class="faint between">{said(low, 3)} to {measured(Number(high.toPrecision(3)), unit)} in the last minute</span>}
+      <output class="number" aria-live="off">
+        {value === null ? "-" : measured(value, unit)}
+      </output>
+      {low < high && (
+        <span class="faint between">
+          {said(low, 3)} to {measured(Number(high.toPrecision(3)), unit)} in the last minute
+        </span>
+      )}
     </p>
   );
 }
@@ -106,7 +114,15 @@ function plotted(line: Line, place: HTMLElement): uPlot {
       },
       axes: [
         { show: false },
-        { show: true, size: 0, ticks: { show: false }, grid: { stroke: borderBottomColor, width: 1 }, values: () => [], gap: 0, space: 14 },
+        {
+          show: true,
+          size: 0,
+          ticks: { show: false },
+          grid: { stroke: borderBottomColor, width: 1 },
+          values: () => [],
+          gap: 0,
+          space: 14,
+        },
       ],
       series: [{}, { stroke: color, width: 1.5, points: { show: false } }],
     },

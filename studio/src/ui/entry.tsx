@@ -27,9 +27,13 @@ export function Entry() {
             onInput={(event) => setToken(event.currentTarget.value)}
           />
         </label>
-        <button type="submit" class="first">Log in</button>
+        <button type="submit" class="first">
+          Log in
+        </button>
       </form>
-      <p role="alert" class="fault">{refusedEntry.value}</p>
+      <p role="alert" class="fault">
+        {refusedEntry.value}
+      </p>
     </main>
   );
 }

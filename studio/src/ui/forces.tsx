@@ -44,10 +44,21 @@ interface Shown {
 function Force({ session, force, number, units }: Shown) {
   const kind = kinds.value?.get(force.kind);
   const fields = kind?.fields.filter((field) => LED.includes(field.type)) ?? [];
-  const [seldom, often] = [fields.filter((field) => isSeldom(field, force)), fields.filter((field) => !isSeldom(field, force))];
+  const [seldom, often] = [
+    fields.filter((field) => isSeldom(field, force)),
+    fields.filter((field) => !isSeldom(field, force)),
+  ];
   const title = titleOf(force, kind, number);
   const column = (field: Field) => (
-    <Column key={field.name} session={session} force={force} number={number} units={units} field={field} title={title} />
+    <Column
+      key={field.name}
+      session={session}
+      force={force}
+      number={number}
+      units={units}
+      field={field}
+      title={title}
+    />
   );
   return (
     <fieldset class="force">
@@ -85,8 +96,14 @@ function Column({ session, force, number, units, field, title }: Shown & { field
   if (told === null) {
     return (
       <NumberField
-        name={name} seen={seen} value={null} unit={measure} hint={field.description} placeholder="as drawn"
-        bounds={field.bounds} disabled={session.connection.value !== "live"}
+        name={name}
+        seen={seen}
+        value={null}
+        unit={measure}
+        hint={field.description}
+        placeholder="as drawn"
+        bounds={field.bounds}
+        disabled={session.connection.value !== "live"}
         done={(value) => value !== null && void session.tell(change(value))}
       />
     );
@@ -96,7 +113,15 @@ function Column({ session, force, number, units, field, title }: Shown & { field
   return (
     <>
       {isVector(told) && vectors && (
-        <Components name={name} seen={seen} value={told} unit={measure} hint={field.description} session={session} change={change} />
+        <Components
+          name={name}
+          seen={seen}
+          value={told}
+          unit={measure}
+          hint={field.description}
+          session={session}
+          change={change}
+        />
       )}
       {(!vectors || measure !== "") && (
         <Slider
@@ -143,8 +168,14 @@ function Components({ session, name, seen, value, unit: measure, hint, change }:
       <span class="seen">{seen}</span>
       {value.map((component, axis) => (
         <NumberField
-          key={axis} name={`${name} ${"xyz"[axis]}`} seen={"xyz"[axis]!} value={component} unit="" hint={hint}
-          disabled={!live} stale={!live}
+          key={axis}
+          name={`${name} ${"xyz"[axis]}`}
+          seen={"xyz"[axis]!}
+          value={component}
+          unit=""
+          hint={hint}
+          disabled={!live}
+          stale={!live}
           done={(to) => void session.tell(change(value.map((old, other) => (other === axis ? (to ?? 0) : old))))}
         />
       ))}

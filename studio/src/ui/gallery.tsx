@@ -27,13 +27,23 @@ export function Gallery() {
     await open(example);
     setOpening("");
   };
-  if (fault) return <p class="fault" role="alert">The figures could not be read. {fault}</p>;
+  if (fault)
+    return (
+      <p class="fault" role="alert">
+        The figures could not be read. {fault}
+      </p>
+    );
   if (!examples) return <p class="faint">Reading the figures ...</p>;
   return (
     <ul class="gallery">
       {examples.map((example) => (
         <li key={example.id}>
-          <button type="button" disabled={opening !== ""} aria-busy={opening === example.id} onClick={() => void choose(example)}>
+          <button
+            type="button"
+            disabled={opening !== ""}
+            aria-busy={opening === example.id}
+            onClick={() => void choose(example)}
+          >
             <img src={example.picture} alt="" loading="lazy" width={480} height={300} />
             <span class="figure">{example.figure}</span>
             <span class="title">{example.title}</span>

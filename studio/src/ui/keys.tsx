@@ -30,18 +30,28 @@ export function Keys({ studio }: { studio: Studio }) {
   }, [studio]);
   return (
     <>
-      <button type="button" class="help" aria-keyshortcuts="?" onClick={() => dialog.current?.showModal()}>Keys</button>
+      <button type="button" class="help" aria-keyshortcuts="?" onClick={() => dialog.current?.showModal()}>
+        Keys
+      </button>
       <dialog ref={dialog} aria-labelledby="keys-title">
         <h2 id="keys-title">Keys</h2>
         <dl>
           {LIST.map(([key, does]) => (
             <div key={key}>
-              <dt>{key.split(" ").map((part) => <kbd key={part}>{part}</kbd>)}</dt>
+              <dt>
+                {key.split(" ").map((part) => (
+                  <kbd key={part}>{part}</kbd>
+                ))}
+              </dt>
               <dd>{does}</dd>
             </div>
           ))}
         </dl>
-        <form method="dialog"><button type="submit" class="first">Close</button></form>
+        <form method="dialog">
+          <button type="submit" class="first">
+            Close
+          </button>
+        </form>
       </dialog>
     </>
   );
@@ -50,7 +60,8 @@ export function Keys({ studio }: { studio: Studio }) {
 /** Whether what has the focus wants the key for itself. */
 function isTaken(event: KeyboardEvent): boolean {
   const focus = event.target as HTMLElement;
-  if (focus.matches("textarea, select, [contenteditable], input:not([type=range], [type=checkbox], [type=radio])")) return true;
+  if (focus.matches("textarea, select, [contenteditable], input:not([type=range], [type=checkbox], [type=radio])"))
+    return true;
   return event.key === " " && focus.matches("button, a, summary, input:not([type=range])");
 }
 

@@ -29,14 +29,20 @@ export function AddLoad({ session }: { session: Session }) {
   const size = fitting(scene, topology);
   const disabled = busy.value || session.connection.value !== "live" || free.length === 0;
   const load = { kind: "unary", name: freeName(scene, "load"), particles: free, vector: [0, 0, -size] };
-  const weight = { kind: "self_weight", name: freeName(scene, "self weight"), total: Number((size * topology.particles).toPrecision(2)) };
+  const weight = {
+    kind: "self_weight",
+    name: freeName(scene, "self weight"),
+    total: Number((size * topology.particles).toPrecision(2)),
+  };
   return (
     <div class="row">
       {!has("unary") && (
         <button
           type="button"
           disabled={disabled}
-          onClick={() => void add(load, `A load of ${measured(size, scene.units.force)} downwards is on every free particle.`)}
+          onClick={() =>
+            void add(load, `A load of ${measured(size, scene.units.force)} downwards is on every free particle.`)
+          }
         >
           Add a load
         </button>
@@ -45,7 +51,9 @@ export function AddLoad({ session }: { session: Session }) {
         <button
           type="button"
           disabled={disabled}
-          onClick={() => void add(weight, `Self weight of ${measured(weight.total, scene.units.force)} in total is added.`)}
+          onClick={() =>
+            void add(weight, `Self weight of ${measured(weight.total, scene.units.force)} in total is added.`)
+          }
         >
           Add self weight
         </button>

@@ -40,7 +40,13 @@ function Said({ notice }: { notice: Notice }) {
     <div class={`notice ${notice.kind}`}>
       <div>
         <p>{notice.sentence}</p>
-        {notice.details.length > 0 && <ul>{notice.details.map((detail) => <li key={detail}>{detail}</li>)}</ul>}
+        {notice.details.length > 0 && (
+          <ul>
+            {notice.details.map((detail) => (
+              <li key={detail}>{detail}</li>
+            ))}
+          </ul>
+        )}
       </div>
       <button type="button" class="plain" aria-label="Close the notice" onClick={quiet}>
         ×

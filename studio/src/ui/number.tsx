@@ -20,7 +20,19 @@ interface Told {
   done: (value: number | null) => void;
 }
 
-export function NumberField({ name, seen, value, unit, hint, placeholder, bounds, whole, disabled, stale, done }: Told) {
+export function NumberField({
+  name,
+  seen,
+  value,
+  unit,
+  hint,
+  placeholder,
+  bounds,
+  whole,
+  disabled,
+  stale,
+  done,
+}: Told) {
   const typed = useSignal<string | null>(null);
   const fault = useSignal("");
   const id = useId();
@@ -53,8 +65,16 @@ export function NumberField({ name, seen, value, unit, hint, placeholder, bounds
           fault.value = "";
         }}
       />
-      {unit && <span class="unit" aria-hidden="true">{unit}</span>}
-      {fault.value && <span class="fault" role="alert">{fault.value}</span>}
+      {unit && (
+        <span class="unit" aria-hidden="true">
+          {unit}
+        </span>
+      )}
+      {fault.value && (
+        <span class="fault" role="alert">
+          {fault.value}
+        </span>
+      )}
     </span>
   );
 }

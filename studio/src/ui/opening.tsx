@@ -65,8 +65,14 @@ export function Dropping() {
   }, []);
   return (
     <>
-      {over.value && <div class="dropping" aria-hidden="true"><p>Drop it: it becomes a session</p></div>}
-      <p class="unseen" role="status">{opening.value && `Opening ${opening.value} ...`}</p>
+      {over.value && (
+        <div class="dropping" aria-hidden="true">
+          <p>Drop it: it becomes a session</p>
+        </div>
+      )}
+      <p class="unseen" role="status">
+        {opening.value && `Opening ${opening.value} ...`}
+      </p>
     </>
   );
 }

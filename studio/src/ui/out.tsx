@@ -6,7 +6,12 @@ import { linkTo, met } from "./place";
 import type { Studio } from "./studio";
 
 const FILES: { format: api.Format; seen: string; ending: string; hint: string }[] = [
-  { format: "3dm", seen: "Rhino .3dm", ending: ".3dm", hint: "Particles, lines and meshes with their forces, on layers" },
+  {
+    format: "3dm",
+    seen: "Rhino .3dm",
+    ending: ".3dm",
+    hint: "Particles, lines and meshes with their forces, on layers",
+  },
   { format: "obj", seen: "OBJ", ending: ".obj", hint: "Meshes, or the lines of springs" },
   { format: "compas", seen: "COMPAS JSON", ending: "-compas.json", hint: "A Mesh, or a Graph of the springs" },
   { format: "csv", seen: "CSV", ending: ".csv", hint: "A table of forces and reactions" },
@@ -18,7 +23,11 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
   const done = useSignal("");
   const link = useSignal("");
   const busy = useSignal("");
-  const name = title.normalize("NFKD").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "") || "session";
+  const name =
+    title
+      .normalize("NFKD")
+      .replace(/[^\w.-]+/g, "-")
+      .replace(/^-+|-+$/g, "") || "session";
   const take = async (seen: string, file: string, made: () => Promise<Blob>) => {
     busy.value = seen;
     done.value = "";
@@ -49,24 +58,38 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
       <div class="row">
         {FILES.map(({ format, seen, ending, hint }) => (
           <button
-            key={format} type="button" title={hint} disabled={!live || busy.value !== ""} aria-busy={busy.value === seen}
+            key={format}
+            type="button"
+            title={hint}
+            disabled={!live || busy.value !== ""}
+            aria-busy={busy.value === seen}
             onClick={() => void take(seen, name + ending, () => api.exported(session.key, format))}
           >
             {seen}
           </button>
         ))}
         <button
-          type="button" title="What is seen now" disabled={!view.value || busy.value !== ""} aria-busy={busy.value === "PNG"}
+          type="button"
+          title="What is seen now"
+          disabled={!view.value || busy.value !== ""}
+          aria-busy={busy.value === "PNG"}
           onClick={() => void take("PNG", `${name}.png`, () => view.value!.png())}
         >
           PNG
         </button>
-        <button type="button" onClick={() => void copy()}>Copy link</button>
+        <button type="button" onClick={() => void copy()}>
+          Copy link
+        </button>
       </div>
-      <p role="status" class="done">{done.value}</p>
+      <p role="status" class="done">
+        {done.value}
+      </p>
       {link.value && (
         <input
-          type="text" readOnly aria-label="Link to this session" value={link.value}
+          type="text"
+          readOnly
+          aria-label="Link to this session"
+          value={link.value}
           ref={(field) => field?.select()}
         />
       )}

@@ -10,11 +10,21 @@ import type { Studio } from "./studio";
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
   return (
     <aside class="panels" aria-label="Panels">
-      <Panel name="Picked"><PickedPanel studio={studio} /></Panel>
-      <Panel name="Forces"><Forces studio={studio} /></Panel>
-      <Panel name="See"><SeePanel studio={studio} /></Panel>
-      <Panel name="Charts"><Charts studio={studio} /></Panel>
-      <Panel name="Out"><OutPanel studio={studio} title={title} /></Panel>
+      <Panel name="Picked">
+        <PickedPanel studio={studio} />
+      </Panel>
+      <Panel name="Forces">
+        <Forces studio={studio} />
+      </Panel>
+      <Panel name="See">
+        <SeePanel studio={studio} />
+      </Panel>
+      <Panel name="Charts">
+        <Charts studio={studio} />
+      </Panel>
+      <Panel name="Out">
+        <OutPanel studio={studio} title={title} />
+      </Panel>
     </aside>
   );
 }
@@ -23,7 +33,9 @@ function Panel({ name, children }: { name: string; children: ComponentChildren }
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
     <details class="panel" open={!narrow || name === "Picked" || name === "Forces"}>
-      <summary><h2>{name}</h2></summary>
+      <summary>
+        <h2>{name}</h2>
+      </summary>
       <div class="inside">{children}</div>
     </details>
   );

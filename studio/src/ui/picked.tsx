@@ -18,8 +18,14 @@ export function PickedPanel({ studio }: { studio: Studio }) {
   };
   const number = (kind: "particle" | "spring", seen: string, count: number) => (
     <NumberField
-      name={`${seen} number`} seen={seen} value={picked?.kind === kind ? picked.index : null} unit="" whole
-      placeholder={count ? `0 to ${count - 1}` : "none"} bounds={{ minimum: 0, maximum: count - 1 }} disabled={!count}
+      name={`${seen} number`}
+      seen={seen}
+      value={picked?.kind === kind ? picked.index : null}
+      unit=""
+      whole
+      placeholder={count ? `0 to ${count - 1}` : "none"}
+      bounds={{ minimum: 0, maximum: count - 1 }}
+      disabled={!count}
       done={choose(kind)}
     />
   );
@@ -73,7 +79,12 @@ function Particle({ studio, index }: Shown) {
         {anchor && <Told name="Reaction" value={reaction ? vector(reaction, force) : "-"} />}
         <Loads studio={studio} index={index} unit={force} />
       </dl>
-      <button type="button" disabled={stale} aria-keyshortcuts="p" onClick={() => void (anchor ? release : pin)(session, index)}>
+      <button
+        type="button"
+        disabled={stale}
+        aria-keyshortcuts="p"
+        onClick={() => void (anchor ? release : pin)(session, index)}
+      >
         {anchor ? "Release" : "Pin"}
       </button>
     </div>
@@ -81,7 +92,13 @@ function Particle({ studio, index }: Shown) {
 }
 
 /** Where a particle is; where it is held, it can be typed. */
-function Position({ studio: { session }, index, at, anchor, stale }: Shown & { at: Point | null; anchor: Anchor | undefined; stale: boolean }) {
+function Position({
+  studio: { session },
+  index,
+  at,
+  anchor,
+  stale,
+}: Shown & { at: Point | null; anchor: Anchor | undefined; stale: boolean }) {
   const unit = session.topology.value?.units.length ?? "";
   const move = (axis: number) => (to: number | null) => {
     const now = anchor?.targets[anchor.particles.indexOf(index)];
@@ -97,8 +114,15 @@ function Position({ studio: { session }, index, at, anchor, stale }: Shown & { a
       {[0, 1, 2].map((axis) =>
         anchor?.axes.includes("xyz"[axis]!) ? (
           <NumberField
-            key={axis} name={"xyz"[axis]!} seen={"xyz"[axis]!} value={at?.[axis] ?? null} unit=""
-            hint="Typing moves the anchor" disabled={stale} stale={stale} done={move(axis)}
+            key={axis}
+            name={"xyz"[axis]!}
+            seen={"xyz"[axis]!}
+            value={at?.[axis] ?? null}
+            unit=""
+            hint="Typing moves the anchor"
+            disabled={stale}
+            stale={stale}
+            done={move(axis)}
           />
         ) : (
           <span key={axis} class="field">
@@ -115,7 +139,9 @@ function Loads({ studio, index, unit }: Shown & { unit: string }) {
   const read = studio.readings.loads(index);
   if (!read) return <Told name="Load" value="reading ..." stale />;
   if (!read.loads.length) return <Told name="Load" value="none" stale={!read.now} />;
-  return read.loads.map((load) => <Told key={load.name} name={`Load: ${load.name}`} value={vector(load.vector, unit)} stale={!read.now} />);
+  return read.loads.map((load) => (
+    <Told key={load.name} name={`Load: ${load.name}`} value={vector(load.vector, unit)} stale={!read.now} />
+  ));
 }
 
 function Spring({ studio, index }: Shown) {
@@ -130,7 +156,8 @@ function Spring({ studio, index }: Shown) {
   const force = frame?.springForces[index] ?? NaN;
   const rest = options.restLengths.value?.[index] ?? NaN;
   const restNow = studio.readings.isCurrent();
-  const strain = rest > 0 ? `${said(100 * (length / rest - 1))} %` : rest === 0 ? "none: the rest length is 0" : "reading ...";
+  const strain =
+    rest > 0 ? `${said(100 * (length / rest - 1))} %` : rest === 0 ? "none: the rest length is 0" : "reading ...";
   return (
     <div class={stale ? "stale" : ""}>
       <h3>Spring {index}</h3>
@@ -138,8 +165,15 @@ function Spring({ studio, index }: Shown) {
         <Told name="Of" value={owner?.name || owner?.kind || "-"} />
         <Told name="Ends" value={`particles ${ends[0]} and ${ends[1]}`} />
         <Told name="Length" value={measured(length, inLength)} />
-        <Told name="Rest length" value={Number.isFinite(rest) ? measured(rest, inLength) : "reading ..."} stale={!restNow} />
-        <Told name="Force" value={`${measured(force, inForce)}${force > 0 ? " tension" : force < 0 ? " compression" : ""}`} />
+        <Told
+          name="Rest length"
+          value={Number.isFinite(rest) ? measured(rest, inLength) : "reading ..."}
+          stale={!restNow}
+        />
+        <Told
+          name="Force"
+          value={`${measured(force, inForce)}${force > 0 ? " tension" : force < 0 ? " compression" : ""}`}
+        />
         <Told name="Strain" value={strain} stale={!restNow} />
       </dl>
     </div>
@@ -156,14 +190,21 @@ const Told = ({ name, value, stale = false }: { name: string; value: string; sta
 function heldBy(anchor: Anchor | undefined): string {
   if (!anchor) return "no, it is free";
   const along = anchor.axes === "xyz" ? "" : ` along ${[...anchor.axes].join(" and ")}`;
-  return (anchor.name ? `by anchor ${anchor.name}` : anchor.number >= 0 ? `by anchor ${anchor.number}` : "pinned") + along;
+  return (
+    (anchor.name ? `by anchor ${anchor.name}` : anchor.number >= 0 ? `by anchor ${anchor.number}` : "pinned") + along
+  );
 }
 
-const pointOf = (all: Float32Array, index: number): Point => [all[3 * index]!, all[3 * index + 1]!, all[3 * index + 2]!];
+const pointOf = (all: Float32Array, index: number): Point => [
+  all[3 * index]!,
+  all[3 * index + 1]!,
+  all[3 * index + 2]!,
+];
 
 const distance = (a: Point, b: Point) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
-const vector = (v: Point, unit: string) => `${v.map((n) => said(n, 3)).join(", ")} ${unit}; ${measured(Math.hypot(...v), unit)} in all`;
+const vector = (v: Point, unit: string) =>
+  `${v.map((n) => said(n, 3)).join(", ")} ${unit}; ${measured(Math.hypot(...v), unit)} in all`;
 
 /** The reaction on a held particle; null where the frame is of other anchors. */
 function reactionOn(anchors: Anchor[], reactions: Float32Array, index: number): Point | null {

@@ -26,7 +26,10 @@ export class Readings {
   private reading = false;
   private readonly stop: () => void;
 
-  constructor(private readonly session: Session, private readonly options: Options) {
+  constructor(
+    private readonly session: Session,
+    private readonly options: Options,
+  ) {
     this.stop = effect(() => this.follow());
   }
 
@@ -89,7 +92,11 @@ function restLengths(result: Result, topology: Topology): Float32Array {
     const { length, strain } = (result.forces[number] ?? {}) as { length?: number[]; strain?: (number | null)[] };
     const stretched = strain?.[place];
     // a rest length of 0 has no strain
-    return length?.[place] === undefined || stretched === undefined ? NaN : stretched === null ? 0 : length[place] / (1 + stretched);
+    return length?.[place] === undefined || stretched === undefined
+      ? NaN
+      : stretched === null
+        ? 0
+        : length[place] / (1 + stretched);
   });
 }
 

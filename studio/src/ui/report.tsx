@@ -25,8 +25,12 @@ function Lost({ studio: { session } }: { studio: Studio }) {
   const told = connection in TOLD ? TOLD[connection as keyof typeof TOLD] : "";
   return (
     <>
-      <p role="alert" class={session.said.value ? "fault" : "unseen"}>{session.said.value}</p>
-      <p role="status" class={told ? "lost" : "unseen"}>{told}</p>
+      <p role="alert" class={session.said.value ? "fault" : "unseen"}>
+        {session.said.value}
+      </p>
+      <p role="status" class={told ? "lost" : "unseen"}>
+        {told}
+      </p>
     </>
   );
 }
@@ -36,7 +40,9 @@ function Standing({ studio: { session } }: { studio: Studio }) {
   if (!summary) return <p>Waiting for the session ...</p>;
   const stale = session.connection.value !== "live";
   // while it plays the service's sentence is of its start: frames tell more
-  const sentence = summary.playing ? "" : summary.message.replace(/^Running: (.)/, (_, first: string) => first.toUpperCase());
+  const sentence = summary.playing
+    ? ""
+    : summary.message.replace(/^Running: (.)/, (_, first: string) => first.toUpperCase());
   return (
     <div class={stale ? "standing stale" : "standing"}>
       <p aria-live="polite">
@@ -55,7 +61,11 @@ function Now({ studio: { session } }: { studio: Pick<Studio, "session"> }) {
   const { frame } = session;
   if (!frame) return null;
   const time = session.topology.value?.units.time ?? "";
-  return <p class="numbers">{measured(frame.time, time)} · iteration {frame.iteration} · residual {said(frame.residual, 3)}</p>;
+  return (
+    <p class="numbers">
+      {measured(frame.time, time)} · iteration {frame.iteration} · residual {said(frame.residual, 3)}
+    </p>
+  );
 }
 
 function Warnings({ studio }: { studio: Studio }) {
@@ -73,7 +83,13 @@ function Warnings({ studio }: { studio: Studio }) {
         };
         return (
           <li key={sentence}>
-            {particles.length > 0 ? <button type="button" onClick={choose}>{sentence}</button> : sentence}
+            {particles.length > 0 ? (
+              <button type="button" onClick={choose}>
+                {sentence}
+              </button>
+            ) : (
+              sentence
+            )}
           </li>
         );
       })}

@@ -33,10 +33,16 @@ export function Running() {
   const forgotten = (key: string) => setSessions((now) => now?.filter((session) => session.key !== key) ?? null);
   return (
     <>
-      {fault && <p class="fault" role="alert">{fault} What follows is as it was last known.</p>}
+      {fault && (
+        <p class="fault" role="alert">
+          {fault} What follows is as it was last known.
+        </p>
+      )}
       {sessions?.length === 0 && <p class="faint">None yet: open a figure or a file, or begin one in Grasshopper.</p>}
       <ul class={fault ? "sessions stale" : "sessions"}>
-        {sessions?.map((session) => <Row key={session.key} session={session} forgotten={forgotten} />)}
+        {sessions?.map((session) => (
+          <Row key={session.key} session={session} forgotten={forgotten} />
+        ))}
       </ul>
     </>
   );

@@ -11,7 +11,9 @@ const IN_POWERS = ["tolerance", "time_step"];
 export function Settings({ session }: { session: Session }) {
   const scene = session.scene.value;
   if (!scene || !settings.value) return null;
-  const shown = SHOWN.map((name) => settings.value?.find((field) => field.name === name)).filter((field) => field !== undefined);
+  const shown = SHOWN.map((name) => settings.value?.find((field) => field.name === name)).filter(
+    (field) => field !== undefined,
+  );
   const solver = settings.value.find((field) => field.name === "solver");
   return (
     <fieldset class="force">
@@ -46,7 +48,11 @@ function Solver({ session, field }: { session: Session; field: Field }) {
         disabled={session.connection.value !== "live"}
         onChange={(event) => void session.tell({ settings: { solver: event.currentTarget.value } })}
       >
-        {field.choices?.map((name) => <option key={name} value={name}>{titled(name)}</option>)}
+        {field.choices?.map((name) => (
+          <option key={name} value={name}>
+            {titled(name)}
+          </option>
+        ))}
       </select>
     </label>
   );

@@ -40,8 +40,15 @@ export function Slider({ session, name, seen, value, unit, hint, note, bounds, l
   return (
     <div class={live ? "slider" : "slider stale"}>
       <NumberField
-        name={name} seen={seen} value={shown} unit={unit} hint={hint} bounds={bounds} whole={whole === true}
-        disabled={!live} stale={!live}
+        name={name}
+        seen={seen}
+        value={shown}
+        unit={unit}
+        hint={hint}
+        bounds={bounds}
+        whole={whole === true}
+        disabled={!live}
+        stale={!live}
         done={(typed) => typed !== null && hand.lead(typed)}
       />
       <input

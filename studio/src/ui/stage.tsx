@@ -30,7 +30,11 @@ export function Stage({ studio }: { studio: Studio }) {
   return (
     <>
       <canvas ref={canvas} tabIndex={0} role="img" aria-label="The form as it is now; the panels tell it in numbers" />
-      {fault && <p class="fault over" role="alert">{fault}</p>}
+      {fault && (
+        <p class="fault over" role="alert">
+          {fault}
+        </p>
+      )}
       <Looks studio={studio} />
       <LegendBox studio={studio} />
       <Report studio={studio} />

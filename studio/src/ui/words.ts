@@ -15,7 +15,9 @@ const POWERS: Record<string, string> = { "2": "²", "3": "³", "4": "⁴" };
 /** A unit of the catalogue, such as force/length, in those of a scene, such as kN/m; "" for none. */
 export function unit(words: string, units: Units | undefined): string {
   if (words === "-" || words === "") return "";
-  const names: Record<string, string> = units ? { ...units, moment: `${units.force}·${units.length}`, angle: "rad" } : {};
+  const names: Record<string, string> = units
+    ? { ...units, moment: `${units.force}·${units.length}`, angle: "rad" }
+    : {};
   return words
     .replace(/[a-z]+/g, (word) => names[word] ?? word)
     .replace(/\^(\d)/g, (_, power: string) => POWERS[power] ?? `^${power}`)
