@@ -58,7 +58,7 @@ export function around(value: number, bounds: Bounds | undefined, log: boolean):
   const most = bounds?.maximum ?? bounds?.less_than ?? Infinity;
   if (log && value > 0)
     return { low: Math.max(value / 100, least > 0 ? least : 0), high: Math.min(value * 100, most), log };
-  const reach = nice(2 * Math.abs(value) || 1);
+  const reach = nice(2 * Math.abs(value) || 1, ENDS);
   const high = most - Math.max(least, 0) <= 10 ? most : Math.min(reach, most);
   return { low: least >= -reach ? least : -reach, high, log: false };
 }
@@ -76,15 +76,16 @@ export function outgrown(range: Range, value: number, bounds: Bounds | undefined
 
 /** The step of a slider over a range: so fine that a hand does not feel it, so round that numbers stay short. */
 export function stepOf({ low, high, log }: Range): number {
-  return log ? 0.01 : nice((high - low) / 400);
+  return log ? 0.01 : nice((high - low) / 400, STEPS);
 }
 
-const ROUND = [1, 2, 5, 10];
+const STEPS = [1, 2, 5, 10];
+const ENDS = [1, 1.5, 2, 3, 4, 5, 6, 8, 10];
 
-/** The next round number that is not less. */
-function nice(value: number): number {
+/** The next number as round as one of these that is not less. */
+function nice(value: number, round: number[]): number {
   const power = 10 ** Math.floor(Math.log10(value));
-  return Number(((ROUND.find((round) => round * power >= value * 0.999) ?? 10) * power).toPrecision(3));
+  return Number(((round.find((one) => one * power >= value * 0.999) ?? 10) * power).toPrecision(3));
 }
 
 /** A value of a logarithmic slider with the digits that count. */

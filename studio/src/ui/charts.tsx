@@ -122,6 +122,7 @@ function plotted(line: Line, place: HTMLElement): uPlot {
           values: () => [],
           gap: 0,
           space: 14,
+          ...(line.log && { splits: (_: uPlot, __: number, low: number, high: number) => decades(low, high) }),
         },
       ],
       series: [{}, { stroke: color, width: 1.5, points: { show: false } }],
@@ -129,4 +130,11 @@ function plotted(line: Line, place: HTMLElement): uPlot {
     [[], []],
     place,
   );
+}
+
+/** Powers of ten between two numbers, five of them at most. */
+function decades(low: number, high: number): number[] {
+  const [first, last] = [Math.ceil(Math.log10(low)), Math.floor(Math.log10(high))];
+  const step = Math.max(1, Math.ceil((last - first) / 4));
+  return Array.from({ length: Math.floor((last - first) / step) + 1 }, (_, i) => 10 ** (first + i * step));
 }

@@ -1,4 +1,4 @@
-// What was refused or done, in sentences that stay until they are closed or the next one comes.
+// What was refused or done, in sentences. What was refused stays until it is closed or the next one comes.
 import { signal } from "@preact/signals";
 import { Refused } from "../api";
 
@@ -7,6 +7,8 @@ interface Notice {
   sentence: string;
   details: string[];
 }
+
+const SEEN = 8000;
 
 const notice = signal<Notice | null>(null);
 
@@ -20,7 +22,9 @@ export function refuse(error: unknown, before = ""): void {
 
 /** Say what was done. */
 export function tell(sentence: string, details: string[] = []): void {
-  notice.value = { kind: "done", sentence, details };
+  const done: Notice = { kind: "done", sentence, details };
+  notice.value = done;
+  if (!details.length) setTimeout(() => notice.value === done && quiet(), SEEN);
 }
 
 export const quiet = () => (notice.value = null);
