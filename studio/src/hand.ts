@@ -12,6 +12,8 @@ export const holder = (anchors: Anchor[], particle: number) => anchors.find((a) 
 
 /** Edits of which only the newest counts: one is on its way at a time, later ones replace each other meanwhile. */
 export class Newest {
+  /** Whether one of them was made. */
+  made = false;
   private next: Patch | null = null;
   private running: Promise<void> | null = null;
 
@@ -32,7 +34,7 @@ export class Newest {
     while (this.next) {
       const patch = this.next;
       this.next = null;
-      await this.session.tell(patch);
+      if (await this.session.tell(patch)) this.made = true;
     }
   }
 }
@@ -60,7 +62,13 @@ export class Grip {
   /** Let go: an anchor stays where it was led, a free particle is free again. */
   async drop(): Promise<void> {
     await this.edits.settled();
-    if (!this.anchored) await this.session.tell({ release: [this.particle], gesture: this.gesture });
+    if (!this.anchored && this.edits.made) await this.session.tell({ release: [this.particle], gesture: this.gesture });
+  }
+
+  /** Let go and take back what it did. */
+  async takeBack(): Promise<void> {
+    await this.drop();
+    if (this.edits.made) await this.session.tell("undo");
   }
 }
 

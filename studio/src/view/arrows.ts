@@ -1,19 +1,23 @@
 // Forces on particles as arrows, the largest of them a set part of the form's size.
-import { InstancedBufferAttribute, InstancedBufferGeometry, Mesh, type RawShaderMaterial, type WebGLRenderer } from "three";
-import { Column } from "./columns";
+import { type BufferGeometry, Mesh, type RawShaderMaterial, type WebGLRenderer } from "three";
+import { Column, Rows } from "./columns";
 import { type Common, material } from "./material";
+import { quads } from "./segments";
 
 const VERTEX = `
-in int index;
+uniform highp isampler2D rows;
 uniform sampler2D vectors;
-uniform float scale, width, head;
+uniform float scale, width, head, gap;
 uniform bool inward;
-const vec2 SHAPE[9] = vec2[](vec2(0, -1), vec2(1, -1), vec2(1, 1), vec2(0, -1), vec2(1, 1), vec2(0, 1),
-                             vec2(2, -1), vec2(3, 0), vec2(2, 1));
+out vec3 place_;
+flat out float reach;
+flat out float tip;
+const vec2 CORNERS[4] = vec2[](vec2(0, -1), vec2(1, -1), vec2(0, 1), vec2(1, 1));
 void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  vec3 p = particle(index);
-  vec3 v = texelFetch(vectors, place(vectors, gl_InstanceID), 0).xyz * scale;
+  int row = gl_VertexID >> 2;
+  vec3 p = particle(texelFetch(rows, place(row), 0).x);
+  vec3 v = texelFetch(vectors, place(row), 0).xyz * scale;
   if (!(dot(v, v) > 0.0)) return;
   // what pushes against the form ends on its particle, what pulls begins there
   bool pushes = inward && dot(v, p) < -1e-3 * length(v) * length(p);
@@ -21,45 +25,62 @@ void main() {
   if (a.z >= 0.0 || b.z >= 0.0) return;
   vec4 from = drawn(a, pixel(a) * 3.0), to = drawn(b, pixel(b) * 3.0);
   vec2 along = (to.xy / to.w - from.xy / from.w) * 0.5 * size;
-  float reach = length(along);
+  reach = length(along);
   if (reach < 0.5) return;
   along /= reach;
-  vec2 across = vec2(-along.y, along.x);
-  float tip = min(head, 0.6 * reach);
-  vec2 corner = SHAPE[gl_VertexID];
+  if (pushes && reach > 3.0 * gap) {
+    to.xy -= along * gap * 2.0 / size * to.w;
+    reach -= gap;
+  }
+  tip = min(head, 0.6 * reach);
+  vec2 corner = CORNERS[gl_VertexID & 3];
   vec4 end = corner.x < 0.5 ? from : to;
-  vec2 offset = across * corner.y * 0.5 * width;
-  if (corner.x == 1.0) offset -= along * tip * 0.8;
-  if (corner.x == 2.0) offset = across * corner.y * 0.42 * tip - along * tip;
-  gl_Position = end + vec4(offset * 2.0 / size * end.w, 0, 0);
+  float wide = max(0.42 * tip, 0.5 * width) + 1.0, beyond = 2.0 * corner.x - 1.0;
+  // along: from the tip backwards
+  place_ = vec3((1.0 - corner.x) * reach - beyond, corner.y * wide, 1.0) * end.w;
+  gl_Position = end + vec4((vec2(-along.y, along.x) * corner.y * wide + along * beyond) * 2.0 / size * end.w, 0, 0);
 }`;
 
 const FRAGMENT = `
+in vec3 place_;
+flat in float reach;
+flat in float tip;
+uniform float width, ratio;
 uniform vec3 shade;
-void main() { colour = vec4(shade, 1.0); }`;
+void main() {
+  vec2 at = place_.xy / place_.z;
+  float shaft = max(max(tip * 0.7 - at.x, at.x - reach), abs(at.y) - 0.5 * width);
+  float arrow = max((abs(at.y) - 0.4 * at.x) * 0.93, at.x - tip);
+  float inside = clamp(0.5 - min(shaft, arrow) * ratio, 0.0, 1.0);
+  if (inside < 0.02) discard;
+  colour = vec4(shade, inside);
+}`;
 
 /** Arrows on particles. */
 export class Arrows {
-  readonly mesh: Mesh<InstancedBufferGeometry, RawShaderMaterial>;
+  readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
   readonly style = {
     scale: { value: 1 },
     width: { value: 2 },
     head: { value: 10 },
+    /** So far before its particle the tip of one that pushes ends [CSS pixels]. */
+    gap: { value: 7 },
     shade: { value: [0, 0, 0] as [number, number, number] },
   };
   /** The longest vector [force] */
   largest = 0;
   private readonly vectors: Column;
+  private readonly rows: Rows;
 
   /** `inward`: those that point into the form end on their particle instead of beginning there. */
-  constructor(shared: Common, readonly particles: Int32Array, inward: boolean) {
+  constructor(shared: Common, readonly particles: Int32Array, inward: boolean, order: number) {
     this.vectors = new Column(particles.length, 3);
-    const geometry = new InstancedBufferGeometry();
-    geometry.setAttribute("index", new InstancedBufferAttribute(particles, 1));
-    geometry.setDrawRange(0, 9);
-    geometry.instanceCount = particles.length;
-    const uniforms = { ...this.style, vectors: { value: this.vectors.texture }, inward: { value: inward } };
-    this.mesh = new Mesh(geometry, material(shared, { vertex: VERTEX, fragment: FRAGMENT, uniforms }));
+    this.rows = new Rows(particles, 1);
+    const columns = { rows: { value: this.rows.texture }, vectors: { value: this.vectors.texture } };
+    const uniforms = { ...this.style, ...columns, inward: { value: inward } };
+    const made = material(shared, { vertex: VERTEX, fragment: FRAGMENT, uniforms, soft: true, depthWrite: true });
+    this.mesh = new Mesh(quads(particles.length), made);
+    this.mesh.renderOrder = order;
     this.mesh.frustumCulled = false;
   }
 
@@ -75,6 +96,7 @@ export class Arrows {
 
   dispose(): void {
     this.vectors.dispose();
+    this.rows.dispose();
     this.mesh.geometry.dispose();
     this.mesh.material.dispose();
   }

@@ -64,8 +64,7 @@ export class Eye {
   first(positions: ArrayLike<number>): void {
     const size = new Box3().setFromArray(positions).getSize(new Vector3());
     const most = Math.max(size.x, size.y, size.z);
-    const towards = size.y < 1e-4 * most && size.z > 1e-3 * most ? direction(-82, 8)
-      : size.x < 1e-4 * most && size.z > 1e-3 * most ? direction(-8, 8) : ISOMETRIC;
+    const towards = size.y < 1e-4 * most ? direction(-90, 0) : size.x < 1e-4 * most ? direction(0, 0) : ISOMETRIC;
     this.go({ ...around(positions, towards, FREE, this.camera.aspect), towards, angle: FREE }, true);
   }
 

@@ -1,5 +1,6 @@
 // What all that is drawn shares: where particles are, how large the picture is, and how a shader reads both.
-import { type Blending, DoubleSide, GLSL3, type IUniform, NormalBlending, RawShaderMaterial, Vector2, Vector3 } from "three";
+import { DoubleSide, GLSL3, type IUniform, RawShaderMaterial, Vector2, Vector3 } from "three";
+import { WIDTH } from "./columns";
 
 /** Uniforms of all shaders; one object, so that setting a value sets it everywhere. */
 export interface Common {
@@ -30,16 +31,17 @@ uniform sampler2D positions;
 uniform vec3 centre;
 uniform vec2 size;
 uniform float ratio;
-ivec2 place(sampler2D column, int row) { int w = textureSize(column, 0).x; return ivec2(row % w, row / w); }
-vec3 particle(int i) { return texelFetch(positions, place(positions, i), 0).xyz - centre; }
+// columns are ${WIDTH} wide
+ivec2 place(int row) { return ivec2(row & ${WIDTH - 1}, row >> ${Math.log2(WIDTH)}); }
+vec3 particle(int i) { return texelFetch(positions, place(i), 0).xyz - centre; }
 vec3 seen(vec3 p) { return (modelViewMatrix * vec4(p, 1.0)).xyz; }
 // length of a CSS pixel at a point of the eye's space
 float pixel(vec3 p) { return -2.0 * p.z / (projectionMatrix[1][1] * size.y); }
-// on the picture, with the depth of a point nearer to the eye
+// on the picture, with the depth of a point nearer to the eye; the camera looks straight ahead
 vec4 drawn(vec3 p, float nearer) {
-  vec4 c = projectionMatrix * vec4(p, 1.0);
-  vec4 n = projectionMatrix * vec4(p * (1.0 - min(0.5, nearer / max(length(p), 1e-30))), 1.0);
-  return vec4(c.xy, n.z / n.w * c.w, c.w);
+  float part = 1.0 - min(0.5, nearer / max(-p.z, 1e-30));
+  float depth = projectionMatrix[2][2] * p.z + projectionMatrix[3][2] / part;
+  return vec4(projectionMatrix[0][0] * p.x, projectionMatrix[1][1] * p.y, depth, -p.z);
 }
 `;
 
@@ -51,7 +53,6 @@ export interface Look {
   soft?: boolean;
   depthTest?: boolean;
   depthWrite?: boolean;
-  blending?: Blending;
 }
 
 /** A material of these shaders. They know `particle(i)`, `seen`, `drawn`, and what Common has. */
@@ -63,7 +64,6 @@ export function material(shared: Common, look: Look): RawShaderMaterial {
     uniforms: { ...shared, ...look.uniforms },
     side: DoubleSide,
     transparent: look.soft ?? false,
-    blending: look.blending ?? NormalBlending,
     depthTest: look.depthTest ?? true,
     depthWrite: look.depthWrite ?? !(look.soft ?? false),
   });

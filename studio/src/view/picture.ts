@@ -16,6 +16,7 @@ import type { Colouring, Layer } from "./types";
 const ARROW = 0.13;
 const MANY_ARROWS = 60;
 const MOST_ARROWS = 1500;
+const MANY_SPRINGS = 3000;
 const FLOOR_REACH = 1.6;
 
 export interface Dress {
@@ -44,8 +45,10 @@ export class Picture {
   readonly dots: Marks;
   readonly floor: Plane;
   reactions: Arrows | null = null;
-  private held: number[] = [];
+  /** Particles that are held, in their order. */
+  held: ReadonlySet<number> = new Set();
   private parts: Parts | null = null;
+  private sprung = true;
   private positions: Column | null = null;
   private forces: Column | null = null;
   private rest: Column | null = null;
@@ -73,11 +76,11 @@ export class Picture {
       edges: new Segments(common, form.edges, 2),
       strokes: new Segments(common, form.strokes, 2),
       skin: new Skin(common, form.triangles),
-      loads: new Arrows(common, form.loaded.filter((_, i) => i % kept === 0), false),
+      loads: new Arrows(common, form.loaded.filter((_, i) => i % kept === 0), false, 4),
     });
     parts.springs.style.forces.value = this.forces.texture;
     parts.loads.put(this.stage.renderer, form.loads.filter((_, i) => Math.floor(i / 3) % kept === 0));
-    group.add(parts.springs.mesh, parts.edges.mesh, parts.strokes.mesh, parts.skin.mesh, parts.loads.mesh);
+    group.add(parts.springs.mesh, parts.springs.thin, parts.edges.mesh, parts.strokes.mesh, parts.skin.mesh, parts.loads.mesh);
     this.dots.put(Int32Array.from({ length: form.particles }, (_, i) => i));
   }
 
@@ -86,7 +89,7 @@ export class Picture {
     const { renderer } = this.stage;
     this.positions!.put(renderer, frame.positions);
     if (frame.springForces.length) this.forces!.put(renderer, frame.springForces);
-    if (!this.reactions || frame.reactions.length !== 3 * this.held.length) return;
+    if (!this.reactions || frame.reactions.length !== 3 * this.held.size) return;
     this.reactions.put(renderer, frame.reactions);
   }
 
@@ -114,12 +117,12 @@ export class Picture {
     const all = [...axes].filter(([, held]) => held.size);
     this.anchors.put(all.filter(([, held]) => held.size === 3).map(([particle]) => particle));
     this.partial.put(all.filter(([, held]) => held.size < 3).map(([particle]) => particle));
-    this.held = all.map(([particle]) => particle).sort((a, b) => a - b);
+    this.held = new Set(all.map(([particle]) => particle).sort((a, b) => a - b));
     if (this.reactions) {
       this.stage.group.remove(this.reactions.mesh);
       this.reactions.dispose();
     }
-    this.reactions = new Arrows(this.stage.common, Int32Array.from(this.held), true);
+    this.reactions = new Arrows(this.stage.common, Int32Array.from(this.held), true, 4);
     this.stage.group.add(this.reactions.mesh);
   }
 
@@ -131,6 +134,11 @@ export class Picture {
     this.rest = new Column(lengths.length, 1);
     this.rest.put(this.stage.renderer, lengths);
     this.parts.springs.style.restLengths.value = this.rest.texture;
+  }
+
+  /** The longest arrows [force]. */
+  get longest(): { load: number; reaction: number } {
+    return { load: this.parts?.loads.largest ?? 0, reaction: this.reactions?.largest ?? 0 };
   }
 
   /** Whether strains are known. */
@@ -152,9 +160,14 @@ export class Picture {
     this.marks(dress, colours, gap);
     const spread = form.loaded.length > MANY_ARROWS ? 2.2 * form.spacing * Math.sqrt(Math.ceil(form.loaded.length / MOST_ARROWS)) : 0;
     this.arrows(parts.loads, layers.loads, colours.load, spread);
-    if (this.reactions) this.arrows(this.reactions, layers.reactions, colours.reaction, this.held.length > MANY_ARROWS ? 6 * form.spacing : 0);
+    if (this.reactions) this.arrows(this.reactions, layers.reactions, colours.reaction, this.held.size > MANY_ARROWS ? 6 * form.spacing : 0);
     this.floor.style.shade.value = channels(colours.floor);
     this.floor.style.strength.value = dress.dark ? 0.75 : 0.9;
+  }
+
+  /** Whether it is drawn with as little work as can be. */
+  rough(rough: boolean): void {
+    this.parts?.springs.show(this.sprung, rough && this.parts.springs.count > MANY_SPRINGS);
   }
 
   /** Through a point across a normal [length]; null for none. */
@@ -175,7 +188,7 @@ export class Picture {
     const { springs, edges, strokes } = parts;
     const { style } = springs;
     const { colours: stops, first, last } = dress.ramp;
-    springs.mesh.visible = dress.layers.springs && springs.count > 0;
+    this.sprung = dress.layers.springs && springs.count > 0;
     style.width.value = clamp(0.1 * gap, 1.5, 3.4);
     style.colouring.value = dress.colouring === "force" ? 1 : dress.colouring === "strain" && this.rest ? 2 : 0;
     [style.low.value, style.high.value] = [first, last];
@@ -236,6 +249,7 @@ export class Picture {
       this.stage.group.remove(part.mesh);
       part.dispose();
     }
+    this.stage.group.remove(parts.springs.thin);
     this.parts = null;
   }
 }

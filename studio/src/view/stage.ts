@@ -11,18 +11,18 @@ const LEVELS = [{ ratio: 2, smooth: true }, { ratio: 1, smooth: false }, { ratio
 const SLOW = 36;
 const QUICK = 20;
 
-/** Chooses how finely to draw while something moves, from how long pictures took. */
+/** Chooses how finely to draw while something moves, from how long pictures take. */
 export class Pace {
   private level = 0;
   private slow = 0;
   private quick = 0;
   private patience = 120;
 
-  /** Tell the time between two pictures that followed each other [ms]. */
-  note(interval: number): void {
-    this.slow = interval > SLOW ? this.slow + 1 : 0;
-    this.quick = interval < QUICK ? this.quick + 1 : 0;
-    if (this.slow > 2 && this.level < LEVELS.length - 1) {
+  /** Tell how long a picture took [ms]. */
+  note(taken: number): void {
+    this.slow = taken > SLOW ? this.slow + 1 : 0;
+    this.quick = taken < QUICK ? this.quick + 1 : 0;
+    if (this.slow > 1 && this.level < LEVELS.length - 1) {
       this.level += 1;
       this.slow = 0;
     } else if (this.quick > this.patience && this.level > 0) {
@@ -30,6 +30,11 @@ export class Pace {
       this.quick = 0;
       this.patience *= 2; // so that it does not go to and fro
     }
+  }
+
+  /** Whether this machine draws so slowly that every line counts. */
+  get rough(): boolean {
+    return this.level > 1;
   }
 
   get fineness(): { ratio: number; smooth: boolean } {

@@ -55,6 +55,10 @@ export const options = (): Options => ({
 
 export interface View {
   readonly legend: Signal<Legend | null>;
+  /** The longest arrows of loads and of reactions [force]; 0 for none. */
+  readonly arrows: Signal<{ load: number; reaction: number }>;
+  /** What the keyboard has just done, in a sentence, to be read out. */
+  readonly announcement: Signal<string>;
   /** Frames drawn in the last second. */
   readonly rate: Signal<number>;
   /** All of the form into view. */

@@ -7,11 +7,16 @@ import type { Session } from "../session";
 import { note, stats } from "../stats";
 import { Eye } from "./camera";
 import { ramp } from "./colours";
+import { Hand, type Held } from "./dragging";
 import { Extremes, extremes } from "./extremes";
 import { form } from "./form";
+import { Guide } from "./guide";
+import { Highlights } from "./highlights";
+import { Keys } from "./keys";
+import { Picker } from "./picking";
 import { Picture } from "./picture";
 import { Stage } from "./stage";
-import type { Legend, Look, Options, View } from "./types";
+import type { Legend, Look, Options, Picked, View } from "./types";
 
 const REST = 220;
 
@@ -22,17 +27,27 @@ export function createView(canvas: HTMLCanvasElement, session: Session, options:
 
 class Drawing implements View {
   readonly legend = signal<Legend | null>(null);
+  readonly arrows = signal({ load: 0, reaction: 0 });
+  readonly announcement = signal("");
   readonly rate = signal(0);
   private readonly stage: Stage;
   private readonly eye: Eye;
   private readonly picture: Picture;
+  private readonly highlights: Highlights;
+  private readonly guide: Guide;
+  private readonly hand: Hand;
+  private readonly keys: Keys;
+  private readonly picker = new Picker();
   private readonly scale = new Extremes();
   private readonly undo: (() => void)[] = [];
   private frame: Frame | null = null;
   private drawn: Frame | null = null;
   private fitted = false;
+  /** Length of a pixel that colours and sizes were chosen for; 0 where they must be chosen anew. */
+  private dressed = 0;
   private asked = 0;
-  private last = 0;
+  private since = 0;
+  private pacing = 0;
   private rest = 0;
   private counting = 0;
   private count = 0;
@@ -41,6 +56,11 @@ class Drawing implements View {
     this.stage = new Stage(canvas);
     this.eye = new Eye(canvas, this.ask);
     this.picture = new Picture(this.stage);
+    this.highlights = new Highlights(this.stage);
+    this.guide = new Guide(this.stage);
+    this.hand = new Hand(this.handles());
+    const say = (sentence: string) => (this.announcement.value = sentence);
+    this.keys = new Keys({ ...this.handles(), eye: this.eye, fit: () => this.fit(), say });
     this.watchCanvas();
     this.watchSession();
   }
@@ -60,6 +80,7 @@ class Drawing implements View {
 
   async png(): Promise<Blob> {
     this.dress();
+    this.picture.rough(false);
     const made = this.stage.png(this.eye.camera);
     this.ask();
     return made;
@@ -84,10 +105,49 @@ class Drawing implements View {
     cancelAnimationFrame(this.asked);
     clearTimeout(this.rest);
     clearTimeout(this.counting);
+    clearTimeout(this.pacing);
     this.undo.reverse().forEach((undo) => undo());
+    for (const part of [this.hand, this.keys, this.guide, this.highlights]) part.dispose();
     this.eye.dispose();
     this.picture.dispose();
     this.stage.dispose();
+  }
+
+  /** What hand and keys need of all this. */
+  private handles(): Held {
+    const { session, options, canvas, eye, picture } = this;
+    const at = (particle: number) => new Vector3().fromArray(this.particles(), 3 * particle);
+    return {
+      session, options, canvas, at,
+      camera: eye.camera,
+      size: () => picture.size,
+      find: (x, y, reach) => this.find(x, y, reach),
+      takes: (particle) => this.takes(particle),
+      orbits: (allowed) => (eye.controls.enabled = allowed),
+      changed: this.ask,
+    };
+  }
+
+  private find(x: number, y: number, reach: { particle: number; spring: number }): Picked {
+    const { picture, stage, eye, options } = this;
+    if (!this.drawn || !picture.form) return null;
+    const { mesh, springs } = options.layers.value;
+    return this.picker.find(x, y, {
+      camera: eye.camera,
+      width: stage.width,
+      height: stage.height,
+      positions: this.drawn.positions,
+      springs: springs ? picture.form.springs : new Int32Array(),
+      triangles: mesh ? picture.form.triangles : new Uint32Array(),
+      held: picture.held,
+      thickness: 0.01 * picture.size,
+    }, reach);
+  }
+
+  private takes(particle: number): boolean {
+    const picked = this.options.picked.value;
+    const alone = this.picture.dotted(this.eye.pixel(this.stage.height));
+    return alone || this.picture.held.has(particle) || (picked?.kind === "particle" && picked.index === particle);
   }
 
   private watchCanvas(): void {
@@ -109,6 +169,7 @@ class Drawing implements View {
       effect(() => {
         const topology = session.topology.value;
         if (!topology) return;
+        this.hand.forget();
         picture.build(form(topology));
         this.frame = this.drawn = null;
         this.scale.forget();
@@ -116,12 +177,14 @@ class Drawing implements View {
       effect(() => {
         void session.topology.value;
         picture.hold(session.anchors.value);
+        this.dressed = 0;
         this.drawn = null;
         this.ask();
       }),
       effect(() => {
         void session.topology.value;
         picture.know(options.restLengths.value);
+        this.dressed = 0;
         this.scale.forget();
         this.ask();
       }),
@@ -131,7 +194,15 @@ class Drawing implements View {
         this.ask();
       }),
       effect(() => {
-        for (const option of [options.layers, options.dark, options.picked, options.marked, session.scene]) void option.value;
+        void session.topology.value;
+        this.highlights.pick(options.picked.value, picture.form);
+        this.highlights.mark(options.marked.value, picture.form);
+        this.ask();
+      }),
+      effect(() => {
+        for (const option of [options.layers, options.dark, options.lock, session.scene]) void option.value;
+        if (this.legend.peek()) this.relabel();
+        this.dressed = 0;
         this.ask();
       }),
       session.onFrame((frame) => {
@@ -150,19 +221,26 @@ class Drawing implements View {
 
   /** Something has changed: draw soon. */
   private readonly ask = (): void => {
-    this.asked ||= requestAnimationFrame(this.tick);
+    if (this.asked) return;
+    this.asked = requestAnimationFrame(this.tick);
+    this.since = performance.now();
   };
 
   private readonly tick = (now: number): void => {
     this.asked = 0;
     const glides = this.eye.step(now);
     if (!this.draw(false)) return;
-    if (now - this.last < 250) this.stage.pace.note(now - this.last);
-    this.last = now;
+    this.timed(Math.max(0, now - this.since));
     clearTimeout(this.rest);
     if (glides) this.ask();
     else this.rest = window.setTimeout(() => this.draw(true), REST);
   };
+
+  /** How long the page waited to draw, and how long it is held up by what was drawn. */
+  private timed(waited: number): void {
+    const began = performance.now();
+    this.pacing = window.setTimeout(() => this.stage.pace.note(waited + performance.now() - began));
+  }
 
   /** Draw what is newest; whether that was possible. */
   private draw(finely: boolean): boolean {
@@ -178,6 +256,7 @@ class Drawing implements View {
     }
     this.dress();
     eye.reach(stage.common.centre.value, picture.size * 2);
+    picture.rough(!finely && stage.pace.rough);
     stage.draw(eye.camera, finely);
     this.counted(frame);
     return true;
@@ -199,6 +278,10 @@ class Drawing implements View {
     this.picture.survey(frame);
     const [low, high] = extremes(this.numbers(frame));
     if (this.scale.take(low, high, resting, now)) this.relabel();
+    const { load, reaction } = this.picture.longest;
+    const told = this.arrows.value;
+    if (load !== told.load || reaction !== told.reaction) this.arrows.value = { load, reaction };
+    this.dressed = 0;
   }
 
   private numbers(frame: Frame): ArrayLike<number> {
@@ -222,16 +305,23 @@ class Drawing implements View {
     this.legend.value = low <= high ? { title: force ? "Force" : "Strain", unit, low: first, high: last, colours } : null;
   }
 
+  /** Colours and sizes, where they may have changed. */
   private dress(): void {
     const { options, picture, eye, stage, scale } = this;
+    const pixel = eye.pixel(stage.height);
+    this.highlights.hover(this.hand.hovered, picture.form);
+    this.guide.show(this.hand.led, picture.size, options.dark.value);
+    if (pixel === this.dressed) return;
+    this.dressed = pixel;
     picture.dress({
       colouring: options.colouring.value,
       layers: options.layers.value,
       dark: options.dark.value,
       ramp: ramp(scale.low, scale.high, options.dark.value),
-      pixel: eye.pixel(stage.height),
+      pixel,
     });
     picture.lay(floorOf(this.session.scene.value), options.layers.value.floor);
+    this.highlights.dress(options.dark.value);
   }
 
   private counted(frame: Frame): void {
