@@ -73,7 +73,12 @@ export class Arrows {
   private readonly rows: Rows;
 
   /** `inward`: those that point into the form end on their particle instead of beginning there. */
-  constructor(shared: Common, readonly particles: Int32Array, inward: boolean, order: number) {
+  constructor(
+    shared: Common,
+    readonly particles: Int32Array,
+    inward: boolean,
+    order: number,
+  ) {
     this.vectors = new Column(particles.length, 3);
     this.rows = new Rows(particles, 1);
     const columns = { rows: { value: this.rows.texture }, vectors: { value: this.vectors.texture } };

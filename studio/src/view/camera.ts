@@ -45,7 +45,12 @@ export class Eye {
   get place(): Place {
     const away = this.camera.position.clone().sub(this.controls.target);
     const angle = this.camera.fov;
-    return { target: this.controls.target.clone(), height: 2 * away.length() * half(angle), towards: away.normalize(), angle };
+    return {
+      target: this.controls.target.clone(),
+      height: 2 * away.length() * half(angle),
+      towards: away.normalize(),
+      angle,
+    };
   }
 
   /** Length of a CSS pixel at the target. */
@@ -74,7 +79,10 @@ export class Eye {
     const azimuth = Math.atan2(towards.y, towards.x) + around;
     const elevation = MathUtils.clamp(Math.asin(MathUtils.clamp(towards.z, -1, 1)) + over, -1.5705, 1.5705);
     const flat = Math.cos(elevation);
-    this.put({ ...rest, towards: new Vector3(flat * Math.cos(azimuth), flat * Math.sin(azimuth), Math.sin(elevation)) });
+    this.put({
+      ...rest,
+      towards: new Vector3(flat * Math.cos(azimuth), flat * Math.sin(azimuth), Math.sin(elevation)),
+    });
   }
 
   /** Nearer by a factor below 1, farther by one above. */
@@ -106,12 +114,16 @@ export class Eye {
     const part = Math.min(1, Math.max(0, (now - began) / GLIDE));
     const t = part * part * (3 - 2 * part);
     if (part === 1) this.glide = null;
-    this.put(part === 1 ? to : {
-      target: from.target.clone().lerp(to.target, t),
-      towards: between(from.towards, to.towards, t),
-      height: from.height * (to.height / from.height) ** t,
-      angle: from.angle * (to.angle / from.angle) ** t,
-    });
+    this.put(
+      part === 1
+        ? to
+        : {
+            target: from.target.clone().lerp(to.target, t),
+            towards: between(from.towards, to.towards, t),
+            height: from.height * (to.height / from.height) ** t,
+            angle: from.angle * (to.angle / from.angle) ** t,
+          },
+    );
     return part < 1;
   }
 
@@ -159,13 +171,21 @@ function direction(azimuth: number, elevation: number): Vector3 {
 }
 
 function between(from: Vector3, to: Vector3, t: number): Vector3 {
-  const [a, b] = [from, to].map((v) => [Math.atan2(v.y, v.x), Math.asin(MathUtils.clamp(v.z, -1, 1))]) as [number[], number[]];
+  const [a, b] = [from, to].map((v) => [Math.atan2(v.y, v.x), Math.asin(MathUtils.clamp(v.z, -1, 1))]) as [
+    number[],
+    number[],
+  ];
   const turn = MathUtils.euclideanModulo(b[0]! - a[0]! + Math.PI, 2 * Math.PI) - Math.PI;
   return direction(MathUtils.radToDeg(a[0]! + turn * t), MathUtils.radToDeg(a[1]! + (b[1]! - a[1]!) * t));
 }
 
 /** Where to look and how high, to see all of `positions`. */
-function around(positions: ArrayLike<number>, towards: Vector3, angle: number, aspect: number): { target: Vector3; height: number } {
+function around(
+  positions: ArrayLike<number>,
+  towards: Vector3,
+  angle: number,
+  aspect: number,
+): { target: Vector3; height: number } {
   const right = new Vector3().crossVectors(new Vector3(0, 0, 1), towards).normalize();
   const up = new Vector3().crossVectors(towards, right);
   const axes = [right, up, towards] as const;
@@ -179,7 +199,8 @@ function around(positions: ArrayLike<number>, towards: Vector3, angle: number, a
     }
   };
   each((p) => (low.min(p), high.max(p)));
-  if (!(low.x <= high.x) || !Number.isFinite(high.clone().sub(low).length())) return { target: new Vector3(), height: 1 };
+  if (!(low.x <= high.x) || !Number.isFinite(high.clone().sub(low).length()))
+    return { target: new Vector3(), height: 1 };
   const middle = low.clone().add(high).multiplyScalar(0.5);
   const tangent = half(angle) / MARGIN;
   let away = 0;

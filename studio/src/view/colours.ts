@@ -24,16 +24,40 @@ export interface Palette {
 }
 
 const LIGHT: Palette = {
-  ground: "#f7f8fa", ink: "#22303c", plain: "#52606d", slack: "#b9c0c7", skin: "#cfe1f2", edge: "#7d90a3", dot: "#ffffff",
-  load: "#2a9d5c", reaction: "#8e44ad", floor: "#b4bec8", accent: "#e08a00", warning: "#d6186b",
-  cold: ["#06306e", "#1f66b0", "#5ea2d6", "#a9c9e2"], middle: "#d3d3d3", warm: ["#f3b58e", "#e27a4c", "#c2352b", "#6f0a1e"],
+  ground: "#f7f8fa",
+  ink: "#22303c",
+  plain: "#52606d",
+  slack: "#b9c0c7",
+  skin: "#cfe1f2",
+  edge: "#7d90a3",
+  dot: "#ffffff",
+  load: "#2a9d5c",
+  reaction: "#8e44ad",
+  floor: "#b4bec8",
+  accent: "#e08a00",
+  warning: "#d6186b",
+  cold: ["#06306e", "#1f66b0", "#5ea2d6", "#a9c9e2"],
+  middle: "#d3d3d3",
+  warm: ["#f3b58e", "#e27a4c", "#c2352b", "#6f0a1e"],
 };
 
 // on dark ground the strongest are the lightest, with the same hues
 const DARK: Palette = {
-  ground: "#12171d", ink: "#eef2f6", plain: "#9fb0c0", slack: "#5b6670", skin: "#3c4e61", edge: "#70849a", dot: "#1d252e",
-  load: "#4fce86", reaction: "#c58be0", floor: "#4a5764", accent: "#ffb84d", warning: "#ff6fae",
-  cold: ["#cfe6ff", "#86c0ff", "#4d94e6", "#3d6fa8"], middle: "#6a737c", warm: ["#a8603f", "#e4703e", "#ff9a6b", "#ffd9c2"],
+  ground: "#12171d",
+  ink: "#eef2f6",
+  plain: "#9fb0c0",
+  slack: "#5b6670",
+  skin: "#3c4e61",
+  edge: "#70849a",
+  dot: "#1d252e",
+  load: "#4fce86",
+  reaction: "#c58be0",
+  floor: "#4a5764",
+  accent: "#ffb84d",
+  warning: "#ff6fae",
+  cold: ["#cfe6ff", "#86c0ff", "#4d94e6", "#3d6fa8"],
+  middle: "#6a737c",
+  warm: ["#a8603f", "#e4703e", "#ff9a6b", "#ffd9c2"],
 };
 
 export const palette = (dark: boolean): Palette => (dark ? DARK : LIGHT);

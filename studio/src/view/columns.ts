@@ -1,6 +1,14 @@
 // Numbers on the graphics card: a column for what changes with each frame, read by shaders by its row.
 import {
-  DataTexture, FloatType, IntType, NearestFilter, type PixelFormat, RedFormat, RedIntegerFormat, RGBFormat, RGIntegerFormat,
+  DataTexture,
+  FloatType,
+  IntType,
+  NearestFilter,
+  type PixelFormat,
+  RedFormat,
+  RedIntegerFormat,
+  RGBFormat,
+  RGIntegerFormat,
   type WebGLRenderer,
 } from "three";
 
@@ -12,7 +20,10 @@ export class Column {
   readonly texture: DataTexture;
   private readonly format: PixelFormat;
 
-  constructor(readonly rows: number, private readonly components: 1 | 3) {
+  constructor(
+    readonly rows: number,
+    private readonly components: 1 | 3,
+  ) {
     this.format = components === 1 ? RedFormat : RGBFormat;
     this.texture = new DataTexture(null, WIDTH, Math.max(1, Math.ceil(rows / WIDTH)), this.format, FloatType);
     this.texture.internalFormat = components === 1 ? "R32F" : "RGB32F";
@@ -32,7 +43,8 @@ export class Column {
     const whole = Math.floor(rows / WIDTH);
     const rest = rows - whole * WIDTH;
     if (whole) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, WIDTH, whole, format, gl.FLOAT, values, 0);
-    if (rest) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, rest, 1, format, gl.FLOAT, values, whole * WIDTH * this.components);
+    if (rest)
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, rest, 1, format, gl.FLOAT, values, whole * WIDTH * this.components);
     renderer.state.unbindTexture();
   }
 

@@ -137,7 +137,14 @@ export class Hand {
     camera.updateMatrixWorld();
     const seen = from.clone().project(camera);
     const [atX, atY] = [((seen.x + 1) / 2) * canvas.clientWidth, ((1 - seen.y) / 2) * canvas.clientHeight];
-    return { particle, from, offset: new Vector2(atX - x, atY - y), hand: from, grip: null, before: options.lock.value };
+    return {
+      particle,
+      from,
+      offset: new Vector2(atX - x, atY - y),
+      hand: from,
+      grip: null,
+      before: options.lock.value,
+    };
   }
 
   private lead(taken: NonNullable<Press["taken"]>, x: number, y: number): void {

@@ -27,7 +27,8 @@ export function form(topology: Topology): Form {
   for (const [a, b] of pieces(topology)) if (fresh(a, b)) strokes.push(a, b);
   const all = faces(topology);
   const edges: number[] = [];
-  for (const face of all) face.forEach((a, i) => fresh(a, face[(i + 1) % face.length]!) && edges.push(a, face[(i + 1) % face.length]!));
+  for (const face of all)
+    face.forEach((a, i) => fresh(a, face[(i + 1) % face.length]!) && edges.push(a, face[(i + 1) % face.length]!));
   const ends = springs.length ? springs : edges;
   return {
     particles: topology.particles,
@@ -42,10 +43,12 @@ export function form(topology: Topology): Form {
 
 /** Faces of all meshes, each once, by particles. A mesh that is carried is mostly one that forces act on, too. */
 function faces(topology: Topology): number[][] {
-  const carried = topology.geometry.filter((item) => item.kind === "mesh" && item.faces).map((item) => {
-    const riders = item.particles.flat();
-    return item.faces!.map((face) => face.map((corner) => riders[corner] ?? -1));
-  });
+  const carried = topology.geometry
+    .filter((item) => item.kind === "mesh" && item.faces)
+    .map((item) => {
+      const riders = item.particles.flat();
+      return item.faces!.map((face) => face.map((corner) => riders[corner] ?? -1));
+    });
   const seen = new Set<string>();
   const found: number[][] = [];
   for (const face of [...Object.values(topology.meshes).map((mesh) => mesh.faces), ...carried].flat()) {
@@ -92,7 +95,10 @@ function summed(topology: Topology): { loaded: Int32Array; loads: Float32Array }
     });
   }
   const acting = [...sums].filter(([, sum]) => sum.some((value) => value !== 0));
-  return { loaded: Int32Array.from(acting, ([particle]) => particle), loads: Float32Array.from(acting.flatMap(([, sum]) => sum)) };
+  return {
+    loaded: Int32Array.from(acting, ([particle]) => particle),
+    loads: Float32Array.from(acting.flatMap(([, sum]) => sum)),
+  };
 }
 
 function median(topology: Topology, ends: ArrayLike<number>): number {

@@ -42,8 +42,16 @@ export class Guide {
     const values = this.points.image.data as Float32Array;
     led.particle.toArray(values, 0);
     led.hand.toArray(values, 4);
-    if (axis) led.from.clone().addScaledVector(axis, -2 * size).toArray(values, 8);
-    if (axis) led.from.clone().addScaledVector(axis, 2 * size).toArray(values, 12);
+    if (axis)
+      led.from
+        .clone()
+        .addScaledVector(axis, -2 * size)
+        .toArray(values, 8);
+    if (axis)
+      led.from
+        .clone()
+        .addScaledVector(axis, 2 * size)
+        .toArray(values, 12);
     this.points.needsUpdate = true;
     this.line.style.width.value = 1.6;
     this.line.style.plain.value = [...accent, 1];

@@ -13,7 +13,12 @@ const STEP = 0.01;
 /** Steps that follow each other within this time are taken back as one [ms]. */
 const PAUSE = 1000;
 const ARROWS: Record<string, [number, number, number]> = {
-  ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowDown: [0, -1, 0], ArrowUp: [0, 1, 0], PageUp: [0, 0, -1], PageDown: [0, 0, 1],
+  ArrowLeft: [-1, 0, 0],
+  ArrowRight: [1, 0, 0],
+  ArrowDown: [0, -1, 0],
+  ArrowUp: [0, 1, 0],
+  PageUp: [0, 0, -1],
+  PageDown: [0, 0, 1],
 };
 
 /** What the keys need of the view. */
@@ -89,7 +94,9 @@ export class Keys {
     if (!picked || !anchor) return say("Pick an anchor first (a); arrows with alt move it then.");
     const now = performance.now();
     const goesOn = this.steps?.particle === picked.index && now - this.steps.last < PAUSE;
-    const steps = goesOn ? this.steps! : { particle: picked.index, at: at(picked.index), gesture: gesture("step"), last: now };
+    const steps = goesOn
+      ? this.steps!
+      : { particle: picked.index, at: at(picked.index), gesture: gesture("step"), last: now };
     const [x, y, z] = this.axes();
     const by = new Vector3().addScaledVector(x, right).addScaledVector(y, up).addScaledVector(z, near);
     if (!by.lengthSq()) return say("The lock does not let it go there.");
@@ -113,7 +120,8 @@ export class Keys {
     });
     const along = axisOf(lock);
     const across = lock === "view" ? null : normalOf(lock, new Vector3());
-    const barred = (axis: Vector3) => (along !== null && !axis.dot(along)) || (across !== null && axis.dot(across) !== 0);
+    const barred = (axis: Vector3) =>
+      (along !== null && !axis.dot(along)) || (across !== null && axis.dot(across) !== 0);
     return found.map((axis) => (barred(axis) ? new Vector3() : axis)) as [Vector3, Vector3, Vector3];
   }
 

@@ -7,7 +7,8 @@ const AXES = { x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(
 const GRAZING = 0.04;
 
 /** The axis of a lock to one; null for others. */
-export const axisOf = (lock: Lock): Vector3 | null => (lock === "x" || lock === "y" || lock === "z" ? AXES[lock] : null);
+export const axisOf = (lock: Lock): Vector3 | null =>
+  lock === "x" || lock === "y" || lock === "z" ? AXES[lock] : null;
 
 /** What a plane of two axes, or the one that faces the eye, lies across; null for an axis. */
 export function normalOf(lock: Lock, facing: Vector3): Vector3 | null {

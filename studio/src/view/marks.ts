@@ -49,7 +49,11 @@ export class Marks {
   constructor(shared: Common, form: keyof typeof FORMS, order: number, onTop = false) {
     this.style.form.value = FORMS[form];
     const made = material(shared, {
-      vertex: VERTEX, fragment: FRAGMENT, uniforms: this.style, soft: true, depthTest: !onTop,
+      vertex: VERTEX,
+      fragment: FRAGMENT,
+      uniforms: this.style,
+      soft: true,
+      depthTest: !onTop,
     });
     this.points = new Points(new BufferGeometry(), made);
     this.points.frustumCulled = false;

@@ -76,11 +76,26 @@ export class Picture {
       edges: new Segments(common, form.edges, 2),
       strokes: new Segments(common, form.strokes, 2),
       skin: new Skin(common, form.triangles),
-      loads: new Arrows(common, form.loaded.filter((_, i) => i % kept === 0), false, 4),
+      loads: new Arrows(
+        common,
+        form.loaded.filter((_, i) => i % kept === 0),
+        false,
+        4,
+      ),
     });
     parts.springs.style.forces.value = this.forces.texture;
-    parts.loads.put(this.stage.renderer, form.loads.filter((_, i) => Math.floor(i / 3) % kept === 0));
-    group.add(parts.springs.mesh, parts.springs.thin, parts.edges.mesh, parts.strokes.mesh, parts.skin.mesh, parts.loads.mesh);
+    parts.loads.put(
+      this.stage.renderer,
+      form.loads.filter((_, i) => Math.floor(i / 3) % kept === 0),
+    );
+    group.add(
+      parts.springs.mesh,
+      parts.springs.thin,
+      parts.edges.mesh,
+      parts.strokes.mesh,
+      parts.skin.mesh,
+      parts.loads.mesh,
+    );
     this.dots.put(Int32Array.from({ length: form.particles }, (_, i) => i));
   }
 
@@ -158,9 +173,18 @@ export class Picture {
     parts.skin.style.shade.value = channels(colours.skin);
     this.lines(parts, dress, colours, gap);
     this.marks(dress, colours, gap);
-    const spread = form.loaded.length > MANY_ARROWS ? 2.2 * form.spacing * Math.sqrt(Math.ceil(form.loaded.length / MOST_ARROWS)) : 0;
+    const spread =
+      form.loaded.length > MANY_ARROWS
+        ? 2.2 * form.spacing * Math.sqrt(Math.ceil(form.loaded.length / MOST_ARROWS))
+        : 0;
     this.arrows(parts.loads, layers.loads, colours.load, spread);
-    if (this.reactions) this.arrows(this.reactions, layers.reactions, colours.reaction, this.held.size > MANY_ARROWS ? 6 * form.spacing : 0);
+    if (this.reactions)
+      this.arrows(
+        this.reactions,
+        layers.reactions,
+        colours.reaction,
+        this.held.size > MANY_ARROWS ? 6 * form.spacing : 0,
+      );
     this.floor.style.shade.value = channels(colours.floor);
     this.floor.style.strength.value = dress.dark ? 0.75 : 0.9;
   }
@@ -209,7 +233,10 @@ export class Picture {
     const { dots, anchors, partial, form } = this;
     const ink = channels(colours.ink);
     dots.points.visible = dress.layers.particles && this.dotted(dress.pixel);
-    dots.style.diameter.value = form!.springs.length || form!.triangles.length ? clamp(0.2 * gap, 3.5, 8) : clamp(400 / Math.sqrt(form!.particles), 3, 10);
+    dots.style.diameter.value =
+      form!.springs.length || form!.triangles.length
+        ? clamp(0.2 * gap, 3.5, 8)
+        : clamp(400 / Math.sqrt(form!.particles), 3, 10);
     dots.style.fill.value = [...channels(colours.dot), 1];
     dots.style.outline.value = [...ink, 1];
     for (const mark of [anchors, partial]) {

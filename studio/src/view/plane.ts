@@ -19,7 +19,8 @@ uniform vec3 shade;
 uniform float strength;
 float lines(vec2 p, float wide) {
   vec2 d = fwidth(p);
-  vec2 l = clamp(wide - abs(fract(p - 0.5) - 0.5) / max(d, vec2(1e-12)) + 0.5, 0.0, 1.0) * clamp(0.3 / max(d, vec2(1e-12)), 0.0, 1.0);
+  d = max(d, vec2(1e-12));
+  vec2 l = clamp(wide - abs(fract(p - 0.5) - 0.5) / d + 0.5, 0.0, 1.0) * clamp(0.3 / d, 0.0, 1.0);
   return max(l.x, l.y);
 }
 void main() {
@@ -46,7 +47,10 @@ export class Plane {
   constructor(shared: Common, order: number) {
     const geometry = new BufferGeometry();
     geometry.setDrawRange(0, 6);
-    this.mesh = new Mesh(geometry, material(shared, { vertex: VERTEX, fragment: FRAGMENT, uniforms: this.style, soft: true }));
+    this.mesh = new Mesh(
+      geometry,
+      material(shared, { vertex: VERTEX, fragment: FRAGMENT, uniforms: this.style, soft: true }),
+    );
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = order;
     this.mesh.visible = false;

@@ -1,6 +1,13 @@
 // Straight lines between particles, some pixels wide: springs in the colours of their numbers, edges, polylines.
 import {
-  BufferAttribute, BufferGeometry, DataTexture, type IUniform, LineSegments, Mesh, type RawShaderMaterial, Vector3,
+  BufferAttribute,
+  BufferGeometry,
+  DataTexture,
+  type IUniform,
+  LineSegments,
+  Mesh,
+  type RawShaderMaterial,
+  Vector3,
 } from "three";
 import { Rows } from "./columns";
 import { type Common, material } from "./material";
@@ -113,14 +120,24 @@ export class Segments {
     this.rows = new Rows(ends, 2);
     const uniforms = { ...this.style, rows: { value: this.rows.texture } };
     const made = material(shared, {
-      vertex: COLOURED + VERTEX, fragment: FRAGMENT, uniforms, soft: true, depthTest: !onTop, depthWrite: !onTop,
+      vertex: COLOURED + VERTEX,
+      fragment: FRAGMENT,
+      uniforms,
+      soft: true,
+      depthTest: !onTop,
+      depthWrite: !onTop,
     });
     this.mesh = new Mesh(quads(this.rows.count), made);
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = order;
-    this.thin = new LineSegments(new BufferGeometry(), material(shared, {
-      vertex: COLOURED + THIN_VERTEX, fragment: THIN_FRAGMENT, uniforms,
-    }));
+    this.thin = new LineSegments(
+      new BufferGeometry(),
+      material(shared, {
+        vertex: COLOURED + THIN_VERTEX,
+        fragment: THIN_FRAGMENT,
+        uniforms,
+      }),
+    );
     this.thin.geometry.setDrawRange(0, 2 * this.rows.count);
     this.thin.frustumCulled = this.thin.visible = false;
   }

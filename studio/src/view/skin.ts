@@ -27,7 +27,10 @@ export class Skin {
   readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
   readonly style = { shade: { value: [1, 1, 1] as [number, number, number] }, depth: { value: 0.42 } };
 
-  constructor(shared: Common, readonly triangles: Uint32Array) {
+  constructor(
+    shared: Common,
+    readonly triangles: Uint32Array,
+  ) {
     const geometry = new BufferGeometry();
     geometry.setIndex(new BufferAttribute(triangles, 1));
     const made = material(shared, { vertex: VERTEX, fragment: FRAGMENT, uniforms: this.style });

@@ -1,13 +1,26 @@
 // The canvas: what is drawn on it, how finely, and how it is taken away as a picture.
 import {
-  BufferAttribute, BufferGeometry, type Camera, Group, LinearSRGBColorSpace, Mesh, RawShaderMaterial, Scene, WebGLRenderer,
+  BufferAttribute,
+  BufferGeometry,
+  type Camera,
+  Group,
+  LinearSRGBColorSpace,
+  Mesh,
+  RawShaderMaterial,
+  Scene,
+  WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
 import { type Common, common } from "./material";
 
 const SAMPLES = 4;
 /** How finely it is drawn while something moves: pixels for each CSS pixel at most, and whether edges are smoothed. */
-const LEVELS = [{ ratio: 2, smooth: true }, { ratio: 1, smooth: false }, { ratio: 0.7, smooth: false }, { ratio: 0.5, smooth: false }];
+const LEVELS = [
+  { ratio: 2, smooth: true },
+  { ratio: 1, smooth: false },
+  { ratio: 0.7, smooth: false },
+  { ratio: 0.5, smooth: false },
+];
 const SLOW = 36;
 const QUICK = 20;
 
@@ -58,9 +71,16 @@ export class Stage {
   /** An Error says in a sentence why nothing can be drawn. */
   constructor(canvas: HTMLCanvasElement) {
     try {
-      this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: false, powerPreference: "high-performance" });
+      this.renderer = new WebGLRenderer({
+        canvas,
+        antialias: false,
+        alpha: false,
+        powerPreference: "high-performance",
+      });
     } catch {
-      throw new Error("This browser does not draw in space (WebGL 2): allow hardware acceleration, or take another one.");
+      throw new Error(
+        "This browser does not draw in space (WebGL 2): allow hardware acceleration, or take another one.",
+      );
     }
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.scene.add(this.group);
@@ -134,14 +154,18 @@ export class Stage {
 function sheet(): Mesh<BufferGeometry, RawShaderMaterial> {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
-  const made = new Mesh(geometry, new RawShaderMaterial({
-    uniforms: { picture: { value: null } },
-    vertexShader: "attribute vec3 position; varying vec2 at; void main() { at = position.xy * 0.5 + 0.5; gl_Position = vec4(position, 1.0); }",
-    fragmentShader: `precision highp float; uniform sampler2D picture; varying vec2 at;
-      void main() { gl_FragColor = texture2D(picture, at); }`,
-    depthTest: false,
-    depthWrite: false,
-  }));
+  const made = new Mesh(
+    geometry,
+    new RawShaderMaterial({
+      uniforms: { picture: { value: null } },
+      vertexShader: `attribute vec3 position; varying vec2 at;
+        void main() { at = position.xy * 0.5 + 0.5; gl_Position = vec4(position, 1.0); }`,
+      fragmentShader: `precision highp float; uniform sampler2D picture; varying vec2 at;
+        void main() { gl_FragColor = texture2D(picture, at); }`,
+      depthTest: false,
+      depthWrite: false,
+    }),
+  );
   made.frustumCulled = false;
   return made;
 }
@@ -157,6 +181,8 @@ async function encoded(pixels: Uint8ClampedArray<ArrayBuffer>, columns: number, 
   }
   canvas.getContext("2d")!.putImageData(image, 0, 0);
   return new Promise((resolve, reject) => {
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The picture could not be written; try a smaller window."))));
+    canvas.toBlob((blob) =>
+      blob ? resolve(blob) : reject(new Error("The picture could not be written; try a smaller window.")),
+    );
   });
 }

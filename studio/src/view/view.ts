@@ -52,7 +52,11 @@ class Drawing implements View {
   private counting = 0;
   private count = 0;
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly session: Session, private readonly options: Options) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly session: Session,
+    private readonly options: Options,
+  ) {
     this.stage = new Stage(canvas);
     this.eye = new Eye(canvas, this.ask);
     this.picture = new Picture(this.stage);
@@ -75,7 +79,8 @@ class Drawing implements View {
 
   show(particles: number[]): void {
     const { positions } = this.drawn ?? { positions: [] };
-    if (particles.length) this.eye.fit(particles.flatMap((i) => [positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!]));
+    if (particles.length)
+      this.eye.fit(particles.flatMap((i) => [positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!]));
   }
 
   async png(): Promise<Blob> {
@@ -118,7 +123,10 @@ class Drawing implements View {
     const { session, options, canvas, eye, picture } = this;
     const at = (particle: number) => new Vector3().fromArray(this.particles(), 3 * particle);
     return {
-      session, options, canvas, at,
+      session,
+      options,
+      canvas,
+      at,
       camera: eye.camera,
       size: () => picture.size,
       find: (x, y, reach) => this.find(x, y, reach),
@@ -132,16 +140,21 @@ class Drawing implements View {
     const { picture, stage, eye, options } = this;
     if (!this.drawn || !picture.form) return null;
     const { mesh, springs } = options.layers.value;
-    return this.picker.find(x, y, {
-      camera: eye.camera,
-      width: stage.width,
-      height: stage.height,
-      positions: this.drawn.positions,
-      springs: springs ? picture.form.springs : new Int32Array(),
-      triangles: mesh ? picture.form.triangles : new Uint32Array(),
-      held: picture.held,
-      thickness: 0.01 * picture.size,
-    }, reach);
+    return this.picker.find(
+      x,
+      y,
+      {
+        camera: eye.camera,
+        width: stage.width,
+        height: stage.height,
+        positions: this.drawn.positions,
+        springs: springs ? picture.form.springs : new Int32Array(),
+        triangles: mesh ? picture.form.triangles : new Uint32Array(),
+        held: picture.held,
+        thickness: 0.01 * picture.size,
+      },
+      reach,
+    );
   }
 
   private takes(particle: number): boolean {
@@ -302,7 +315,8 @@ class Drawing implements View {
     const force = this.options.colouring.value === "force";
     const { colours, first, last } = ramp(low, high, this.options.dark.value);
     const unit = force ? (this.session.topology.value?.units.force ?? "") : "-";
-    this.legend.value = low <= high ? { title: force ? "Force" : "Strain", unit, low: first, high: last, colours } : null;
+    this.legend.value =
+      low <= high ? { title: force ? "Force" : "Strain", unit, low: first, high: last, colours } : null;
   }
 
   /** Colours and sizes, where they may have changed. */
