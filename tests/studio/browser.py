@@ -145,3 +145,21 @@ def context(browser: Any, **options: Any) -> BrowserContext:
     made: BrowserContext = browser.new_context(**{"viewport": LAPTOP, "accept_downloads": True, **options})
     made.set_default_timeout(15_000)
     return made
+
+
+def net(side: int) -> dict[str, Any]:
+    """A square net held at its corners that swings for ever, with its skin."""
+    number = np.arange(side * side).reshape(side, side)
+    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
+    across, along = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float), indexing="ij")
+    vertices = np.stack([across, along, np.zeros_like(across)], axis=-1).reshape(-1, 3)
+    return {
+        "particles": vertices.tolist(),
+        "meshes": {"net": {"vertices": vertices.tolist(), "faces": faces.tolist()}},
+        "forces": [
+            {"kind": "springs", "mesh": "net", "stiffness": 500.0, "damping": 0.0},
+            {"kind": "unary", "particles": list(range(side * side)), "vector": [0.0, 0.0, -0.02]},
+        ],
+        "anchors": [{"particles": [0, side - 1, side * (side - 1), side * side - 1]}],
+        "settings": {"solver": "verlet", "drag": 0, "time_step": 0.01, "max_iterations": 10**9, "tolerance": 0},
+    }

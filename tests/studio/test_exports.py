@@ -1,0 +1,118 @@
+"""Out: every format that the page gives is read again by the library whose format it is, and says what is seen."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import compas
+import numpy as np
+import pytest
+import rhino3dm
+from numpy.typing import NDArray
+from PIL import Image
+
+from hookean import Simulation
+
+from .browser import Studio
+from .conftest import Opened
+from .service import equilibrium
+
+FIGURE = "9.24-membrane"
+
+
+@pytest.fixture
+def membrane(studio: Studio) -> Studio:
+    """The membrane at rest, as drawn."""
+    studio.choose(FIGURE)
+    studio.press("To rest")
+    studio.rests_at(equilibrium(studio.service.example(FIGURE)))
+    return studio
+
+
+def taken(studio: Studio, button: str, ending: str) -> Path:
+    """What a button downloads."""
+    with studio.page.expect_download() as coming:
+        studio.press(button)
+    name = coming.value.suggested_filename
+    assert name.endswith(ending) and "/" not in name
+    return Path(coming.value.path())
+
+
+def same_points(found: NDArray[np.float64], drawn: NDArray[np.float64], within: float = 1e-6) -> bool:
+    """Whether two lists have the same points, whatever their order and how often each is named."""
+    distances = np.linalg.norm(found[:, None] - drawn[None], axis=2)
+    return bool(distances.min(axis=1).max() < within and distances.min(axis=0).max() < within)
+
+
+def test_the_rhino_file_has_the_shape_that_is_seen(membrane: Studio):
+    """Read by rhino3dm: a mesh whose vertices are the particles, with its unit."""
+    model = rhino3dm.File3dm.Read(str(taken(membrane, "Rhino .3dm", ".3dm")))
+    meshes = [item.Geometry for item in model.Objects if isinstance(item.Geometry, rhino3dm.Mesh)]
+    found = np.array([[v.X, v.Y, v.Z] for mesh in meshes for v in mesh.Vertices])
+    assert same_points(found, membrane.particles(), 1e-5)  # of single precision, as vertices in such files
+    assert model.Settings.ModelUnitSystem == rhino3dm.UnitSystem.Meters
+
+
+def test_the_obj_has_the_shape_that_is_seen(membrane: Studio):
+    lines = [line.split() for line in taken(membrane, "OBJ", ".obj").read_text().splitlines()]
+    found = np.array([line[1:4] for line in lines if line and line[0] == "v"], float)
+    faces = [[int(corner.split("/")[0]) for corner in line[1:]] for line in lines if line and line[0] == "f"]
+    assert same_points(found, membrane.particles())
+    assert faces and max(map(max, faces)) <= len(found)
+
+
+def test_the_compas_document_has_the_shape_that_is_seen(membrane: Studio):
+    """Read by COMPAS: its Mesh."""
+    mesh = compas.json_load(str(taken(membrane, "COMPAS JSON", ".json")))
+    assert isinstance(mesh, compas.datastructures.Mesh)
+    found = np.array([mesh.vertex_coordinates(vertex) for vertex in mesh.vertices()])
+    assert same_points(found, membrane.particles())
+    assert mesh.number_of_faces() > 0
+
+
+def test_the_table_has_every_force_and_reaction_with_its_unit(membrane: Studio):
+    """Forces of the springs and reactions of the anchors: the service's own, and they balance the loads."""
+    rows = list(csv.reader(taken(membrane, "CSV", ".csv").read_text("utf-8-sig").splitlines()))
+    state = membrane.service.state(membrane.key)
+    cells = {round(float(cell), 6) for row in rows for cell in row if cell.replace(".", "").lstrip("-").isdigit()}
+    springs = next(force for force in state["forces"] if force["kind"] == "springs")["force"]
+    assert len(rows) > len(springs) and {round(force, 6) for force in springs} <= cells
+    assert {round(part, 6) for reaction in state["reactions"]["force"] for part in reaction} <= cells
+    assert "[N]" in str(rows) or '"N"' in str(rows) or "'N'" in str(rows)
+
+
+def test_the_simulation_goes_on_in_python(membrane: Studio):
+    """The npz is what Simulation.load reads."""
+    simulation = Simulation.load(taken(membrane, "npz", ".npz"))
+    assert np.abs(np.asarray(simulation.frame().particles) - membrane.particles()).max() < 1e-6
+
+
+def test_the_picture_is_what_is_seen(membrane: Studio):
+    """A PNG in the canvas's shape, at full quality, with the form in it where the page has it."""
+    with Image.open(taken(membrane, "PNG", ".png")) as picture:
+        assert picture.format == "PNG"
+        pixels = np.asarray(picture.convert("RGB"), int)
+    box = membrane.page.locator("canvas").first.bounding_box()
+    assert box is not None
+    height, width, _ = pixels.shape
+    assert width >= box["width"] - 1 and abs(width / height - box["width"] / box["height"]) < 0.02
+    differs = np.abs(pixels - pixels[2, 2]).sum(axis=2) > 24
+    assert 0.01 < differs.mean() < 0.9
+    for particle in (0, len(membrane.particles()) // 2):
+        x, y = membrane.place(particle)
+        column, row = (round((at - start) * width / box["width"]) for at, start in ((x, box["x"]), (y, box["y"])))
+        assert differs[max(0, row - 6) : row + 7, max(0, column - 6) : column + 7].any()
+
+
+def test_the_link_shows_the_same_scene(membrane: Studio, open_studio: Opened):
+    """Copied, and opened in another window of the same browser."""
+    membrane.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    membrane.press("Copy link")
+    membrane.page.get_by_text("The link is in the clipboard").wait_for()
+    link = membrane.page.evaluate("() => navigator.clipboard.readText()")
+    assert membrane.key in link and membrane.service.token not in link
+    other = Studio(membrane.page.context.new_page(), membrane.service)
+    other.page.goto(link)
+    other.drawing()
+    other.rests_at(membrane.particles(), 1e-6)

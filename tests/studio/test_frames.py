@@ -1,0 +1,113 @@
+"""10,000 particles: how long a frame takes on the page's main thread, and that none is drawn which an edit overtook."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from .browser import Studio, net
+
+BOUND = 6.0
+"""Milliseconds for reading a frame and handing it to the graphics card."""
+
+WATCH = """() => {
+    window.asked = new Map();  // x of what was asked for, by the number of the order
+    window.order = [];
+    window.answered = -1;
+    const Socket = window.WebSocket;
+    window.WebSocket = class extends Socket {
+        constructor(...told) {
+            super(...told);
+            this.addEventListener("message", (event) => {
+                if (typeof event.data !== "string") return;
+                const message = JSON.parse(event.data);
+                const order = window.asked.get(message.id) ?? -1;
+                window.answered = Math.max(window.answered, order);
+            });
+        }
+        send(data) {
+            const message = JSON.parse(data);
+            const target = message.edit?.pin?.[0]?.targets?.[0];
+            if (target) window.asked.set(message.id, window.order.push(target) - 1);
+            super.send(data);
+        }
+    };
+}"""
+"""Notes which targets of a pin were asked for and which of them are acknowledged, beside the page's own account."""
+
+SAMPLE = """(particle) => {
+    // what was acknowledged before the page draws again must be in what it draws then
+    const nearest = ([x, y, z]) => {
+        const distances = window.order.map((t) => Math.hypot(t[0] - x, t[1] - y, t[2] - z));
+        const least = Math.min(...distances);
+        return least < 1e-4 ? distances.lastIndexOf(least) : -1;
+    };
+    window.late = [];
+    window.seen = new Set();
+    let before = { drawn: window.hookean.stats.framesDrawn, answered: window.answered };
+    const look = () => {
+        const drawn = window.hookean.stats.framesDrawn;
+        if (drawn > before.drawn && before.answered >= 0) {
+            const at = nearest([...window.hookean.particles().subarray(3 * particle, 3 * particle + 3)]);
+            window.seen.add(at);
+            if (at < before.answered) window.late.push([at, before.answered]);
+        }
+        before = { drawn, answered: window.answered };
+        requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+}"""
+
+
+@pytest.fixture
+def swinging(studio: Studio) -> Studio:
+    """A net of 100 by 100 particles in motion that never ends."""
+    studio.page.add_init_script(f"({WATCH})()")
+    studio.service.put("net", net(100))
+    studio.open("net")
+    studio.press("Play")
+    studio.until(lambda: studio.stats()["framesReceived"] > 30, 60.0)
+    return studio
+
+
+def test_a_frame_of_10000_particles_is_read_and_uploaded_in_time(swinging: Studio, capsys: pytest.CaptureFixture[str]):
+    """The bound is for the page's main thread, whatever the speed of the renderer."""
+    page = swinging.page
+    before, began = swinging.stats(), page.evaluate("() => performance.now()")
+    swinging.until(lambda: swinging.stats()["framesReceived"] > before["framesReceived"] + 100, 60.0)
+    after, seconds = swinging.stats(), (page.evaluate("() => performance.now()") - began) / 1000
+    reading, uploading = (np.array(after[f"{name}Milliseconds"][-100:]) for name in ("decode", "upload"))
+    typical = np.median(reading) + np.median(uploading)
+    worst = np.percentile(reading, 95) + np.percentile(uploading, 95)
+    rates = [(after[name] - before[name]) / seconds for name in ("framesReceived", "framesDrawn")]
+    with capsys.disabled():
+        print(
+            f"\n10,000 particles: {typical:.2f} ms a frame on the main thread (95 of 100 within {worst:.2f} ms);"
+            f" {rates[0]:.0f} frames/s received, {rates[1]:.0f} drawn"
+        )
+    assert len(uploading) >= 20
+    assert typical <= BOUND
+    assert worst <= BOUND
+    assert rates[1] > 1
+
+
+def test_no_frame_older_than_an_acknowledged_edit_is_drawn(swinging: Studio):
+    """An anchor dragged to and fro under full load: by the page's own count, and by where the anchor is drawn."""
+    page = swinging.page
+    page.evaluate(f"({SAMPLE})(0)")
+    x, y = swinging.place(0)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for step in range(60):
+        page.mouse.move(x + 1.5 * step, y - 40 * np.sin(step / 12))
+        page.wait_for_timeout(40)
+    page.mouse.up()
+    asked = page.evaluate("() => window.order.length")
+    assert asked > 10
+    swinging.until(lambda: page.evaluate("() => window.answered") == asked - 1)
+    swinging.until(lambda: page.evaluate("(last) => window.seen.has(last)", asked - 1))
+    assert page.evaluate("() => window.late") == []
+    assert len(page.evaluate("() => [...window.seen].filter((at) => at >= 0)")) > 3
+    stats = swinging.stats()
+    assert stats["staleFramesDrawn"] == 0
+    assert stats["revisionAcknowledged"] > 0 and stats["revisionDrawn"] >= stats["revisionAcknowledged"]
