@@ -1,5 +1,6 @@
 // The canvas, and what is said over it.
 import { useEffect, useRef, useState } from "preact/hooks";
+import { expose } from "../automation";
 import { createView } from "../view/view";
 import { dark } from "./theme";
 import { Report } from "./report";
@@ -13,8 +14,10 @@ export function Stage({ studio }: { studio: Studio }) {
     if (!canvas.current) return;
     try {
       const view = createView(canvas.current, studio.session, studio.options);
+      const hide = expose(studio.session, view);
       studio.view.value = view;
       return () => {
+        hide();
         studio.view.value = null;
         view.dispose();
       };
