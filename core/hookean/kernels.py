@@ -60,8 +60,8 @@ def rows(address: float, count: float, columns: int) -> Any:
 def compiled(function: Callable[..., Any], role: str | None = None) -> Compiled:
     """Machine code of `function`, from the cache on disk when its source is unchanged.
 
-    `role` names the signature (`force`, `impact`, `support`, `remember`, `hessian`); without one the types of
-    each call decide (the solvers' loops). Sums keep their written order: no fast-math.
+    `role` names the signature, one of `_ROLES`; without one the types of each call decide (the solvers' loops). Sums
+    keep their written order: no fast-math.
     """
     kind = None if role is None else _kind(role)
     name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
@@ -192,6 +192,8 @@ _ROLES = {  # what a kernel returns and takes: arrays of numbers x and of whole 
     "force": ("real", "x2 x2 i2 x2 x2 x2 x1"),
     # x, indices, parameters, memory, blocks
     "hessian": ("none", "x2 i2 x2 x2 x3"),
+    # x, indices, parameters, memory, stiffness
+    "central": ("none", "x2 i2 x2 x2 x2"),
     # x, indices, parameters, memory
     "remember": ("none", "x2 i2 x2 x2"),
     # x_before, v_before, acceleration, x, v, free, dt, parameters

@@ -67,10 +67,16 @@ def sparse_of(blocks, free):
     return whole(blocks)[free][:, free]
 
 
+LIMITS = {"upper_cutoff": 2.6, "lower_cutoff": 1.9, "plasticity": 0.05}
+
+
 @pytest.mark.parametrize("axes", ["xyz", "z"])
-def test_the_blocks_are_the_tangent_that_newton_assembles(axes):
+@pytest.mark.parametrize("limits", [{}, LIMITS], ids=["plain", "limits"])
+def test_the_blocks_are_the_tangent_that_newton_assembles(axes, limits):
     """Values on free axes equal the sum of element tangents (assembled here densely); held axes are empty."""
-    system, state, blocks, _ = tangent(net(6, axes=axes))
+    spec = net(6, axes=axes, factor=1.0 if limits else 0.5)
+    spec["forces"][0].update(limits)
+    system, state, blocks, _ = tangent(spec)
     blocks.settle(state, 0.0)
     n = len(state.x)
     dense = np.zeros((3 * n, 3 * n))
@@ -85,6 +91,27 @@ def test_the_blocks_are_the_tangent_that_newton_assembles(axes):
     dense[~free], dense[:, ~free] = 0.0, 0.0
     mine = whole(blocks).toarray()
     assert np.abs(mine - dense).max() <= 1e-12 * np.abs(dense).max()
+
+
+def test_without_pushing_the_tangent_is_that_of_its_positive_part():
+    """The block of a spring is k e e^T + (T / l) (I - e e^T): taking out what pushes is taking T / l < 0 for 0, and
+    what is left has no negative eigenvalue (Teran et al., Robust quasistatic finite elements, 2005, section 6)."""
+    system, state, blocks, _ = tangent(net(8, factor=1.3))
+    pairs = system.groups[0].block.indices
+    d = state.x[pairs[:, 1]] - state.x[pairs[:, 0]]
+    length = np.linalg.norm(d, axis=1)
+    across = 100.0 * (1.0 - 1.3 * 10.0 / 7 / length)
+    assert 0.2 < (across < 0.0).mean() < 1.0
+    n = len(state.x)
+    dense = np.zeros((n, 3, n, 3))
+    for (i, j), e, t in zip(pairs, d / length[:, None], np.maximum(across, 0.0), strict=True):
+        block = 100.0 * np.outer(e, e) + t * (np.eye(3) - np.outer(e, e))
+        for a, b, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
+            dense[a, :, b, :] += sign * block
+    blocks.fill(system, state, pulling=True)
+    found, dense = whole(blocks).toarray(), dense.reshape(3 * n, 3 * n)
+    assert np.abs(found - dense).max() <= 1e-12 * np.abs(dense).max()
+    assert np.linalg.eigvalsh(found)[0] >= -1e-12 * np.abs(dense).max()
 
 
 @pytest.mark.parametrize("axes", ["xyz", "z"])

@@ -104,6 +104,8 @@ class Force(Model):
 
     kernel: ClassVar[Callable[..., float] | None] = None
     hessian: ClassVar[Callable[..., None] | None] = None
+    # the same, quicker, of forces along the line between two particles: stiffness along, across, and x y z of the line
+    central: ClassVar[Callable[..., None] | None] = None
     end_of_step: ClassVar[Callable[..., None] | None] = None
     impact: ClassVar[Callable[..., None] | None] = None
     support: ClassVar[Callable[..., None] | None] = None

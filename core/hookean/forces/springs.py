@@ -132,26 +132,39 @@ def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-
     return energy
 
 
+@device
+def stiffness_of(x: Any, indices: Any, parameters: Any, memory: Any, e: Any) -> Any:
+    """Of one spring: its stiffness along and across, and the unit vector along it, zero for length 0."""
+    dx = x[indices[e, 1], 0] - x[indices[e, 0], 0]
+    dy = x[indices[e, 1], 1] - x[indices[e, 0], 1]
+    dz = x[indices[e, 1], 2] - x[indices[e, 0], 2]
+    length = np.sqrt(dx * dx + dy * dy + dz * dz)
+    first = parameters[e, 2] * parameters[e, 3]
+    stretch = length - first - memory[e, 0]
+    limit = parameters[e, 6] * first
+    off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
+    along = 0.0 if off else parameters[e, 0]
+    across = along
+    inverse = 1.0 / length if length > 0.0 else 0.0  # one division serves all; that of a square might overflow
+    if length > 0.0:
+        across = along * stretch * inverse
+        if limit > 0.0 and np.abs(stretch) > limit:
+            across = along * np.copysign(limit, stretch) * inverse
+            along = 0.0
+    return along, across, dx * inverse, dy * inverse, dz * inverse
+
+
+def springs_central(x, indices, parameters, memory, stiffness):  # type: ignore[no-untyped-def]
+    for e in range(indices.shape[0]):
+        stiffness[e, 0], stiffness[e, 1], stiffness[e, 2], stiffness[e, 3], stiffness[e, 4] = stiffness_of(
+            x, indices, parameters, memory, e
+        )
+
+
 def springs_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
     d = np.zeros(3)
     for e in range(indices.shape[0]):
-        for c in range(3):
-            d[c] = x[indices[e, 1], c] - x[indices[e, 0], c]
-        length = np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
-        first = parameters[e, 2] * parameters[e, 3]
-        stretch = length - first - memory[e, 0]
-        limit = parameters[e, 6] * first
-        off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
-        along = 0.0 if off else parameters[e, 0]
-        across = along
-        if length > 0.0:
-            across = along * stretch / length
-            if limit > 0.0 and np.abs(stretch) > limit:
-                across = along * np.copysign(limit, stretch) / length
-                along = 0.0
-        inverse = 1.0 / length if length > 0.0 else 0.0  # one division serves all; that of a square might overflow
-        for c in range(3):
-            d[c] *= inverse
+        along, across, d[0], d[1], d[2] = stiffness_of(x, indices, parameters, memory, e)
         for i in range(3):
             for j in range(3):
                 entry = (along - across) * d[i] * d[j] + (across if i == j else 0.0)
@@ -205,6 +218,7 @@ class Springs(Force):
     outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force", "strain": ""}
     kernel: ClassVar[Any] = staticmethod(springs_kernel)
     hessian: ClassVar[Any] = staticmethod(springs_hessian)
+    central: ClassVar[Any] = staticmethod(springs_central)
     end_of_step: ClassVar[Any] = staticmethod(springs_yield)
 
     def compile(self, places: Places) -> Block:

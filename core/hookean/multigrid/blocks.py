@@ -56,6 +56,24 @@ def add_blocks(blocks, slots, values):  # type: ignore[no-untyped-def]
                             values[s, 3 * a + b] += blocks[e, 3 * i + a, 3 * j + b]
 
 
+def add_central(stiffness, slots, pulling, values):  # type: ignore[no-untyped-def]
+    """`add_blocks` for forces along lines."""
+    for e in range(slots.shape[0]):
+        along, across = stiffness[e, 0], stiffness[e, 1]
+        if pulling:
+            across = max(across, 0.0)
+        x, y, z = stiffness[e, 2], stiffness[e, 3], stiffness[e, 4]
+        more = along - across
+        xx, yy, zz = more * x * x + across, more * y * y + across, more * z * z + across
+        xy, xz, yz = more * x * y, more * x * z, more * y * z
+        block = (xx, xy, xz, xy, yy, yz, xz, yz, zz)
+        i, j, k = slots[e, 0, 0], slots[e, 1, 1], max(slots[e, 0, 1], slots[e, 1, 0])
+        for c in range(9):
+            values[i, c] += block[c]
+            values[j, c] += block[c]
+            values[k, c] -= block[c]
+
+
 def measure(starts, columns, values, sizes, pulls):  # type: ignore[no-untyped-def]
     """Of each block off the diagonal its Frobenius norm, and how much it pulls across: the least eigenvalue of -block
     where two are equal and the third is larger, as a spring's are; else a bound above it."""
@@ -142,17 +160,24 @@ class Blocks:
         kernels.compiled(find_slots)(index, self.starts, self.columns, slots)
         return slots
 
-    def fill(self, system: System, state: State) -> None:
-        """The values of the tangent of a shape, held axes not yet taken out."""
+    def fill(self, system: System, state: State, *, pulling: bool = False) -> None:
+        """The values of the tangent of a shape, held axes not yet taken out. `pulling`: without what forces along lines
+        that push take off across them, by which alone a tangent of such forces is not positive."""
         self.values[:] = 0.0
         for i, slots in zip(self.groups, self.slots, strict=True):
             group, memory = system.groups[i], state.memory[i]
+            b = group.block
             for first in range(0, len(slots), CHUNK):
                 part = slice(first, first + CHUNK)
-                b = group.block
-                some = Group(group.cls, Block(b.indices[part], b.parameters[part], b.memory[part]), [])
-                blocks = system.stiffness_blocks(some, state, memory[part])
-                kernels.compiled(add_blocks)(blocks, slots[part], self.values)
+                if group.cls.central is not None:
+                    stiffness = np.empty((len(slots[part]), 5))
+                    some_of = (b.indices[part], b.parameters[part], memory[part])
+                    kernels.compiled(group.cls.central, "central")(state.x, *some_of, stiffness)
+                    kernels.compiled(add_central)(stiffness, slots[part], pulling, self.values)
+                else:
+                    some = Group(group.cls, Block(b.indices[part], b.parameters[part], b.memory[part]), [])
+                    blocks = system.stiffness_blocks(some, state, memory[part])
+                    kernels.compiled(add_blocks)(blocks, slots[part], self.values)
 
     def weights(self) -> Floats:
         """How strongly particles hold one another across the line between them, as the weights of the graph: there a

@@ -45,10 +45,13 @@ class Tangent:
         if self._shape is not None:
             state.scratch["gathered"] = self._shape
 
-    def solve(self, system: System, state: State, shift: float, b: Floats, part: float, most: int) -> Floats | None:
+    def solve(
+        self, system: System, state: State, shift: float, b: Floats, part: float, most: int, *, pulling: bool = False
+    ) -> Floats | None:
         """x (n, 3) of (K + shift L) x = b on free axes, to `part` of b or by `most` steps; None if that is not positive
-        definite. K is the tangent of the state, L the Laplacian of the tangent's graph at the start."""
-        self.blocks.fill(system, state)
+        definite. K is the tangent of the state, as if no spring pushed where `pulling`, L the Laplacian of the
+        tangent's graph at the start."""
+        self.blocks.fill(system, state, pulling=pulling)
         if self.steps >= self._due:
             self._due *= LATER
             found = self._gathered(state) if self.blocks.pushing() > PUSHED else None

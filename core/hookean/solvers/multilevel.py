@@ -3,11 +3,13 @@
 A step solves (K + s L) dx = f on the free axes by conjugate gradients preconditioned by algebraic multigrid: K the
 exact tangent, L the Laplacian of its graph. The shift s is large where the start has no stiffness across itself (a flat
 net) and fades as steps succeed; being a Laplacian it holds smooth motions no more than they need, however fine the
-mesh. Where Newton steps crawl, as along edges that crease and fold over, they take turns with relaxation of the
-particles whose springs turn most in a step and those farthest out of balance, among the others, which hold still: a
-creased strip is soft, and soft across few particles is what relaxation is quick at.
+mesh. Where that is not positive definite, springs that push are taken not to push across themselves. Where Newton steps
+crawl, as along edges that crease and fold over, they take turns with relaxation of the particles whose springs turn
+most in a step and those farthest out of balance, among the others, which hold still: a creased strip is soft, and soft
+across few particles is what relaxation is quick at.
 Sources: Nocedal and Wright, Numerical Optimization, 2006, chapter 7; Vanek, Mandel, Brezina, Computing 56 (1996) 179;
-Cai and Li, SIAM J. Sci. Comput. 33 (2011) 746, for the elimination of what is locally not linear.
+Cai and Li, SIAM J. Sci. Comput. 33 (2011) 746, for the elimination of what is locally not linear; Teran, Sifakis,
+Irving, Fedkiw, Robust quasistatic finite elements, 2005, for tangents without what makes them indefinite.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.forces.base import lengths
 from hookean.solvers import relaxation
 from hookean.solvers.base import Solver
 
@@ -41,6 +44,7 @@ SMOOTHING = 100  # passes over all springs that relaxation may take between Newt
 LONGEST = 5000  # iterations of a local one
 SLOW = 2  # Newton steps not worth another, after which they take turns
 ROUNDS = 12  # turns without half the largest force, after which all particles relax
+BURST = 250_000  # particles times Newton steps in one go
 CERTAIN = 1e9  # multiplications that it may take to find whether a shape is the lowest
 FEW = 1e-3  # so few push where supports are points, and have no room to buckle
 
@@ -72,14 +76,24 @@ class Method(Solver):
         state.scratch["creased"] = np.zeros(len(state.x))
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
-        """At most `count` iterations: each a Newton step with what relaxes after it, or an iteration of relaxation."""
-        left = state.scratch["all"][0]
+        """At most `count` iterations: each a Newton step with what relaxes after it, or an iteration of relaxation; of
+        a large net one or two, so that a run can be judged and stopped in between."""
         ready = self._readied(system, state)
-        if left > 0 or not ready.hierarchy.coarse:
-            done = self._relaxation.advance(system, state, min(count, int(left) or count), goal)
-            self.work += done
-            state.scratch["all"][0] = left - done if done and left else 0.0
-            return max(done, 1)
+        several, done = min(count, max(1, BURST // len(state.x))), 0
+        while done < several and (self.largest > goal or not done):
+            left = state.scratch["all"][0]
+            if left > 0 or not ready.hierarchy.coarse:
+                relaxed = self._relaxation.advance(system, state, min(count - done, int(left) or count), goal)
+                self.work += relaxed
+                state.scratch["all"][0] = left - relaxed if relaxed and left else 0.0
+                return done + max(relaxed, 1)
+            self._step(system, state, goal)
+            done += 1
+        return done
+
+    def _step(self, system: System, state: State, goal: float) -> None:
+        """One Newton step, and what relaxes after it."""
+        ready = self._readied(system, state)
         shift, most, taken = state.scratch["newton"]
         gentle = state.scratch["turns"][0] > 0
         step = Step(system, state, ready, GENTLE if gentle else shift, CONJUGATE if gentle else int(most))
@@ -96,7 +110,6 @@ class Method(Solver):
             if self._takes_turns(state, step, float(turned.max()), again):
                 self._smooth(system, state, turned, goal)
         ready.keep(state)
-        return 1
 
     def _takes_turns(self, state: State, step: Step, turned: float, again: bool) -> bool:
         """Whether relaxation is due: for one turn, two, four ... each time that Newton alone did not go on well, and
@@ -122,7 +135,7 @@ class Method(Solver):
 
         blocks = self._readied(system, state).blocks
         f = system.evaluate(state)[0] * state.free
-        size = np.sqrt((f * f).sum(axis=1))
+        size = lengths(f)
         largest = float(size.max())
         now = (turned > TURNED * turned.max()) | (size > OUT * largest)
         now = widened(blocks.starts, blocks.columns, now, RINGS) & (state.free > 0.0).any(axis=1)
@@ -207,15 +220,20 @@ class Step:
         return float(energies.sum()), f * self.state.free
 
     def _direction(self, forces: Floats) -> Floats | None:
-        """Where to go, with the smallest shift tried that makes the tangent positive definite."""
+        """Where to go, by the tangent, else by that of a net in which nothing pushes across; with the smallest shift
+        tried that makes one of them positive definite."""
         while self.shift <= LARGEST_SHIFT:
-            work, steps = self.ready.work, self.ready.steps
-            direction = self.ready.solve(self.system, self.state, self.shift, forces, SOLVED, self.most)
-            self.work += self.ready.work - work
-            if direction is not None:
-                self.cut = self.ready.steps - steps >= self.most
-                return direction
-            self.shift, self.bent = max(10.0 * self.shift, 1e-5), True
+            for pulling in (False, True):
+                work, steps = self.ready.work, self.ready.steps
+                direction = self.ready.solve(
+                    self.system, self.state, self.shift, forces, SOLVED, self.most, pulling=pulling
+                )
+                self.work += self.ready.work - work
+                if direction is not None:
+                    self.cut = self.ready.steps - steps >= self.most
+                    return direction
+                self.bent = True
+            self.shift = max(10.0 * self.shift, 1e-5)
         return None
 
     def _search(
@@ -313,4 +331,4 @@ def _densities(system: System, state: State) -> tuple[NDArray[np.int64], Floats]
 
 def _largest(forces: Floats) -> float:
     """The largest force (n, 3) on a particle."""
-    return float(np.sqrt((forces * forces).sum(axis=1).max(initial=0.0)))
+    return float(lengths(forces).max(initial=0.0))
