@@ -1,9 +1,12 @@
 // How the session stands in a sentence, what the report warns of, and what was lost on the way.
+import { useEffect } from "preact/hooks";
+import { tellReturns } from "./returns";
 import type { Studio } from "./studio";
 import { stateOf } from "./running";
 import { measured, particlesOf, said, titled } from "./words";
 
 export function Report({ studio }: { studio: Studio }) {
+  useEffect(() => tellReturns(studio.session), [studio]);
   return (
     <section class="report" aria-label="Status">
       <Lost studio={studio} />
@@ -39,6 +42,7 @@ function Standing({ studio: { session } }: { studio: Studio }) {
   const summary = session.summary.value;
   if (!summary) return <p>Waiting for the session ...</p>;
   const stale = session.connection.value !== "live";
+  const state = summary.playing ? (stale ? "Was playing" : "Playing") : titled(stateOf(summary));
   // while it plays the service's sentence is of its start: frames tell more
   const sentence = summary.playing
     ? ""
@@ -46,9 +50,7 @@ function Standing({ studio: { session } }: { studio: Studio }) {
   return (
     <div class={stale ? "standing stale" : "standing"}>
       <p aria-live="polite">
-        <strong class={`state ${summary.playing ? "playing" : summary.status}`}>
-          {summary.playing ? "Playing" : titled(stateOf(summary))}
-        </strong>{" "}
+        <strong class={`state ${summary.playing ? "playing" : summary.status}`}>{state}</strong>{" "}
         <span class="sentence">{sentence}</span>
       </p>
       {summary.playing && <Now studio={{ session }} />}

@@ -10,13 +10,13 @@ const COLOURINGS: [Colouring, string][] = [
 ];
 
 const LOCKS: [Lock, string][] = [
-  ["view", "The plane of the view"],
-  ["x", "The x axis"],
-  ["y", "The y axis"],
-  ["z", "The z axis"],
-  ["xy", "The xy plane"],
-  ["xz", "The xz plane"],
-  ["yz", "The yz plane"],
+  ["view", "View plane"],
+  ["x", "x axis"],
+  ["y", "y axis"],
+  ["z", "z axis"],
+  ["xy", "xy plane"],
+  ["xz", "xz plane"],
+  ["yz", "yz plane"],
 ];
 
 export const LOOKS: [Look, string][] = [

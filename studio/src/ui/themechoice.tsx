@@ -4,7 +4,7 @@ import { type Theme, theme } from "./theme";
 export function ThemeChoice() {
   return (
     <label class="theme">
-      Theme{" "}
+      <span>Theme</span>{" "}
       <select value={theme.value} onChange={(event) => (theme.value = event.currentTarget.value as Theme)}>
         <option value="system">System</option>
         <option value="light">Light</option>

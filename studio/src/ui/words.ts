@@ -6,7 +6,7 @@ export function said(value: number, digits = 4): string {
   if (!Number.isFinite(value)) return "-";
   const size = Math.abs(value);
   if (size === 0) return "0";
-  if (size >= 1e6 || size < 1e-4) return value.toExponential(Math.max(0, digits - 2));
+  if (size >= 1e6 || size < 1e-4) return Number(value.toPrecision(Math.max(1, digits - 1))).toExponential();
   return String(Number(value.toPrecision(digits)));
 }
 
