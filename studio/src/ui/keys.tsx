@@ -16,6 +16,16 @@ const LIST: [string, string][] = [
   ["?", "This list"],
 ];
 
+/** What they do while the canvas has the focus: all that a hand can do there. */
+const ON_CANVAS: [string, string][] = [
+  ["Arrows", "Turn; with Shift move"],
+  ["+ -", "Nearer, farther"],
+  ["a", "Pick the next anchor; with Shift the one before"],
+  ["Alt Arrows", "Move the picked anchor in the picture"],
+  ["Alt PageUp PageDown", "Move it in depth"],
+  ["x y z", "Drag along that axis; with Shift in the plane across"],
+];
+
 export function Keys({ studio }: { studio: Studio }) {
   const dialog = useRef<HTMLDialogElement>(null);
   useEffect(() => {
@@ -35,18 +45,9 @@ export function Keys({ studio }: { studio: Studio }) {
       </button>
       <dialog ref={dialog} aria-labelledby="keys-title">
         <h2 id="keys-title">Keys</h2>
-        <dl>
-          {LIST.map(([key, does]) => (
-            <div key={key}>
-              <dt>
-                {key.split(" ").map((part) => (
-                  <kbd key={part}>{part}</kbd>
-                ))}
-              </dt>
-              <dd>{does}</dd>
-            </div>
-          ))}
-        </dl>
+        <List keys={LIST} />
+        <h3>On the canvas</h3>
+        <List keys={ON_CANVAS} />
         <form method="dialog">
           <button type="submit" class="first">
             Close
@@ -54,6 +55,23 @@ export function Keys({ studio }: { studio: Studio }) {
         </form>
       </dialog>
     </>
+  );
+}
+
+function List({ keys }: { keys: [string, string][] }) {
+  return (
+    <dl>
+      {keys.map(([key, does]) => (
+        <div key={key}>
+          <dt>
+            {key.split(" ").map((part) => (
+              <kbd key={part}>{part}</kbd>
+            ))}
+          </dt>
+          <dd>{does}</dd>
+        </div>
+      ))}
+    </dl>
   );
 }
 

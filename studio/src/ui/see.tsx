@@ -1,7 +1,9 @@
 // What is seen, and from where; and along what a drag goes.
-import type { Colouring, Layer, Lock, Look } from "../view/types";
+import { palette } from "../view/colours";
+import type { Colouring, Layer, Legend, Lock, Look } from "../view/types";
 import type { Studio } from "./studio";
-import { said, titled } from "./words";
+import { dark } from "./theme";
+import { measured, said, titled } from "./words";
 
 const COLOURINGS: [Colouring, string][] = [
   ["force", "Force"],
@@ -105,26 +107,54 @@ export function Looks({ studio: { view } }: { studio: Studio }) {
   );
 }
 
-/** Over the canvas: which number a colour stands for. */
-export function LegendBox({ studio: { view, session } }: { studio: Studio }) {
+/** Over the canvas: which number a colour stands for, and how much the longest arrows are. */
+export function LegendBox({ studio: { view, session, options } }: { studio: Studio }) {
   const legend = view.value?.legend.value;
-  if (!legend) return null;
-  const unit = legend.unit === "-" ? "" : ` ${legend.unit}`;
+  const { load, reaction } = view.value?.arrows.value ?? { load: 0, reaction: 0 };
+  const { loads, reactions } = options.layers.value;
+  const force = session.topology.value?.units.force ?? "";
+  const colours = palette(dark.value);
   const stale = session.connection.value !== "live";
-  const middle =
-    legend.low < 0 && legend.high > 0 && Math.abs(legend.low + legend.high) < 1e-9 * legend.high ? 0 : null;
+  if (!legend && !load && !reaction) return null;
   return (
-    <figure class={stale ? "legend stale" : "legend"} aria-label={`Colours: ${legend.title}`}>
-      <figcaption>
-        {legend.title}
-        {unit && ` [${unit.trim()}]`}
-      </figcaption>
-      <div class="ramp" style={{ background: `linear-gradient(to right, ${legend.colours.join(", ")})` }} />
-      <div class="ends numbers">
-        <span>{said(legend.low, 3)}</span>
-        {middle !== null && <span>0</span>}
-        <span>{said(legend.high, 3)}</span>
-      </div>
-    </figure>
+    <div class={stale ? "legend stale" : "legend"} role="group" aria-label="Legend">
+      {legend && <Ramp legend={legend} />}
+      {loads && load > 0 && <Arrow name="Load" size={load} unit={force} colour={colours.load} />}
+      {reactions && reaction > 0 && <Arrow name="Reaction" size={reaction} unit={force} colour={colours.reaction} />}
+    </div>
   );
 }
+
+function Ramp({ legend: { title, unit, low, high, colours } }: { legend: Legend }) {
+  const isEven = low < 0 && Math.abs(low + high) < 1e-9 * high;
+  return (
+    <div>
+      <p>
+        {title} {unit !== "-" && `[${unit}]`}
+      </p>
+      <div class="ramp" style={{ background: `linear-gradient(to right, ${colours.join(", ")})` }} />
+      <p class="ends numbers">
+        <span>{said(low, 3)}</span>
+        {isEven && <span>0</span>}
+        <span>{said(high, 3)}</span>
+      </p>
+    </div>
+  );
+}
+
+interface OfArrow {
+  name: string;
+  size: number;
+  unit: string;
+  colour: string;
+}
+
+const Arrow = ({ name, size, unit, colour }: OfArrow) => (
+  <p class="arrow" title="The longest arrow">
+    <svg viewBox="0 0 28 10" width="28" height="10" aria-hidden="true" stroke={colour} fill={colour}>
+      <path d="M0 5h20" stroke-width="2" />
+      <path d="M19 1v8l8-4z" stroke="none" />
+    </svg>
+    {name} <span class="numbers">up to {measured(Number(size.toPrecision(3)), unit)}</span>
+  </p>
+);

@@ -32,7 +32,16 @@ export function Stage({ studio }: { studio: Studio }) {
   }, [studio, now]);
   return (
     <>
-      <canvas ref={canvas} tabIndex={0} role="img" aria-label="The form as it is now; the panels tell it in numbers" />
+      <canvas
+        ref={canvas}
+        tabIndex={0}
+        role="application"
+        aria-label="The form"
+        aria-description="Arrows turn it, A goes from anchor to anchor, ? lists all keys. The panels tell it in numbers."
+      />
+      <p class="unseen" aria-live="polite">
+        {studio.view.value?.announcement.value}
+      </p>
       {fault && (
         <p class="fault over" role="alert">
           {fault}

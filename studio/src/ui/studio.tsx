@@ -8,7 +8,7 @@ import { Panels } from "./panels";
 import { entry } from "./place";
 import { Readings } from "./readings";
 import { Stage } from "./stage";
-import { remember, remembered } from "./theme";
+import { dark, remember, remembered } from "./theme";
 
 const LAYERS = "hookean-layers";
 
@@ -27,6 +27,7 @@ export function SessionPage({ name }: { name: string }) {
     const session = new Session(name);
     const chosen = options();
     chosen.layers.value = { ...chosen.layers.value, ...remembered(LAYERS, {}) };
+    chosen.dark.value = dark.peek();
     const forget = effect(() => remember(LAYERS, chosen.layers.value));
     const readings = new Readings(session, chosen);
     setStudio({ session, options: chosen, view: signal(null), readings });
