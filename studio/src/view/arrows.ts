@@ -46,15 +46,18 @@ in vec3 place_;
 flat in float reach;
 flat in float tip;
 uniform float width, ratio;
-uniform vec3 shade;
+uniform vec4 shade;
 void main() {
   vec2 at = place_.xy / place_.z;
   float shaft = max(max(tip * 0.7 - at.x, at.x - reach), abs(at.y) - 0.5 * width);
   float arrow = max((abs(at.y) - 0.4 * at.x) * 0.93, at.x - tip);
   float inside = clamp(0.5 - min(shaft, arrow) * ratio, 0.0, 1.0);
   if (inside < 0.02) discard;
-  colour = vec4(shade, inside);
+  colour = vec4(shade.rgb, shade.a * inside);
 }`;
+
+/** More arrows than these are a crowd, and short. */
+export const MANY = 60;
 
 /** Arrows on particles. */
 export class Arrows {
@@ -65,10 +68,11 @@ export class Arrows {
     head: { value: 10 },
     /** So far before its particle the tip of one that pushes ends [CSS pixels]. */
     gap: { value: 7 },
-    shade: { value: [0, 0, 0] as [number, number, number] },
+    shade: { value: [0, 0, 0, 1] as [number, number, number, number] },
   };
   /** The longest vector [force] */
   largest = 0;
+  private now: ArrayLike<number> = [];
   private readonly vectors: Column;
   private readonly rows: Rows;
 
@@ -92,11 +96,24 @@ export class Arrows {
   /** The vectors now, one for each of the particles [force]. */
   put(renderer: WebGLRenderer, vectors: Float32Array): void {
     this.vectors.put(renderer, vectors);
+    this.now = vectors;
     let largest = 0;
     for (let i = 0; i < vectors.length; i += 3) {
       largest = Math.max(largest, Math.hypot(vectors[i]!, vectors[i + 1]!, vectors[i + 2]!));
     }
     this.largest = largest;
+  }
+
+  /** Where those end that are drawn, beginning at their particles [length]. */
+  tips(positions: Float32Array): number[] {
+    if (!this.mesh.visible) return [];
+    const found: number[] = [];
+    this.particles.forEach((particle, i) => {
+      for (let axis = 0; axis < 3; axis++) {
+        found.push(positions[3 * particle + axis]! + this.style.scale.value * (this.now[3 * i + axis] ?? 0));
+      }
+    });
+    return found;
   }
 
   dispose(): void {

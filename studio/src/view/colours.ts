@@ -47,7 +47,7 @@ const DARK: Palette = {
   ink: "#eef2f6",
   plain: "#9fb0c0",
   slack: "#5b6670",
-  skin: "#3c4e61",
+  skin: "#46586b",
   edge: "#70849a",
   dot: "#1d252e",
   load: "#4fce86",

@@ -2,7 +2,7 @@
 import { Box3, Vector3 } from "three";
 import type { Frame } from "../frame";
 import type { Anchor } from "../model";
-import { Arrows } from "./arrows";
+import { Arrows, MANY } from "./arrows";
 import { channels, type Palette, palette, type Ramp } from "./colours";
 import { Column } from "./columns";
 import type { Form } from "./form";
@@ -14,7 +14,6 @@ import type { Stage } from "./stage";
 import type { Colouring, Layer } from "./types";
 
 const ARROW = 0.13;
-const MANY_ARROWS = 60;
 const MOST_ARROWS = 1500;
 const MANY_SPRINGS = 3000;
 const FLOOR_REACH = 1.6;
@@ -70,7 +69,7 @@ export class Picture {
     this.positions = new Column(form.particles, 3);
     this.forces = new Column(form.springs.length / 2, 1);
     common.positions.value = this.positions.texture;
-    const kept = Math.ceil(form.loaded.length / MOST_ARROWS);
+    const kept = this.thinned(form);
     const parts = (this.parts = {
       springs: new Segments(common, form.springs, 3),
       edges: new Segments(common, form.edges, 2),
@@ -117,6 +116,16 @@ export class Picture {
     const { centre } = this.stage.common;
     if (centre.value.distanceTo(middle) > 0.2 * this.size) centre.value.copy(middle);
     this.stage.group.position.copy(centre.value);
+  }
+
+  /** All that is to be seen: particles and the ends of arrows, where these are few; x y z of each [length]. */
+  body(frame: Frame): ArrayLike<number> {
+    const tips = [this.parts?.loads, this.reactions].flatMap((arrows) => arrows?.tips(frame.positions) ?? []);
+    if (!tips.length) return frame.positions;
+    const all = new Float32Array(frame.positions.length + tips.length);
+    all.set(frame.positions);
+    all.set(tips, frame.positions.length);
+    return all;
   }
 
   /** The anchors now. */
@@ -173,18 +182,8 @@ export class Picture {
     parts.skin.style.shade.value = channels(colours.skin);
     this.lines(parts, dress, colours, gap);
     this.marks(dress, colours, gap);
-    const spread =
-      form.loaded.length > MANY_ARROWS
-        ? 2.2 * form.spacing * Math.sqrt(Math.ceil(form.loaded.length / MOST_ARROWS))
-        : 0;
-    this.arrows(parts.loads, layers.loads, colours.load, spread);
-    if (this.reactions)
-      this.arrows(
-        this.reactions,
-        layers.reactions,
-        colours.reaction,
-        this.held.size > MANY_ARROWS ? 6 * form.spacing : 0,
-      );
+    this.arrows(parts.loads, layers.loads, colours.load, 1.3 * form.spacing * Math.sqrt(this.thinned(form)));
+    if (this.reactions) this.arrows(this.reactions, layers.reactions, colours.reaction, 4 * form.spacing);
     this.floor.style.shade.value = channels(colours.floor);
     this.floor.style.strength.value = dress.dark ? 0.75 : 0.9;
   }
@@ -213,7 +212,7 @@ export class Picture {
     const { style } = springs;
     const { colours: stops, first, last } = dress.ramp;
     this.sprung = dress.layers.springs && springs.count > 0;
-    style.width.value = clamp(0.1 * gap, 1.5, 3.4);
+    style.width.value = clamp(Math.max(0.1 * gap, 20 / Math.sqrt(springs.count)), 1.5, 3.4);
     style.colouring.value = dress.colouring === "force" ? 1 : dress.colouring === "strain" && this.rest ? 2 : 0;
     [style.low.value, style.high.value] = [first, last];
     style.slack.value = 1e-9 * Math.max(Math.abs(first), Math.abs(last));
@@ -237,6 +236,7 @@ export class Picture {
       form!.springs.length || form!.triangles.length
         ? clamp(0.2 * gap, 3.5, 8)
         : clamp(400 / Math.sqrt(form!.particles), 3, 10);
+    dots.style.rim.value = clamp(0.2 * dots.style.diameter.value, 0.7, 1.2);
     dots.style.fill.value = [...channels(colours.dot), 1];
     dots.style.outline.value = [...ink, 1];
     for (const mark of [anchors, partial]) {
@@ -256,14 +256,21 @@ export class Picture {
     return form.particles <= 60 || form.spacing / pixel > 14 || !(form.springs.length || form.triangles.length);
   }
 
-  private arrows(arrows: Arrows, shown: boolean, colour: string, most: number): void {
+  /** Of so many loads one is drawn. */
+  private thinned(form: Form): number {
+    return Math.ceil(form.loaded.length / MOST_ARROWS);
+  }
+
+  /** Where they are many, the longest has the length `many` at most. */
+  private arrows(arrows: Arrows, shown: boolean, colour: string, many: number): void {
+    const crowd = arrows.particles.length > MANY;
+    const reach = crowd && many > 0 ? Math.min(ARROW * this.size, many) : ARROW * this.size;
     arrows.mesh.visible = shown && arrows.particles.length > 0 && arrows.largest > 0;
-    const reach = Math.min(ARROW * this.size, most || Infinity);
     arrows.style.scale.value = reach / (arrows.largest || 1);
-    const few = arrows.particles.length <= MANY_ARROWS;
-    arrows.style.width.value = few ? 2.2 : 1.2;
-    arrows.style.head.value = few ? 11 : 6;
-    arrows.style.shade.value = channels(colour);
+    const part = clamp((30 / arrows.particles.length) ** 0.4, 0.5, 1);
+    arrows.style.width.value = 2.2 * part;
+    arrows.style.head.value = 11 * part;
+    arrows.style.shade.value = [...channels(colour), crowd ? 0.7 : 1];
   }
 
   private strip(): void {

@@ -16,6 +16,7 @@ import { Keys } from "./keys";
 import { Picker } from "./picking";
 import { Picture } from "./picture";
 import { Stage } from "./stage";
+import { Triad } from "./triad";
 import type { Legend, Look, Options, Picked, View } from "./types";
 
 const REST = 220;
@@ -35,6 +36,7 @@ class Drawing implements View {
   private readonly picture: Picture;
   private readonly highlights: Highlights;
   private readonly guide: Guide;
+  private readonly triad: Triad;
   private readonly hand: Hand;
   private readonly keys: Keys;
   private readonly picker = new Picker();
@@ -43,6 +45,7 @@ class Drawing implements View {
   private frame: Frame | null = null;
   private drawn: Frame | null = null;
   private fitted = false;
+  private untouched = false;
   /** Length of a pixel that colours and sizes were chosen for; 0 where they must be chosen anew. */
   private dressed = 0;
   private asked = 0;
@@ -58,10 +61,11 @@ class Drawing implements View {
     private readonly options: Options,
   ) {
     this.stage = new Stage(canvas);
-    this.eye = new Eye(canvas, this.ask);
+    this.eye = new Eye(canvas, this.moved);
     this.picture = new Picture(this.stage);
     this.highlights = new Highlights(this.stage);
     this.guide = new Guide(this.stage);
+    this.triad = new Triad(this.stage);
     this.hand = new Hand(this.handles());
     const say = (sentence: string) => (this.announcement.value = sentence);
     this.keys = new Keys({ ...this.handles(), eye: this.eye, fit: () => this.fit(), say });
@@ -70,11 +74,11 @@ class Drawing implements View {
   }
 
   fit(): void {
-    if (this.drawn) this.eye.fit(this.drawn.positions);
+    if (this.drawn) this.eye.fit(this.picture.body(this.drawn));
   }
 
   look(from: Look): void {
-    if (this.drawn) this.eye.fit(this.drawn.positions, from);
+    if (this.drawn) this.eye.fit(this.picture.body(this.drawn), from);
   }
 
   show(particles: number[]): void {
@@ -112,7 +116,7 @@ class Drawing implements View {
     clearTimeout(this.counting);
     clearTimeout(this.pacing);
     this.undo.reverse().forEach((undo) => undo());
-    for (const part of [this.hand, this.keys, this.guide, this.highlights]) part.dispose();
+    for (const part of [this.hand, this.keys, this.guide, this.triad, this.highlights]) part.dispose();
     this.eye.dispose();
     this.picture.dispose();
     this.stage.dispose();
@@ -229,8 +233,15 @@ class Drawing implements View {
     const { clientWidth, clientHeight } = this.canvas;
     this.stage.resize(clientWidth, clientHeight);
     this.eye.shape(this.stage.width, this.stage.height);
+    // a window that changes before anybody has chosen from where to look
+    if (this.untouched) this.fitted = false;
     this.ask();
   }
+
+  private readonly moved = (): void => {
+    this.untouched = false;
+    this.ask();
+  };
 
   /** Something has changed: draw soon. */
   private readonly ask = (): void => {
@@ -263,16 +274,22 @@ class Drawing implements View {
     if (frame.revision < stats.revisionAcknowledged || stage.renderer.getContext().isContextLost()) return false;
     if (this.drawn !== frame) this.upload(frame);
     this.survey(frame, finely);
-    if (!this.fitted) {
-      this.fitted = true;
-      eye.first(frame.positions);
-    }
     this.dress();
+    if (!this.fitted) this.begin(frame);
     eye.reach(stage.common.centre.value, picture.size * 2);
+    this.triad.place(eye);
     picture.rough(!finely && stage.pace.rough);
     stage.draw(eye.camera, finely);
     this.counted(frame);
     return true;
+  }
+
+  /** The first sight of a form: all of it, its arrows too. */
+  private begin(frame: Frame): void {
+    this.fitted = true;
+    this.eye.first(this.picture.body(frame));
+    this.untouched = true;
+    this.dress();
   }
 
   private upload(frame: Frame): void {
@@ -336,6 +353,7 @@ class Drawing implements View {
     });
     picture.lay(floorOf(this.session.scene.value), options.layers.value.floor);
     this.highlights.dress(options.dark.value);
+    this.triad.dress(options.dark.value);
   }
 
   private counted(frame: Frame): void {
