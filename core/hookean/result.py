@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -140,11 +140,12 @@ def gather(
     system: System, state: State, found: Balance, status: Status, message: str, solver: str, *, moving: bool
 ) -> Result:
     """Collect a result from a state and its balance."""
+    report = system.report
     energy: dict[str, float] = {}
     for group, value in zip(system.groups, found.energies, strict=True):
         kind = str(group.cls.model_fields["kind"].default)
         energy[kind] = energy.get(kind, 0.0) + float(value)
-    energy["kinetic"] = float(0.5 * (system.mass[:, None] * state.v**2 * state.free).sum()) if moving else 0.0
+    energy["kinetic"] = kinetic(system, state) if moving else 0.0
     energy["total"] = sum(energy.values())
     return Result(
         status=status,
@@ -161,9 +162,14 @@ def gather(
         iterations=state.iteration,
         time=state.time,
         solver=solver,
-        report=Report(system.report.merged, list(system.report.unmatched), list(system.report.warnings)),
+        report=replace(report, unmatched=list(report.unmatched), warnings=list(report.warnings)),
         units=system.scene.units,
     )
+
+
+def kinetic(system: System, state: State) -> float:
+    """Kinetic energy [force length] of what is free to move."""
+    return 0.5 * float(system.mass @ np.einsum("ij,ij,ij->i", state.v, state.v, state.free))
 
 
 def carried(system: System, state: State) -> list[dict[str, Any]]:

@@ -18,7 +18,7 @@ from hookean.balance import Balance, balance
 from hookean.errors import InputError
 from hookean.history import History, Setup
 from hookean.patch import Patch, Undo, apply
-from hookean.result import Result, Status, carried, gather
+from hookean.result import Result, Status, carried, gather, kinetic
 from hookean.run import Progress, relax_state
 from hookean.scene import Scene
 from hookean.script import Playing, Script
@@ -173,6 +173,15 @@ class Simulation:
     def balance(self) -> Balance:
         """How far the shape was from equilibrium when it was last looked at."""
         return self._watch.found
+
+    @property
+    def energy(self) -> float | None:
+        """Of all forces when the shape was last looked at, and of motion [force length]; None where a force, such as
+        pressure, has none."""
+        if not all(group.cls.conservative for group in self.system.groups):
+            return None
+        moving = kinetic(self.system, self.state) if self.solver.physical else 0.0
+        return float(self._watch.found.energies.sum()) + moving
 
     @property
     def message(self) -> str:

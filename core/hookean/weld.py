@@ -21,6 +21,8 @@ from hookean.scene import Scene
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+MOST_TOLD = 10  # points that meet no particle, told one by one
+
 
 @dataclass(frozen=True)
 class Unmatched:
@@ -51,6 +53,18 @@ class Report:
     merged: int = 0
     unmatched: list[Unmatched] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    beside: int = 0
+    """Coordinates that lay beside a particle and were moved onto it."""
+
+    def sentences(self) -> list[str]:
+        """What a person should know: warnings, the first few of what met no particle, what was moved onto one."""
+        said = [*self.warnings, *(unmatched.sentence for unmatched in self.unmatched[:MOST_TOLD])]
+        if len(self.unmatched) > MOST_TOLD:
+            said.append(f"and {len(self.unmatched) - MOST_TOLD} more points meet no particle")
+        if self.beside:
+            what = "1 coordinate was" if self.beside == 1 else f"{self.beside} coordinates were"
+            said.append(f"{what} moved onto a particle nearby, within weld_tolerance")
+        return said
 
 
 class Welded:
@@ -94,6 +108,9 @@ class Welded:
         points = np.concatenate(candidates) if candidates else np.zeros((0, 3))
         self.x, which = weld(given, points, self.tolerance)
         self.report.merged = len(given) + len(points) - len(self.x)
+        if self.report.merged:
+            moved = np.abs(points - self.x[which]) > 0.01 * self.tolerance  # less is rounding
+            self.report.beside = int(np.count_nonzero(moved.any(axis=1)))
         start = 0
         for kind, key, shape in owners:
             stop = start + int(np.prod(shape))

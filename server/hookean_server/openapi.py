@@ -136,7 +136,7 @@ def branched() -> dict[str, Any]:
 
 def exported(*codes: int) -> dict[int | str, dict[str, Any]]:
     """Responses of what is taken out of a session."""
-    files = ("application/octet-stream", "model/vnd.3dm", "model/obj")
+    files = ("application/octet-stream", "model/vnd.3dm", "model/obj", "text/csv")
     content = {"application/json": {"schema": {"type": "object"}}, **{kind: {} for kind in files}}
     return problems(content, *codes, live=True)
 

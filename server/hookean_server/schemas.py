@@ -158,9 +158,11 @@ SCHEMAS["Session"] = {
         "redo": {"type": "integer"},
         "awake": {"type": "boolean", "description": "Whether it has a process"},
         "created": _NUMBER,
-        "warnings": {"type": "array", "items": {"type": "string"}, "description": "On the file it was made of"},
+        "energy": {"type": ["number", "null"], "description": "Of all forces and of motion [force length]"},
+        "units": {"$ref": "#/components/schemas/Units"},
+        "warnings": {**_SENTENCES, "description": "On the file it was made of, and on the scene as it is now"},
     },
-    "required": ["key", "label", "revision", "status", "message", "particles", "playing", "awake"],
+    "required": ["key", "label", "revision", "status", "message", "particles", "playing", "warnings", "awake"],
 }
 SCHEMAS["Sessions"] = _object(sessions={"type": "array", "items": {"$ref": "#/components/schemas/Session"}})
 SCHEMAS["Edit"] = {

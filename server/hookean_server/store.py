@@ -80,6 +80,10 @@ CREATE TABLE IF NOT EXISTS logins (
     hash TEXT PRIMARY KEY,       -- SHA-256 of a cookie's value
     used REAL NOT NULL           -- seconds since 1970
 );
+CREATE TABLE IF NOT EXISTS notes (
+    key TEXT PRIMARY KEY REFERENCES sessions(key) ON DELETE CASCADE,
+    sentences TEXT NOT NULL      -- on the file a session was made of, one in a line
+);
 """
 """Tables that files of this version may not have yet; who does not know them leaves them alone."""
 Work = Callable[[sqlite3.Connection], Any]

@@ -423,7 +423,7 @@ def _opened(path: Path) -> set[str]:
     try:
         found = {kept.key for kept in store.submit(rows.listed()).result(20.0)}
         described = {"revision": 0, "iteration": 0, "status": "running", "message": "", "particles": 1}
-        store.submit(rows.put("new", "", b"base", described)).result(20.0)
+        store.submit(rows.put("new", "", b"base", described, [])).result(20.0)
         return found
     finally:
         store.close()

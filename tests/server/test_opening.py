@@ -14,7 +14,7 @@ import pytest
 from hookean.example import find
 from serving import CABLE
 
-from .conftest import problem
+from .conftest import Served, problem
 
 SHEET = "".join(f"v {i} {j} 0\n" for i in range(4) for j in range(4)) + "".join(
     f"f {4 * i + j + 1} {4 * i + j + 5} {4 * i + j + 6} {4 * i + j + 2}\n" for i in range(3) for j in range(3)
@@ -83,9 +83,35 @@ def test_what_is_not_taken_and_what_was_changed_is_told(client: httpx.Client) ->
     assert any("normals" in said for said in made["warnings"])
     assert any("steps of" in said for said in made["warnings"])
     address = f"/v1/sessions/{made['key']}"
+    assert client.get(address).json()["warnings"] == made["warnings"]
+    scene = client.get(f"{address}/scene").json()
+    again = client.put(address, json={**scene, "settings": {**scene["settings"], "drag": 2.0}}).json()
+    assert again["revision"] == 1 and again["warnings"] == made["warnings"], "they are of the file, not of one scene"
     assert client.patch(address, json={"pin": [{"particles": [0], "targets": [[0, 0, 1]]}]}).status_code == 200
     assert client.post(f"{address}/step", params={"frames": 20}).json()["status"] != "diverged"
     client.delete(address)
+
+
+def test_what_was_told_of_a_file_outlives_the_server(tmp_path: Path) -> None:
+    """A page that is loaded again after a restart shows it too; a branch has it, another file's session has not."""
+    state = str(tmp_path / "sessions.db")
+    first = Served(state=state, workers=1)
+    try:
+        for key, more in (("a", "vn 0 0 1\nusemtl red\n"), ("b", "")):
+            made = first.client.put(f"/v1/sessions/{key}", files={"file": ("a.obj", SHEET + more)})
+            assert made.status_code == 201, made.text
+        first.client.post("/v1/sessions/a/branches", params={"to": "c"})
+    finally:
+        first.end()
+    second = Served(state=state, workers=1)
+    try:
+        listed = second.client.get("/v1/sessions").json()["sessions"]
+        told = ["not taken of the file: normals, materials"]
+        assert {one["key"]: one["warnings"] for one in listed} == {"a": told, "b": [], "c": told}
+        second.client.post("/v1/sessions/a/step")
+        assert second.client.get("/v1/sessions/a").json()["warnings"] == told
+    finally:
+        second.end()
 
 
 @pytest.mark.parametrize(

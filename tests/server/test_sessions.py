@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import json
 from collections.abc import Iterator
@@ -197,6 +198,95 @@ def test_every_format_is_read_back(client: httpx.Client, tmp_path: Any) -> None:
         tuple(np.round([p.X, p.Y, p.Z], 9)) for c in curves if hasattr(c, "PointAtStart") for p in (c.PointAtStart,)
     }
     assert {tuple(np.round(x, 9)) for x in wanted[:-1]} <= ends
+
+
+def test_a_table_of_forces_has_its_units(client: httpx.Client) -> None:
+    """A row for each spring, load and reaction, as `hookean relax --csv` writes it: the springs carry what the result
+    says, and reactions and loads are in balance at rest."""
+    put(client, scene={**CABLE, "settings": {"tolerance": 1e-9}})
+    client.post("/v1/sessions/a/play", params={"fast": True})
+    wait_for(lambda: client.get("/v1/sessions/a").json()["status"] == "converged")
+    answer = client.get("/v1/sessions/a/state", params={"format": "csv"})
+    assert answer.headers["content-type"] == "text/csv; charset=utf-8"
+    rows = list(csv.DictReader(io.StringIO(answer.text)))
+    assert {"kind", "element", "x [m]", "force [N]", "force z [N]", "strain [-]", "length [m]"} <= set(rows[0])
+    result = client.get("/v1/sessions/a/state").json()
+    springs = [float(row["force [N]"]) for row in rows if row["kind"] == "springs"]
+    assert springs == pytest.approx(result["forces"][0]["force"], rel=1e-12)
+    upwards = [float(row["force z [N]"]) for row in rows if row["kind"] in ("reaction", "unary")]
+    assert len(upwards) == 8 and abs(sum(upwards)) < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("label", "named"),
+    [
+        ("", 'attachment; filename="a.{}"'),
+        ("roof over yard", 'attachment; filename="roof over yard.{}"'),
+        ("../../etc/passwd", 'attachment; filename="etc passwd.{}"'),
+        ("Süd", "attachment; filename=\"S_d.{}\"; filename*=UTF-8''S%C3%BCd.{}"),
+        ('a"; x="b', "attachment; filename=\"a _ x_ b.{}\"; filename*=UTF-8''a%20%3B%20x%3D%20b.{}"),
+        ("\r\n", 'attachment; filename="session.{}"'),
+    ],
+)
+def test_downloads_are_named_as_their_session(client: httpx.Client, label: str, named: str) -> None:
+    """RFC 6266; no path, no second header, whatever the label."""
+    assert client.put("/v1/sessions/a", json=CABLE, params={"label": label}).status_code == 201
+    for form in ("3dm", "obj", "csv", "npz", "compas"):
+        answer = client.get("/v1/sessions/a/state", params={"format": form})
+        ending = "json" if form == "compas" else form
+        assert answer.headers["content-disposition"] == named.replace("{}", ending)
+    assert "content-disposition" not in client.get("/v1/sessions/a/state").headers
+
+
+def test_a_summary_says_what_a_person_should_know(client: httpx.Client) -> None:
+    """Energy and units, and in sentences what met no particle, what a step of time would do, what lay beside another:
+    at once, after an edit that changes it, and from the start of the next server on, for those in the store."""
+    found = put(client, scene={**CABLE, "units": {"force": "kN"}})
+    assert found["units"] == {"length": "m", "force": "kN", "time": "s"} and found["warnings"] == []
+    result = client.get("/v1/sessions/a/state").json()
+    assert found["energy"] == pytest.approx(result["energy"]["total"])
+    client.post("/v1/sessions/a/step", params={"frames": 3})
+    moving, result = client.get("/v1/sessions/a").json(), client.get("/v1/sessions/a/state").json()
+    assert moving["energy"] == pytest.approx(result["energy"]["total"]) and result["energy"]["kinetic"] > 0
+    stiff = client.patch("/v1/sessions/a", json={"forces": {"0": {"stiffness": 1e9}}}).json()
+    assert len(stiff["warnings"]) == 1 and "too large" in stiff["warnings"][0]
+    assert client.patch("/v1/sessions/a", json={"forces": {"0": {"stiffness": 1000}}}).json()["warnings"] == []
+    astray = {**CABLE, "anchors": [{"particles": [0, 5]}, {"name": "post", "points": [[3, 0, 7]]}]}
+    assert ["the nearest is particle" in said for said in put(client, scene=astray)["warnings"]] == [True]
+    lines = [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0.0005], [2, 0, 0]]]
+    near = put(client, scene={"forces": [{"kind": "springs", "lines": lines}]})["warnings"]
+    assert near == ["1 coordinate was moved onto a particle nearby, within weld_tolerance"]
+
+
+def test_an_energy_that_is_not_known_is_none(client: httpx.Client) -> None:
+    """Pressure follows the surface: it has no potential."""
+    faces = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "faces": [[0, 1, 2]]}
+    forces = [{"kind": "springs", "mesh": "m"}, {"kind": "pressure", "mesh": "m", "pressure": 1.0}]
+    assert put(client, scene={"meshes": {"m": faces}, "forces": forces})["energy"] is None
+
+
+def test_watchers_hear_of_warnings_and_of_edits_by_others(served: Served, client: httpx.Client) -> None:
+    """A revision that is not one's own says that the anchors may be others now."""
+    put(client)
+    with watch(served) as socket:
+        assert json.loads(socket.recv())["session"]["revision"] == 0
+
+        def told(fits: Any) -> dict[str, Any]:
+            while True:
+                message = socket.recv(timeout=60)
+                if isinstance(message, bytes):
+                    socket.send(json.dumps({"ack": decode(message).number}))
+                elif fits(found := json.loads(message).get("state") or {}):
+                    return dict(found)
+
+        for number in (1, 2):
+            edit = {"move": [{"anchor": 0, "targets": [[0, 0, number], [10, 0, 0]]}], "gesture": "drag"}
+            assert client.patch("/v1/sessions/a", json=edit).json()["revision"] == number
+            assert told(lambda s, number=number: s.get("revision") == number)["undo"] == 1
+        client.patch("/v1/sessions/a", json={"forces": {"0": {"stiffness": 1e9}}})
+        assert "too large" in told(lambda s: s.get("warnings"))["warnings"][0]
+        client.post("/v1/sessions/a/undo")
+        assert told(lambda s: s.get("warnings") == [])["revision"] == 4
 
 
 def _layer(path: Any, item: Any) -> str:

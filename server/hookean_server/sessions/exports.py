@@ -20,6 +20,7 @@ FORMATS = {
     "3dm": "model/vnd.3dm",
     "obj": "model/obj",
     "compas": "application/json",
+    "csv": "text/csv",
 }
 """Formats of a session's state, with their media types."""
 
@@ -111,6 +112,13 @@ def _obj(simulation: Simulation, arrays: str) -> bytes:
     from hookean.files import obj
 
     return obj.text(simulation.system, simulation.state).encode()
+
+
+def _csv(simulation: Simulation, arrays: str) -> bytes:
+    from hookean.files import tables
+
+    result = simulation.result()
+    return tables.csv_text(tables.rows(tables.sections(simulation.system, result), result)).encode()
 
 
 def _compas(simulation: Simulation, arrays: str) -> bytes:

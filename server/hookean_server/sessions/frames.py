@@ -25,6 +25,7 @@ from hookean_server.sessions.wire import VERSION
 router = APIRouter()
 
 IN_FLIGHT = 2
+_NEWS = ("revision", "status", "playing", "undo", "redo", "warnings")
 CLOSED = {"not-found": 4404, "busy": 4429, "shutting-down": 1012}
 
 
@@ -74,9 +75,8 @@ class _Client:
         await self._text(hello)
         while not self.sessions.closing and live.key in self.sessions.sessions:
             news = live.news
-            now = json.dumps([live.topology, live.described.get("status"), live.described.get("playing"),
-                              live.described.get("message") if not live.playing else "", live.process is None,
-                              live.described.get("undo"), live.described.get("redo")])  # fmt: skip
+            now = json.dumps([live.topology, live.process is None, live.notes, [live.described.get(n) for n in _NEWS],
+                              live.described.get("message") if not live.playing else ""])  # fmt: skip
             if now != told:
                 told = now
                 await self._text({"state": summary(live), "topology": live.topology})

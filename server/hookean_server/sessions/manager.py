@@ -34,6 +34,7 @@ class Live:
     key: str
     label: str
     described: dict[str, Any]
+    notes: list[str] = field(default_factory=list)  # on the file it was made of
     lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # of edits, which have an order
     waking: asyncio.Lock = field(default_factory=asyncio.Lock)
     process: SessionProcess | None = None
@@ -79,7 +80,7 @@ class Manager:
         self._loop = asyncio.get_running_loop()
         for kept in await self.store.run(rows.listed()):
             described = {name: getattr(kept, name) for name in _KEPT}
-            self.sessions[kept.key] = Live(kept.key, kept.label, {**described, "playing": False})
+            self.sessions[kept.key] = Live(kept.key, kept.label, {**described, "playing": False}, kept.notes)
         self._ticking = asyncio.create_task(self._tick())
 
     async def close(self) -> None:
@@ -104,19 +105,22 @@ class Manager:
         live.used = time.monotonic()
         return live
 
-    async def put(self, key: str | None, body: bytes, label: str = "") -> tuple[Live, bool]:
-        """A session from a scene, or the scene of one that exists; whether it is new. Raises Problem."""
+    async def put(
+        self, key: str | None, body: bytes, label: str = "", notes: list[str] | None = None
+    ) -> tuple[Live, bool]:
+        """A session from a scene, or the scene of one that exists; whether it is new. `notes` on the file it came from
+        stay until there are others; None: it came from none. Raises Problem."""
         if key is not None and key in self.sessions:
-            return await self._replace(self.find(key), body, label), False
+            return await self._replace(self.find(key), body, label, notes), False
         with self._room():
-            live = Live(key or secrets.token_hex(16), label, {})
+            live = Live(key or secrets.token_hex(16), label, {}, notes or [])
             # its place is taken at once: a second request with the same key waits for the first
             self.sessions[live.key] = live
             async with live.lock, live.waking:
                 try:
                     process = await self._process(live)
                     described, base = await process.call("create", body, seconds=ANSWER, slug="invalid-scene")
-                    await self.store.run(rows.put(live.key, label, base, described))
+                    await self.store.run(rows.put(live.key, label, base, described, live.notes))
                 except BaseException:
                     self.sessions.pop(live.key, None)
                     self._end(live)
@@ -180,8 +184,9 @@ class Manager:
             async with live.lock:
                 process = await self._awake(live)
                 described, base = await process.call("save", seconds=ANSWER)
-            other = Live(new or secrets.token_hex(16), label or live.label, {**described, "playing": False})
-            await self.store.run(rows.put(other.key, other.label, base, described))
+            paused = {**described, "playing": False}
+            other = Live(new or secrets.token_hex(16), label or live.label, paused, live.notes)
+            await self.store.run(rows.put(other.key, other.label, base, described, other.notes))
             self.sessions[other.key] = other
         return other
 
@@ -334,16 +339,18 @@ class Manager:
         if process is not None:
             process.kill()
 
-    async def _replace(self, live: Live, body: bytes, label: str) -> Live:
+    async def _replace(self, live: Live, body: bytes, label: str, notes: list[str] | None) -> Live:
         async with live.lock:
             process = await self._awake(live)
             described, base = await process.call("replace", body, seconds=ANSWER, slug="invalid-scene")
             if not described.pop("same", False):
+                notes = live.notes if notes is None else notes
                 try:
-                    await self.store.run(rows.put(live.key, label or live.label, base, described))
+                    await self.store.run(rows.put(live.key, label or live.label, base, described, notes))
                 except Problem:
                     await self._revert(live, process)
                     raise
+                live.notes = notes
                 live.topology = secrets.token_hex(8)
                 live.edits = 0
                 live.tell()  # its process may have told the new revision before the new topology was known
@@ -370,7 +377,7 @@ class Manager:
         described = {name: head[name] for name in _DESCRIBED if name in head}
         if not described:
             return
-        said = {name: live.described.get(name) for name in ("status", "playing", "revision")}
+        said = {name: live.described.get(name) for name in ("status", "playing", "revision", "warnings")}
         live.described = {**live.described, **described}
         if not live.described.get("playing") and live.described.get("status") != "running":
             live.playing = False  # it came to an end; one that was just brought back is about to play on
@@ -417,10 +424,13 @@ class Manager:
                     self._end(self.sessions.pop(key))
 
 
-_DESCRIBED = ("revision", "iteration", "time", "residual", "status", "message", "particles", "undo", "redo", "playing")
+_DESCRIBED = ("revision", "iteration", "time", "residual", "status", "message", "particles", "undo", "redo", "playing",
+              "energy", "units", "warnings")  # fmt: skip
 _KEPT = ("revision", "iteration", "status", "message", "particles", "created")
 
 
 def summary(live: Live) -> dict[str, Any]:
     """A session in the answers of routes."""
-    return {"key": live.key, "label": live.label, **live.described, "awake": live.process is not None}
+    warnings = [*live.notes, *live.described.get("warnings", ())]
+    awake = live.process is not None
+    return {"key": live.key, "label": live.label, **live.described, "warnings": warnings, "awake": awake}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -14,7 +15,7 @@ from hookean.errors import InputError
 from hookean.files import compas_json
 from hookean.files.scene_json import parse
 from hookean.patch import Patch, Undo
-from hookean.result import Status
+from hookean.result import Status, kinetic
 from hookean.scene import Scene
 from hookean.simulation import Simulation
 from hookean.state import State
@@ -139,7 +140,7 @@ def _check(particles: NDArray[np.int64], simulation: Simulation) -> None:
 
 def describe(simulation: Simulation) -> dict[str, Any]:
     """How a simulation stands, in plain values."""
-    state = simulation.state
+    state, energy = simulation.state, simulation.energy
     return {
         "revision": state.revision,
         "iteration": state.iteration,
@@ -150,6 +151,9 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         "particles": len(state.x),
         "undo": len(simulation.history.before),
         "redo": len(simulation.history.after),
+        "energy": energy if energy is not None and math.isfinite(energy) else None,
+        "units": simulation.scene.units.model_dump(),
+        "warnings": simulation.system.report.sentences(),
     }
 
 
@@ -158,10 +162,10 @@ def frame(simulation: Simulation, number: int, playing: bool) -> Shown:
     system, state = simulation.system, simulation.state
     stand = simulation.balance
     held = np.flatnonzero((state.free == 0).any(axis=1))
-    kinetic = float(0.5 * (system.mass[:, None] * state.v**2 * state.free).sum()) if simulation.solver.physical else 0.0
+    moving = kinetic(system, state) if simulation.solver.physical else 0.0
     return Shown(
         number, state.revision, state.iteration, state.time, float(stand.residual), str(simulation.status), playing,
-        kinetic, state.x, spring_forces(simulation), stand.reactions[held],
+        moving, state.x, spring_forces(simulation), stand.reactions[held],
     )  # fmt: skip
 
 

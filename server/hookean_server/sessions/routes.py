@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from typing import Annotated, Any, Literal
+from urllib.parse import quote
 
 from fastapi import APIRouter, Header, Path, Query, Request
 from starlette.responses import JSONResponse, Response
@@ -31,18 +32,18 @@ def manager(request: Request) -> Manager:
     return found
 
 
-async def _body(request: Request) -> tuple[bytes, list[str]]:
-    """A scene as JSON; the file in a form is read in a worker that is then replaced, with warnings."""
+async def _body(request: Request) -> tuple[bytes, list[str] | None]:
+    """A scene as JSON; the file in a form is read in a worker that is then replaced, with notes on it."""
     if media_type(request.headers) == "multipart/form-data":
         return await uploaded_scene(request)
-    return await read_json(request), []
+    return await read_json(request), None
 
 
-def _answer(live: Live, status: int = 200, warnings: list[str] | None = None) -> Response:
+def _answer(live: Live, status: int = 200) -> Response:
     headers = {"etag": f'"{live.described["revision"]}"', "cache-control": "no-store"}
     if status == 201:
         headers["location"] = f"/v1/sessions/{live.key}"
-    return JSONResponse({**summary(live), **({"warnings": warnings} if warnings else {})}, status, headers)
+    return JSONResponse(summary(live), status, headers)
 
 
 @router.post("/v1/sessions", status_code=201, summary="A session of a scene or a file", **openapi.session_body(201))
@@ -50,18 +51,18 @@ async def create(request: Request, label: Label = "") -> Response:
     """A new session under a random key, paused. A form takes a .3dm file, an .obj file, or a .json file with a scene or
     with COMPAS documents; what has no recipe and names no forces is taken as drawn: lines become springs with their
     loose ends held, meshes membranes with their naked vertices held."""
-    body, warnings = await _body(request)
-    live, _ = await manager(request).put(None, body, label)
-    return _answer(live, 201, warnings)
+    body, notes = await _body(request)
+    live, _ = await manager(request).put(None, body, label, notes)
+    return _answer(live, 201)
 
 
 @router.put("/v1/sessions/{key}", summary="The session of a key, with this scene", **openapi.session_body(200, 201))
 async def put(request: Request, key: Key, label: Label = "") -> Response:
     """Makes the session, or gives the one that exists this scene: particles that start where one of the old scene did
     stay where they are now, and it goes on. The same scene again changes nothing."""
-    body, warnings = await _body(request)
-    live, new = await manager(request).put(key, body, label)
-    return _answer(live, 201 if new else 200, warnings)
+    body, notes = await _body(request)
+    live, new = await manager(request).put(key, body, label, notes)
+    return _answer(live, 201 if new else 200)
 
 
 @router.get("/v1/sessions", summary="All sessions", responses=openapi.problems(openapi.SESSIONS))
@@ -151,14 +152,24 @@ async def anchors(request: Request, key: Key, arrays: Arrays = "list") -> Respon
 async def state(
     request: Request,
     key: Key,
-    form: Annotated[Literal["json", "npz", "3dm", "obj", "compas"], Query(alias="format")] = "json",
+    form: Annotated[Literal["json", "npz", "3dm", "obj", "compas", "csv"], Query(alias="format")] = "json",
     arrays: Arrays = "list",
 ) -> Response:
-    """A result as JSON; or a file: .npz of Simulation.save, .3dm, .obj, COMPAS Mesh or Graph."""
+    """A result as JSON; or a file: .npz of Simulation.save, .3dm, .obj, COMPAS Mesh or Graph, CSV with a row for each
+    element and each reaction, units in its first line."""
     answer = await _exported(request, key, form, arrays)
-    if form in ("npz", "3dm", "obj"):
-        answer.headers["content-disposition"] = f'attachment; filename="session.{form}"'
+    if form != "json":
+        live = manager(request).find(key)
+        answer.headers["content-disposition"] = _attached(live.label or live.key, "json" if form == "compas" else form)
     return answer
+
+
+def _attached(name: str, ending: str) -> str:
+    """A download under a session's name, made safe for every system; in full for clients that read RFC 5987."""
+    whole = re.sub(r"[\s/\\:*?\"<>|\x00-\x1f\x7f]+", " ", name).strip(" .")[:80] or "session"
+    plain = re.sub(r"[^A-Za-z0-9 ._~-]+", "_", whole)
+    also = f"; filename*=UTF-8''{quote(whole, safe='')}.{ending}" if plain != whole else ""
+    return f'attachment; filename="{plain}.{ending}"' + also
 
 
 async def _exported(request: Request, key: str, form: str, arrays: str = "list") -> Response:

@@ -24,22 +24,26 @@ class Kept:
     particles: int
     created: float
     idle: float
+    notes: list[str]
 
 
-_COLUMNS = "key, label, revision, iteration, status, message, particles, created, idle"
+_COLUMNS = "sessions.key, label, revision, iteration, status, message, particles, created, idle, notes.sentences"
 
 
 def listed() -> Work:
     """All sessions, the latest first."""
 
     def work(db: sqlite3.Connection) -> list[Kept]:
-        return [Kept(*row) for row in db.execute(f"SELECT {_COLUMNS} FROM sessions ORDER BY created DESC, key")]
+        joined = "sessions LEFT JOIN notes ON notes.key = sessions.key"
+        found = db.execute(f"SELECT {_COLUMNS} FROM {joined} ORDER BY created DESC, sessions.key")
+        return [Kept(*[*row[:-1], (row[-1] or "").splitlines()]) for row in found]
 
     return work
 
 
-def put(key: str, label: str, base: bytes, described: dict[str, Any]) -> Work:
-    """A session begun, or begun anew from another scene: its edits and checkpoint are those of the old one no more."""
+def put(key: str, label: str, base: bytes, described: dict[str, Any], notes: list[str]) -> Work:
+    """A session begun, or begun anew from another scene: its edits and checkpoint are those of the old one no more.
+    `notes` are sentences on the file it came from."""
 
     def work(db: sqlite3.Connection) -> None:
         db.execute("DELETE FROM edits WHERE key = ?", (key,))
@@ -48,8 +52,13 @@ def put(key: str, label: str, base: bytes, described: dict[str, Any]) -> Work:
             "VALUES (:key, :label, :base, :revision, :iteration, :status, :message, :particles, :now, 0) ON CONFLICT "
             "(key) DO UPDATE SET label = :label, base = :base, revision = :revision, iteration = :iteration, "
             "status = :status, message = :message, particles = :particles, state = NULL, idle = 0",
-            {**described, "key": key, "label": label, "base": _signed(base), "now": time.time()},
+            {name: described[name] for name in ("revision", "iteration", "status", "message", "particles")}
+            | {"key": key, "label": label, "base": _signed(base), "now": time.time()},
         )
+        db.execute("DELETE FROM notes WHERE key = ?", (key,))
+        if notes:
+            lines = "\n".join(" ".join(note.split()) for note in notes)
+            db.execute("INSERT INTO notes VALUES (?, ?)", (key, lines))
 
     return work
 
@@ -77,7 +86,8 @@ def checkpoint(key: str, described: dict[str, Any], state: bytes) -> Work:
         db.execute(
             "UPDATE sessions SET state = :state, iteration = :iteration, status = :status, message = :message "
             "WHERE key = :key",
-            {**described, "key": key, "state": _signed(state)},
+            {name: described[name] for name in ("iteration", "status", "message")}
+            | {"key": key, "state": _signed(state)},
         )
 
     return work
