@@ -16,7 +16,8 @@ const LOOKS: Record<Look, [Vector3, number]> = {
   right: [new Vector3(1, 0, 0), PARALLEL],
 };
 
-interface Place {
+/** From where it is looked at, and how much of it is seen. */
+export interface Place {
   target: Vector3;
   /** From the target to the eye. */
   towards: Vector3;
@@ -145,20 +146,21 @@ export class Eye {
     this.controls.dispose();
   }
 
-  private go(to: Place, atOnce: boolean): void {
-    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.glide = atOnce || calm ? null : { from: this.place, to, began: performance.now() };
-    if (this.glide) this.controls.dispatchEvent({ type: "change" });
-    else this.put(to);
-  }
-
-  private put({ target, towards, height, angle }: Place): void {
+  /** Look from there. */
+  put({ target, towards, height, angle }: Place): void {
     this.camera.fov = angle;
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(target);
     this.camera.position.copy(target).addScaledVector(towards, height / (2 * half(angle)));
     this.controls.update();
     this.controls.dispatchEvent({ type: "change" });
+  }
+
+  private go(to: Place, atOnce: boolean): void {
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.glide = atOnce || calm ? null : { from: this.place, to, began: performance.now() };
+    if (this.glide) this.controls.dispatchEvent({ type: "change" });
+    else this.put(to);
   }
 }
 

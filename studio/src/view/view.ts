@@ -13,6 +13,7 @@ import { form } from "./form";
 import { Guide } from "./guide";
 import { Highlights } from "./highlights";
 import { Keys } from "./keys";
+import { remember, remembered } from "./memory";
 import { Picker } from "./picking";
 import { Picture } from "./picture";
 import { Stage } from "./stage";
@@ -257,7 +258,13 @@ class Drawing implements View {
     this.timed(Math.max(0, now - this.since));
     clearTimeout(this.rest);
     if (glides) this.ask();
-    else this.rest = window.setTimeout(() => this.draw(true), REST);
+    else this.rest = window.setTimeout(this.settle, REST);
+  };
+
+  /** Nothing has moved for a moment. */
+  private readonly settle = (): void => {
+    this.draw(true);
+    remember(this.session.key, this.eye.place);
   };
 
   /** How long the page waited to draw, and how long it is held up by what was drawn. */
@@ -284,11 +291,13 @@ class Drawing implements View {
     return true;
   }
 
-  /** The first sight of a form: all of it, its arrows too. */
+  /** The first sight of a form: as it was seen before, else all of it, its arrows too. */
   private begin(frame: Frame): void {
     this.fitted = true;
-    this.eye.first(this.picture.body(frame));
-    this.untouched = true;
+    const place = this.untouched ? null : remembered(this.session.key);
+    if (place) this.eye.put(place);
+    else this.eye.first(this.picture.body(frame));
+    this.untouched = place === null;
     this.dress();
   }
 

@@ -1,0 +1,30 @@
+// From where a session was looked at in this tab, so that loading the page anew shows the same picture.
+import { Vector3 } from "three";
+import type { Place } from "./camera";
+
+const name = (key: string) => `hookean-eye-${key}`;
+
+/** Keep the place of the eye. */
+export function remember(key: string, { target, towards, height, angle }: Place): void {
+  try {
+    sessionStorage.setItem(name(key), JSON.stringify([...target.toArray(), ...towards.toArray(), height, angle]));
+  } catch {
+    // a browser that keeps nothing, or is full: the next sight is all of the form
+  }
+}
+
+/** The place that was kept; null for none. */
+export function remembered(key: string): Place | null {
+  try {
+    const kept = JSON.parse(sessionStorage.getItem(name(key)) ?? "[]") as number[];
+    if (kept.length !== 8 || !kept.every(Number.isFinite) || !(kept[6]! > 0 && kept[7]! > 0)) return null;
+    return {
+      target: new Vector3().fromArray(kept),
+      towards: new Vector3().fromArray(kept, 3),
+      height: kept[6]!,
+      angle: kept[7]!,
+    };
+  } catch {
+    return null;
+  }
+}
