@@ -1,6 +1,7 @@
 // What a hand does with particles. Whoever points decides where; this decides which edits that makes.
 import type { Anchor, Patch, Point } from "./model";
 import type { Session } from "./session";
+import { stats } from "./stats";
 
 let gestures = 0;
 
@@ -9,6 +10,9 @@ export const gesture = (what: string) => `${what}-${performance.timeOrigin.toStr
 
 /** The anchor that holds a particle. */
 export const holder = (anchors: Anchor[], particle: number) => anchors.find((a) => a.particles.includes(particle));
+
+/** An edit waits no longer than this for what the one before did to be seen [ms]. */
+const LONGEST_WAIT = 300;
 
 /** Edits of which only the newest counts: one is on its way at a time, later ones replace each other meanwhile. */
 export class Newest {
@@ -19,7 +23,7 @@ export class Newest {
 
   constructor(private readonly session: Session) {}
 
-  /** Make this edit as soon as the one before it is acknowledged. */
+  /** Make this edit as soon as the one before it is acknowledged and seen. */
   put(patch: Patch): void {
     this.next = patch;
     this.running ??= this.run().finally(() => (this.running = null));
@@ -34,8 +38,18 @@ export class Newest {
     while (this.next) {
       const patch = this.next;
       this.next = null;
-      if (await this.session.tell(patch)) this.made = true;
+      if (!(await this.session.tell(patch))) continue;
+      this.made = true;
+      await seen();
     }
+  }
+}
+
+/** Until a frame with the last edit is drawn. Edits that overtake every frame would leave nothing to draw. */
+async function seen(): Promise<void> {
+  const until = performance.now() + LONGEST_WAIT;
+  while (stats.revisionDrawn < stats.revisionAcknowledged && performance.now() < until) {
+    await new Promise((resolve) => setTimeout(resolve, 4));
   }
 }
 
