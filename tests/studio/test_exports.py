@@ -16,7 +16,6 @@ from hookean import Simulation
 
 from .browser import Studio
 from .conftest import Opened
-from .service import equilibrium
 
 FIGURE = "9.24-membrane"
 
@@ -24,9 +23,13 @@ FIGURE = "9.24-membrane"
 @pytest.fixture
 def membrane(studio: Studio) -> Studio:
     """The membrane at rest, as drawn."""
-    studio.choose(FIGURE)
-    studio.press("To rest")
-    studio.rests_at(equilibrium(studio.service.example(FIGURE)))
+    service = studio.service
+    if FIGURE not in [session["key"] for session in service.summaries()]:
+        service.put(FIGURE, service.example(FIGURE))
+        service.act(FIGURE, "play?fast=true")
+        service.at_rest(FIGURE)
+    studio.open(FIGURE)
+    studio.rests_at(service.particles(FIGURE))
     return studio
 
 

@@ -65,6 +65,8 @@ def swinging(studio: Studio) -> Studio:
     studio.page.add_init_script(f"({WATCH})()")
     studio.service.put("net", net(100))
     studio.open("net")
+    studio.page.reload()
+    studio.drawing()
     studio.press("Play")
     studio.until(lambda: studio.stats()["framesReceived"] > 30, 60.0)
     return studio
