@@ -110,7 +110,15 @@ class Studio:
         return np.array(self.page.evaluate("() => [...window.hookean.particles()]"), float).reshape(-1, 3)
 
     def place(self, particle: int) -> tuple[float, float]:
-        """Where a particle is drawn, in CSS pixels."""
+        """Where a particle is drawn, in CSS pixels, once the eye has come to rest."""
+        places = [(0.0, 0.0), self.seen(particle)]
+        while np.abs(np.subtract(*places[-2:])).max() > 0.5:
+            self.page.wait_for_timeout(150)
+            places.append(self.seen(particle))
+        return places[-1]
+
+    def seen(self, particle: int) -> tuple[float, float]:
+        """Where a particle is drawn just now, in CSS pixels."""
         found = self.page.evaluate("(particle) => window.hookean.project(particle)", particle)
         assert found, f"particle {particle} is behind the eye"
         return found["x"], found["y"]

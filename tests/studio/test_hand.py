@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from .browser import Studio
 from .service import equilibrium
@@ -28,7 +27,7 @@ def test_an_anchor_is_dragged_and_the_form_follows(studio: Studio):
         studio.page.wait_for_timeout(20)
     followed = lambda: np.abs(studio.particles() - before).max(axis=1)[:-1].min() > 1e-3  # noqa: E731
     studio.until(followed, what="all but the other anchor to follow")
-    studio.until(lambda: np.hypot(*np.subtract(studio.place(0), (x + 96, y + 60))) < 3, what="the anchor in the hand")
+    studio.until(lambda: np.hypot(*np.subtract(studio.seen(0), (x + 96, y + 60))) < 3, what="the anchor in the hand")
     studio.page.mouse.up()
 
     [held] = [anchor for anchor in service.anchors(key) if 0 in anchor["particles"]]
@@ -76,9 +75,11 @@ def test_the_same_picture_after_loading_anew(studio: Studio):
     studio.press("To rest")
     studio.until(lambda: studio.service.summary(key)["status"] == "converged")
     studio.rests_at(studio.service.particles(key))
-    drawn, places = studio.particles(), [studio.place(particle) for particle in range(11)]
-    studio.page.reload()
-    studio.drawing()
-    assert studio.key == key
-    studio.rests_at(drawn, 1e-12)
-    assert [studio.place(particle) for particle in range(11)] == [pytest.approx(place, abs=0.01) for place in places]
+    drawn, places = studio.particles(), []
+    for _ in range(2):
+        studio.page.reload()
+        studio.drawing()
+        assert studio.key == key
+        studio.rests_at(drawn, 1e-12)
+        places.append([studio.place(particle) for particle in range(11)])
+    assert np.abs(np.subtract(*places)).max() < 0.01
