@@ -70,7 +70,7 @@ export function Dropping() {
           <p>Drop it: it becomes a session</p>
         </div>
       )}
-      <p class="unseen" role="status">
+      <p class={opening.value ? "opening" : "unseen"} role="status">
         {opening.value && `Opening ${opening.value} ...`}
       </p>
     </>
@@ -90,6 +90,7 @@ function dropped(event: DragEvent): void {
   event.preventDefault();
   over.value = false;
   const files = [...(event.dataTransfer?.files ?? [])];
-  if (files.length > 1) refuse(new Error(`${files.length} files were dropped; drop one at a time.`));
+  if (opening.value) refuse(new Error(`${opening.value} is being opened; drop the next file after it.`));
+  else if (files.length > 1) refuse(new Error(`${files.length} files were dropped; drop one at a time.`));
   else if (files[0]) void openFile(files[0]);
 }
