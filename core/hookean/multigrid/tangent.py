@@ -38,19 +38,26 @@ class Tangent:
             then.x = self._shape
             self.blocks.fill(system, then)
         self.hierarchy = self._gathered(state)
+        self._filled = state.scratch.get("filled")
+        self._shift, self._pulling = state.scratch.get("filling", np.zeros(2))
+        if self._filled is not None:
+            then = state.copy()
+            then.x = self._filled
+            self.blocks.fill(system, then, pulling=bool(self._pulling))
+            self.blocks.settle(state, self._shift)
+            self.hierarchy.fill(self.blocks.values)
 
     def keep(self, state: State) -> None:
-        """Let the state know for which shape the hierarchy is, and when it is due again."""
+        """Let the state know for which shapes the hierarchy and its values are, and when it is due again."""
         state.scratch["gathering"] = np.array([self.steps, self._due])
-        if self._shape is not None:
-            state.scratch["gathered"] = self._shape
+        state.scratch["filling"] = np.array([self._shift, self._pulling])
+        for name, shape in (("gathered", self._shape), ("filled", self._filled)):
+            if shape is not None:
+                state.scratch[name] = shape
 
-    def solve(
-        self, system: System, state: State, shift: float, b: Floats, part: float, most: int, *, pulling: bool = False
-    ) -> Floats | None:
-        """x (n, 3) of (K + shift L) x = b on free axes, to `part` of b or by `most` steps; None if that is not positive
-        definite. K is the tangent of the state, as if no spring pushed where `pulling`, L the Laplacian of the
-        tangent's graph at the start."""
+    def take_up(self, system: System, state: State, shift: float, *, pulling: bool = False) -> bool:
+        """Take up K + shift L; False if that is not positive definite. K is the tangent of the state, as if no spring
+        pushed across itself where `pulling`, L the Laplacian of the tangent's graph at the start."""
         self.blocks.fill(system, state, pulling=pulling)
         if self.steps >= self._due:
             self._due *= LATER
@@ -60,11 +67,23 @@ class Tangent:
                 self.hierarchy, self._shape = found, state.x.copy()
         self.blocks.settle(state, shift)
         self.work += 1.0 + self.hierarchy.fill_work
-        if not self.hierarchy.fill(self.blocks.values):
-            return None
+        sound = self.hierarchy.fill(self.blocks.values)
+        self._filled, self._shift, self._pulling = state.x.copy() if sound else None, shift, float(pulling)
+        return sound
+
+    @property
+    def ready(self) -> bool:
+        """Whether a tangent that is positive definite, as far as was seen, is taken up."""
+        return self._filled is not None
+
+    def solve(self, b: Floats, part: float, most: int) -> Floats | None:
+        """x (n, 3) of A x = b on free axes, A as taken up, to `part` of b or by `most` steps; None if A is not positive
+        definite."""
         x, steps = solve(self.hierarchy, b, part, most)
         self.steps += steps
         self.work += steps * (1.0 + self.hierarchy.cycle_work)
+        if x is None:
+            self._filled = None
         return x
 
     def _gathered(self, state: State) -> Hierarchy:

@@ -37,6 +37,7 @@ QUICK = 0.25  # or the largest force to this part
 SOLVED = 0.1  # part of the forces that a linear system may leave
 CONJUGATE, MOST = 25, 200  # steps of conjugate gradients in one of them: at first, and where Newton is about to end
 GENTLE = 3e-4  # least shift of steps that take turns with relaxation
+CALM = 0.05  # angle [rad] up to which springs turn where the tangent of the step before does for the next
 STRAIGHT = 1e-3  # angle [rad] up to which springs turn where Newton alone may end
 TURNED, OUT, RINGS = 0.5, 0.2, 6  # what creases: parts of the largest turn and force, and the rings around
 SHARE = 0.4  # of all particles, at most
@@ -74,6 +75,7 @@ class Method(Solver):
         state.scratch["turns"] = np.array([0.0, 1.0, 0.0, 0.0, np.inf])
         state.scratch["all"] = np.array([0.0, SMOOTHING])
         state.scratch["creased"] = np.zeros(len(state.x))
+        state.scratch["calm"] = np.zeros(1)
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """At most `count` iterations: each a Newton step with what relaxes after it, or an iteration of relaxation; of
@@ -96,7 +98,8 @@ class Method(Solver):
         ready = self._readied(system, state)
         shift, most, taken = state.scratch["newton"]
         gentle = state.scratch["turns"][0] > 0
-        step = Step(system, state, ready, GENTLE if gentle else shift, CONJUGATE if gentle else int(most))
+        calm = state.scratch["calm"][0] > 0
+        step = Step(system, state, ready, GENTLE if gentle else shift, CONJUGATE if gentle else int(most), calm)
         before = state.x.copy()
         again = step.take(taken, goal)
         state.iteration += 1
@@ -107,6 +110,7 @@ class Method(Solver):
         state.scratch["newton"] = np.array([step.shift, most, taken + step.fall])
         if step.largest > goal:
             turned = ready.blocks.turned(before, step.direction)
+            state.scratch["calm"][0] = step.quick and turned.max(initial=0.0) < CALM
             if self._takes_turns(state, step, float(turned.max()), again):
                 self._smooth(system, state, turned, goal)
         ready.keep(state)
@@ -160,6 +164,7 @@ class Method(Solver):
         kept = dict(state.scratch)
         self._relaxation.start(system, state)
         state.scratch.update({name: value for name, value in kept.items() if name not in state.scratch})
+        state.scratch["calm"][0] = 0.0
         budget = state.scratch["all"][1]
         state.scratch["all"] = np.array([budget, 1.5 * budget])
         state.scratch["turns"][3:] = 0.0, np.inf
@@ -176,12 +181,13 @@ class Step:
     """One Newton step: its `direction` (n, 3) [length], and the `length` to go along it [-], 0 where none helps.
     `fall` [force length] of the energy, `largest` [force] out of balance after it, `work` [passes over all springs]."""
 
-    def __init__(self, system: System, state: State, ready: Tangent, shift: float, most: int) -> None:
+    def __init__(self, system: System, state: State, ready: Tangent, shift: float, most: int, calm: bool) -> None:
         self.system, self.state, self.ready, self.shift, self.most = system, state, ready, shift, most
         self.work, self.fall, self.largest, self.length = 0.0, 0.0, np.inf, 0.0
         self.direction = np.zeros_like(state.x)
         self.bent = False  # whether a direction of negative curvature was met
         self.cut = False  # whether conjugate gradients ended before they were done
+        self.calm, self.quick = calm, False  # whether the last tangent does; whether the largest force fell well
 
     def take(self, taken: float, goal: float) -> bool:
         """Take the step; whether another one is worth it after energy has fallen by `taken` in all before."""
@@ -190,7 +196,9 @@ class Step:
         before = self.largest = _largest(forces)
         if before <= goal:
             return True
+        work = self.ready.work
         direction = self._direction(forces)
+        self.work += self.ready.work - work
         if direction is None:
             return False
         start, self.direction = state.x.copy(), direction
@@ -204,6 +212,7 @@ class Step:
         self.shift *= self._eased(before)
         if self.shift < LEAST_SHIFT:
             self.shift = 0.0
+        self.quick = length >= 1.0 and self.largest < QUICK * before
         return bool(self.largest < QUICK * before or self.fall > WORTH * (taken + self.fall))
 
     def _eased(self, before: float) -> float:
@@ -220,21 +229,24 @@ class Step:
         return float(energies.sum()), f * self.state.free
 
     def _direction(self, forces: Floats) -> Floats | None:
-        """Where to go, by the tangent, else by that of a net in which nothing pushes across; with the smallest shift
-        tried that makes one of them positive definite."""
+        """Where to go: by the last tangent while the shape is calm, else by its own, or that of a net in which nothing
+        pushes across; with the smallest shift tried that makes one of them positive definite."""
+        if self.calm and self.ready.ready and (direction := self._solved(forces)) is not None:
+            return direction
         while self.shift <= LARGEST_SHIFT:
             for pulling in (False, True):
-                work, steps = self.ready.work, self.ready.steps
-                direction = self.ready.solve(
-                    self.system, self.state, self.shift, forces, SOLVED, self.most, pulling=pulling
-                )
-                self.work += self.ready.work - work
-                if direction is not None:
-                    self.cut = self.ready.steps - steps >= self.most
+                taken_up = self.ready.take_up(self.system, self.state, self.shift, pulling=pulling)
+                if taken_up and (direction := self._solved(forces)) is not None:
                     return direction
                 self.bent = True
             self.shift = max(10.0 * self.shift, 1e-5)
         return None
+
+    def _solved(self, forces: Floats) -> Floats | None:
+        steps = self.ready.steps
+        direction = self.ready.solve(forces, SOLVED, self.most)
+        self.cut = self.ready.steps - steps >= self.most
+        return direction
 
     def _search(
         self, start: Floats, direction: Floats, energy: float, slope: float, before: float
