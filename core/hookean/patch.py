@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, StrictInt, StrictStr, ValidationError, model_validator
 
 from hookean.columns import Indices, Model, Points, Vector, fault
@@ -14,6 +15,8 @@ from hookean.forces.base import PLACES
 from hookean.scene import Anchor, Scene, Settings, first_fault
 from hookean.state import State
 from hookean.system import Floats, Group, Held, Part, System, hold
+
+Ints = NDArray[np.int64]
 
 
 class Move(Model):
@@ -33,8 +36,9 @@ class Move(Model):
 class Patch(Model):
     """One edit of a running system; everything in it lands together, or nothing does.
 
-    `pin` holds particles (where they are, or at targets), `release` frees them, `move` retargets anchors; `forces`
-    maps a force's name or number to new values of its columns; `settings` to new settings.
+    `pin` holds particles, where they are or at targets (one that an anchor holds on the same axes stays with it, unless
+    the pin has a name); `release` frees them; `move` retargets anchors; `forces` maps a force's name or number to new
+    values of its columns; `settings` to new settings.
     """
 
     pin: tuple[Anchor, ...] = Field(default=(), description="Particles to hold from now on")
@@ -148,11 +152,27 @@ def _held(system: System, state: State, patch: Patch) -> list[Held]:
         _exist(pin.particles, len(state.x), f"/pin/{i}/particles")
         targets = state.x[pin.particles] if pin.targets is None else np.array(pin.targets)
         free = np.array([0.0 if axis in pin.axes else 1.0 for axis in "xyz"])
+        new = np.ones(len(pin.particles), bool)
         for h in held:
-            if (free <= h.free).all():  # the pin holds all that this one held
+            if (free == h.free).all() and not pin.name:
+                new &= ~_lead(h, np.array(pin.particles), targets)
+            elif (free <= h.free).all():  # the pin holds all that this one held
                 _thin(h, pin.particles)
-        held.append(Held(-1, np.array(pin.particles), targets, free, pin.name))
+        if new.any() or pin.name:
+            held.append(Held(-1, np.array(pin.particles)[new], np.ascontiguousarray(targets[new]), free, pin.name))
     return [h for h in held if h.number >= 0 or len(h.particles)]
+
+
+def _lead(anchor: Held, particles: Ints, targets: Floats) -> NDArray[np.bool_]:
+    """Give those of the particles that an anchor holds their targets; which of them it holds."""
+    if not len(anchor.particles):
+        return np.zeros(len(particles), bool)
+    order = np.argsort(anchor.particles)
+    place = np.searchsorted(anchor.particles, particles, sorter=order)
+    rows = order[np.minimum(place, len(order) - 1)]
+    met: NDArray[np.bool_] = anchor.particles[rows] == particles
+    anchor.targets[rows[met]] = targets[met]
+    return met
 
 
 def _thin(anchor: Held, particles: Any) -> None:

@@ -42,7 +42,7 @@ def test_a_floating_force_density_net_is_no_accident(anchors: list[dict[str, obj
 
 
 def test_pins_have_names_move_and_replace_each_other():
-    """A pin is an anchor: it is named, moved by its name, and the last one to hold a particle holds it."""
+    """A pin is an anchor: it is named, moved by its name, and the last one with a name to hold a particle holds it."""
     simulation = Simulation(chain())
     simulation.patch({"pin": [{"name": "P", "particles": [2]}]})
     assert simulation.result().reactions["names"] == ["L", "P", "R"]
@@ -51,7 +51,10 @@ def test_pins_have_names_move_and_replace_each_other():
     for _ in range(20):
         simulation.patch({"pin": [{"particles": [2]}]})
     assert len(simulation.system.held) == 3
-    simulation.patch({"pin": [{"particles": [4]}]})
+    simulation.patch({"pin": [{"particles": [4], "targets": [[5, 0, 0]]}]})
+    simulation.patch({"move": [{"anchor": "R", "targets": [[6, 0, 0]]}]})
+    assert simulation.state.x[4].tolist() == [6, 0, 0] and len(simulation.system.held) == 3
+    simulation.patch({"pin": [{"name": "Q", "particles": [4]}]})
     with pytest.raises(InputError, match="0"):
         simulation.patch({"move": [{"anchor": "R", "targets": [[6, 0, 0]]}]})
     for wrong in (-1, True, ""):

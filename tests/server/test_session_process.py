@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import threading
 from concurrent.futures import Future
 from typing import Any
 
 import pytest
 
+from hookean import Scene, Simulation
+from hookean_server.sessions import parts, rows
 from hookean_server.sessions import process as module
 from hookean_server.sessions.process import Gone, SessionProcess
+from hookean_server.store import Store
+from serving import CABLE
 
 MEMORY = 4 << 30
 
@@ -38,3 +43,33 @@ def test_the_end_is_told_by_two_threads_at_once(monkeypatch: pytest.MonkeyPatch)
         with pytest.raises(Gone):
             asyncio.run(_asked_until_gone(process))
     assert lost.wait(60.0)
+
+
+def test_drags_by_pins_are_few_rows_and_come_back_whole() -> None:
+    """Of a pull the store has the last pin and the release, of a drag the last pin: made again from there, the anchors,
+    the revision and what can be taken back are those of the session itself."""
+    simulation, store = Simulation(Scene.read(CABLE)), Store(None)
+    base = parts.saved(simulation)
+    store.submit(rows.put("a", "", base, parts.describe(simulation), [])).result(20.0)
+
+    def make(edit: dict[str, Any]) -> None:
+        made, sets = parts.make(simulation, json.dumps(edit).encode())
+        store.submit(rows.edit("a", simulation.state.revision, sets, made)).result(20.0)
+
+    for step in range(30):
+        make({"pin": [{"particles": [2], "targets": [[4, 0.1 * step, 0]]}], "gesture": "pull"})
+    make({"release": [2], "gesture": "pull"})
+    for step in range(30):
+        make({"pin": [{"particles": [5], "targets": [[10, 0, 0.1 * step]]}], "gesture": "drag"})
+    make({"pin": [{"particles": [3], "targets": [[6, 0, 1]]}], "gesture": "drag"})
+    stored_base, state, edits, revisions, _ = store.submit(rows.load("a")).result(20.0)
+    store.close()
+    assert len(edits) == 4 and revisions == [30, 31, 61, 62]
+    again = parts.restored(stored_base, state, edits, revisions)
+    for _ in range(2):
+        for one, other in zip(again.system.held, simulation.system.held, strict=True):
+            assert (one.number, one.particles.tolist()) == (other.number, other.particles.tolist())
+            assert one.targets.tolist() == other.targets.tolist()
+        assert again.state.revision == simulation.state.revision
+        assert len(again.history.before) == len(simulation.history.before)
+        again.undo(), simulation.undo()

@@ -289,6 +289,40 @@ def test_watchers_hear_of_warnings_and_of_edits_by_others(served: Served, client
         assert told(lambda s: s.get("warnings") == [])["revision"] == 4
 
 
+def test_a_hand_pulls_a_particle_and_drags_one_of_an_anchor(client: httpx.Client) -> None:
+    """A pull is one edit and leaves the particle free; a dragged end stays with its anchor, alone, in branches too."""
+    put(client)
+
+    def anchors() -> list[tuple[int, list[int], list[list[float]]]]:
+        found = client.get("/v1/sessions/a/anchors").json()["anchors"]
+        return [(a["number"], a["particles"], a["targets"]) for a in found]
+
+    first = anchors()
+    for step in range(1, 40):
+        pin = {"particles": [2], "targets": [[4, 0.01 * step, 0]]}
+        edited = client.patch("/v1/sessions/a", json={"pin": [pin], "gesture": "pull"}).json()
+        assert edited["undo"] == 1 and edited["revision"] == step
+    assert anchors() == [*first, (-1, [2], [[4, 0.39, 0]])]
+    assert client.patch("/v1/sessions/a", json={"release": [2], "gesture": "pull"}).json()["undo"] == 1
+    assert anchors() == first
+    for step in range(1, 40):
+        pin = {"particles": [5], "targets": [[10, 0, 0.01 * step]]}
+        edited = client.patch("/v1/sessions/a", json={"pin": [pin], "gesture": "drag"}).json()
+    dragged = [(0, [0, 5], [[0, 0, 0], [10, 0, 0.39]])]
+    assert edited["undo"] == 2 and anchors() == dragged
+    client.post("/v1/sessions/a/step")
+    before = client.get("/v1/sessions/a/state").json()["particles"]
+    assert before[5] == [10, 0, 0.39]
+    branch = client.post("/v1/sessions/a/branches", params={"to": "b"})
+    assert branch.status_code == 201
+    assert client.get("/v1/sessions/b/anchors").json()["anchors"][0]["targets"] == dragged[0][2]
+    client.post("/v1/sessions/a/undo")
+    assert anchors() == first
+    assert client.post("/v1/sessions/a/redo").json()["undo"] == 2 and anchors() == dragged
+    assert client.patch("/v1/sessions/a", json={"release": [5]}).status_code == 200
+    assert [particles for _, particles, _ in anchors()] == [[0]]
+
+
 def _layer(path: Any, item: Any) -> str:
     import rhino3dm
 

@@ -108,10 +108,11 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
 
 
 def _sets(value: dict[str, Any], patch: Patch, gesture: str) -> str:
-    if patch.pin or len(patch.release):
+    if len(patch.release):
         return ""
     columns = sorted(f"{force}.{column}" for force, given in patch.forces.items() for column in given)
-    return json.dumps([gesture, sorted(str(m.anchor) for m in patch.move), columns, sorted(patch.settings)])
+    pins = [[np.asarray(pin.particles).tolist(), pin.axes, pin.name] for pin in patch.pin]
+    return json.dumps([gesture, sorted(str(m.anchor) for m in patch.move), columns, sorted(patch.settings), pins])
 
 
 class Before:
