@@ -37,7 +37,7 @@ export function Stage({ studio }: { studio: Studio }) {
         tabIndex={0}
         role="application"
         aria-label="The form"
-        aria-description="Arrows turn it, A goes from anchor to anchor, ? lists the keys. The panels tell it in numbers."
+        aria-description="Arrows turn it, A goes from anchor to anchor, ? lists keys. The panels tell numbers."
       />
       <p class="unseen" aria-live="polite">
         {studio.view.value?.announcement.value}
