@@ -51,11 +51,13 @@ function Chart({ line, session, recording }: Shown) {
     if (!place.current) return;
     const plot = plotted(line, place.current);
     const show = () => {
-      plot.setData([recording.times(), recording.of(line.of)]);
+      // a panel that is closed draws nothing
+      if (place.current?.checkVisibility()) plot.setData([recording.times(), recording.of(line.of)]);
     };
     const sizes = new ResizeObserver(([entry]) => {
       const width = Math.floor(entry?.contentRect.width ?? 0);
       if (width > 0 && width !== plot.width) plot.setSize({ width, height: HEIGHT });
+      show();
     });
     sizes.observe(place.current);
     const stop = recording.onNew(show);
@@ -82,6 +84,8 @@ function Newest({ line, session, recording }: Shown) {
   const unit = line.unit(session.topology.value?.units);
   const [low, high] = recording.span(line.of);
   const stale = session.connection.value !== "live" || !session.frame;
+  if (line.of === "total" && last?.total === null)
+    return <p class="faint">{line.name}: none, as a force of this scene has no energy</p>;
   return (
     <p class={stale ? "stale" : ""}>
       <span>{line.name}</span>{" "}

@@ -13,8 +13,6 @@ export function AddLoad({ session }: { session: Session }) {
   const topology = session.topology.value;
   if (!scene || !topology) return null;
   const has = (kind: string) => scene.forces.some((force) => force.kind === kind);
-  const held = new Set(session.anchors.value.flatMap((anchor) => anchor.particles));
-  const free = Array.from({ length: topology.particles }, (_, i) => i).filter((i) => !held.has(i));
   const add = async (force: SceneForce, done: string) => {
     busy.value = true;
     try {
@@ -27,8 +25,14 @@ export function AddLoad({ session }: { session: Session }) {
     }
   };
   const size = fitting(scene, topology);
-  const disabled = busy.value || session.connection.value !== "live" || free.length === 0;
-  const load = { kind: "unary", name: freeName(scene, "load"), particles: free, vector: [0, 0, -size] };
+  const disabled = busy.value || session.connection.value !== "live";
+  const load = () => {
+    const held = new Set(session.anchors.value.flatMap((anchor) => anchor.particles));
+    const particles = Array.from({ length: topology.particles }, (_, i) => i).filter((i) => !held.has(i));
+    const force = { kind: "unary", name: freeName(scene, "load"), particles, vector: [0, 0, -size] };
+    if (!particles.length) refuse(new Error("Every particle is held: there is none that a load would move."));
+    else void add(force, `A load of ${measured(size, scene.units.force)} downwards is on every free particle.`);
+  };
   const weight = {
     kind: "self_weight",
     name: freeName(scene, "self weight"),
@@ -37,13 +41,7 @@ export function AddLoad({ session }: { session: Session }) {
   return (
     <div class="row">
       {!has("unary") && (
-        <button
-          type="button"
-          disabled={disabled}
-          onClick={() =>
-            void add(load, `A load of ${measured(size, scene.units.force)} downwards is on every free particle.`)
-          }
-        >
+        <button type="button" disabled={disabled} onClick={load}>
           Add a load
         </button>
       )}

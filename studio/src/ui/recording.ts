@@ -10,7 +10,8 @@ export interface Sample {
   iteration: number;
   residual: number;
   kinetic: number;
-  total: number | null;
+  /** Null where a force has no energy; undefined until it is read. */
+  total: number | null | undefined;
 }
 
 const MINUTE = 60;
@@ -20,7 +21,7 @@ export class Recording {
   readonly last = signal<Sample | null>(null);
   private samples: (Sample | null)[] = [];
   private taken = "";
-  private energy: { value: number | null; revision: number; asked: number } = { value: null, revision: -1, asked: 0 };
+  private energy: { value: number | null | undefined; asked: number } = { value: undefined, asked: 0 };
   private readonly watchers = new Set<() => void>();
 
   constructor(private readonly session: Session) {}
@@ -31,7 +32,7 @@ export class Recording {
       void this.session.ticks.value;
       const heard = this.session.connection.value === "live";
       const told = this.session.summary.value?.energy;
-      if (told !== undefined && told !== null && !this.session.summary.value?.playing) this.energy.value = told;
+      if (told !== undefined && !this.session.summary.value?.playing) this.energy.value = told;
       this.take(heard);
     });
   }

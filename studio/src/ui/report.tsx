@@ -44,9 +44,7 @@ function Standing({ studio: { session } }: { studio: Studio }) {
   const stale = session.connection.value !== "live";
   const state = summary.playing ? (stale ? "Was playing" : "Playing") : titled(stateOf(summary));
   // while it plays the service's sentence is of its start: frames tell more
-  const sentence = summary.playing
-    ? ""
-    : summary.message.replace(/^Running: (.)/, (_, first: string) => first.toUpperCase());
+  const sentence = summary.playing ? "" : sentenceOf(summary.message, state);
   return (
     <div class={stale ? "standing stale" : "standing"}>
       <p aria-live="polite">
@@ -57,6 +55,10 @@ function Standing({ studio: { session } }: { studio: Studio }) {
     </div>
   );
 }
+
+/** The service's sentence without the state it begins with. */
+const sentenceOf = (message: string, state: string) =>
+  message.replace(/^Running: (.)/, (_, first: string) => first.toUpperCase()).replace(new RegExp(`^${state} `), "");
 
 function Now({ studio: { session } }: { studio: Pick<Studio, "session"> }) {
   void session.ticks.value;

@@ -1,11 +1,11 @@
 // Numbers and units in words.
 import type { Units } from "../model";
 
-/** A number as people read it, with so many digits that count. */
+/** A number as people read it, with so many digits that count; whole ones have all of theirs. */
 export function said(value: number, digits = 4): string {
   if (!Number.isFinite(value)) return "-";
   const size = Math.abs(value);
-  if (size === 0) return "0";
+  if (Number.isInteger(value) && size < 1e9) return String(value);
   if (size >= 1e6 || size < 1e-4) return Number(value.toPrecision(Math.max(1, digits - 1))).toExponential();
   return String(Number(value.toPrecision(digits)));
 }
