@@ -33,13 +33,13 @@ export const titled = (name: string) => (name.charAt(0).toUpperCase() + name.sli
 /** Counted things. */
 export const counted = (count: number, one: string) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;
 
-const NUMBERED = /\b(particle|spring)s? (\d+(?:(?:, and |, | and )\d+)*)/g;
+const NUMBERED = /\b(particle|spring)(?: (\d+)|s (\d+(?:(?:, and |, | and )\d+(?![\d.]))*))/g;
 
 /** The particles a sentence speaks of, those at the ends of its springs included. */
 export function particlesOf(sentence: string, springs: [number, number][]): number[] {
   const found = new Set<number>();
-  for (const [, what, numbers] of sentence.matchAll(NUMBERED)) {
-    for (const number of numbers!.split(/\D+/).map(Number)) {
+  for (const [, what, one, several] of sentence.matchAll(NUMBERED)) {
+    for (const number of (one ?? several!).split(/\D+/).map(Number)) {
       const all = what === "particle" ? [number] : (springs[number] ?? []);
       all.forEach((particle) => found.add(particle));
     }
