@@ -85,9 +85,10 @@ flat out vec4 shade;
 void main() {
   int row = gl_VertexID >> 1;
   ivec2 ends = texelFetch(rows, place(row), 0).xy;
-  vec3 p = particle(ends.x), q = particle(ends.y);
+  bool second = (gl_VertexID & 1) == 1;
+  vec3 p = particle(second ? ends.y : ends.x), q = colouring == 2 ? particle(second ? ends.x : ends.y) : p;
   shade = shaded(row, p, q);
-  vec3 at = seen((gl_VertexID & 1) == 0 ? p : q);
+  vec3 at = seen(p);
   gl_Position = drawn(at, pixel(at));
 }`;
 

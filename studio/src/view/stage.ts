@@ -26,6 +26,8 @@ const QUICK = 20;
 
 /** Chooses how finely to draw while something moves, from how long pictures take. */
 export class Pace {
+  /** By the last picture [ms]. */
+  taken = 0;
   private level = 0;
   private slow = 0;
   private quick = 0;
@@ -33,6 +35,7 @@ export class Pace {
 
   /** Tell how long a picture took [ms]. */
   note(taken: number): void {
+    this.taken = taken;
     this.slow = taken > SLOW ? this.slow + 1 : 0;
     this.quick = taken < QUICK ? this.quick + 1 : 0;
     if (this.slow > 1 && this.level < LEVELS.length - 1) {

@@ -123,6 +123,20 @@ class Drawing implements View {
     this.stage.dispose();
   }
 
+  /** Draw the topology as if it were new. */
+  private rebuild(): void {
+    const topology = this.session.topology.peek();
+    if (!topology) return;
+    const { picture, session, options } = this;
+    picture.build(form(topology));
+    picture.hold(session.anchors.peek());
+    picture.know(options.restLengths.peek());
+    this.drawn = null;
+    this.scale.forget();
+    this.dressed = 0;
+    this.ask();
+  }
+
   /** What hand and keys need of all this. */
   private handles(): Held {
     const { session, options, canvas, eye, picture } = this;
@@ -172,12 +186,12 @@ class Drawing implements View {
     const observer = new ResizeObserver(() => this.resize());
     observer.observe(this.canvas);
     this.undo.push(() => observer.disconnect());
-    const restored = () => {
-      this.drawn = null;
-      this.ask();
-    };
-    this.canvas.addEventListener("webglcontextrestored", restored);
-    this.undo.push(() => this.canvas.removeEventListener("webglcontextrestored", restored));
+    const listeners = new AbortController();
+    const { signal } = listeners;
+    // the graphics card was reset: all columns are given to it anew
+    this.canvas.addEventListener("webglcontextrestored", () => this.rebuild(), { signal });
+    window.addEventListener("resize", this.ask, { signal }); // another screen may have finer pixels
+    this.undo.push(() => listeners.abort());
     this.resize();
   }
 
@@ -185,22 +199,18 @@ class Drawing implements View {
     const { session, options, picture } = this;
     this.undo.push(
       effect(() => {
-        const topology = session.topology.value;
-        if (!topology) return;
+        void session.topology.value;
         this.hand.forget();
-        picture.build(form(topology));
-        this.frame = this.drawn = null;
-        this.scale.forget();
+        this.frame = null;
+        this.rebuild();
       }),
       effect(() => {
-        void session.topology.value;
         picture.hold(session.anchors.value);
         this.dressed = 0;
         this.drawn = null;
         this.ask();
       }),
       effect(() => {
-        void session.topology.value;
         picture.know(options.restLengths.value);
         this.dressed = 0;
         this.scale.forget();
@@ -258,7 +268,7 @@ class Drawing implements View {
     this.timed(Math.max(0, now - this.since));
     clearTimeout(this.rest);
     if (glides) this.ask();
-    else this.rest = window.setTimeout(this.settle, REST);
+    else this.rest = window.setTimeout(this.settle, Math.max(REST, 2 * this.stage.pace.taken));
   };
 
   /** Nothing has moved for a moment. */
