@@ -5,9 +5,12 @@ import {
   type Camera,
   Group,
   LinearSRGBColorSpace,
+  LineSegments,
   Mesh,
+  Points,
   RawShaderMaterial,
   Scene,
+  Texture,
   WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
@@ -138,6 +141,21 @@ export class Stage {
     this.sheet.material.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
+  }
+
+  /** The graphics card has forgotten everything: what stands for things on it is given up, and made anew when drawn. */
+  forget(): void {
+    this.target?.dispose();
+    this.target = null;
+    for (const root of [this.scene, this.sheet]) {
+      root.traverse((object) => {
+        if (!(object instanceof Mesh || object instanceof Points || object instanceof LineSegments)) return;
+        const { geometry, material } = object as Mesh<BufferGeometry, RawShaderMaterial>;
+        geometry.dispose();
+        material.dispose();
+        for (const { value } of Object.values(material.uniforms)) if (value instanceof Texture) value.dispose();
+      });
+    }
   }
 
   private into(target: WebGLRenderTarget, camera: Camera): void {

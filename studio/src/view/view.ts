@@ -188,7 +188,7 @@ class Drawing implements View {
     this.undo.push(() => observer.disconnect());
     const listeners = new AbortController();
     const { signal } = listeners;
-    // the graphics card was reset: all columns are given to it anew
+    this.canvas.addEventListener("webglcontextlost", () => this.stage.forget(), { signal });
     this.canvas.addEventListener("webglcontextrestored", () => this.rebuild(), { signal });
     window.addEventListener("resize", this.ask, { signal }); // another screen may have finer pixels
     this.undo.push(() => listeners.abort());
