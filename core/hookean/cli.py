@@ -152,6 +152,19 @@ def serve(
 
 
 @app.command()
+def studio(
+    file: Annotated[Path | None, typer.Argument(help=".3dm, .obj or .json file to open; none: the start page")] = None,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only")] = False,
+) -> None:
+    """Look at simulations and play with them in a browser. Starts the service, or joins the one that runs.
+
+    A .json file has a scene or COMPAS documents; what names no forces is taken as drawn. A file that has not changed is
+    opened as it was left. What follows the # of the address lets the browser in: keep it to yourself.
+    """
+    raise typer.Exit(_service().studio(file, not no_browser))
+
+
+@app.command()
 def token(
     url: Annotated[bool, typer.Option("--url", help="The address that lets a browser in, instead")] = False,
 ) -> None:

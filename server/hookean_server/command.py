@@ -81,6 +81,13 @@ def stop() -> int:
     return 0
 
 
+def studio(file: Path | None, browser: bool) -> int:
+    """Show the page, or a file in it; the exit code (see `studio.run`)."""
+    from hookean_server.studio import run
+
+    return run(file, browser)
+
+
 def token(url: bool = False) -> int:
     """Print the token that HOOKEAN_TOKEN gives, else that of the running server; the exit code: 0, or 1 for neither.
 
@@ -98,7 +105,10 @@ def token(url: bool = False) -> int:
 
 def _join(found: Found, options: Options) -> int:
     if options.port in (None, 0, found.port) or options.any_port:
-        print(f"hookean already serves at {found.url} (process {found.pid}). `hookean serve --stop` ends it.")
+        print(
+            f"hookean already serves at {found.url} (process {found.pid}). `hookean studio` shows it in a browser, "
+            "`hookean serve --stop` ends it."
+        )
         return 0
     return _refuse(
         f"hookean already serves at {found.url} (process {found.pid}) and keeps the sessions of this user. Use that "

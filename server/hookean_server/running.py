@@ -78,7 +78,7 @@ def _say(url: str) -> None:
         '{"kind": "springs", "particles": [[0,1],[1,2]]}, {"kind": "unary", "particles": [1], "vector": [0,0,-9]}]}'
     )
     command = shlex.quote(shutil.which("hookean") or str(Path(sys.executable).with_name("hookean")))
-    print(f"hookean serves at {url} (Ctrl-C ends it). Try:")
+    print(f"hookean serves at {url} (Ctrl-C ends it). To look at it in a browser: hookean studio. Try:")
     print(
         f'  curl {url}/v1/relax -H "Authorization: Bearer $({command} token)" '
         f"-H 'Content-Type: application/json' -d '{scene}'",
