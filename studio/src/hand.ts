@@ -60,7 +60,10 @@ export class Grip {
   private readonly axes: string;
   readonly anchored: boolean;
 
-  constructor(private readonly session: Session, readonly particle: number) {
+  constructor(
+    private readonly session: Session,
+    readonly particle: number,
+  ) {
     const anchor = holder(session.anchors.value, particle);
     this.anchored = anchor !== undefined;
     this.axes = anchor?.axes ?? "xyz";

@@ -48,7 +48,9 @@ export class Picker {
     camera.updateMatrixWorld();
     const m = this.matrix.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     for (let i = 0; i < positions.length; i += 3) {
-      const [x, y, z] = [positions[i]!, positions[i + 1]!, positions[i + 2]!];
+      const x = positions[i]!;
+      const y = positions[i + 1]!;
+      const z = positions[i + 2]!;
       const w = m[3]! * x + m[7]! * y + m[11]! * z + m[15]!;
       screen[i] = ((m[0]! * x + m[4]! * y + m[8]! * z + m[12]!) / w + 1) * 0.5 * width;
       screen[i + 1] = (1 - (m[1]! * x + m[5]! * y + m[9]! * z + m[13]!) / w) * 0.5 * height;
@@ -60,8 +62,9 @@ export class Picker {
     const { screen } = this;
     const found: Found[] = [];
     for (let i = 0; i < screen.length; i += 3) {
-      const [dx, dy] = [screen[i]! - x, screen[i + 1]! - y];
-      if (screen[i + 2] === 0 || dx * dx + dy * dy > reach * reach) continue;
+      const dx = screen[i]! - x;
+      const dy = screen[i + 1]! - y;
+      if (dx * dx + dy * dy > reach * reach || screen[i + 2] === 0) continue;
       const index = i / 3;
       const rank = Math.hypot(dx, dy) - (held.has(index) ? HELD : 0);
       keep(found, { index, x: screen[i]!, y: screen[i + 1]!, depth: screen[i + 2]!, rank });
@@ -73,13 +76,19 @@ export class Picker {
     const { screen } = this;
     const found: Found[] = [];
     for (let i = 0; i < springs.length; i += 2) {
-      const [a, b] = [3 * springs[i]!, 3 * springs[i + 1]!];
-      const [ax, ay, bx, by] = [screen[a]!, screen[a + 1]!, screen[b]!, screen[b + 1]!];
-      if (Math.min(ax, bx) > x + reach || Math.max(ax, bx) < x - reach) continue;
-      if (Math.min(ay, by) > y + reach || Math.max(ay, by) < y - reach) continue;
-      const [ux, uy] = [bx - ax, by - ay];
+      const a = 3 * springs[i]!;
+      const b = 3 * springs[i + 1]!;
+      const ax = screen[a]!;
+      const bx = screen[b]!;
+      if ((ax > x + reach && bx > x + reach) || (ax < x - reach && bx < x - reach)) continue;
+      const ay = screen[a + 1]!;
+      const by = screen[b + 1]!;
+      if ((ay > y + reach && by > y + reach) || (ay < y - reach && by < y - reach)) continue;
+      const ux = bx - ax;
+      const uy = by - ay;
       const t = Math.min(1, Math.max(0, ((x - ax) * ux + (y - ay) * uy) / Math.max(ux * ux + uy * uy, 1e-12)));
-      const [px, py] = [ax + t * ux, ay + t * uy];
+      const px = ax + t * ux;
+      const py = ay + t * uy;
       const rank = Math.hypot(px - x, py - y);
       if (rank > reach || !screen[a + 2] || !screen[b + 2]) continue;
       keep(found, { index: i / 2, x: px, y: py, depth: 1 / ((1 - t) / screen[a + 2]! + t / screen[b + 2]!), rank });
@@ -97,11 +106,19 @@ export class Picker {
   private hidden({ x, y, depth }: Found, { triangles, thickness }: Searched): boolean {
     const { screen } = this;
     for (let i = 0; i < triangles.length; i += 3) {
-      const [a, b, c] = [3 * triangles[i]!, 3 * triangles[i + 1]!, 3 * triangles[i + 2]!];
-      const [ax, ay] = [screen[a]! - x, screen[a + 1]! - y];
-      const [bx, by] = [screen[b]! - x, screen[b + 1]! - y];
-      const [cx, cy] = [screen[c]! - x, screen[c + 1]! - y];
-      const [u, v, w] = [bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx];
+      const a = 3 * triangles[i]!;
+      const b = 3 * triangles[i + 1]!;
+      const c = 3 * triangles[i + 2]!;
+      const ax = screen[a]! - x;
+      const bx = screen[b]! - x;
+      const cx = screen[c]! - x;
+      if ((ax > 0 && bx > 0 && cx > 0) || (ax < 0 && bx < 0 && cx < 0)) continue;
+      const ay = screen[a + 1]! - y;
+      const by = screen[b + 1]! - y;
+      const cy = screen[c + 1]! - y;
+      const u = bx * cy - by * cx;
+      const v = cx * ay - cy * ax;
+      const w = ax * by - ay * bx;
       if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) continue;
       const area = u + v + w;
       if (area === 0 || !screen[a + 2] || !screen[b + 2] || !screen[c + 2]) continue;
