@@ -132,6 +132,7 @@ export interface Example {
   id: string;
   figure: string;
   title: string;
-  summary?: string;
+  /** What it is and what to try. */
+  sentence: string;
   picture: string;
 }

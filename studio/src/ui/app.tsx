@@ -20,6 +20,7 @@ export function App() {
 }
 
 function Shown() {
+  const key = place.value;
   if (entry.value === "out") return <Entry />;
   if (entry.value === "asking")
     return (
@@ -27,7 +28,6 @@ function Shown() {
         <p>Asking the service ...</p>
       </main>
     );
-  const key = place.value;
   return key ? <SessionPage key={`${key} ${entries.value}`} name={key} /> : <Start />;
 }
 

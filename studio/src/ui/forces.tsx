@@ -18,6 +18,7 @@ export function Forces({ studio: { session } }: { studio: Studio }) {
     // what cannot be read now is asked for again when the service is there again
     if (live) know().catch(() => undefined);
   }, [live]);
+  if (!scene && session.connection.value === "gone") return <p class="faint">There is no scene.</p>;
   if (!scene || !kinds.value) return <p class="faint">Reading the scene ...</p>;
   return (
     <>

@@ -2,31 +2,32 @@
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api";
 import type { Example } from "../model";
-import { quiet, refuse } from "./notices";
+import { quiet, refuse, tell } from "./notices";
+import { opening } from "./opening";
 import { go, met } from "./place";
+
+const AGAIN = 4000;
 
 export function Gallery() {
   const [examples, setExamples] = useState<Example[] | null>(null);
   const [fault, setFault] = useState("");
-  const [opening, setOpening] = useState("");
   useEffect(() => {
-    let here = true;
-    api.examples().then(
-      (found) => here && setExamples(found),
-      (error: Error) => {
-        met(error);
-        if (here) setFault(error.message);
-      },
-    );
-    return () => {
-      here = false;
-    };
+    let timer = 0;
+    const read = () =>
+      api.examples().then(
+        (found) => {
+          setFault("");
+          setExamples(found);
+        },
+        (error: Error) => {
+          met(error);
+          setFault(error.message);
+          timer = window.setTimeout(read, AGAIN);
+        },
+      );
+    void read();
+    return () => clearTimeout(timer);
   }, []);
-  const choose = async (example: Example) => {
-    setOpening(example.id);
-    await open(example);
-    setOpening("");
-  };
   if (fault)
     return (
       <p class="fault" role="alert">
@@ -40,14 +41,14 @@ export function Gallery() {
         <li key={example.id}>
           <button
             type="button"
-            disabled={opening !== ""}
-            aria-busy={opening === example.id}
-            onClick={() => void choose(example)}
+            disabled={opening.value !== ""}
+            aria-busy={opening.value === example.title}
+            onClick={() => void open(example)}
           >
             <img src={example.picture} alt="" loading="lazy" width={480} height={300} />
             <span class="figure">{example.figure}</span>
             <span class="title">{example.title}</span>
-            {example.summary && <span class="summary">{example.summary}</span>}
+            <span class="sentence">{example.sentence}</span>
           </button>
         </li>
       ))}
@@ -57,11 +58,15 @@ export function Gallery() {
 
 async function open(example: Example): Promise<void> {
   quiet();
+  opening.value = example.title;
   try {
     const made = await api.create(await api.exampleScene(example.id), example.title);
     go(made.key);
+    tell(example.sentence);
   } catch (error) {
     met(error);
     refuse(error, `${example.title} was not opened. `);
+  } finally {
+    opening.value = "";
   }
 }

@@ -6,7 +6,8 @@ import { quiet, refuse, tell } from "./notices";
 import { go, met } from "./place";
 
 const over = signal(false);
-const opening = signal("");
+/** What is being opened; "" for nothing. */
+export const opening = signal("");
 
 const KINDS = ".3dm,.obj,.json";
 

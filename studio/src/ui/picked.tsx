@@ -204,7 +204,7 @@ const pointOf = (all: Float32Array, index: number): Point => [
 const distance = (a: Point, b: Point) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
 const vector = (v: Point, unit: string) =>
-  `${v.map((n) => said(n, 3)).join(", ")} ${unit}; ${measured(Math.hypot(...v), unit)} in all`;
+  `${measured(Math.hypot(...v), unit)} (${v.map((n) => said(n, 3)).join(", ")})`;
 
 /** The reaction on a held particle; null where the frame is of other anchors. */
 function reactionOn(anchors: Anchor[], reactions: Float32Array, index: number): Point | null {

@@ -20,6 +20,17 @@ export function go(key: string): void {
   read();
 }
 
+let isFirst = true;
+
+/** To be called by a page when it is there: all but the first are read from their beginning. */
+export function arrive(): void {
+  if (!isFirst) {
+    window.scrollTo(0, 0);
+    document.getElementById("main")?.focus({ preventScroll: true });
+  }
+  isFirst = false;
+}
+
 /** Follow the address from now on, and log in where it has a token. */
 export function begin(): void {
   window.addEventListener("popstate", () => read());

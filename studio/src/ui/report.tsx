@@ -23,9 +23,12 @@ const TOLD = {
   broken: "Load the page anew.",
 };
 
+const NONE = "The service has no such session: it was forgotten, or the link is one to another service.";
+
 function Lost({ studio: { session } }: { studio: Studio }) {
   const connection = session.connection.value;
-  const told = connection in TOLD ? TOLD[connection as keyof typeof TOLD] : "";
+  const none = connection === "gone" && !session.summary.value;
+  const told = none ? NONE : connection in TOLD ? TOLD[connection as keyof typeof TOLD] : "";
   return (
     <>
       <p role="alert" class={session.said.value ? "fault" : "unseen"}>
@@ -40,7 +43,7 @@ function Lost({ studio: { session } }: { studio: Studio }) {
 
 function Standing({ studio: { session } }: { studio: Studio }) {
   const summary = session.summary.value;
-  if (!summary) return <p>Waiting for the session ...</p>;
+  if (!summary) return session.connection.value === "connecting" ? <p>Waiting for the session ...</p> : null;
   const stale = session.connection.value !== "live";
   const state = summary.playing ? (stale ? "Was playing" : "Playing") : titled(stateOf(summary));
   // while it plays the service's sentence is of its start: frames tell more

@@ -32,23 +32,25 @@ export function Stage({ studio }: { studio: Studio }) {
   }, [studio, now]);
   return (
     <>
-      <canvas
-        ref={canvas}
-        tabIndex={0}
-        role="application"
-        aria-label="The form"
-        aria-description="Arrows turn it, A goes from anchor to anchor, ? lists keys. The panels tell numbers."
-      />
-      <p class="unseen" aria-live="polite">
-        {studio.view.value?.announcement.value}
-      </p>
-      {fault && (
-        <p class="fault over" role="alert">
-          {fault}
+      <div class="drawing">
+        <canvas
+          ref={canvas}
+          tabIndex={0}
+          role="application"
+          aria-label="The form"
+          aria-description="Arrows turn it, A goes from anchor to anchor, ? lists keys. The panels tell numbers."
+        />
+        <p class="unseen" aria-live="polite">
+          {studio.view.value?.announcement.value}
         </p>
-      )}
-      <Looks studio={studio} />
-      <LegendBox studio={studio} />
+        {fault && (
+          <p class="fault over" role="alert">
+            {fault}
+          </p>
+        )}
+        <Looks studio={studio} />
+        <LegendBox studio={studio} />
+      </div>
       <Report studio={studio} />
     </>
   );

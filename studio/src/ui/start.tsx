@@ -2,12 +2,14 @@
 import { useEffect } from "preact/hooks";
 import { Gallery } from "./gallery";
 import { FileButton } from "./opening";
+import { arrive } from "./place";
 import { Running } from "./running";
 import { ThemeChoice } from "./themechoice";
 
 export function Start() {
   useEffect(() => {
     document.title = "hookean studio";
+    arrive();
   }, []);
   return (
     <>

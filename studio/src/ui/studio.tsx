@@ -5,7 +5,7 @@ import { Session } from "../session";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
 import { Panels } from "./panels";
-import { entry } from "./place";
+import { arrive, entry } from "./place";
 import { Readings } from "./readings";
 import { Stage } from "./stage";
 import { dark, remember, remembered } from "./theme";
@@ -43,6 +43,7 @@ export function SessionPage({ name }: { name: string }) {
 function Work({ studio }: { studio: Studio }) {
   const summary = studio.session.summary.value;
   const title = summary?.label || studio.session.key;
+  useEffect(arrive, []);
   const locked = studio.session.connection.value === "locked";
   useEffect(() => {
     if (locked) entry.value = "out";
