@@ -31,7 +31,7 @@ class Service:
             self.port: int = free.getsockname()[1]
         self.url = f"http://127.0.0.1:{self.port}"
         known = {"authorization": f"Bearer {self.token}"}
-        self.client = httpx.Client(base_url=self.url, timeout=60.0, headers=known)
+        self.client = httpx.Client(base_url=self.url, timeout=240.0, headers=known)
         self.start()
 
     def start(self) -> None:
