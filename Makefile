@@ -4,7 +4,7 @@ PORT ?= 8765
 BIN = .venv/bin
 EXAMPLE = gh_examples/9.24-membrane
 
-.PHONY: run test soak bench bench-service figures docs page studio lint clean
+.PHONY: run test soak bench bench-service figures screenshots docs page studio lint clean
 STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
 run: .venv/run
@@ -29,6 +29,9 @@ bench-service: .venv/test
 
 figures: .venv/run
 	$(BIN)/hookean example --figures gh_examples
+
+screenshots: .venv/test # of six figures in the studio, by chromium
+	cd tests && ../$(BIN)/python -m studio.screenshots
 
 docs: .venv/run
 	$(BIN)/python -c "from hookean.catalogue import page; print(page(), end='')" > docs/forces.md

@@ -214,6 +214,8 @@ def gallery(known: Sequence[Example]) -> str:
             f"## [{example.figure}]({example.name}): {title}\n\n"
             f'<a href="{example.name}"><img src="{example.name}/picture.png" width="640" alt="{title}"></a>\n'
         )
+        if (example.folder / "studio.png").is_file():
+            parts.append(f'<img src="{example.name}/studio.png" width="640" alt="The same in the studio: {title}">\n')
     return INTRODUCTION + "\n".join(parts)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -137,11 +138,12 @@ class Studio:
     def rests_at(self, truth: NDArray[np.float64], within: float = 1e-4) -> None:
         """Wait until every particle is drawn where it belongs [length]."""
         drawn = self.particles
-        self.until(lambda: (now := drawn()).shape == truth.shape and np.abs(now - truth).max() < within, 60.0)
+        self.until(lambda: (now := drawn()).shape == truth.shape and np.abs(now - truth).max() < within)
 
-    def until(self, true: Callable[[], Any], seconds: float = 20.0, what: str = "") -> Any:
+    def until(self, true: Callable[[], Any], seconds: float = 60.0, what: str = "") -> Any:
         """What `true()` is, once it is; the page goes on meanwhile."""
-        for _ in range(int(seconds / 0.05)):
+        over = time.monotonic() + seconds
+        while time.monotonic() < over:
             if found := true():
                 return found
             self.page.wait_for_timeout(50)
@@ -151,7 +153,7 @@ class Studio:
 def context(browser: Any, **options: Any) -> BrowserContext:
     """A browser of somebody: own cookies, nothing from before."""
     made: BrowserContext = browser.new_context(**{"viewport": LAPTOP, "accept_downloads": True, **options})
-    made.set_default_timeout(15_000)
+    made.set_default_timeout(60_000)  # ms
     return made
 
 

@@ -100,9 +100,9 @@ class Service:
     def particles(self, key: str) -> NDArray[np.float64]:
         return np.array(self.state(key)["particles"], float)
 
-    def at_rest(self, key: str) -> dict[str, Any]:
-        """How it stands, once it is in equilibrium and nothing is on its way."""
-        return wait_for(lambda: (found := self.summary(key))["status"] == "converged" and found)  # type: ignore[no-any-return]
+    def at_rest(self, key: str, seconds: float = 60.0) -> None:
+        """Wait until it is in equilibrium and nothing is on its way."""
+        wait_for(lambda: self.summary(key)["status"] == "converged", seconds)
 
     @staticmethod
     def _done(answer: httpx.Response) -> dict[str, Any]:
