@@ -66,18 +66,16 @@ export class Session {
 
   /** Make an edit. A form at rest goes on, one that was paused by hand stays paused. Rejects with Refused. */
   async edit(patch: Patch): Promise<Summary> {
-    const before = this.summary.value;
+    const goes = this.goes();
     const made = await this.order({ edit: patch });
-    const rested = before !== null && !before.playing && before.status !== "running";
-    return rested && !made.playing ? this.order({ do: "play" }) : made;
+    return goes && !made.playing ? this.order({ do: "play" }) : made;
   }
 
   /** Play, pause, step, reset, undo or redo. Rejects with Refused. */
   async act(action: Action, options: { frames?: number; fast?: boolean } = {}): Promise<Summary> {
-    const before = this.summary.value;
+    const goes = (action === "undo" || action === "redo") && this.goes();
     const made = await this.order({ do: action, ...options });
-    const rested = before !== null && !before.playing && before.status !== "running";
-    return (action === "undo" || action === "redo") && rested && !made.playing ? this.order({ do: "play" }) : made;
+    return goes && !made.playing ? this.order({ do: "play" }) : made;
   }
 
   /** Edit or act for a control: what is refused is said instead of thrown. */
@@ -101,6 +99,12 @@ export class Session {
     this.socket?.close();
     this.lose("This page has left the session.");
     this.watchers.clear();
+  }
+
+  /** Whether it goes on, or has come to its end: all but what a hand has paused. */
+  private goes(): boolean {
+    const now = this.summary.value;
+    return now !== null && (now.playing || now.status !== "running");
   }
 
   private connect(): void {

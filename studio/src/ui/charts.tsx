@@ -114,7 +114,7 @@ function plotted(line: Line, place: HTMLElement): uPlot {
       cursor: { show: false },
       scales: {
         x: { time: false, range: (_, __, last) => [last - 60, last] },
-        y: line.log ? { distr: 3 } : { range: (_, low, high) => (low === high ? [low - 1, high + 1] : [low, high]) },
+        y: line.log ? { distr: 3 } : { range: (_, low, high) => apart(low, high) },
       },
       axes: [
         { show: false },
@@ -126,7 +126,7 @@ function plotted(line: Line, place: HTMLElement): uPlot {
           values: () => [],
           gap: 0,
           space: 14,
-          ...(line.log && { splits: (_: uPlot, __: number, low: number, high: number) => decades(low, high) }),
+          splits: (_, __, low, high) => (line.log ? decades(low, high) : [low, (low + high) / 2, high]),
         },
       ],
       series: [{}, { stroke: color, width: 1.5, points: { show: false } }],
@@ -136,8 +136,16 @@ function plotted(line: Line, place: HTMLElement): uPlot {
   );
 }
 
+/** A range that digits can tell apart: numbers at rest differ by rounding alone. */
+function apart(low: number, high: number): [number, number] {
+  const least = 1e-6 * Math.max(Math.abs(low), Math.abs(high)) || 1;
+  if (!Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+  return high - low < least ? [low - least, high + least] : [low, high];
+}
+
 /** Powers of ten between two numbers, five of them at most. */
 function decades(low: number, high: number): number[] {
+  if (!(low > 0 && high < Infinity)) return [];
   const [first, last] = [Math.ceil(Math.log10(low)), Math.floor(Math.log10(high))];
   const step = Math.max(1, Math.ceil((last - first) / 4));
   return Array.from({ length: Math.floor((last - first) / step) + 1 }, (_, i) => 10 ** (first + i * step));
