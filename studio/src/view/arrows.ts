@@ -72,6 +72,9 @@ export class Arrows {
   };
   /** The longest vector [force] */
   largest = 0;
+  /** How long the longest is [length], and the force that stands for it. */
+  private reach = 1;
+  private full = 0;
   private now: ArrayLike<number> = [];
   private readonly vectors: Column;
   private readonly rows: Rows;
@@ -102,6 +105,14 @@ export class Arrows {
       largest = Math.max(largest, Math.hypot(vectors[i]!, vectors[i + 1]!, vectors[i + 2]!));
     }
     this.largest = largest;
+    this.stretch(this.reach);
+  }
+
+  /** Let the longest be about so long [length]; while forces waver a little, the scale stays. */
+  stretch(reach: number): void {
+    this.reach = reach;
+    if (this.largest > this.full || this.largest < 0.6 * this.full) this.full = this.largest;
+    this.style.scale.value = reach / (this.full || 1);
   }
 
   /** Where those end that are drawn, beginning at their particles [length]. */

@@ -1,5 +1,5 @@
 // From where it is looked at: one camera, z up, whose named views look from so far away that they are nearly parallel.
-import { Box3, MathUtils, PerspectiveCamera, Vector3 } from "three";
+import { Box3, MathUtils, Matrix4, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Look } from "./types";
 
@@ -7,6 +7,7 @@ const FREE = 32;
 const PARALLEL = 2.5;
 const GLIDE = 280;
 const MARGIN = 1.22;
+const EDGE = 0.92;
 const ISOMETRIC = direction(-60, 28);
 // a touch off the pole, so that it is known where up is
 const LOOKS: Record<Look, [Vector3, number]> = {
@@ -64,6 +65,22 @@ export class Eye {
     const now = this.place;
     const [towards, angle] = look ? LOOKS[look] : [now.towards, now.angle];
     this.go({ ...around(positions, towards, angle, this.camera.aspect), towards, angle }, atOnce);
+  }
+
+  /** Whether all of `positions` is in view, apart from a little at the edges. */
+  holds(positions: ArrayLike<number>): boolean {
+    this.camera.updateMatrixWorld();
+    const { projectionMatrix, matrixWorldInverse } = this.camera;
+    const m = new Matrix4().multiplyMatrices(projectionMatrix, matrixWorldInverse).elements;
+    for (let i = 0; i + 2 < positions.length; i += 3) {
+      const x = positions[i]!;
+      const y = positions[i + 1]!;
+      const z = positions[i + 2]!;
+      const edge = EDGE * (m[3]! * x + m[7]! * y + m[11]! * z + m[15]!);
+      if (!(Math.abs(m[0]! * x + m[4]! * y + m[8]! * z + m[12]!) <= edge)) return false;
+      if (!(Math.abs(m[1]! * x + m[5]! * y + m[9]! * z + m[13]!) <= edge)) return false;
+    }
+    return true;
   }
 
   /** The view a form is first seen in: a flat upright one face on, all others at a slant. */

@@ -266,7 +266,7 @@ export class Picture {
     const crowd = arrows.particles.length > MANY;
     const reach = crowd && many > 0 ? Math.min(ARROW * this.size, many) : ARROW * this.size;
     arrows.mesh.visible = shown && arrows.particles.length > 0 && arrows.largest > 0;
-    arrows.style.scale.value = reach / (arrows.largest || 1);
+    arrows.stretch(reach);
     const part = clamp((30 / arrows.particles.length) ** 0.4, 0.5, 1);
     arrows.style.width.value = 2.2 * part;
     arrows.style.head.value = 11 * part;

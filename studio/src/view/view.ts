@@ -46,7 +46,9 @@ class Drawing implements View {
   private frame: Frame | null = null;
   private drawn: Frame | null = null;
   private fitted = false;
+  /** Nobody has chosen yet from where to look; then the eye follows a form that leaves the picture. */
   private untouched = false;
+  private following = false;
   /** Length of a pixel that colours and sizes were chosen for; 0 where they must be chosen anew. */
   private dressed = 0;
   private asked = 0;
@@ -250,7 +252,7 @@ class Drawing implements View {
   }
 
   private readonly moved = (): void => {
-    this.untouched = false;
+    if (!this.following) this.untouched = false;
     this.ask();
   };
 
@@ -264,6 +266,7 @@ class Drawing implements View {
   private readonly tick = (now: number): void => {
     this.asked = 0;
     const glides = this.eye.step(now);
+    this.following &&= glides;
     if (!this.draw(false)) return;
     this.timed(Math.max(0, now - this.since));
     clearTimeout(this.rest);
@@ -331,6 +334,14 @@ class Drawing implements View {
     const told = this.arrows.value;
     if (load !== told.load || reaction !== told.reaction) this.arrows.value = { load, reaction };
     this.dressed = 0;
+    this.follow(frame);
+  }
+
+  private follow(frame: Frame): void {
+    if (this.hand.led) this.untouched = false;
+    if (!this.untouched || this.following || this.eye.holds(frame.positions)) return;
+    this.following = true;
+    this.eye.fit(this.picture.body(frame));
   }
 
   private numbers(frame: Frame): ArrayLike<number> {
