@@ -9,9 +9,6 @@ export interface Form {
   edges: Int32Array;
   strokes: Int32Array;
   triangles: Uint32Array;
-  /** Sum of the loads on each loaded particle [force] */
-  loaded: Int32Array;
-  loads: Float32Array;
   /** Between particles that are joined, in the middle [length]; 0 where none are. */
   spacing: number;
 }
@@ -36,7 +33,6 @@ export function form(topology: Topology): Form {
     edges: Int32Array.from(edges),
     strokes: Int32Array.from(strokes),
     triangles: triangles(all),
-    ...summed(topology),
     spacing: median(topology, ends),
   };
 }
@@ -83,22 +79,6 @@ function triangles(all: number[][]): Uint32Array {
     count += 3;
   }
   return corners.slice(0, count);
-}
-
-function summed(topology: Topology): { loaded: Int32Array; loads: Float32Array } {
-  const sums = new Map<number, [number, number, number]>();
-  for (const { particles, vectors } of topology.loads) {
-    particles.forEach((particle, i) => {
-      const sum = sums.get(particle) ?? [0, 0, 0];
-      vectors[i]!.forEach((value, axis) => (sum[axis as 0 | 1 | 2] += value));
-      sums.set(particle, sum);
-    });
-  }
-  const acting = [...sums].filter(([, sum]) => sum.some((value) => value !== 0));
-  return {
-    loaded: Int32Array.from(acting, ([particle]) => particle),
-    loads: Float32Array.from(acting.flatMap(([, sum]) => sum)),
-  };
 }
 
 function median(topology: Topology, ends: ArrayLike<number>): number {

@@ -2,6 +2,7 @@
 import { Box3, Vector3 } from "three";
 import type { Frame } from "../frame";
 import type { Anchor } from "../model";
+import type { Acting } from "./acting";
 import { Arrows, MANY } from "./arrows";
 import { channels, type Palette, palette, type Ramp } from "./colours";
 import { Column } from "./columns";
@@ -32,7 +33,6 @@ interface Parts {
   edges: Segments;
   strokes: Segments;
   skin: Skin;
-  loads: Arrows;
 }
 
 export class Picture {
@@ -44,9 +44,12 @@ export class Picture {
   readonly dots: Marks;
   readonly floor: Plane;
   reactions: Arrows | null = null;
+  loads: Arrows | null = null;
   /** Particles that are held, in their order. */
   held: ReadonlySet<number> = new Set();
   private parts: Parts | null = null;
+  /** Of so many loads one is drawn. */
+  private thinned = 1;
   private sprung = true;
   private positions: Column | null = null;
   private forces: Column | null = null;
@@ -69,31 +72,19 @@ export class Picture {
     this.positions = new Column(form.particles, 3);
     this.forces = new Column(form.springs.length / 2, 1);
     common.positions.value = this.positions.texture;
-    const kept = this.thinned(form);
     const parts = (this.parts = {
       springs: new Segments(common, form.springs, 3),
       edges: new Segments(common, form.edges, 2),
       strokes: new Segments(common, form.strokes, 2),
       skin: new Skin(common, form.triangles),
-      loads: new Arrows(
-        common,
-        form.loaded.filter((_, i) => i % kept === 0),
-        false,
-        4,
-      ),
     });
     parts.springs.style.forces.value = this.forces.texture;
-    parts.loads.put(
-      this.stage.renderer,
-      form.loads.filter((_, i) => Math.floor(i / 3) % kept === 0),
-    );
     group.add(
       parts.springs.mesh,
       parts.springs.thin,
       parts.edges.mesh,
       parts.strokes.mesh,
       parts.skin.mesh,
-      parts.loads.mesh,
     );
     this.dots.put(Int32Array.from({ length: form.particles }, (_, i) => i));
   }
@@ -120,7 +111,7 @@ export class Picture {
 
   /** All that is to be seen: particles and the ends of arrows, where these are few; x y z of each [length]. */
   body(frame: Frame): ArrayLike<number> {
-    const tips = [this.parts?.loads, this.reactions].flatMap((arrows) => arrows?.tips(frame.positions) ?? []);
+    const tips = [this.loads, this.reactions].flatMap((arrows) => arrows?.tips(frame.positions) ?? []);
     if (!tips.length) return frame.positions;
     const all = new Float32Array(frame.positions.length + tips.length);
     all.set(frame.positions);
@@ -150,6 +141,23 @@ export class Picture {
     this.stage.group.add(this.reactions.mesh);
   }
 
+  /** The loads now; of very many some are drawn. */
+  bear({ particles, vectors }: Acting): void {
+    const { common, group, renderer } = this.stage;
+    this.thinned = Math.max(1, Math.ceil(particles.length / MOST_ARROWS));
+    const kept = particles.filter((_, i) => i % this.thinned === 0);
+    if (!this.loads || kept.join() !== this.loads.particles.join()) {
+      if (this.loads) group.remove(this.loads.mesh);
+      this.loads?.dispose();
+      this.loads = new Arrows(common, kept, false, 4);
+      group.add(this.loads.mesh);
+    }
+    this.loads.put(
+      renderer,
+      vectors.filter((_, i) => Math.floor(i / 3) % this.thinned === 0),
+    );
+  }
+
   /** Rest lengths [length], for strains. */
   know(lengths: Float32Array | null): void {
     this.rest?.dispose();
@@ -162,7 +170,7 @@ export class Picture {
 
   /** The longest arrows [force]. */
   get longest(): { load: number; reaction: number } {
-    return { load: this.parts?.loads.largest ?? 0, reaction: this.reactions?.largest ?? 0 };
+    return { load: this.loads?.largest ?? 0, reaction: this.reactions?.largest ?? 0 };
   }
 
   /** Whether strains are known. */
@@ -182,7 +190,8 @@ export class Picture {
     parts.skin.style.shade.value = channels(colours.skin);
     this.lines(parts, dress, colours, gap);
     this.marks(dress, colours, gap);
-    this.arrows(parts.loads, layers.loads, colours.load, 1.3 * form.spacing * Math.sqrt(this.thinned(form)));
+    const apart = 1.3 * form.spacing * Math.sqrt(this.thinned);
+    if (this.loads) this.arrows(this.loads, layers.loads, colours.load, apart);
     if (this.reactions) this.arrows(this.reactions, layers.reactions, colours.reaction, 4 * form.spacing);
     this.floor.style.shade.value = channels(colours.floor);
     this.floor.style.strength.value = dress.dark ? 0.75 : 0.9;
@@ -256,11 +265,6 @@ export class Picture {
     return form.particles <= 60 || form.spacing / pixel > 14 || !(form.springs.length || form.triangles.length);
   }
 
-  /** Of so many loads one is drawn. */
-  private thinned(form: Form): number {
-    return Math.ceil(form.loaded.length / MOST_ARROWS);
-  }
-
   /** Where they are many, the longest has the length `many` at most. */
   private arrows(arrows: Arrows, shown: boolean, colour: string, many: number): void {
     const crowd = arrows.particles.length > MANY;
@@ -278,6 +282,9 @@ export class Picture {
     this.positions?.dispose();
     this.forces?.dispose();
     this.know(null);
+    if (this.loads) this.stage.group.remove(this.loads.mesh);
+    this.loads?.dispose();
+    this.loads = null;
     if (!parts) return;
     for (const part of Object.values(parts) as { mesh: Segments["mesh"] | Skin["mesh"]; dispose(): void }[]) {
       this.stage.group.remove(part.mesh);

@@ -5,6 +5,7 @@ import type { Frame } from "../frame";
 import type { Scene } from "../model";
 import type { Session } from "../session";
 import { note, stats } from "../stats";
+import { acting } from "./acting";
 import { Eye } from "./camera";
 import { ramp } from "./colours";
 import { Hand, type Held } from "./dragging";
@@ -131,6 +132,7 @@ class Drawing implements View {
     if (!topology) return;
     const { picture, session, options } = this;
     picture.build(form(topology));
+    picture.bear(acting(topology, session.scene.peek()));
     picture.hold(session.anchors.peek());
     picture.know(options.restLengths.peek());
     this.drawn = null;
@@ -208,6 +210,15 @@ class Drawing implements View {
       }),
       effect(() => {
         picture.hold(session.anchors.value);
+        this.dressed = 0;
+        this.drawn = null;
+        this.ask();
+      }),
+      effect(() => {
+        const { value } = session.scene;
+        const topology = session.topology.peek();
+        if (!topology) return;
+        picture.bear(acting(topology, value));
         this.dressed = 0;
         this.drawn = null;
         this.ask();
