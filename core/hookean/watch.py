@@ -120,7 +120,8 @@ class Watch:
             advice = stability.warning(system, self.good) if self.method.physical else ""
             anchored = any(len(anchor.particles) for anchor in system.held)
             advice = advice or ("Look for loads that nothing holds" if anchored else "No particle is held: add anchors")
-            return f"Diverged after {spent} iterations at {self.fault}; the last good shape is returned. {advice}."
+            where = f" after {spent} iterations at {self.fault}" if self.fault else ""  # a state taken up knows no more
+            return f"Diverged{where}; the last good shape is returned. {advice}."
         if status is Status.STALLED:
             return (
                 f"Stalled after {spent} iterations at particle {found.worst}: {left}. Springs on their cutoff, loads "

@@ -273,6 +273,6 @@ export class Session {
     const summary = this.summary.value;
     if (frame && summary && frame.revision > summary.revision)
       this.summary.value = { ...summary, revision: frame.revision };
-    void this.describe();
+    if (!this.waiting.size) void this.describe(); // a drag would have all of the scene read again and again
   }
 }

@@ -135,6 +135,16 @@ def test_every_way_to_end_has_a_status_and_a_sentence():
     assert any("nothing" in w or "no spring" in w for w in ended[Status.DIVERGED].report.warnings)
 
 
+def test_a_diverged_simulation_that_is_loaded_says_no_more_than_it_knows(tmp_path):
+    """Where it flew apart is not in the file: the sentence leaves it out, and has no gap."""
+    flying = Simulation(cable(time_step=0.5))
+    flying.step(50)
+    assert flying.status is Status.DIVERGED and " at particle" in flying.message
+    flying.save(tmp_path / "flying.npz")
+    said = Simulation.load(tmp_path / "flying.npz").message
+    assert said.startswith("Diverged; the last good shape is returned.")
+
+
 def test_a_simulation_bounces_before_it_settles():
     """Figure 9.6: the sag passes its equilibrium and comes back; the last frame is at rest on it."""
     frames = list(simulate(cable(tolerance=1e-5), 400))
