@@ -84,6 +84,7 @@ def test_two_people_edit_one_session(open_studio: Opened):
     one.until(lambda: np.abs(one.particles()[5] - truth[5]).max() > 0.05, what="what the other did")
     held = [{"particles": a["particles"], "targets": a["targets"]} for a in service.anchors("shared")]
     rest = equilibrium(CABLE, {"pin": held})
+    one.press("To rest")
     one.rests_at(rest)
     other.rests_at(rest)
 
