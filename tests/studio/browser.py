@@ -135,6 +135,13 @@ class Studio:
         self.page.mouse.up()
         return x + across, y + down
 
+    def settled(self) -> None:
+        """Wait until no edit has come for a while: the last of a gesture lands after the hand has let go."""
+        revisions = [-1]
+        while revisions[-1] != (now := self.service.summary(self.key)["revision"]):
+            revisions.append(now)
+            self.page.wait_for_timeout(800)
+
     def rests_at(self, truth: NDArray[np.float64], within: float = 1e-4) -> None:
         """Wait until every particle is drawn where it belongs [length]."""
         drawn = self.particles

@@ -29,6 +29,7 @@ def test_an_anchor_is_dragged_and_the_form_follows(studio: Studio):
     studio.until(followed, what="all but the other anchor to follow")
     studio.until(lambda: np.hypot(*np.subtract(studio.seen(0), (x + 96, y + 60))) < 3, what="the anchor in the hand")
     studio.page.mouse.up()
+    studio.settled()
 
     [held] = [anchor for anchor in service.anchors(key) if 0 in anchor["particles"]]
     target = held["targets"][held["particles"].index(0)]
@@ -58,7 +59,9 @@ def test_pause_step_undo_redo_and_reset(studio: Studio):
 
     ends = service.anchors(key)
     studio.drag(0, 60, 40)
-    moved = studio.until(lambda: (now := service.anchors(key)) != ends and now)
+    studio.settled()
+    moved = service.anchors(key)
+    assert moved != ends
     studio.press("Undo")
     studio.until(lambda: service.anchors(key) == ends)
     studio.press("Redo")

@@ -55,7 +55,7 @@ def test_a_slider_is_dragged_and_the_form_follows(cable: Studio, slider: str, fo
     page.mouse.move(box["x"] + along * box["width"], y, steps=12)
     page.mouse.up()
     cable.until(lambda: service.scene(key)["forces"][force][field] != before)
-    page.wait_for_timeout(500)
+    cable.settled()
     after = service.scene(key)["forces"][force][field]
     assert np.linalg.norm(after) > np.linalg.norm(before)
     changed = {**NAMED, "forces": [dict(one) for one in NAMED["forces"]]}
@@ -134,7 +134,8 @@ def test_a_locked_axis_keeps_the_others(cable: Studio):
     before = np.array(service.anchors(key)[0]["targets"][0])
     page.get_by_label("Drag along").or_(page.get_by_label("Lock")).first.select_option("z")
     cable.drag(0, 40, -60)
-    cable.until(lambda: service.summary(key)["undo"] == 1)
+    cable.settled()
+    assert service.summary(key)["undo"] == 1
     held = {p: t for a in service.anchors(key) for p, t in zip(a["particles"], a["targets"], strict=True)}
     assert held[0][:2] == pytest.approx(before[:2], abs=1e-9) and held[0][2] > before[2] + 0.1
 

@@ -36,7 +36,9 @@ def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, morta
     truth = equilibrium(CABLE)
     studio.rests_at(truth)
     studio.drag(0, 40, 30)
-    edited = studio.until(lambda: (now := mortal.summary("cable"))["undo"] == 1 and now)
+    studio.settled()
+    edited = mortal.summary("cable")
+    assert edited["undo"] == 1
     ends = mortal.anchors("cable")
 
     mortal.kill()
@@ -82,6 +84,7 @@ def test_two_people_edit_one_session(open_studio: Opened):
     other.until(lambda: np.abs(other.particles()[0] - truth[0]).max() > 0.05, what="what the other did")
     other.drag(5, -50, 30)
     one.until(lambda: np.abs(one.particles()[5] - truth[5]).max() > 0.05, what="what the other did")
+    one.settled()
     held = [{"particles": a["particles"], "targets": a["targets"]} for a in service.anchors("shared")]
     rest = equilibrium(CABLE, {"pin": held})
     one.press("To rest")
