@@ -25,6 +25,15 @@ FLAGS = [
     "--disable-sync",
     "--js-flags=--expose-gc",
 ]
+LATEST = """([what, ...told]) => new Promise((done) => {
+    const look = (tries) => {
+        const now = window.hookean[what](...told);
+        if (!tries || (now && now.length !== 0)) done(what === "particles" ? [...now] : now);
+        else setTimeout(() => look(tries - 1), 10);
+    };
+    look(500);
+})"""
+"""What the page tells of what it draws; for a moment after an edit it draws nothing that is of now."""
 LAPTOP = {"width": 1280, "height": 800}
 PHONE = {"width": 390, "height": 844}
 
@@ -108,7 +117,7 @@ class Studio:
 
     def particles(self) -> NDArray[np.float64]:
         """What is drawn, in the scene's unit of length."""
-        return np.array(self.page.evaluate("() => [...window.hookean.particles()]"), float).reshape(-1, 3)
+        return np.array(self.page.evaluate(LATEST, ["particles"]), float).reshape(-1, 3)
 
     def place(self, particle: int) -> tuple[float, float]:
         """Where a particle is drawn, in CSS pixels, once the eye has come to rest."""
@@ -120,7 +129,7 @@ class Studio:
 
     def seen(self, particle: int) -> tuple[float, float]:
         """Where a particle is drawn just now, in CSS pixels."""
-        found = self.page.evaluate("(particle) => window.hookean.project(particle)", particle)
+        found = self.page.evaluate(LATEST, ["project", particle])
         assert found, f"particle {particle} is behind the eye"
         return found["x"], found["y"]
 
