@@ -35,7 +35,7 @@ def cable(studio: Studio, request: pytest.FixtureRequest) -> Studio:
 @pytest.mark.parametrize(
     ("slider", "force", "field", "along"),
     [
-        ("load load", 1, "vector", 0.8),
+        ("Size of load", 1, "vector", 0.8),
         ("cable stiffness", 0, "stiffness", 0.6),  # over decades
         ("cable rest factor", 0, "rest_factor", 0.8),
         ("cable damping", 0, "damping", 0.8),

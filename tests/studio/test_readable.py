@@ -183,7 +183,7 @@ def test_a_cable_is_opened_formed_and_edited_by_keyboard_alone(studio: Studio):
     page.keyboard.press("Control+Shift+z")
     studio.until(lambda: service.anchors(key) != ends)
 
-    load = page.get_by_role("slider", name="load load")
+    load = page.get_by_role("slider", name="Size of load")
     load.focus()
     for _ in range(5):
         page.keyboard.press("ArrowRight")

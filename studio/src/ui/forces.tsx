@@ -127,7 +127,7 @@ function Column({ session, force, number, units, field, title }: Shown & { field
       {(!vectors || measure !== "") && (
         <Slider
           session={session}
-          name={vectors ? `${title} load` : name}
+          name={vectors ? `Size of ${title}` : name}
           seen={vectors ? "Size" : seen}
           value={amount(told, vectors)}
           unit={measure}
