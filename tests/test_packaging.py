@@ -36,7 +36,8 @@ def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
         pytest.skip("there are no sources of the page here")
     folder = tmp_path_factory.mktemp("sdist")
     with tarfile.open(build(ROOT, "sdist", folder / "packed")) as packed:
-        packed.extractall(folder, filter="data")
+        safely = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}  # not before Python 3.11.4
+        packed.extractall(folder, **safely)
     [tree] = (path for path in folder.iterdir() if path.name != "packed")
     return tree
 

@@ -88,7 +88,7 @@ class Expectations(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     title: str
-    sentence: str
+    sentence: str = ""
     figures: tuple[str, ...]
     kind: Literal["chapter", "essay"] = "chapter"
     numbers: Annotated[dict[str, Expected], Field(min_length=1)]

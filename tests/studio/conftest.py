@@ -21,18 +21,23 @@ Opened = Callable[..., Studio]
 
 
 @pytest.fixture(scope="session")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+def chromium() -> str:
     if CHROMIUM is None:
         pytest.skip("there is no chromium on this machine")
     assert BUILT.is_file(), "the page is not built: python hatch_build.py"
+    return CHROMIUM
+
+
+@pytest.fixture(scope="module")  # while it is open, Playwright keeps the loop of this thread from tests of other files
+def browser(chromium: str) -> Iterator[Any]:
     with playwright.sync_playwright() as driver:
-        found = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        found = driver.chromium.launch(executable_path=chromium, args=FLAGS)
         yield found
         found.close()
 
 
 @pytest.fixture(scope="session")
-def service(tmp_path_factory: pytest.TempPathFactory, browser: Any) -> Iterator[Service]:
+def service(tmp_path_factory: pytest.TempPathFactory, chromium: str) -> Iterator[Service]:
     found = Service(tmp_path_factory.mktemp("service"))
     yield found
     found.end()
