@@ -147,7 +147,9 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None, str]:
         if isinstance(error, InputError):
             raise
         raise InputError("/", "the body is no multipart form; send it as multipart/form-data with a boundary") from None
-    if not found.get("file"):
+    if found.get("file") == b"":
+        raise InputError("/file", "the file is empty; send one with something in it")
+    if "file" not in found:
         raise InputError("/file", "the form needs a part named file with the file in it")
     recipe = found.get("recipe")
     if recipe is not None and len(recipe) > RECIPE_LIMIT:

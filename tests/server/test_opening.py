@@ -118,7 +118,7 @@ def test_what_was_told_of_a_file_outlives_the_server(tmp_path: Path) -> None:
     ("name", "data", "pointer", "said"),
     [
         ("a.obj", SHEET + "f 1 2 99\n", "/file", "line 26: vertex 99 does not exist"),
-        ("a.obj", "", "/file", "needs a part named file"),
+        ("a.obj", "", "/file", "the file is empty"),
         ("a.json", '{"forces": [{"kind": "springs", "lines": 7}]}', "/file/forces/0/lines", ""),
         ("a.json", "{", "/file", "not valid JSON"),
         ("a.json", "[" * 5000, "/", ""),
