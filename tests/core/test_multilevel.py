@@ -220,10 +220,10 @@ def test_same_net_same_bits():
     for most, anew in ((100, False), (1, False), (1, True)):
         method, state = solver("multilevel"), system.start()
         method.start(system, state)
-        while state.iteration < 60:
+        while state.iteration < 150:
             if anew:
                 method, state = solver("multilevel"), State.of(state.arrays())
-            method.advance(system, state, min(most, 60 - state.iteration), 1e-12)
+            method.advance(system, state, min(most, 150 - state.iteration), 1e-12)
             calm |= bool(state.scratch["calm"][0] > 0.0)
         assert "gathered" in state.scratch  # the hierarchy is another than that of the start
         shapes.append(state.x.tobytes())

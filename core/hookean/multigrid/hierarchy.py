@@ -39,19 +39,25 @@ class Level:
         self.inverse = np.zeros((n, 12), np.float32)
         self.b, self.x = np.zeros((n, 4), np.float32), np.zeros((n, 4), np.float32)
         self.prolong: tuple[Any, ...] = ()
-        self.places: Ints = np.zeros(0, np.int32)
+        self.products: tuple[Any, ...] = ()
 
     def to(self, p: Sparse, coarser: Level) -> None:
         """Know the way to the next coarser level."""
         self.prolong = p
-        count = np.diff(p[0])
-        rows = np.repeat(np.arange(len(count)), np.diff(self.starts))
-        products = count[rows] * count[self.columns]
-        products[self.starts[:-1]] = count * (count + 1) // 2
-        self.places = np.zeros(products.sum(), np.int32)
-        pattern = (self.starts, self.columns, *self.prolong[:2], coarser.starts, coarser.columns)
-        kernels.compiled(sums.find_places)(*pattern, self.places)
+        count = len(coarser.starts) - 1
+        pattern = (self.starts, self.columns, *self.low[:2], self.mirror, *p, *turned(p, count))
+        pattern += (coarser.starts, coarser.columns, np.zeros(count, np.int32))
+        find = kernels.compiled(sums.find_products)
+        ends = np.zeros(2 * len(coarser.columns) + 1, np.int32)
+        find(*pattern, ends[1:], np.zeros(0, np.int32), np.zeros(0))
+        size = int(np.cumsum(ends, out=ends)[-1])
+        self.products = ends[:-1], np.zeros(size, np.int32), np.zeros(size)
+        find(*pattern, *self.products)
         coarser.values = np.zeros((len(coarser.columns), 9))
+
+    def coarsen(self, coarser: Level) -> None:
+        """Work out the values of the next coarser level."""
+        kernels.compiled(sums.coarsen)(self.values, *self.products, coarser.values)
 
     def lighten(self, scale: float) -> bool:
         """Make what a cycle works on of the values; False if a diagonal block is not positive definite."""
@@ -97,9 +103,8 @@ class Hierarchy:
         """Take the values (k, 9) of the finest level, work out the others; False if not positive definite."""
         self.levels[0].values = values
         for level, coarser in zip(self.levels, self.levels[1:], strict=False):
-            pattern = (level.starts, level.columns, level.values)
-            kernels.compiled(sums.coarsen)(*pattern, *level.prolong, level.places, coarser.values)
-        largest = float(values[self.levels[0].starts[:-1], ::4].max(initial=0.0))
+            level.coarsen(coarser)
+        largest = float(values.max(initial=0.0))
         scale = 1.0 / largest if largest > 0.0 else 1.0  # so that single precision has room
         return all(level.lighten(scale) for level in self.levels) and self._factor(scale)
 

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from hookean.kernels import device
-from hookean.multigrid.blocks import place_of
 
 
 def lighten(starts, columns, values, mirror, scale, high, low, inverse):  # type: ignore[no-untyped-def]
@@ -121,43 +120,59 @@ def prolong(p_starts, p_columns, p_values, coarse, x):  # type: ignore[no-untype
         x[i, 0], x[i, 1], x[i, 2], x[i, 3] = x0, x1, x2, x3
 
 
-def find_places(starts, columns, p_starts, p_columns, c_starts, c_columns, places):  # type: ignore[no-untyped-def]
-    """Where `coarsen` adds each product, in its order: a block of the coarse pattern, or -1 less it turned over."""
-    t = 0
-    for i in range(starts.shape[0] - 1):
-        for s in range(starts[i], starts[i + 1]):
-            j = columns[s]
-            for u in range(p_starts[i], p_starts[i + 1]):
-                for v in range(u if i == j else p_starts[j], p_starts[j + 1]):
-                    row, column = p_columns[u], p_columns[v]
-                    place = place_of(c_starts, c_columns, min(row, column), max(row, column))
-                    places[t] = place if row <= column else -1 - place
-                    t += 1
-
-
-def coarsen(  # type: ignore[no-untyped-def]
-    starts, columns, values, p_starts, p_columns, p_values, places, coarse
+def find_products(  # type: ignore[no-untyped-def]
+    starts, columns, low_starts, low_columns, mirror, p_starts, p_columns, p_values, r_starts, r_rows, r_values,
+    c_starts, c_columns, place, ends, blocks, weights,
 ):  # fmt: skip
-    """The coarse blocks P^T A P."""
-    coarse[:] = 0.0
+    """What `coarsen` sums: for each block of the coarse pattern the fine ones and their weights, first those as they
+    are, then those turned over. `ends` (2 k,) comes as where each sum begins and goes as where it ends; without room
+    for blocks, the lengths are added to it. `place` (coarse rows,) is for notes."""
+    counted = blocks.shape[0] == 0
+    for row in range(c_starts.shape[0] - 1):
+        for s in range(c_starts[row], c_starts[row + 1]):
+            place[c_columns[s]] = 2 * s
+        for t in range(r_starts[row], r_starts[row + 1]):
+            i = np.uint64(r_rows[t])
+            below = low_starts[i + np.uint64(1)] - low_starts[i]
+            for s in range(below + starts[i + np.uint64(1)] - starts[i]):
+                turned = s < below
+                block = np.uint64(mirror[low_starts[i] + s] if turned else starts[i] + s - below)
+                j = np.uint64(low_columns[low_starts[i] + s] if turned else columns[block])
+                for u in range(p_starts[j], p_starts[j + np.uint64(1)]):
+                    column = np.uint64(p_columns[np.uint64(u)])
+                    if column >= np.uint64(row):
+                        q = np.uint64(place[column] + turned)
+                        if not counted:
+                            k = np.uint64(ends[q])
+                            blocks[k] = block
+                            weights[k] = np.float64(r_values[t]) * p_values[np.uint64(u)]
+                        ends[q] += 1
+
+
+def coarsen(values, ends, blocks, weights, coarse):  # type: ignore[no-untyped-def]
+    """The coarse blocks P^T A P, of what `find_products` has found."""
     t = np.uint64(0)
-    for i in range(starts.shape[0] - 1):
-        for s in range(starts[i], starts[i + 1]):
-            k, j = np.uint64(s), columns[s]
-            for u in range(p_starts[i], p_starts[i + 1]):
-                for v in range(u if i == j else p_starts[j], p_starts[j + 1]):
-                    weight = np.float64(p_values[u]) * np.float64(p_values[v])
-                    place = places[t]
-                    t += np.uint64(1)
-                    if place >= 0:
-                        q = np.uint64(place)
-                        for c in range(9):
-                            coarse[q, c] += weight * values[k, c]
-                    if place < 0 or (i != j and p_columns[u] == p_columns[v]):
-                        q = np.uint64(place if place >= 0 else -1 - place)
-                        for a in range(3):
-                            for b in range(3):
-                                coarse[q, 3 * a + b] += weight * values[k, 3 * b + a]
+    for row in range(coarse.shape[0]):
+        q = np.uint64(row)
+        a = b = c = d = e = f = g = h = i = 0.0
+        for turned in range(2):
+            end = np.uint64(ends[np.uint64(2 * row + turned)])
+            while t < end:
+                k, weight = np.uint64(blocks[t]), weights[t]
+                a += weight * values[k, 0]
+                b += weight * values[k, 1]
+                c += weight * values[k, 2]
+                d += weight * values[k, 3]
+                e += weight * values[k, 4]
+                f += weight * values[k, 5]
+                g += weight * values[k, 6]
+                h += weight * values[k, 7]
+                i += weight * values[k, 8]
+                t += np.uint64(1)
+            b, c, d, f, g, h = d, g, b, h, c, f
+        coarse[q, 0], coarse[q, 1], coarse[q, 2] = a, b, c
+        coarse[q, 3], coarse[q, 4], coarse[q, 5] = d, e, f
+        coarse[q, 6], coarse[q, 7], coarse[q, 8] = g, h, i
 
 
 def multiply(starts, columns, values, x, y):  # type: ignore[no-untyped-def]

@@ -14,7 +14,7 @@ Irving, Fedkiw, Robust quasistatic finite elements, 2005, for tangents without w
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +43,6 @@ TURNED, OUT, RINGS = 0.5, 0.2, 6  # what creases: parts of the largest turn and 
 SHARE = 0.4  # of all particles, at most
 SMOOTHING = 100  # passes over all springs that relaxation may take between Newton steps
 LONGEST = 5000  # iterations of a local one
-SLOW = 2  # Newton steps not worth another, after which they take turns
 ROUNDS = 12  # turns without half the largest force, after which all particles relax
 BURST = 250_000  # particles times Newton steps in one go
 CERTAIN = 1e9  # multiplications that it may take to find whether a shape is the lowest
@@ -59,6 +58,7 @@ class Method(Solver):
     def __init__(self) -> None:
         self._relaxation = relaxation.Method()
         self._ready: Tangent | None = None
+        self._judged: Judged | None = None  # the shape as it is, while one advance lasts
         self.largest = np.inf  # force [force] out of balance after the last Newton step
         self.work = 0.0  # passes over all springs; coarser levels count by their size
 
@@ -72,7 +72,7 @@ class Method(Solver):
         self._ready = None
         self.largest = np.inf
         state.scratch["newton"] = np.array([FIRST_SHIFT, CONJUGATE, 0.0])
-        state.scratch["turns"] = np.array([0.0, 1.0, 0.0, 0.0, np.inf])
+        state.scratch["turns"] = np.array([0.0, 1.0, 0.0, np.inf])
         state.scratch["all"] = np.array([0.0, SMOOTHING])
         state.scratch["creased"] = np.zeros(len(state.x))
         state.scratch["calm"] = np.zeros(1)
@@ -81,6 +81,7 @@ class Method(Solver):
         """At most `count` iterations: each a Newton step with what relaxes after it, or an iteration of relaxation; of
         a large net one or two, so that a run can be judged and stopped in between."""
         ready = self._readied(system, state)
+        self._judged = None
         several, done = min(count, max(1, BURST // len(state.x))), 0
         while done < several and (self.largest > goal or not done):
             left = state.scratch["all"][0]
@@ -101,53 +102,52 @@ class Method(Solver):
         calm = state.scratch["calm"][0] > 0
         step = Step(system, state, ready, GENTLE if gentle else shift, CONJUGATE if gentle else int(most), calm)
         before = state.x.copy()
-        again = step.take(taken, goal)
+        again = step.take(self._judged, taken, goal)
+        now = self._judged = step.judged
         state.iteration += 1
         self.work += step.work
-        self.largest = step.largest
+        self.largest = now.largest
         if not gentle and step.cut and step.length >= 1.0:
             most, again = min(2.0 * most, MOST), True
         state.scratch["newton"] = np.array([step.shift, most, taken + step.fall])
-        if step.largest > goal:
+        if now.largest > goal:
             turned = ready.blocks.turned(before, step.direction)
             state.scratch["calm"][0] = step.quick and turned.max(initial=0.0) < CALM
             if self._takes_turns(state, step, float(turned.max()), again):
-                self._smooth(system, state, turned, goal)
+                self._smooth(system, state, now.forces, turned, goal)
+                self._judged = None
         ready.keep(state)
 
     def _takes_turns(self, state: State, step: Step, turned: float, again: bool) -> bool:
         """Whether relaxation is due: for one turn, two, four ... each time that Newton alone did not go on well, and
         until springs turn little."""
-        turns, patience, slow, rounds, best = state.scratch["turns"]
+        turns, patience, rounds, best = state.scratch["turns"]
         straight, once = step.length >= 1.0 and not step.bent, False
         if turns > 0:
             turns = max(turns - 1.0, 0.0 if straight and turned < STRAIGHT else 1.0)
             if turns == 0.0:
                 state.scratch["newton"][:2] = GENTLE, CONJUGATE
-        else:
-            slow = 0.0 if again else slow + 1.0 if straight and patience == 1.0 else SLOW
-            once = slow >= SLOW and straight and turned < STRAIGHT
-            if slow >= SLOW and not once:
-                turns, patience, slow, rounds, best = patience, 2.0 * patience, 0.0, 0.0, np.inf
-        rounds = 0.0 if step.largest < 0.5 * best else rounds + 1.0
-        state.scratch["turns"] = np.array([turns, patience, slow, rounds, min(best, step.largest)])
+        elif not again:
+            once = straight and turned < STRAIGHT
+            if not once:
+                turns, patience, rounds, best = patience, 2.0 * patience, 0.0, np.inf
+        rounds = 0.0 if step.judged.largest < 0.5 * best else rounds + 1.0
+        state.scratch["turns"] = np.array([turns, patience, rounds, min(best, step.judged.largest)])
         return bool(turns > 0 or once)
 
-    def _smooth(self, system: System, state: State, turned: Floats, goal: float) -> None:
+    def _smooth(self, system: System, state: State, forces: Floats, turned: Floats, goal: float) -> None:
         """Relax what creases; all particles, from the next iteration on, where that is many or has not helped."""
         from hookean.multigrid.part import cut, widened
 
         blocks = self._readied(system, state).blocks
-        f = system.evaluate(state)[0] * state.free
-        size = lengths(f)
+        size = lengths(forces)
         largest = float(size.max())
         now = (turned > TURNED * turned.max()) | (size > OUT * largest)
         now = widened(blocks.starts, blocks.columns, now, RINGS) & (state.free > 0.0).any(axis=1)
         creased = state.scratch["creased"] > 0.0
         creased = next((some for some in (creased | now, now, creased) if some.mean() <= SHARE), creased)
         state.scratch["creased"] = creased.astype(float)
-        self.work += 1.0
-        if state.scratch["turns"][3] >= ROUNDS or not creased.any():
+        if state.scratch["turns"][2] >= ROUNDS or not creased.any():
             self._all(system, state)
             return
         part, own, particles = cut(system, state, creased)
@@ -167,7 +167,7 @@ class Method(Solver):
         state.scratch["calm"][0] = 0.0
         budget = state.scratch["all"][1]
         state.scratch["all"] = np.array([budget, 1.5 * budget])
-        state.scratch["turns"][3:] = 0.0, np.inf
+        state.scratch["turns"][2:] = 0.0, np.inf
 
     def _readied(self, system: System, state: State) -> Tangent:
         if self._ready is None:
@@ -177,56 +177,64 @@ class Method(Solver):
         return self._ready
 
 
+class Judged(NamedTuple):
+    """What is known of a shape: its energy [force length], what is out of balance (n, 3) [force] and the largest."""
+
+    energy: float
+    forces: Floats
+    largest: float
+
+
 class Step:
     """One Newton step: its `direction` (n, 3) [length], and the `length` to go along it [-], 0 where none helps.
-    `fall` [force length] of the energy, `largest` [force] out of balance after it, `work` [passes over all springs]."""
+    `fall` [force length] of the energy, the shape as `judged` after it, `work` [passes over all springs]."""
 
     def __init__(self, system: System, state: State, ready: Tangent, shift: float, most: int, calm: bool) -> None:
         self.system, self.state, self.ready, self.shift, self.most = system, state, ready, shift, most
-        self.work, self.fall, self.largest, self.length = 0.0, 0.0, np.inf, 0.0
+        self.work, self.fall, self.length = 0.0, 0.0, 0.0
         self.direction = np.zeros_like(state.x)
         self.bent = False  # whether a direction of negative curvature was met
         self.cut = False  # whether conjugate gradients ended before they were done
         self.calm, self.quick = calm, False  # whether the last tangent does; whether the largest force fell well
 
-    def take(self, taken: float, goal: float) -> bool:
-        """Take the step; whether another one is worth it after energy has fallen by `taken` in all before."""
-        state = self.state
-        energy, forces = self._judge()
-        before = self.largest = _largest(forces)
-        if before <= goal:
+    def take(self, judged: Judged | None, taken: float, goal: float) -> bool:
+        """Take the step, of a shape that may be `judged` already; whether another one is worth it after energy has
+        fallen by `taken` in all before."""
+        before = self.judged = judged or self._judge()
+        if before.largest <= goal:
             return True
         work = self.ready.work
-        direction = self._direction(forces)
+        direction = self._direction(before.forces)
         self.work += self.ready.work - work
         if direction is None:
             return False
-        start, self.direction = state.x.copy(), direction
-        length, now, left = self._search(start, direction, energy, float((forces * direction).sum()), before)
-        self.length = length
-        if length == 0.0:
-            state.x[:] = start
+        start, self.direction = self.state.x.copy(), direction
+        self.length = self._search(start, before)
+        if self.length == 0.0:
+            self.state.x[:] = start
             self.shift = min(max(10.0 * self.shift, 1e-4), FIRST_SHIFT)
             return False
-        self.fall, self.largest = max(energy - now, 0.0), _largest(left)
-        self.shift *= self._eased(before)
+        self.fall = max(before.energy - self.judged.energy, 0.0)
+        fell = self.judged.largest < QUICK * before.largest
+        self.shift *= self._eased(fell)
         if self.shift < LEAST_SHIFT:
             self.shift = 0.0
-        self.quick = length >= 1.0 and self.largest < QUICK * before
-        return bool(self.largest < QUICK * before or self.fall > WORTH * (taken + self.fall))
+        self.quick = self.length >= 1.0 and fell
+        return fell or self.fall > WORTH * (taken + self.fall)
 
-    def _eased(self, before: float) -> float:
+    def _eased(self, fell: bool) -> float:
         """By how much the next shift is smaller or larger. One that is small stays while forces fall quickly."""
         if self.length < 1.0:
             return 1.0 if self.length >= 0.5 else 4.0
         if self.bent:
             return 0.5
-        return 1.0 if self.shift <= GENTLE and self.largest < QUICK * before else 0.1
+        return 1.0 if self.shift <= GENTLE and fell else 0.1
 
-    def _judge(self) -> tuple[float, Floats]:
+    def _judge(self) -> Judged:
         self.work += 1.0
         f, _, energies = self.system.evaluate(self.state)
-        return float(energies.sum()), f * self.state.free
+        f *= self.state.free
+        return Judged(float(energies.sum()), f, float(lengths(f).max(initial=0.0)))
 
     def _direction(self, forces: Floats) -> Floats | None:
         """Where to go: by the last tangent while the shape is calm, else by its own, or that of a net in which nothing
@@ -248,27 +256,28 @@ class Step:
         self.cut = self.ready.steps - steps >= self.most
         return direction
 
-    def _search(
-        self, start: Floats, direction: Floats, energy: float, slope: float, before: float
-    ) -> tuple[float, float, Floats]:
+    def _search(self, start: Floats, before: Judged) -> float:
         """How far to go: on while energy falls, back until it falls enough or the largest force halves."""
-        state, length = self.state, 1.0
-        state.x[:] = start + direction
-        now, left = self._judge()
+        length, slope = 1.0, float((before.forces * self.direction).sum())
+        now = self._at(start, length)
         while self.shift >= 0.1 and length < 64.0:
-            state.x[:] = start + 2.0 * length * direction
-            further, forces = self._judge()
-            if not further < now:
-                state.x[:] = start + length * direction
+            further = self._at(start, 2.0 * length)
+            if not further.energy < now.energy:
+                self.state.x[:] = start + length * self.direction
                 break
-            length, now, left = 2.0 * length, further, forces
+            length, now = 2.0 * length, further
         while length > 1e-3:
-            if np.isfinite(now) and (now <= energy - 1e-4 * length * slope or _largest(left) < 0.5 * before):
-                return length, now, left
+            falls = now.energy <= before.energy - 1e-4 * length * slope or now.largest < 0.5 * before.largest
+            if np.isfinite(now.energy) and falls:
+                self.judged = now
+                return length
             length *= 0.5
-            state.x[:] = start + length * direction
-            now, left = self._judge()
-        return 0.0, energy, left
+            now = self._at(start, length)
+        return 0.0
+
+    def _at(self, start: Floats, length: float) -> Judged:
+        self.state.x[:] = start + length * self.direction
+        return self._judge()
 
 
 def suits(system: System) -> bool:
@@ -339,8 +348,3 @@ def _densities(system: System, state: State) -> tuple[NDArray[np.int64], Floats]
             pairs.append(index)
             found.append(p[:, 0] * (1.0 - rest / np.where(length > 0.0, length, 1.0)))
     return np.concatenate(pairs), np.concatenate(found)
-
-
-def _largest(forces: Floats) -> float:
-    """The largest force (n, 3) on a particle."""
-    return float(lengths(forces).max(initial=0.0))
