@@ -39,6 +39,29 @@ def test_an_anchor_is_dragged_and_the_form_follows(studio: Studio):
     assert service.summary(key)["undo"] == 1  # a gesture is one edit
 
 
+WATCHED = """() => {
+    window.missing = 0;
+    const look = () => {
+        if (!window.hookean.project(0)) window.missing += 1;
+        window.watching = setTimeout(look);
+    };
+    look();
+}"""
+
+
+def test_what_is_drawn_can_be_taken_at_any_moment(studio: Studio):
+    """While anchors and loads are read anew after an edit too: a press on nothing would turn the view instead."""
+    key = studio.choose(CABLE)
+    studio.press("Play")
+    studio.page.evaluate(WATCHED)
+    for _ in range(3):
+        studio.drag(0, 60, 40)
+        studio.settled()
+        studio.press("Undo")
+        studio.until(lambda: studio.service.summary(key)["undo"] == 0)
+    assert studio.page.evaluate("() => (clearTimeout(window.watching), window.missing)") == 0
+
+
 def test_pause_step_undo_redo_and_reset(studio: Studio):
     """Each does in the service what its name says, and the page shows it."""
     key, service = studio.choose(CABLE), studio.service

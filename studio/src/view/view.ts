@@ -46,6 +46,8 @@ class Drawing implements View {
   private readonly undo: (() => void)[] = [];
   private frame: Frame | null = null;
   private drawn: Frame | null = null;
+  /** Whether what is drawn of that frame is of before anchors or loads have changed. */
+  private outdated = false;
   private fitted = false;
   /** Nobody has chosen yet from where to look; then the eye follows a form that leaves the picture. */
   private untouched = false;
@@ -211,7 +213,7 @@ class Drawing implements View {
       effect(() => {
         picture.hold(session.anchors.value);
         this.dressed = 0;
-        this.drawn = null;
+        this.outdated = true;
         this.ask();
       }),
       effect(() => {
@@ -220,7 +222,7 @@ class Drawing implements View {
         if (!topology) return;
         picture.bear(acting(topology, value));
         this.dressed = 0;
-        this.drawn = null;
+        this.outdated = true;
         this.ask();
       }),
       effect(() => {
@@ -303,7 +305,7 @@ class Drawing implements View {
     if (!frame || frame.positions.length !== 3 * (picture.form?.particles ?? -1)) return false;
     // an edit is acknowledged and its first frame is on its way
     if (frame.revision < stats.revisionAcknowledged || stage.renderer.getContext().isContextLost()) return false;
-    if (this.drawn !== frame) this.upload(frame);
+    if (this.drawn !== frame || this.outdated) this.upload(frame);
     this.survey(frame, finely);
     this.dress();
     if (!this.fitted) this.begin(frame);
@@ -329,8 +331,9 @@ class Drawing implements View {
     const began = performance.now();
     this.picture.put(frame);
     note(stats.uploadMilliseconds, performance.now() - began);
-    if (!this.drawn) this.picture.survey(frame);
+    if (!this.drawn || this.outdated) this.picture.survey(frame);
     this.drawn = frame;
+    this.outdated = false;
   }
 
   /** Now and then: how large all is, and which numbers occur. */
