@@ -24,9 +24,10 @@ def widened(starts: Ints, columns: Ints, chosen: Chosen, rings: int) -> Chosen:
 
     n = len(chosen)
     half = sparse.csr_matrix((np.ones(len(columns), np.int8), columns, starts), shape=(n, n))
-    near = half + half.T
+    back = half.T
     for _ in range(rings):
-        chosen = (near @ chosen.astype(np.int32)) > 0
+        now = chosen.astype(np.int32)
+        chosen = (half @ now + back @ now) > 0
     return chosen
 
 
