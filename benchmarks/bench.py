@@ -257,6 +257,7 @@ def main() -> None:
         name, size, shape = given.child
         child(name, int(size), Path(shape), given.most)
         return
+    here = machine()
     peers, said = available(given.shared)
     parts: list[str] = []
     table: list[page.Row] = []
@@ -271,11 +272,11 @@ def main() -> None:
     if starts is not None:
         parts.append(page.started(starts))
     notes = "\n".join(f"- {line.rstrip('.')}." for line in dict.fromkeys(said))
-    text = "\n\n".join(["# Benchmark", machine() + ".", (__doc__ or "").split("\n\n", 1)[1].strip(), *parts, notes])
+    text = "\n\n".join(["# Benchmark", here + ".", (__doc__ or "").split("\n\n", 1)[1].strip(), *parts, notes])
     given.out.write_text(text + "\n", encoding="utf-8")
     print(text)
     if given.readme is not None:
-        page.put(given.readme, page.short(table, steps, starts, machine()))
+        page.put(given.readme, page.short(table, steps, starts, here))
 
 
 if __name__ == "__main__":
