@@ -39,15 +39,26 @@ def lighten(starts, columns, values, mirror, scale, high, low, inverse):  # type
         inverse[i, 6] = inverse[i, 9] = (b * c - a * e) * unit
         inverse[i, 10] = (a * d - b * b) * unit if m[8] != 0.0 else 0.0
         for s in range(starts[i] + 1, starts[i + 1]):
-            for u in range(3):
-                for v in range(3):
-                    high[k, 4 * v + u] = scale * values[s, 3 * u + v]
+            a, b, c, d, e, f, p, q, r = scaled(values, s, scale)
+            high[k, 0], high[k, 1], high[k, 2] = a, d, p
+            high[k, 4], high[k, 5], high[k, 6] = b, e, q
+            high[k, 8], high[k, 9], high[k, 10] = c, f, r
             k += 1
     for t in range(mirror.shape[0]):
-        for u in range(3):
-            for v in range(3):
-                low[t, 4 * v + u] = scale * values[mirror[t], 3 * v + u]
+        a, b, c, d, e, f, p, q, r = scaled(values, mirror[t], scale)
+        low[t, 0], low[t, 1], low[t, 2] = a, b, c
+        low[t, 4], low[t, 5], low[t, 6] = d, e, f
+        low[t, 8], low[t, 9], low[t, 10] = p, q, r
     return True
+
+
+@device
+def scaled(values: Any, block: Any, scale: Any) -> Any:
+    """The nine numbers of a block, read before any is written: so they can be vectors of the processor."""
+    k = np.uint64(block)
+    a, b, c = scale * values[k, 0], scale * values[k, 1], scale * values[k, 2]
+    d, e, f = scale * values[k, 3], scale * values[k, 4], scale * values[k, 5]
+    return a, b, c, d, e, f, scale * values[k, 6], scale * values[k, 7], scale * values[k, 8]
 
 
 @device
@@ -138,15 +149,16 @@ def find_products(  # type: ignore[no-untyped-def]
                 turned = s < below
                 block = np.uint64(mirror[low_starts[i] + s] if turned else starts[i] + s - below)
                 j = np.uint64(low_columns[low_starts[i] + s] if turned else columns[block])
-                for u in range(p_starts[j], p_starts[j + np.uint64(1)]):
-                    column = np.uint64(p_columns[np.uint64(u)])
-                    if column >= np.uint64(row):
-                        q = np.uint64(place[column] + turned)
-                        if not counted:
-                            k = np.uint64(ends[q])
-                            blocks[k] = block
-                            weights[k] = np.float64(r_values[t]) * p_values[np.uint64(u)]
-                        ends[q] += 1
+                for u in range(p_starts[j + np.uint64(1)] - 1, p_starts[j] - 1, -1):
+                    column = p_columns[np.uint64(u)]
+                    if column < row:
+                        break  # they are sorted
+                    q = np.uint64(place[np.uint64(column)] + turned)
+                    if not counted:
+                        k = np.uint64(ends[q])
+                        blocks[k] = block
+                        weights[k] = np.float64(r_values[t]) * p_values[np.uint64(u)]
+                    ends[q] += 1
 
 
 def coarsen(values, ends, blocks, weights, coarse):  # type: ignore[no-untyped-def]

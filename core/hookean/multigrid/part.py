@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean import kernels
 from hookean.forces import Block
 from hookean.state import State
 from hookean.system import Group, System
@@ -20,15 +21,22 @@ Chosen = NDArray[np.bool_]
 
 def widened(starts: Ints, columns: Ints, chosen: Chosen, rings: int) -> Chosen:
     """The chosen particles (n,) and those within some rings of neighbours, in a pattern of blocks."""
-    import scipy.sparse as sparse
-
-    n = len(chosen)
-    half = sparse.csr_matrix((np.ones(len(columns), np.int8), columns, starts), shape=(n, n))
-    back = half.T
     for _ in range(rings):
-        now = chosen.astype(np.int32)
-        chosen = (half @ now + back @ now) > 0
+        wider = chosen.copy()
+        kernels.compiled(widen)(starts, columns, chosen, wider)
+        chosen = wider
     return chosen
+
+
+def widen(starts, columns, chosen, wider):  # type: ignore[no-untyped-def]
+    """Add the neighbours of the chosen ones to `wider`."""
+    for i in range(starts.shape[0] - 1):
+        for s in range(starts[i] + 1, starts[i + 1]):
+            j = columns[s]
+            if chosen[i]:
+                wider[j] = True
+            if chosen[j]:
+                wider[i] = True
 
 
 def cut(system: System, state: State, moving: Chosen) -> tuple[System, State, NDArray[np.int64]]:
