@@ -38,6 +38,8 @@ export class Session {
   private readonly waiting = new Map<number, Waiting>();
   private readonly watchers = new Set<(frame: Frame) => void>();
   private orders = 0;
+  private pauses = 0;
+  private pausing = 0; // those that are not answered yet
   private tag: string | null = null;
   private topologyTag: string | null = null;
   private acknowledged = 0;
@@ -65,17 +67,18 @@ export class Session {
   }
 
   /** Make an edit. A form at rest goes on, one that was paused by hand stays paused. Rejects with Refused. */
-  async edit(patch: Patch): Promise<Summary> {
-    const goes = this.goes();
-    const made = await this.order({ edit: patch });
-    return goes && !made.playing ? this.order({ do: "play" }) : made;
+  edit(patch: Patch): Promise<Summary> {
+    return this.change({ edit: patch });
   }
 
   /** Play, pause, step, reset, undo or redo. Rejects with Refused. */
   async act(action: Action, options: { frames?: number; fast?: boolean } = {}): Promise<Summary> {
-    const goes = (action === "undo" || action === "redo") && this.goes();
-    const made = await this.order({ do: action, ...options });
-    return goes && !made.playing ? this.order({ do: "play" }) : made;
+    const order = { do: action, ...options };
+    if (action === "undo" || action === "redo") return this.change(order);
+    if (action !== "pause" && action !== "step") return this.order(order);
+    this.pauses += 1;
+    this.pausing += 1;
+    return this.order(order).finally(() => (this.pausing -= 1));
   }
 
   /** Edit or act for a control: what is refused is said instead of thrown. */
@@ -101,10 +104,18 @@ export class Session {
     this.watchers.clear();
   }
 
-  /** Whether it goes on, or has come to its end: all but what a hand has paused. */
+  /** Change the form, and go on if it did, unless a hand stops it meanwhile. */
+  private async change(order: Order): Promise<Summary> {
+    const goes = this.goes();
+    const pauses = this.pauses;
+    const made = await this.order(order);
+    return goes && !made.playing && pauses === this.pauses ? this.order({ do: "play" }) : made;
+  }
+
+  /** Whether it goes on, or has come to its end: all but what a hand has paused, or is about to. */
   private goes(): boolean {
     const now = this.summary.value;
-    return now !== null && (now.playing || now.status !== "running");
+    return now !== null && !this.pausing && (now.playing || now.status !== "running");
   }
 
   private connect(): void {

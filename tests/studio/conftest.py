@@ -9,10 +9,8 @@ from typing import Any
 
 import pytest
 
-playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-
-from .browser import FLAGS, Studio, context  # noqa: E402
-from .service import Service  # noqa: E402
+from .browser import FLAGS, Studio, context
+from .service import Service
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 BUILT = Path(__file__).parents[2] / "server" / "hookean_server" / "page" / "index.html"
@@ -30,6 +28,7 @@ def chromium() -> str:
 
 @pytest.fixture(scope="module")  # while it is open, Playwright keeps the loop of this thread from tests of other files
 def browser(chromium: str) -> Iterator[Any]:
+    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
     with playwright.sync_playwright() as driver:
         found = driver.chromium.launch(executable_path=chromium, args=FLAGS)
         yield found
