@@ -121,7 +121,7 @@ def test_conjugate_gradients_solve_what_a_direct_solver_solves(axes):
     blocks.settle(state, 0.1)
     assert hierarchy.fill(blocks.values) and hierarchy.coarse
     b = np.random.default_rng(3).normal(size=state.x.shape) * state.free
-    x, _ = solve(hierarchy, b, 1e-10, 500)
+    x, _, _ = solve(hierarchy, b, 1e-10, 500)
     free = np.flatnonzero(state.free.ravel())
     exact = np.zeros(b.size)
     exact[free] = spsolve(sparse_of(blocks, free).tocsc(), b.ravel()[free])
@@ -145,7 +145,24 @@ def test_a_matrix_that_is_not_positive_definite_is_refused():
     _, state, blocks, hierarchy = tangent(net(12, factor=4.0))
     blocks.settle(state, 0.0)
     b = state.free * [0.0, 0.0, 1.0]
-    assert not hierarchy.fill(blocks.values) or solve(hierarchy, b, 1e-8, 400)[0] is None
+    assert not hierarchy.fill(blocks.values) or not solve(hierarchy, b, 1e-8, 400)[2]
+
+
+def test_the_last_step_goes_along_the_first_direction_that_bends_down():
+    """As in Steihaug, SIAM J. Numer. Anal. 20 (1983) 626: what the last step adds has d A d < 0, and goes downhill; the
+    steps before are those of the same matrix. Two smallest eigenvalues are made negative here, the cycle is not."""
+    _, state, blocks, hierarchy = tangent(net(12))
+    blocks.settle(state, 0.1)
+    assert hierarchy.fill(blocks.values)
+    free = state.free.ravel() > 0
+    low = np.linalg.eigvalsh(sparse_of(blocks, free).toarray())
+    blocks.values[blocks.starts[:-1]] -= 0.5 * (low[1] + low[2]) * np.eye(3).ravel()
+    a, b = whole(blocks), np.random.default_rng(2).normal(size=state.x.shape) * state.free
+    x, steps, positive = solve(hierarchy, b, 1e-8, 400)
+    before, all_but_one, positive_before = solve(hierarchy, b, 1e-8, steps - 1)
+    assert (positive, positive_before, all_but_one) == (False, True, steps - 1) and steps > 1
+    d = (x - before).ravel()
+    assert d @ (a @ d) < 0.0 < d @ (b.ravel() - a @ before.ravel())
 
 
 def sliding():
@@ -302,5 +319,5 @@ def test_small_forces_are_solved_as_well_as_large_ones():
     blocks.settle(state, 0.1)
     assert hierarchy.fill(blocks.values)
     b = np.random.default_rng(5).normal(size=state.x.shape) * state.free
-    (large, many), (small, few) = solve(hierarchy, b, 1e-8, 200), solve(hierarchy, 2.0**-200 * b, 1e-8, 200)
+    (large, many, _), (small, few, _) = solve(hierarchy, b, 1e-8, 200), solve(hierarchy, 2.0**-200 * b, 1e-8, 200)
     assert many == few and np.array_equal(small * 2.0**200, large)

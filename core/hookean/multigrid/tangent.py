@@ -76,15 +76,15 @@ class Tangent:
         """Whether a tangent that is positive definite, as far as was seen, is taken up."""
         return self._filled is not None
 
-    def solve(self, b: Floats, part: float, most: int) -> Floats | None:
-        """x (n, 3) of A x = b on free axes, A as taken up, to `part` of b or by `most` steps; None if A is not positive
-        definite."""
-        x, steps = solve(self.hierarchy, b, part, most)
+    def solve(self, b: Floats, part: float, most: int) -> tuple[Floats | None, bool]:
+        """x (n, 3) of A x = b on free axes, A as taken up, to `part` of b or by `most` steps, and whether A is positive
+        definite as far as was seen; see `gradients.solve` for x where it is not."""
+        x, steps, positive = solve(self.hierarchy, b, part, most)
         self.steps += steps
         self.work += steps * (1.0 + self.hierarchy.cycle_work)
-        if x is None:
+        if not positive:
             self._filled = None
-        return x
+        return x, positive
 
     def _gathered(self, state: State) -> Hierarchy:
         alive = np.asarray((state.free > 0.0).any(axis=1))

@@ -3,7 +3,8 @@
 A step solves (K + s L) dx = f on the free axes by conjugate gradients preconditioned by algebraic multigrid: K the
 exact tangent, L the Laplacian of its graph. The shift s is large where the start has no stiffness across itself (a flat
 net) and fades as steps succeed; being a Laplacian it holds smooth motions no more than they need, however fine the
-mesh. Where that is not positive definite, springs that push are taken not to push across themselves. Where Newton steps
+mesh. Where that is not positive definite, the step goes along the direction that shows it, or springs that push are
+taken not to push across themselves; and on along any direction while energy falls about as steeply. Where Newton steps
 crawl, as along edges that crease and fold over, they take turns with relaxation of the particles whose springs turn
 most in a step and those farthest out of balance, among the others, which hold still: a creased strip is soft, and soft
 across few particles is what relaxation is quick at.
@@ -34,6 +35,8 @@ Floats = NDArray[np.float64]
 FIRST_SHIFT, LEAST_SHIFT, LARGEST_SHIFT = 1.0, 1e-8, 1e4
 WORTH = 1e-3  # a Newton step is worth another while it takes this part of the energy that all took
 QUICK = 0.25  # or the largest force to this part
+HELD = 3e-3  # a shift that is no larger fades only where the largest force does not halve
+FAR = 0.7  # a step goes on while energy falls by this part of what its slope at the start promises
 SOLVED = 0.1  # part of the forces that a linear system may leave
 CONJUGATE, MOST = 25, 200  # steps of conjugate gradients in one of them: at first, and where Newton is about to end
 GENTLE = 3e-4  # least shift of steps that take turns with relaxation
@@ -216,19 +219,19 @@ class Step:
             return False
         self.fall = max(before.energy - self.judged.energy, 0.0)
         fell = self.judged.largest < QUICK * before.largest
-        self.shift *= self._eased(fell)
+        self.shift *= self._eased(self.judged.largest < 0.5 * before.largest)
         if self.shift < LEAST_SHIFT:
             self.shift = 0.0
         self.quick = self.length >= 1.0 and fell
         return fell or self.fall > WORTH * (taken + self.fall)
 
-    def _eased(self, fell: bool) -> float:
-        """By how much the next shift is smaller or larger. One that is small stays while forces fall quickly."""
+    def _eased(self, halved: bool) -> float:
+        """By how much the next shift is smaller or larger. One that is small stays while forces are halved."""
         if self.length < 1.0:
             return 1.0 if self.length >= 0.5 else 4.0
         if self.bent:
             return 0.5
-        return 1.0 if self.shift <= GENTLE and fell else 0.1
+        return 1.0 if self.shift <= HELD and halved else 0.1
 
     def _judge(self) -> Judged:
         self.work += 1.0
@@ -252,15 +255,16 @@ class Step:
 
     def _solved(self, forces: Floats) -> Floats | None:
         steps = self.ready.steps
-        direction = self.ready.solve(forces, SOLVED, self.most)
+        direction, positive = self.ready.solve(forces, SOLVED, self.most)
+        self.bent |= not positive
         self.cut = self.ready.steps - steps >= self.most
         return direction
 
     def _search(self, start: Floats, before: Judged) -> float:
-        """How far to go: on while energy falls, back until it falls enough or the largest force halves."""
+        """How far to go: on while energy falls steeply, back until it falls enough or the largest force halves."""
         length, slope = 1.0, float((before.forces * self.direction).sum())
         now = self._at(start, length)
-        while self.shift >= 0.1 and length < 64.0:
+        while length < 64.0 and before.energy - now.energy > FAR * length * slope:
             further = self._at(start, 2.0 * length)
             if not further.energy < now.energy:
                 self.state.x[:] = start + length * self.direction
