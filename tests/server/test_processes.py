@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import http.client
 import os
 import signal
 import socket
@@ -189,6 +190,17 @@ def test_a_client_that_leaves_in_the_middle_of_its_body(alone: Served) -> None:
         wait_for(lambda: alone.health()["requests"]["taken"] == 1)
     wait_for(lambda: alone.health()["requests"]["taken"] == 0)
     assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
+
+
+def test_a_connection_is_kept_longer_than_clients_keep_it(served: Served) -> None:
+    """httpx gives one up after 5 s without a request. A server that did so at the same moment would end connections
+    just as requests go down them, which then come to nothing."""
+    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=20)
+    for pause in (6.0, 0.0):
+        connection.request("GET", "/v1/health", headers={"Connection": "keep-alive"})
+        assert connection.getresponse().read()
+        time.sleep(pause)
+    connection.close()
 
 
 @pytest.mark.parametrize(
