@@ -15,10 +15,10 @@ run: .venv/run
 	@$(BIN)/hookean serve --port $(PORT)
 
 test: .venv/test lint
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 soak: .venv/test
-	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile
 
 bench: .venv/test
 	$(BIN)/python benchmarks/run.py $(if $(wildcard ../shared/bench),--shared ../shared/bench) \

@@ -42,7 +42,7 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
         http=Connection,
         h11_max_incomplete_event_size=2 * settings.header_limit,
         timeout_graceful_shutdown=1,
-        timeout_keep_alive=75,  # longer than clients do: a request down a connection that just ended is lost
+        timeout_keep_alive=16,  # longer than clients do: a request down a connection that just ended is lost
         lifespan="on",
     )
     server = Server(config, app)
