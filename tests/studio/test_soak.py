@@ -17,10 +17,10 @@ DRAGS = 100 if SOAK else 8
 """In one life of the page; then it is loaded anew."""
 FRAME = 4 * (3 * SIDE**2 + 2 * SIDE * (SIDE - 1) + 3 * 4)
 """Bytes of one frame's numbers: positions, forces of springs, reactions."""
-KEPT = (25 if SOAK else 14) * FRAME
+KEPT = (20 if SOAK else 14) * FRAME
 """Bytes that a life may grow by: for code that is compiled while it runs (1.6 MB by the hundredth drag, nothing after),
 a minute of charts and the text of a scene on its way (1.4 MB). A drag has some 25 frames: two left behind by each, in a
-long life one by each fourth, are more."""
+long life one by each fifth, are more."""
 
 CONTEXTS = """() => {
     window.contexts = 0;
