@@ -201,7 +201,10 @@ def hold(state: State, anchor: Held) -> None:
 
 
 def compile(scene: Scene) -> System:
-    """Compile a scene; InputError where parts of it do not fit together."""
+    """Compile a scene; InputError where parts of it do not fit together, or where it is none."""
+    if not isinstance(scene, Scene):
+        said = f"a Scene is wanted, not a {type(scene).__name__}; make one with hookean.Scene.read(...)"
+        raise InputError("scene", said)
     welded = Welded(scene)
     x = welded.x
     if not len(x):

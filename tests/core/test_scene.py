@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hookean import InputError, Scene
+from hookean import InputError, Scene, relax
 from hookean.units import Units
 
 EXAMPLE = {
@@ -200,3 +200,10 @@ def test_one_vector_is_one_value_whatever_its_name():
     for wrong in ({"blow": [[1, 0, 0]] * 3}, {"gusts": [1, 2, 3]}):
         with pytest.raises(InputError, match="3 values for 2 elements"):
             fits(Wind(**given, **wrong), "/forces/0", places)
+
+
+@pytest.mark.parametrize("wrong", [{"particles": [[0, 0, 0]]}, '{"particles": []}', None])
+def test_what_is_no_scene_is_told_how_to_become_one(wrong):
+    """The JSON that the service takes is one step away from a scene: the sentence says which."""
+    with pytest.raises(InputError, match=rf"scene: a Scene is wanted, not a {type(wrong).__name__}; .*Scene\.read"):
+        relax(wrong)
