@@ -52,6 +52,7 @@ class Tangent:
         state.scratch["gathering"] = np.array([self.steps, self._due])
         state.scratch["filling"] = np.array([self._shift, self._pulling])
         for name, shape in (("gathered", self._shape), ("filled", self._filled)):
+            state.scratch.pop(name, None)
             if shape is not None:
                 state.scratch[name] = shape
 
@@ -59,7 +60,7 @@ class Tangent:
         """Take up K + shift L; False if that is not positive definite. K is the tangent of the state, as if no spring
         pushed across itself where `pulling`, L the Laplacian of the tangent's graph at the start."""
         self.blocks.fill(system, state, pulling=pulling)
-        if self.steps >= self._due:
+        if self.steps >= self._due and not pulling:
             self._due *= LATER
             found = self._gathered(state) if self.blocks.pushing() > PUSHED else None
             if found is not None and found.coarse:

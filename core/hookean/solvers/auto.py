@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from hookean.balance import balance
 from hookean.solvers import _complementary, force_density, multilevel, newton, relaxation
 from hookean.solvers.base import Solver
 
@@ -104,7 +105,7 @@ class Method(Solver):
         """Newton steps by multigrid, where they lead to the shape of least energy; else relaxation from the start."""
         self._use("multilevel")
         done = self._multilevel.advance(system, state, min(count, self._multilevel.longest), goal)
-        found = self._multilevel.largest <= goal
+        found = balance(system, state).met(system.scene.settings.tolerance)  # as the run is judged
         if found and len(state.x) >= MANY:
             self.remark = "" if multilevel.pulled(system, state) else CREASED
         elif found and not multilevel.lowest(system, state):

@@ -36,6 +36,7 @@ FIRST_SHIFT, LEAST_SHIFT, LARGEST_SHIFT = 1.0, 1e-8, 1e4
 WORTH = 1e-3  # a Newton step is worth another while it takes this part of the energy that all took
 QUICK = 0.25  # or the largest force to this part
 HELD = 3e-3  # a shift that is no larger fades only where the largest force does not halve
+ROUNDING = 1e-13  # part of the energies that their sums may be off by
 FAR = 0.7  # a step goes on while energy falls by this part of what its slope at the start promises
 SOLVED = 0.1  # part of the forces that a linear system may leave
 CONJUGATE, MOST = 25, 200  # steps of conjugate gradients in one of them: at first, and where Newton is about to end
@@ -81,8 +82,8 @@ class Method(Solver):
         state.scratch["calm"] = np.zeros(1)
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
-        """At most `count` iterations: each a Newton step with what relaxes after it, or an iteration of relaxation; of
-        a large net one or two, so that a run can be judged and stopped in between."""
+        """At most `count` iterations: each a Newton step with what relaxes after it, or an iteration of relaxation; the
+        fewer the larger the net, so that a run can be judged and stopped in between."""
         ready = self._readied(system, state)
         self._judged = None
         several, done = min(count, max(1, BURST // len(state.x))), 0
@@ -92,7 +93,7 @@ class Method(Solver):
                 relaxed = self._relaxation.advance(system, state, min(count - done, int(left) or count), goal)
                 self.work += relaxed
                 state.scratch["all"][0] = left - relaxed if relaxed and left else 0.0
-                return done + max(relaxed, 1)
+                return done + (max(relaxed, 1) if ready.hierarchy.coarse else relaxed)
             self._step(system, state, goal)
             done += 1
         return done
@@ -169,7 +170,7 @@ class Method(Solver):
         state.scratch.update({name: value for name, value in kept.items() if name not in state.scratch})
         state.scratch["calm"][0] = 0.0
         budget = state.scratch["all"][1]
-        state.scratch["all"] = np.array([budget, 1.5 * budget])
+        state.scratch["all"] = np.array([budget, np.ceil(1.5 * budget)])
         state.scratch["turns"][2:] = 0.0, np.inf
 
     def _readied(self, system: System, state: State) -> Tangent:
@@ -181,9 +182,11 @@ class Method(Solver):
 
 
 class Judged(NamedTuple):
-    """What is known of a shape: its energy [force length], what is out of balance (n, 3) [force] and the largest."""
+    """What is known of a shape: its energy and what of it may be rounding [force length], what is out of balance (n, 3)
+    [force] and the largest."""
 
     energy: float
+    noise: float
     forces: Floats
     largest: float
 
@@ -196,7 +199,7 @@ class Step:
         self.system, self.state, self.ready, self.shift, self.most = system, state, ready, shift, most
         self.work, self.fall, self.length = 0.0, 0.0, 0.0
         self.direction = np.zeros_like(state.x)
-        self.bent = False  # whether a direction of negative curvature was met
+        self.bent = False  # whether a tangent was seen not to be positive definite
         self.cut = False  # whether conjugate gradients ended before they were done
         self.calm, self.quick = calm, False  # whether the last tangent does; whether the largest force fell well
 
@@ -237,11 +240,12 @@ class Step:
         self.work += 1.0
         f, _, energies = self.system.evaluate(self.state)
         f *= self.state.free
-        return Judged(float(energies.sum()), f, float(lengths(f).max(initial=0.0)))
+        noise = ROUNDING * float(np.abs(energies).sum())
+        return Judged(float(energies.sum()), noise, f, float(lengths(f).max(initial=0.0)))
 
     def _direction(self, forces: Floats) -> Floats | None:
-        """Where to go: by the last tangent while the shape is calm, else by its own, or that of a net in which nothing
-        pushes across; with the smallest shift tried that makes one of them positive definite."""
+        """Where to go: by the last tangent while the shape is calm, else by its own, also along a direction that bends
+        down; where that gives none, by that of a net in which nothing pushes across, and with larger shifts."""
         if self.calm and self.ready.ready and (direction := self._solved(forces)) is not None:
             return direction
         while self.shift <= LARGEST_SHIFT:
@@ -264,14 +268,15 @@ class Step:
         """How far to go: on while energy falls steeply, back until it falls enough or the largest force halves."""
         length, slope = 1.0, float((before.forces * self.direction).sum())
         now = self._at(start, length)
-        while length < 64.0 and before.energy - now.energy > FAR * length * slope:
+        while length < 64.0 and before.energy - now.energy > FAR * length * slope + before.noise:
             further = self._at(start, 2.0 * length)
             if not further.energy < now.energy:
                 self.state.x[:] = start + length * self.direction
                 break
             length, now = 2.0 * length, further
         while length > 1e-3:
-            falls = now.energy <= before.energy - 1e-4 * length * slope or now.largest < 0.5 * before.largest
+            falls = now.energy <= before.energy - 1e-4 * length * slope + before.noise
+            falls = falls or now.largest < 0.5 * before.largest
             if np.isfinite(now.energy) and falls:
                 self.judged = now
                 return length
