@@ -19,7 +19,8 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from hookean.errors import InputError
 from hookean.files.scene_json import parse
 from hookean_server.problems import Problem
-from hookean_server.sessions.manager import Live, Manager, summary
+from hookean_server.sessions.live import Live, summary
+from hookean_server.sessions.manager import Manager
 from hookean_server.sessions.wire import VERSION
 
 router = APIRouter()
@@ -41,16 +42,20 @@ async def frames(socket: WebSocket, key: str) -> None:
             await socket.close(CLOSED.get(problem.slug, 1011), problem.detail[:120])
         return
     try:
-        await socket.accept()
-    except (OSError, WebSocketDisconnect):
-        return  # the client has left already
-    live.watchers += 1
+        with suppress(OSError, WebSocketDisconnect):  # the client may have left already
+            await socket.accept()
+            await _served(socket, sessions, live)
+    finally:
+        live.watchers -= 1
+
+
+async def _served(socket: WebSocket, sessions: Manager, live: Live) -> None:
+    """Until either side ends it."""
     client = _Client(socket, sessions, live)
     tasks = [asyncio.create_task(client.send()), asyncio.create_task(client.receive())]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
-        live.watchers -= 1
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)

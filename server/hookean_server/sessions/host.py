@@ -184,9 +184,11 @@ class Host:
         return self._described(), b""
 
     def do_play(self, head: dict[str, Any], body: bytes) -> Reply:
-        """Step on by itself; `fast` as quickly as it can, else `sub_iterations` for each of 60 frames a second."""
+        """Step on by itself; `fast` as quickly as it can, else `sub_iterations` for each of 60 frames a second; a
+        `step` under way ends."""
         simulation = self._simulation()
-        self.playing, self.fast, self.owed = True, bool(head.get("fast")), 0
+        self.playing, self.fast, self.owed, self.left = True, bool(head.get("fast")), 0, 0
+        self._stepped()
         if simulation.status is Status.DIVERGED:
             self.playing = False
         self.due = time.monotonic()

@@ -8,12 +8,12 @@ import secrets
 import time
 from collections.abc import Coroutine, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
 from typing import Any
 
 from hookean_server.logs import short_hash
 from hookean_server.problems import Problem
 from hookean_server.sessions import rows
+from hookean_server.sessions.live import Live
 from hookean_server.sessions.process import Gone, SessionProcess
 from hookean_server.settings import Settings
 from hookean_server.store import Store
@@ -25,41 +25,6 @@ PAUSE = 1.5  # seconds it may take to pause, before it is killed and brought bac
 TICK = 15.0  # seconds between looks at what to put to sleep and to forget
 LOSSES, WITHIN = 3, 60.0  # a session that loses its process so often in so many seconds stays down until it is used
 MANY_EDITS = 400  # after so many the store gets a new base
-
-
-@dataclass(eq=False)
-class Live:
-    """One session as the server knows it. `described` is how it stood when its process last said so."""
-
-    key: str
-    label: str
-    described: dict[str, Any]
-    notes: list[str] = field(default_factory=list)  # on the file it was made of
-    lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # of edits, which have an order
-    waking: asyncio.Lock = field(default_factory=asyncio.Lock)
-    process: SessionProcess | None = None
-    playing: bool = False
-    fast: bool = False
-    watchers: int = 0
-    frame: bytes = b""
-    frame_number: int = 0
-    asked: bool = False
-    topology: str = ""
-    news: asyncio.Event = field(default_factory=asyncio.Event)
-    used: float = field(default_factory=time.monotonic)
-    losses: list[float] = field(default_factory=list)
-    edits: int = 0
-
-    def tell(self) -> None:
-        """Wake everyone who waits for news."""
-        self.news.set()
-        self.news = asyncio.Event()
-
-    def want_frame(self) -> None:
-        """Ask the process for its next frame, once."""
-        if self.process is not None and not self.asked:
-            self.asked = True
-            self.process.credit()
 
 
 class Manager:
@@ -139,16 +104,16 @@ class Manager:
 
     async def _edit(self, live: Live, body: bytes, revision: int | None) -> dict[str, Any]:
         async with live.lock:
-            described, made = await self._ask(
+            process, described, made = await self._ask(
                 live, "edit", body, seconds=ANSWER, revision=revision, slug="invalid-input"
             )
-            process = await self._awake(live)
             sets = described.pop("sets", "")
-            try:
-                live.edits = await self.store.run(rows.edit(live.key, described["revision"], sets, made))
-            except Problem:
-                await self._revert(live, process)
-                raise
+            async with live.waking:  # one that is lost meanwhile comes back with this edit
+                try:
+                    live.edits = await self.store.run(rows.edit(live.key, described["revision"], sets, made))
+                except Problem:
+                    await self._revert(live, process)
+                    raise
             self._heard(live, described)
             if live.edits > MANY_EDITS:
                 with suppress(Problem):  # the edit is stored; the next one tries again
@@ -162,18 +127,18 @@ class Manager:
             return await self._pause(live)
         async with live.lock:
             await self._awake(live)
-            if do == "play":
-                live.playing, live.fast = True, bool(options.get("fast"))
+            live.playing, live.fast = do == "play", bool(options.get("fast"))
         seconds = self.settings.solve_seconds if do == "step" else ANSWER
-        described, _ = await self._ask(live, do, seconds=seconds, **options)
+        _, described, _ = await self._ask(live, do, seconds=seconds, **options)
         self._heard(live, described)
-        live.playing = live.playing and do == "play" and described["playing"]
+        if do == "play":
+            live.playing = live.playing and described["playing"]
         return live.described
 
     async def export(self, key: str, form: str, arrays: str = "list") -> tuple[dict[str, Any], bytes]:
         """The session in some format; its head has the media `type`."""
-        live = self.find(key)
-        return await self._ask(live, "export", seconds=ANSWER, format=form, arrays=arrays)
+        _, head, body = await self._ask(self.find(key), "export", seconds=ANSWER, format=form, arrays=arrays)
+        return head, body
 
     async def branch(self, key: str, new: str | None, label: str) -> Live:
         """Another session that goes on from where this one is, paused."""
@@ -202,22 +167,28 @@ class Manager:
             live.tell()
 
     async def watch(self, key: str) -> Live:
-        """A session whose frames somebody wants to see: awake."""
+        """A session whose frames somebody wants to see: awake, with one watcher more; raises Problem."""
         live = self.find(key)
-        async with live.lock:
-            await self._awake(live)
+        live.watchers += 1
+        try:
+            async with live.lock:
+                await self._awake(live)
+        except BaseException:
+            live.watchers -= 1
+            raise
         return live
 
     # processes
 
     async def _ask(
         self, live: Live, do: str, body: bytes = b"", *, seconds: float, **head: Any
-    ) -> tuple[dict[str, Any], bytes]:
-        """What the session's process answers; one that ends meanwhile is brought back and asked once more."""
+    ) -> tuple[SessionProcess, dict[str, Any], bytes]:
+        """What the session's process answers, and which one it was; one that ends meanwhile is brought back and asked
+        once more."""
         for last in (False, True):
             process = await self._awake(live)
             try:
-                return await process.call(do, body, seconds=seconds, **head)
+                return process, *await process.call(do, body, seconds=seconds, **head)
             except Gone:
                 if last:
                     raise
@@ -249,13 +220,16 @@ class Manager:
     async def _process(self, live: Live) -> SessionProcess:
         if self.closing:
             raise Problem("shutting-down", "The service is shutting down; start it again and repeat the request.")
-        awake = [other for other in self.sessions.values() if other.process is not None]
-        if len(awake) >= self.settings.awake:
-            resting = [o for o in awake if not o.playing and not o.watchers and not o.lock.locked()]
+        while len(awake := [other for other in self.sessions.values() if other.process is not None]) >= (
+            self.settings.awake
+        ):
+            resting = [other for other in awake if other.rests]
             if not resting:
                 said = f"{len(awake)} sessions are running or being watched; pause one, or come back later."
                 raise Problem("busy", said, headers={"retry-after": "5"})
-            await self._sleep(min(resting, key=lambda o: o.used), PAUSE, unsaved=False)
+            other = min(resting, key=lambda o: o.used)
+            async with other.lock:  # who wants it meanwhile waits, and wakes it again
+                await self._sleep(other, PAUSE, unsaved=False)
         loop = asyncio.get_running_loop()
 
         def on_event(head: dict[str, Any], body: bytes) -> None:
@@ -345,11 +319,12 @@ class Manager:
             described, base = await process.call("replace", body, seconds=ANSWER, slug="invalid-scene")
             if not described.pop("same", False):
                 notes = live.notes if notes is None else notes
-                try:
-                    await self.store.run(rows.put(live.key, label or live.label, base, described, notes))
-                except Problem:
-                    await self._revert(live, process)
-                    raise
+                async with live.waking:
+                    try:
+                        await self.store.run(rows.put(live.key, label or live.label, base, described, notes))
+                    except Problem:
+                        await self._revert(live, process)
+                        raise
                 live.notes = notes
                 live.topology = secrets.token_hex(8)
                 live.edits = 0
@@ -409,8 +384,7 @@ class Manager:
             now = time.monotonic()
             awake = [live for live in self.sessions.values() if live.process is not None]
             for live in awake:
-                unused = not live.playing and not live.watchers and not live.lock.locked()
-                if unused and now - live.used > self.settings.sleep_seconds:
+                if live.rests and now - live.used > self.settings.sleep_seconds:
                     async with live.lock:
                         with suppress(Problem):
                             await self._sleep(live, PAUSE, unsaved=False)
@@ -427,10 +401,3 @@ class Manager:
 _DESCRIBED = ("revision", "iteration", "time", "residual", "status", "message", "particles", "undo", "redo", "playing",
               "energy", "units", "warnings")  # fmt: skip
 _KEPT = ("revision", "iteration", "status", "message", "particles", "created")
-
-
-def summary(live: Live) -> dict[str, Any]:
-    """A session in the answers of routes."""
-    warnings = [*live.notes, *live.described.get("warnings", ())]
-    awake = live.process is not None
-    return {"key": live.key, "label": live.label, **live.described, "warnings": warnings, "awake": awake}

@@ -15,7 +15,8 @@ from hookean_server.handling import read_json, uploaded_scene
 from hookean_server.limits import media_type
 from hookean_server.problems import Problem
 from hookean_server.sessions.exports import FORMATS
-from hookean_server.sessions.manager import Live, Manager, summary
+from hookean_server.sessions.live import Live, summary
+from hookean_server.sessions.manager import Manager
 
 router = APIRouter(tags=["sessions"])
 
