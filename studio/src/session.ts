@@ -137,15 +137,12 @@ export class Session {
   }
 
   private greeted(summary: Summary, tag: string): void {
-    const lost = this.waiting.size;
-    this.lose("");
     // numbers of frames and revisions begin anew with the connection: the service may be another one
     this.acknowledged = stats.revisionAcknowledged = 0;
     this.described = -1;
     if (tag !== this.tag) this.frame = null;
     this.wait = FIRST_WAIT;
     batch(() => {
-      if (lost) this.said.value = `The connection was lost with ${lost} edits on their way; check that they are there.`;
       this.connection.value = "live";
       this.stands(summary, tag);
     });
@@ -194,6 +191,7 @@ export class Session {
       this.said.value = error instanceof Error ? error.message : String(error);
       this.connection.value = "broken";
       this.socket?.close();
+      this.lose(this.said.value);
       return;
     }
     note(stats.decodeMilliseconds, performance.now() - began);
@@ -228,7 +226,8 @@ export class Session {
   private order(order: Order): Promise<Summary> {
     return new Promise((resolve, reject) => {
       if (this.socket?.readyState !== WebSocket.OPEN) {
-        reject(new api.Refused(0, "Not done: there is no connection to the service now.", "unreachable"));
+        const broken = this.connection.value === "broken" && this.said.value;
+        reject(new api.Refused(0, broken || "Not done: there is no connection to the service now.", "unreachable"));
         return;
       }
       const id = ++this.orders;

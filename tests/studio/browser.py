@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .service import Service
 
 if TYPE_CHECKING:
-    from playwright.sync_api import BrowserContext, ConsoleMessage, Page, Request, Response
+    from playwright.sync_api import BrowserContext, ConsoleMessage, Page, Request, Response, WebSocketRoute
 
 FLAGS = [
     "--headless",
@@ -191,3 +191,34 @@ def net(side: int) -> dict[str, Any]:
         "anchors": [{"particles": [0, side - 1, side * (side - 1), side * side - 1]}],
         "settings": {"solver": "verlet", "drag": 0, "time_step": 0.01, "max_iterations": 10**9, "tolerance": 0},
     }
+
+
+class Wire:
+    """Between the page, loaded anew, and the frames of its session: what the service tells can be kept back."""
+
+    def __init__(self, studio: Studio) -> None:
+        self.sockets: list[WebSocketRoute] = []
+        self.kept: list[str | bytes] | None = None
+        studio.page.route_web_socket(re.compile("/frames$"), self._between)
+        studio.page.reload()
+        studio.drawing()
+
+    def keep(self) -> None:
+        """Keep back what the service tells from now on."""
+        self.kept = []
+
+    def give(self) -> None:
+        """Tell the page what was kept, and the rest as it comes."""
+        kept, self.kept = self.kept or [], None
+        for told in kept:
+            self.sockets[-1].send(told)
+
+    def cut(self) -> None:
+        """End the connection."""
+        self.sockets[-1].close(code=1011)
+
+    def _between(self, socket: WebSocketRoute) -> None:
+        self.sockets.append(socket)
+        socket.connect_to_server().on_message(
+            lambda told: socket.send(told) if self.kept is None else self.kept.append(told)
+        )

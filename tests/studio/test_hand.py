@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from .browser import Studio
+from .browser import Studio, Wire
 from .service import equilibrium
-
-if TYPE_CHECKING:
-    from playwright.sync_api import WebSocketRoute
 
 CABLE = "9.4-cable"
 
@@ -104,27 +98,17 @@ def test_pause_step_undo_redo_and_reset(studio: Studio):
 def test_a_pause_holds_though_an_edit_overtakes_its_answer(studio: Studio):
     """What is still on its way of a drag, or is typed quickly, does not set going what a hand has just stopped."""
     key, service, page = studio.choose(CABLE), studio.service, studio.page
-    sockets: list[WebSocketRoute] = []
-    kept: list[str | bytes] | None = None
-
-    def between(socket: WebSocketRoute) -> None:
-        sockets.append(socket)
-        socket.connect_to_server().on_message(lambda told: socket.send(told) if kept is None else kept.append(told))
-
-    page.route_web_socket(re.compile("/frames$"), between)
-    page.reload()
-    studio.drawing()
+    wire = Wire(studio)
     studio.press("Play")
     studio.until(lambda: service.summary(key)["playing"])
     page.wait_for_function("() => document.querySelector('[aria-pressed=true]')?.textContent === 'Play'")
-    kept, revision = [], service.summary(key)["revision"]
+    revision = service.summary(key)["revision"]
+    wire.keep()
     studio.press("Pause")
     page.get_by_label("Drag").first.fill("0.25")
     page.keyboard.press("Enter")
     studio.until(lambda: service.summary(key)["revision"] > revision)
-    answers, kept = kept, None
-    for told in answers:
-        sockets[-1].send(told)
+    wire.give()
     studio.settled()
     assert not service.summary(key)["playing"]
 

@@ -45,10 +45,19 @@ CROSSED = """() => {
     const leaves = [...document.querySelectorAll("body *")].filter((one) =>
         one.checkVisibility({ visibilityProperty: true }) && !one.closest(".unseen, .skip, svg, option, dialog") &&
         [...one.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.data.trim()));
+    const seen = ([l, t, r, b], one) => {
+        for (let around = one; around && around !== document.body; around = around.parentElement) {
+            if (getComputedStyle(around).overflow === "visible") continue;
+            const clip = around.getBoundingClientRect();
+            [l, t] = [Math.max(l, clip.left), Math.max(t, clip.top)];
+            [r, b] = [Math.min(r, clip.right), Math.min(b, clip.bottom)];
+        }
+        return [l, t, r, b];
+    };
     const boxes = leaves.map((one) => {
         const range = document.createRange();
         range.selectNodeContents(one);
-        return [...range.getClientRects()].map((box) => [box.left, box.top, box.right, box.bottom]);
+        return [...range.getClientRects()].map((box) => seen([box.left, box.top, box.right, box.bottom], one));
     });
     const within = (one, clip) => one.closest(clip);
     const found = [];
@@ -63,7 +72,7 @@ CROSSED = """() => {
         }
     return found;
 }"""
-"""Words that are written over other words."""
+"""Words that are written over other words, where neither is scrolled away."""
 
 STACKED = """() => {
     const over = [...document.querySelectorAll(".stage > *:not(canvas)")]
@@ -77,9 +86,13 @@ STACKED = """() => {
 
 
 def shown(open_studio: Opened, where: str, size: dict[str, int], theme: str) -> Studio:
-    """The start page, or a session in which all panels are open, something is picked and something warned of."""
+    """The start page with more sessions than it has room for, or a session in which all panels are open, something is
+    picked and something warned of."""
     studio = open_studio(viewport=size, color_scheme=theme, has_touch=size is PHONE)
     if where == "start":
+        for number in range(9):
+            studio.service.put(f"listed{number}", CABLE)
+        studio.page.get_by_text("listed8").wait_for()
         studio.page.get_by_role("heading", name="Figures").wait_for()
         studio.page.locator("img").first.wait_for()
         return studio

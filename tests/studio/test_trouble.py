@@ -10,7 +10,7 @@ import pytest
 
 from serving import CABLE
 
-from .browser import Studio
+from .browser import Studio, Wire
 from .conftest import Opened
 from .service import Service, equilibrium
 
@@ -103,3 +103,42 @@ def test_grasshopper_gives_the_session_another_scene(studio: Studio):
     studio.until(lambda: len(studio.particles()) == 7)
     studio.press("To rest")
     studio.rests_at(equilibrium(longer))
+
+
+def test_what_is_done_before_the_service_greets_again_is_done(studio: Studio):
+    """An anchor is dragged when the connection is there again, and the service's greeting still on its way: the edit
+    counts, and the form goes on to its equilibrium."""
+    service = studio.service
+    service.put("greeted", CABLE)
+    studio.open("greeted")
+    wire = Wire(studio)
+    studio.press("To rest")
+    studio.until(lambda: service.summary("greeted")["status"] == "converged")
+    studio.settled()
+    revision = service.summary("greeted")["revision"]
+    wire.keep()
+    wire.cut()
+    studio.until(lambda: len(wire.sockets) == 2 and wire.kept)
+    studio.drag(0, 40, 30, steps=1)
+    studio.until(lambda: service.summary("greeted")["revision"] > revision)
+    wire.give()
+    studio.until(lambda: service.summary("greeted")["status"] == "converged")
+
+
+def test_a_frame_that_cannot_be_read_is_told_of(studio: Studio):
+    """Also while a drag is under way, whose edits are told the same: the page shows nothing that it has not read."""
+    service, page = studio.service, studio.page
+    service.put("broken", CABLE)
+    studio.open("broken")
+    wire = Wire(studio)
+    revision = service.summary("broken")["revision"]
+    wire.keep()
+    studio.drag(0, 40, 30)
+    studio.until(lambda: service.summary("broken")["revision"] > revision)
+    wire.sockets[-1].send(b"no frame")
+    page.get_by_text("Not readable").wait_for()
+    told = page.get_by_text("a frame that is shorter than its header")
+    told.wait_for()
+    page.wait_for_timeout(500)
+    assert told.is_visible()
+    assert page.get_by_role("button", name="Play").is_disabled()
