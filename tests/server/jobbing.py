@@ -101,7 +101,7 @@ def job_workers(served: Served) -> list[psutil.Process]:
     found = []
     for process in served.workers():
         try:
-            if process.nice() > 0:
+            if process.nice() > psutil.Process().nice():
                 found.append(process)
         except psutil.NoSuchProcess:
             pass
