@@ -191,6 +191,7 @@ def test_ctrl_c_writes_what_was_seen(folder: Path):
     process = subprocess.Popen(
         [sys.executable, "-m", "hookean.cli", "simulate", *arguments],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # shells have jobs in the background ignore it
     )  # fmt: skip
     assert process.stdin is not None
     process.stdin.write(ROWS)

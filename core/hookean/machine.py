@@ -29,8 +29,6 @@ import numpy as np
 Kind = tuple[Any, ...]
 """Types of arguments: (numpy's letter of the type, dimensions) for an array, else `float`, `int` or `bool`."""
 
-_BITS, _REAL = struct.Struct("q"), struct.Struct("d")
-
 
 class Unfit(Exception):
     """For numba: arguments that a row of numbers does not hold, or code that needs more than a process has."""
@@ -106,10 +104,12 @@ class Entry:
         if hashlib.sha256(code).hexdigest() != told["digest"]:
             raise ValueError("damaged")
         self.kinds = tuple(np.ndarray if isinstance(one, tuple) else one for one in kind)
+        self.arrays = [one is np.ndarray for one in self.kinds]
         self.head = [id(np.ndarray), *(id(np.dtype(letter)) for letter in letters(kind))]
         self.end = len(self.head) + len(kind)
         self.returned = struct.Struct(f"={told['result']}")
-        self.row = struct.Struct(f"{self.end}q{self.returned.size}x")
+        numbers = "".join("d" if one is float else "q" for one in self.kinds)
+        self.row = struct.Struct(f"={len(self.head)}q{numbers}{self.returned.size}x")
         binding = _llvm()
         target = binding.Target.from_default_triple().create_target_machine(codemodel="jitdefault", jit=True)
         self.engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
@@ -124,21 +124,13 @@ class Entry:
 
     def __call__(self, values: tuple[Any, ...]) -> Any:
         """What the code returns; UNFIT where it does not take these values."""
-        if len(values) != len(self.kinds):
+        if tuple(map(type, values)) != self.kinds and tuple(map(_plain, values)) != self.kinds:
             return UNFIT
-        numbers = self.head.copy()
-        for value, kind in zip(values, self.kinds, strict=True):
-            if kind is np.ndarray:
-                numbers.append(id(value))
-            elif SCALARS.get(type(value)) is not kind:
-                return UNFIT
-            elif kind is float:
-                numbers.append(_BITS.unpack(_REAL.pack(value))[0])
-            elif -(2**63) <= value < 2**63:
-                numbers.append(value)
-            else:
-                return UNFIT
-        row = self.row.pack(*numbers)  # bytes of nobody else's, so that the code may write at their end
+        numbers = [id(value) if array else value for value, array in zip(values, self.arrays, strict=True)]
+        try:
+            row = self.row.pack(*self.head, *numbers)  # bytes of nobody else's: the code may write at their end
+        except struct.error:  # an integer of more than 64 bits
+            return UNFIT
         ended = self.call(row)
         if ended == DIFFERS:
             return UNFIT
@@ -146,6 +138,11 @@ class Entry:
             raise MemoryError("compiled code got no memory")
         found = self.returned.unpack_from(row, 8 * self.end)
         return found[0] if len(found) == 1 else found or None
+
+
+def _plain(value: Any) -> type | None:
+    """The type that a value has in a row of numbers; None where it has none."""
+    return np.ndarray if type(value) is np.ndarray else SCALARS.get(type(value))
 
 
 DIFFERS = 2  # what an entry returns where an array is not what it takes
