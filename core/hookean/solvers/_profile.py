@@ -68,34 +68,29 @@ def profile_work(first, most):  # type: ignore[no-untyped-def]
     return work
 
 
-def first_entries(count: int, low: Ints, high: Ints) -> Ints:
-    """First column of each row of a symmetric matrix (count,) with entries at rows `high` and columns `low` (m,), and
-    on the diagonal."""
-    first = np.arange(count)
-    np.minimum.at(first, high, low)
-    return first
-
-
 def order(count: int, low: Ints, high: Ints, most: int) -> Ints | None:
     """An order of `count` particles joined in pairs in which a factor takes at most `most` products a particle.
 
-    Their own order where that will do, else one chain after the other and where they meet last, or reverse
-    Cuthill-McKee; none if none of them does.
+    One chain after the other and where they meet last, or reverse Cuthill-McKee; none if neither does.
     """
-    own = np.arange(count)
-    if _fits(first_entries(count, low, high), most):
-        return own
     meets = np.bincount(low, minlength=count) + np.bincount(high, minlength=count) > 2
     alone = ~(meets[low] | meets[high])
     by_chains = _cuthill_mckee(count, low[alone], high[alone])
     by_chains = np.concatenate([by_chains[~meets[by_chains]], np.flatnonzero(meets)])
     for found in (by_chains, _cuthill_mckee(count, low, high)):
         place = np.empty(count, np.int64)
-        place[found] = own
+        place[found] = np.arange(count)
         one, other = place[low], place[high]
-        if _fits(first_entries(count, np.minimum(one, other), np.maximum(one, other)), most):
+        first = np.arange(count)
+        np.minimum.at(first, np.maximum(one, other), np.minimum(one, other))
+        if fits(first, most):
             return found
     return None
+
+
+def fits(first: Ints, most: int) -> bool:
+    """Whether a factor of rows that begin there takes at most so many products a particle."""
+    return bool(kernels.compiled(profile_work)(first, most * len(first)) <= most * len(first))
 
 
 def _cuthill_mckee(count: int, low: Ints, high: Ints) -> Ints:
@@ -105,10 +100,3 @@ def _cuthill_mckee(count: int, low: Ints, high: Ints) -> Ints:
     net = sparse.csr_matrix((np.ones(len(low)), (low, high)), shape=(count, count))
     found: Ints = reverse_cuthill_mckee(net + net.T, symmetric_mode=True).astype(np.int64)
     return found
-
-
-def _fits(first: Ints, most: int) -> bool:
-    limit, lengths = most * len(first), np.arange(1, len(first) + 1) - first
-    if (lengths * lengths).sum() <= limit:  # at most as many as that
-        return True
-    return bool(kernels.compiled(profile_work)(first, limit) <= limit)
