@@ -9,6 +9,7 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean import kernels
 from hookean.forces import Block
 from hookean.forces.base import lengths
 from hookean.state import State
@@ -47,28 +48,43 @@ class Balance:
 def balance(system: System, state: State) -> Balance:
     """Judge a shape at rest."""
     f, w, energies = system.evaluate(state)
+    loads, _, _ = system.evaluate(state, only="load")
     left = f * state.free
-    contact = system.support(state, left) if system.contacts else np.zeros_like(f)
-    reactions = -(f + contact) * (1.0 - state.free)
-    size = lengths(left)
-    worst = int(np.argmax(size)) if len(size) else 0
-    out = float(size[worst]) if len(size) else 0.0
-    loads = _load_size(system, state)
-    scale = force_scale(system, state, loads)
-    noise = ROUNDING * (w * _largest(state.x) + _largest(f) + loads)
-    free = _largest(state.free) > 0.0
-    floor = float(noise[free].max()) if free.any() else 0.0
-    if scale > 0.0:
-        return Balance(left, reactions, contact, scale, out, out / scale, floor / scale, worst, energies)
+    contact = system.support(state, left) if system.contacts else np.zeros(f.shape)
+    reactions = np.empty(f.shape)
+    judged = kernels.compiled(judge)(state.x, f, w, state.free, loads, contact, left, reactions)
+    worst, out, floor, load, loaded = judged
+    scale = load / loaded if loaded else _element_scale(system, state)
     # nothing pushes anywhere: balanced if what is left is rounding
-    return Balance(left, reactions, contact, 1.0, out, out, floor, worst, energies)
+    unit = scale if scale > 0.0 else 1.0
+    return Balance(left, reactions, contact, unit, out, out / unit, floor / unit, worst, energies)
 
 
-def force_scale(system: System, state: State, loads: Floats) -> float:
-    """The force that residuals are measured by [force]; see `Balance`. `loads` (n,) on the free axes."""
-    loaded = (loads > 0) & (_largest(state.free) > 0.0)
-    if loaded.any():
-        return float(loads[loaded].mean())
+def judge(x, f, w, free, loads, contact, left, reactions):  # type: ignore[no-untyped-def]
+    """Write the reactions; the particle with the largest force left and that force, what rounding leaves [force], and
+    the sizes of loads on what may move: their sum, and how many there are."""
+    worst, out, floor, load, loaded = 0, 0.0, 0.0, 0.0, 0
+    for i in range(x.shape[0]):
+        largest, reach, square, weight, moves = 0.0, 0.0, 0.0, 0.0, False
+        for c in range(3):
+            reactions[i, c] = -(f[i, c] + contact[i, c]) * (1.0 - free[i, c])
+            square += left[i, c] * left[i, c]
+            weight += loads[i, c] * free[i, c] * loads[i, c] * free[i, c]
+            largest, reach = max(largest, abs(f[i, c])), max(reach, abs(x[i, c]))
+            moves = moves or free[i, c] > 0.0
+        size, weight = np.sqrt(square), np.sqrt(weight)
+        if size > out or (np.isnan(size) and not np.isnan(out)):
+            worst, out = i, size
+        if moves:
+            floor = max(floor, ROUNDING * (w[i] * reach + largest + weight))
+            if weight > 0.0:
+                load += weight
+                loaded += 1
+    return worst, out, floor, load, loaded
+
+
+def _element_scale(system: System, state: State) -> float:
+    """The mean size of the internal element forces [force]."""
     total, count = 0.0, 0
     for group, memory in zip(system.groups, state.memory, strict=True):
         if group.cls.role != "load" and len(group.block.indices):
@@ -92,17 +108,3 @@ def _element_sizes(system: System, group: Group, state: State, memory: Floats) -
         part = slice(first, first + CHUNK)
         some = Group(group.cls, Block(b.indices[part], b.parameters[part], b.memory[part]), [])
         yield lengths(system.element_forces(some, state, memory[part])[:, 0])  # the other end bears the same
-
-
-def _load_size(system: System, state: State) -> Floats:
-    if all(group.cls.role != "load" for group in system.groups):
-        return np.zeros(len(state.x))
-    loads, _, _ = system.evaluate(state, only="load")
-    return lengths(loads * state.free)
-
-
-def _largest(vectors: Floats) -> Floats:
-    """Largest size of a component of each row (n, 3)."""
-    x, y, z = np.abs(vectors).T
-    largest: Floats = np.maximum(np.maximum(x, y), z)
-    return largest

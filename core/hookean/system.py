@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,7 +95,7 @@ class System:
         """Length scale of the model [length]: the diagonal of its start and its anchors' targets, or how far from
         the origin it is."""
         reach = np.concatenate([self.x, *(anchor.targets for anchor in self.held)])
-        diagonal = float(np.linalg.norm([np.ptp(column) for column in reach.T]))
+        diagonal = math.hypot(*(float(column.max() - column.min()) for column in reach.T))
         return diagonal or float(np.abs(reach).max()) or 1.0
 
     @property
@@ -128,8 +129,8 @@ class System:
 
         `only` restricts to groups of one role; `still` leaves damping out.
         """
-        f, w = np.zeros_like(self.x), np.zeros(len(self.x))
-        v = np.zeros_like(self.x) if still else state.v
+        f, w = np.zeros(self.x.shape), np.zeros(len(self.x))
+        v = np.zeros(self.x.shape) if still else state.v
         energies = np.zeros(len(self.groups))
         for i, (group, memory) in enumerate(zip(self.groups, state.memory, strict=True)):
             if only and group.cls.role != only:
@@ -194,10 +195,9 @@ class System:
 
 def hold(state: State, anchor: Held) -> None:
     """Hold an anchor's particles at its targets, on its axes."""
-    held = anchor.free == 0
-    state.free[np.ix_(anchor.particles, held)] = 0.0
-    state.x[np.ix_(anchor.particles, held)] = anchor.targets[:, held]
-    state.v[np.ix_(anchor.particles, held)] = 0.0
+    held, particles = anchor.free == 0, anchor.particles
+    for values, there in ((state.free, 0.0), (state.x, anchor.targets), (state.v, 0.0)):
+        values[particles] = np.where(held, there, values[particles])
 
 
 def compile(scene: Scene) -> System:

@@ -46,16 +46,15 @@ class Block:
     def of(cls, indices: Any, *, memory: int = 0, **columns: Any) -> Block:
         """Build a block from `indices` (m, arity) and named columns: one value, (m,) values or (m, k) rows."""
         index = np.ascontiguousarray(indices, dtype=np.int64)
-        count = len(index)
-        parts: list[Floats] = []
-        names: list[str] = []
-        for name, column in columns.items():
-            values = np.asarray(column, dtype=np.float64)
-            values = values.reshape(-1, 1) if values.ndim < 2 else values
-            parts.append(np.broadcast_to(values, (count, values.shape[1])))
-            names += [name] * values.shape[1]
-        table = np.concatenate(parts, axis=1) if parts else np.zeros((count, 0))
-        return cls(index, np.ascontiguousarray(table), np.zeros((count, memory)), tuple(names))
+        values = {name: np.asarray(column, dtype=np.float64) for name, column in columns.items()}
+        names = tuple(name for name, column in values.items() for _ in range(column.shape[1] if column.ndim > 1 else 1))
+        table = np.empty((len(index), len(names)))
+        at = 0
+        for column in values.values():
+            rows = column if column.ndim > 1 else column.reshape(-1, 1)
+            table[:, at : at + rows.shape[1]] = rows
+            at += rows.shape[1]
+        return cls(index, table, np.zeros((len(index), memory)), names)
 
 
 class Places(Protocol):
