@@ -72,7 +72,9 @@ def judge(x, f, w, free, loads, contact, left, reactions):  # type: ignore[no-un
             weight += loads[i, c] * free[i, c] * loads[i, c] * free[i, c]
             largest, reach = max(largest, abs(f[i, c])), max(reach, abs(x[i, c]))
             moves = moves or free[i, c] > 0.0
-        size, weight = np.sqrt(square), np.sqrt(weight)
+        # where a position is none, neither is what its springs do
+        size = np.sqrt(square) if np.isfinite(x[i, 0] + x[i, 1] + x[i, 2]) else np.nan
+        weight = np.sqrt(weight)
         if size > out or (np.isnan(size) and not np.isnan(out)):
             worst, out = i, size
         if moves:

@@ -41,16 +41,19 @@ class Compiled:
         self.name, self.folder, self.dispatcher, self.kind = name, folder, dispatcher, kind
         self.loaded = self.made = 0  # how many were found on disk, and how many were not
         self._entries: dict[Kind, Entry | None] = {}
-        self._last: Entry | None = None
+        self._called: tuple[Entry, ...] = ()
 
     def __call__(self, *values: Any) -> Any:
-        if self._last is not None and (found := self._last(values)) is not UNFIT:
-            return found
+        for entry in self._called:  # quicker than looking what values are
+            if (found := entry(values)) is not UNFIT:
+                return found
         kind = kind_of(values)
         if kind is not None and (self.kind is None or kind == self.kind):
-            self._last = self.entry(kind, values) or self._last
-            if self._last is not None and (found := self._last(values)) is not UNFIT:
-                return found
+            new = self.entry(kind, values)
+            if new is not None and new not in self._called:
+                self._called = (*self._called, new)
+                if (found := new(values)) is not UNFIT:
+                    return found
         return self.dispatcher()(*values)
 
     def entry(self, kind: Kind, values: tuple[Any, ...] = ()) -> Entry | None:

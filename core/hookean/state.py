@@ -27,6 +27,12 @@ class State:
     scratch: dict[str, Floats] = field(default_factory=dict)
     force_scale: float = 0.0
 
+    @property
+    def moving(self) -> NDArray[np.bool_]:
+        """Which particles (n,) are free on some axis."""
+        x, y, z = (self.free > 0.0).T  # column by column: reducing an axis of three is slow
+        return np.asarray(x | y | z)
+
     def copy(self) -> State:
         """An independent copy."""
         return State(

@@ -62,6 +62,17 @@ def test_values_go_in_and_out_as_they_do_with_numba(tmp_path: Path) -> None:
         assert (run.made, run.loaded) == (made, loaded)
 
 
+def test_values_of_two_kinds_in_turn_go_to_the_code_of_each(tmp_path: Path) -> None:
+    """Numbers in single and in double precision: each keeps its own, and its code is made once."""
+    run = code(tmp_path)
+    for _ in range(3):
+        for letter in "fd":
+            x = np.full((1, 2), 0.1, letter)
+            assert run(x, 1.0, 1, False) == (float(x.astype("d").sum()), 3, True)
+            assert x.dtype.char == letter and (x == np.full((1, 2), 0.1, letter)).all()
+    assert (run.made, run.loaded) == (2, 0)
+
+
 def test_what_the_disk_has_no_code_for_is_left_to_numba(tmp_path: Path) -> None:
     """Columns apart, which no entry reads, are summed right."""
     apart = np.arange(12.0).reshape(3, 4)[:, ::2]

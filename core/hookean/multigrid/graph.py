@@ -26,20 +26,32 @@ WEAKER = 0.5  # on coarser levels, times this for each
 DAMPING = 2.0 / 3.0
 
 
-def laplacian(starts: Ints, columns: Ints, weights: Floats) -> Sparse:
-    """The Laplacian of a graph, whole, of connections (k,) in the pattern of `Blocks`; its diagonal has weight 0."""
-    import scipy.sparse as sparse
+def laplacian(starts: Ints, columns: Ints, low: Sparse, weights: Floats) -> Sparse:
+    """The Laplacian of a graph, whole, of connections (k,) in the pattern of `Blocks`; its diagonal has weight 0. `low`
+    is what of the pattern is below the diagonal, and of which connection each is the mirror image."""
+    size = len(columns) + len(low[1])
+    whole = np.empty(len(starts), np.int32), np.empty(size, np.int32), np.empty(size)
+    kernels.compiled(mirror)(starts, columns, *low, weights, *whole)
+    return whole
 
-    n = len(starts) - 1
-    numbers = np.arange(1, len(columns) + 1, dtype=np.int32)  # none is zero, which would be left out
-    half = sparse.csr_matrix((numbers, columns, starts), shape=(n, n))
-    whole = (half + half.T).tocsr()
-    whole.sort_indices()
-    rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(whole.indptr))
-    own = whole.indices == rows
-    values = -weights[np.where(own, 0, whole.data - 1)]
-    values[own] = -np.bincount(rows, values, n)
-    return whole.indptr, whole.indices, values
+
+def mirror(starts, columns, low_starts, low_columns, low, weights, all_starts, all_columns, values):  # type: ignore[no-untyped-def]
+    """Write the rows of the Laplacian: what is before the diagonal, the diagonal, what is after it."""
+    end = 0
+    for i in range(starts.shape[0] - 1):
+        all_starts[i] = end
+        total = 0.0
+        for s in range(low_starts[i], low_starts[i + 1]):
+            all_columns[end], values[end] = low_columns[s], -weights[low[s]]
+            total += weights[low[s]]
+            end += 1
+        own = end
+        for s in range(starts[i], starts[i + 1]):
+            all_columns[end], values[end] = columns[s], -weights[s]
+            total += weights[s]
+            end += 1
+        values[own] = total
+    all_starts[starts.shape[0] - 1] = end
 
 
 def gathered(graph: Sparse, alive: NDArray[np.bool_], level: int) -> tuple[Sparse, Sparse] | None:
@@ -66,11 +78,24 @@ def gathered(graph: Sparse, alive: NDArray[np.bool_], level: int) -> tuple[Spars
 
 def turned(matrix: Sparse, columns: int) -> Sparse:
     """The transposed matrix of one that has so many columns; their rows are sorted."""
-    import scipy.sparse as sparse
+    _, indices, values = matrix
+    found = np.zeros(columns + 1, np.int32), np.empty_like(indices), np.empty_like(values)
+    kernels.compiled(transpose)(*matrix, *found)
+    return found
 
-    starts, indices, values = matrix
-    found = sparse.csr_matrix((values, indices, starts), shape=(len(starts) - 1, columns)).T.tocsr()
-    return found.indptr.astype(np.int32), found.indices.astype(np.int32), found.data
+
+def transpose(starts, columns, values, t_starts, t_columns, t_values):  # type: ignore[no-untyped-def]
+    """The transposed matrix; `t_starts` must be zero."""
+    n, count = starts.shape[0] - 1, t_starts.shape[0] - 1
+    for s in range(starts[n]):
+        t_starts[columns[s]] += 1
+    for j in range(count):
+        t_starts[j + 1] += t_starts[j]
+    for i in range(n - 1, -1, -1):
+        for s in range(starts[i], starts[i + 1]):
+            j = columns[s]
+            t_starts[j] -= 1
+            t_columns[t_starts[j]], t_values[t_starts[j]] = i, values[s]
 
 
 def aggregate(starts, columns, weights, strong, alive, group):  # type: ignore[no-untyped-def]

@@ -71,7 +71,8 @@ class Hierarchy:
 
     def __init__(self, starts: Ints, columns: Ints, weights: Floats, alive: NDArray[np.bool_]) -> None:
         self.levels = [Level(starts, columns)]
-        graph = laplacian(starts, columns, weights)
+        finest = self.levels[0]
+        graph = laplacian(starts, columns, (*finest.low[:2], finest.mirror), weights)
         while len(graph[0]) - 1 > SMALLEST and len(self.levels) < MOST and self.fill_work <= FULLEST:
             held = graph[2][np.repeat(np.arange(len(alive)), np.diff(graph[0])) == graph[1]]
             alive = alive & (held > 1e-12 * held.max(initial=0.0))  # the others hang on nothing
@@ -112,14 +113,8 @@ class Hierarchy:
         """Factor the coarsest level; False if it is not positive definite."""
         last = self.levels[-1]
         n = len(last.starts) - 1
-        rows = np.repeat(np.arange(n), np.diff(last.starts))
-        dense = np.zeros((n, 3, n, 3))
-        blocks = scale * last.values.reshape(-1, 3, 3)
-        dense[last.columns, :, rows, :] = blocks.transpose(0, 2, 1)
-        dense[rows, :, last.columns, :] = blocks
-        self.factor = dense.reshape(3 * n, 3 * n)
-        empty = self.factor.diagonal() == 0.0
-        self.factor[empty, empty] = 1.0
+        self.factor = np.zeros((3 * n, 3 * n))
+        kernels.compiled(sums.spell_out)(last.starts, last.columns, last.values, scale, self.factor)
         return bool(kernels.compiled(sums.factor)(self.factor))
 
     def cycle(self, b: Floats) -> NDArray[np.float32]:
@@ -132,11 +127,9 @@ class Hierarchy:
             kernels.compiled(sums.solve_factored)(self.factor, b, np.zeros(3 * len(b)), level.x)
             return level.x
         coarser = self.levels[number + 1]
-        kernels.compiled(sums.smooth_down)(*level.low, level.inverse, b, level.x)
-        kernels.compiled(sums.restrict)(*level.high, level.x, *level.prolong, coarser.b)
-        found = self._cycle(number + 1, coarser.b)
-        kernels.compiled(sums.prolong)(*level.prolong, found, level.x)
-        kernels.compiled(sums.smooth_up)(*level.high, *level.low, level.inverse, b, level.x)
+        whole = (*level.high, *level.low, level.inverse, b, level.x, *level.prolong)
+        kernels.compiled(sums.descend)(*whole, coarser.b)
+        kernels.compiled(sums.ascend)(*whole, self._cycle(number + 1, coarser.b))
         return level.x
 
 

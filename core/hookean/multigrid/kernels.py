@@ -85,26 +85,15 @@ def put(inverse: Any, i: Any, r0: Any, r1: Any, r2: Any, x: Any) -> None:
     x[i, 3] = inverse[i, 3] * r0 + inverse[i, 7] * r1 + inverse[i, 11] * r2
 
 
-def smooth_down(starts, columns, low, inverse, b, x):  # type: ignore[no-untyped-def]
-    """One Gauss-Seidel sweep from x = 0, rows in order: only what is before the diagonal counts."""
+def descend(  # type: ignore[no-untyped-def]
+    starts, columns, high, low_starts, low_columns, low, inverse, b, x, p_starts, p_columns, p_values, coarse
+):
+    """One Gauss-Seidel sweep from x = 0, rows in order, for which only what is before the diagonal counts; then
+    coarse = P^T (b - A x), where what is before and on the diagonal has cancelled already."""
     for row in range(starts.shape[0] - 1):
         i = np.uint64(row)
-        s0, s1, s2, _ = row_times(starts, columns, low, i, x)
-        put(inverse, i, np.float32(b[i, 0]) - s0, np.float32(b[i, 1]) - s1, np.float32(b[i, 2]) - s2, x)
-
-
-def smooth_up(starts, columns, high, low_starts, low_columns, low, inverse, b, x):  # type: ignore[no-untyped-def]
-    """One Gauss-Seidel sweep, rows from the last to the first."""
-    for row in range(starts.shape[0] - 2, -1, -1):
-        i = np.uint64(row)
         s0, s1, s2, _ = row_times(low_starts, low_columns, low, i, x)
-        t0, t1, t2, _ = row_times(starts, columns, high, i, x)
-        r0, r1, r2 = np.float32(b[i, 0]), np.float32(b[i, 1]), np.float32(b[i, 2])
-        put(inverse, i, r0 - s0 - t0, r1 - s1 - t1, r2 - s2 - t2, x)
-
-
-def restrict(starts, columns, high, x, p_starts, p_columns, p_values, coarse):  # type: ignore[no-untyped-def]
-    """coarse = P^T (b - A x) after `smooth_down`: what is before and on the diagonal has cancelled already."""
+        put(inverse, i, np.float32(b[i, 0]) - s0, np.float32(b[i, 1]) - s1, np.float32(b[i, 2]) - s2, x)
     coarse[:] = 0.0
     for row in range(starts.shape[0] - 1):
         i = np.uint64(row)
@@ -117,8 +106,10 @@ def restrict(starts, columns, high, x, p_starts, p_columns, p_values, coarse):  
             coarse[j, 3] -= p * s3
 
 
-def prolong(p_starts, p_columns, p_values, coarse, x):  # type: ignore[no-untyped-def]
-    """x += P coarse."""
+def ascend(  # type: ignore[no-untyped-def]
+    starts, columns, high, low_starts, low_columns, low, inverse, b, x, p_starts, p_columns, p_values, coarse
+):
+    """x += P coarse; then one Gauss-Seidel sweep, rows from the last to the first."""
     for row in range(p_starts.shape[0] - 1):
         i = np.uint64(row)
         x0, x1, x2, x3 = x[i, 0], x[i, 1], x[i, 2], x[i, 3]
@@ -129,6 +120,12 @@ def prolong(p_starts, p_columns, p_values, coarse, x):  # type: ignore[no-untype
             x2 += p * coarse[j, 2]
             x3 += p * coarse[j, 3]
         x[i, 0], x[i, 1], x[i, 2], x[i, 3] = x0, x1, x2, x3
+    for row in range(starts.shape[0] - 2, -1, -1):
+        i = np.uint64(row)
+        s0, s1, s2, _ = row_times(low_starts, low_columns, low, i, x)
+        t0, t1, t2, _ = row_times(starts, columns, high, i, x)
+        r0, r1, r2 = np.float32(b[i, 0]), np.float32(b[i, 1]), np.float32(b[i, 2])
+        put(inverse, i, r0 - s0 - t0, r1 - s1 - t1, r2 - s2 - t2, x)
 
 
 def find_products(  # type: ignore[no-untyped-def]
@@ -239,6 +236,18 @@ def turn(p, z, part):  # type: ignore[no-untyped-def]
     for i in range(p.shape[0]):
         for c in range(3):
             p[i, c] = np.float64(z[i, c]) + part * p[i, c]
+
+
+def spell_out(starts, columns, values, scale, matrix):  # type: ignore[no-untyped-def]
+    """Write blocks times a scale into the lower triangle of a dense matrix of zeros, and 1 where its diagonal is 0."""
+    for i in range(starts.shape[0] - 1):
+        for s in range(starts[i], starts[i + 1]):
+            for a in range(3):
+                for b in range(3):
+                    matrix[3 * columns[s] + b, 3 * i + a] = scale * values[s, 3 * a + b]
+    for i in range(matrix.shape[0]):
+        if matrix[i, i] == 0.0:
+            matrix[i, i] = 1.0
 
 
 def factor(matrix):  # type: ignore[no-untyped-def]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,7 +46,7 @@ def cut(system: System, state: State, moving: Chosen) -> tuple[System, State, ND
     touched = moving.copy()
     rows = []
     for group in system.groups:
-        some = np.flatnonzero(moving[group.block.indices].any(axis=1))
+        some = np.flatnonzero(reduce(np.logical_or, (moving.take(end) for end in group.block.indices.T)))
         rows.append(some)
         touched[group.block.indices[some]] = True
     particles = np.flatnonzero(touched)

@@ -88,5 +88,4 @@ class Tangent:
         return x, positive
 
     def _gathered(self, state: State) -> Hierarchy:
-        alive = np.asarray((state.free > 0.0).any(axis=1))
-        return Hierarchy(self.blocks.starts, self.blocks.columns, self.blocks.weights(), alive)
+        return Hierarchy(self.blocks.starts, self.blocks.columns, self.blocks.weights(), state.moving)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
+from hookean.multigrid.graph import turned
 from hookean.solvers._laplacian import Laplacian
 
 Floats = NDArray[np.float64]
@@ -44,8 +45,7 @@ def coarser(net: Laplacian) -> tuple[Spreading, Laplacian] | None:
     slot = np.full(count, -1, np.int32)
     p = np.zeros(n + 1, np.int32), np.empty(size, np.int32), np.empty(size)
     entries = kernels.compiled(spread)(*rows, strongest, group, *p, slot)
-    back = np.zeros(count + 1, np.int32), np.empty(entries, np.int32), np.empty(entries)
-    kernels.compiled(transpose)(*p, *back)
+    back = turned((p[0], p[1][:entries], p[2][:entries]), count)
     slot[:] = -1
     found = np.zeros(count + 1, np.int32), np.empty(size, np.int32), np.empty(size), np.empty(count, np.int32)
     size = kernels.compiled(project)(*rows, *p, *back, *found, slot, np.empty(count))
@@ -132,20 +132,6 @@ def spread(  # type: ignore[no-untyped-def]
         p_values[slot[group[i]]] += 1.0 - DAMPING if not alone else 1.0
         p_starts[i + 1] = size
     return size
-
-
-def transpose(starts, columns, values, t_starts, t_columns, t_values):  # type: ignore[no-untyped-def]
-    """The transposed matrix; `t_starts` must be zero."""
-    n, count = starts.shape[0] - 1, t_starts.shape[0] - 1
-    for s in range(starts[n]):
-        t_starts[columns[s]] += 1
-    for j in range(count):
-        t_starts[j + 1] += t_starts[j]
-    for i in range(n - 1, -1, -1):
-        for s in range(starts[i], starts[i + 1]):
-            j = columns[s]
-            t_starts[j] -= 1
-            t_columns[t_starts[j]], t_values[t_starts[j]] = i, values[s]
 
 
 def project(  # type: ignore[no-untyped-def]

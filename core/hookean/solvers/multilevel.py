@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean import kernels
 from hookean.forces.base import lengths
 from hookean.solvers import relaxation
 from hookean.solvers.base import Solver
@@ -147,7 +148,7 @@ class Method(Solver):
         size = lengths(forces)
         largest = float(size.max())
         now = (turned > TURNED * turned.max()) | (size > OUT * largest)
-        now = widened(blocks.starts, blocks.columns, now, RINGS) & (state.free > 0.0).any(axis=1)
+        now = widened(blocks.starts, blocks.columns, now, RINGS) & state.moving
         creased = state.scratch["creased"] > 0.0
         creased = next((some for some in (creased | now, now, creased) if some.mean() <= SHARE), creased)
         state.scratch["creased"] = creased.astype(float)
@@ -239,9 +240,8 @@ class Step:
     def _judge(self) -> Judged:
         self.work += 1.0
         f, _, energies = self.system.evaluate(self.state)
-        f *= self.state.free
-        noise = ROUNDING * float(np.abs(energies).sum())
-        return Judged(float(energies.sum()), noise, f, float(lengths(f).max(initial=0.0)))
+        largest: float = kernels.compiled(leave)(f, self.state.free)
+        return Judged(float(energies.sum()), ROUNDING * float(np.abs(energies).sum()), f, largest)
 
     def _direction(self, forces: Floats) -> Floats | None:
         """Where to go: by the last tangent while the shape is calm, else by its own, also along a direction that bends
@@ -289,6 +289,19 @@ class Step:
         return self._judge()
 
 
+def leave(f, free):  # type: ignore[no-untyped-def]
+    """Take from forces what is held; the largest that is left."""
+    largest = 0.0
+    for i in range(f.shape[0]):
+        square = 0.0
+        for c in range(3):
+            f[i, c] *= free[i, c]
+            square += f[i, c] * f[i, c]
+        if square > largest or np.isnan(square):
+            largest = square
+    return np.sqrt(largest)
+
+
 def suits(system: System) -> bool:
     """Whether a system is of plain springs and constant loads alone, whose shape of least energy can be told."""
     from hookean.forces.springs import Springs
@@ -319,7 +332,7 @@ def lowest(system: System, state: State) -> bool:
 
     if pulled(system, state):
         return True
-    net = _form(*_densities(system, state), np.asarray((state.free > 0.0).any(axis=1)))
+    net = _form(*_densities(system, state), state.moving)
     way = _front.front(net, CERTAIN)
     return way is not None and way.held and _front.Factor(net, way).sound
 
