@@ -90,17 +90,19 @@ def scene_for(p: Problem, most: float, solver: str = "auto") -> Any:
 
 
 def hookean(p: Problem, most: float) -> Callable[[], Run]:
-    """A solve of a scene that is built already."""
-    from hookean.run import relax
+    """A solve of a scene that is built already: `relax`, with its solver at hand to ask for its work."""
+    from hookean.run import relax_state
+    from hookean.solvers import solver
+    from hookean.system import compile
 
     scene = scene_for(p, most)
 
     def run() -> Run:
         begun = time.perf_counter()
-        result = relax(scene)
+        system, method = compile(scene), solver(scene.settings.solver)
+        result = relax_state(system, system.start(), method)
         seconds = time.perf_counter() - begun
-        work = getattr(result, "work", None)
-        return Run(seconds, result.iterations, result.particles, result.iterations if work is None else work)
+        return Run(seconds, result.iterations, result.particles, method.work)
 
     return run
 

@@ -92,7 +92,10 @@ class Method(Solver):
         due, _ = state.scratch["next_newton"]
         if state.iteration < due or not self._small:
             self._use("relaxation")
-            return self._relaxation.advance(system, state, min(count, max(int(due) - state.iteration, 1)), goal)
+            most = min(count, max(int(due) - state.iteration, 1))
+            done = self._relaxation.advance(system, state, most, goal)
+            self.work += done
+            return done
         self._steps, self._pause = NEWTON_STEPS, float(state.scratch["next_newton"][1])
         self._newton.start(system, state)
         return self._finish(system, state, count, goal)
@@ -104,7 +107,9 @@ class Method(Solver):
     def _by_levels(self, system: System, state: State, count: int, goal: float) -> int:
         """Newton steps by multigrid, where they lead to the shape of least energy; else relaxation from the start."""
         self._use("multilevel")
+        work = self._multilevel.work
         done = self._multilevel.advance(system, state, min(count, self._multilevel.longest), goal)
+        self.work += self._multilevel.work - work
         found = balance(system, state).met(system.scene.settings.tolerance)  # as the run is judged
         if found and len(state.x) >= MANY:
             self.remark = "" if multilevel.pulled(system, state) else CREASED
