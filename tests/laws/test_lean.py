@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hookean import Scene, kernels
 from hookean.forces import KINDS, Block
 from hookean.forces.shell_edges import angle_of
+from hookean.forces.springs import SEVERAL
 from hookean.lean import Desk, lean
 from hookean.solvers import solver
 from hookean.system import System, compile
@@ -20,15 +21,15 @@ SEEDED = settings(derandomize=True, deadline=None, max_examples=30, database=Non
 EPS = float(np.finfo(float).eps)
 
 
-def springs(**columns: object) -> System:
-    """A dozen springs between ten particles, two of them without length, and one without any rest length."""
+def springs(count: int = 12, **columns: object) -> System:
+    """A dozen springs or more between ten particles, two of them without length, and one without any rest length."""
     rng = np.random.default_rng(5)
     x = rng.uniform(-1.0, 1.0, (10, 3))
     x[4] = x[3]
-    pairs = [*rng.integers(0, 10, (10, 2)).tolist(), [3, 4], [5, 5]]
-    rest = rng.uniform(0.2, 2.0, 12)
+    pairs = [*rng.integers(0, 10, (count - 2, 2)).tolist(), [3, 4], [5, 5]]
+    rest = rng.uniform(0.2, 2.0, count)
     rest[3] = 0.0
-    force = {"kind": "springs", "particles": pairs, "rest_length": rest, "stiffness": rng.uniform(1, 1e4, 12)}
+    force = {"kind": "springs", "particles": pairs, "rest_length": rest, "stiffness": rng.uniform(1, 1e4, count)}
     return compile(Scene(particles=x, forces=[{**force, **columns}]))
 
 
@@ -36,6 +37,8 @@ SYSTEMS = {kind: example_system(kind) for kind, cls in KINDS.items() if cls.kern
 SYSTEMS["plain"] = springs(damping=0.0)
 SYSTEMS["damped"] = springs(damping=np.linspace(0.0, 30.0, 12))
 SYSTEMS["cut off"] = springs(upper_cutoff=1.0)
+SYSTEMS["many"] = springs(2 * SEVERAL + 5, damping=0.0)
+SYSTEMS["many, damped"] = springs(2 * SEVERAL + 5)
 
 
 @pytest.mark.parametrize("damped", [True, False])
@@ -64,13 +67,13 @@ def test_lean_forces_are_the_forces(name: str, damped: bool, seed: int) -> None:
 
 
 def test_springs_are_packed_where_they_can_be() -> None:
-    """Two columns without damping, three with it; cutoffs need them all, and nothing else does."""
-    columns = {}
+    """Two numbers each without damping, three with it; cutoffs need them all, and nothing else does."""
+    numbers = {}
     for name in ("plain", "damped", "cut off"):
         system = SYSTEMS[name]
-        columns[name] = [lean(system, system.start(), damped=d).calls[1][0][1][1].shape[1] for d in (False, True)]
+        numbers[name] = [lean(system, system.start(), damped=d).calls[1][0][1][1].size // 12 for d in (False, True)]
     whole = len(SYSTEMS["plain"].groups[0].block.names)
-    assert columns == {"plain": [2, 2], "damped": [2, 3], "cut off": [whole, whole]}
+    assert numbers == {"plain": [2, 2], "damped": [2, 3], "cut off": [whole, whole]}
 
 
 def test_constant_forces_are_those_that_never_change() -> None:

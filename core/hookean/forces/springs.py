@@ -14,59 +14,66 @@ from hookean.kernels import device
 Edges = Literal["all", "warp", "weft", "naked", "diagonals", "diagonals_one", "diagonals_other"]
 
 
-@device
-def pull(x: Any, indices: Any, parameters: Any, f: Any) -> None:
-    """Forces of packed springs: one vector operation for the columns of a particle."""
-    for e in range(indices.shape[0]):
-        a, b = ends(indices[e, 0])
-        d0 = x[b, 0] - x[a, 0]
-        d1 = x[b, 1] - x[a, 1]
-        d2 = x[b, 2] - x[a, 2]
-        d3 = x[b, 3] - x[a, 3]
-        density = parameters[e, 0]
-        square = d0 * d0 + d1 * d1 + d2 * d2
-        if parameters[e, 1] != 0.0 and square > 0.0:
-            density -= parameters[e, 1] / np.sqrt(square)
-        d0 *= density
-        d1 *= density
-        d2 *= density
-        d3 *= density
-        f[a, 0] += d0
-        f[a, 1] += d1
-        f[a, 2] += d2
-        f[a, 3] += d3
-        f[b, 0] -= d0
-        f[b, 1] -= d1
-        f[b, 2] -= d2
-        f[b, 3] -= d3
+SEVERAL = 128  # packed springs at a time: what is between stays in the nearest cache
 
 
 @device
-def pull_damped(x: Any, v: Any, indices: Any, parameters: Any, f: Any) -> None:
-    """`pull` of springs with damping."""
-    for e in range(indices.shape[0]):
-        a, b = ends(indices[e, 0])
-        d0 = x[b, 0] - x[a, 0]
-        d1 = x[b, 1] - x[a, 1]
-        d2 = x[b, 2] - x[a, 2]
-        d3 = x[b, 3] - x[a, 3]
-        rate = (v[b, 0] - v[a, 0]) * d0 + (v[b, 1] - v[a, 1]) * d1 + (v[b, 2] - v[a, 2]) * d2
-        density = parameters[e, 0]
-        square = d0 * d0 + d1 * d1 + d2 * d2
-        if square > 0.0:
-            density += parameters[e, 2] * rate / square - parameters[e, 1] / np.sqrt(square)
-        d0 *= density
-        d1 *= density
-        d2 *= density
-        d3 *= density
-        f[a, 0] += d0
-        f[a, 1] += d1
-        f[a, 2] += d2
-        f[a, 3] += d3
-        f[b, 0] -= d0
-        f[b, 1] -= d1
-        f[b, 2] -= d2
-        f[b, 3] -= d3
+def pull(x: Any, v: Any, indices: Any, parameters: Any, f: Any) -> None:
+    """Forces of packed springs: one vector operation for the columns of a particle, and for the roots and quotients of
+    several springs."""
+    count = indices.shape[0]
+    d, density, rate = np.empty((SEVERAL, 4)), np.empty(SEVERAL), np.empty(SEVERAL)
+    for first in range(0, count, SEVERAL):
+        some = min(SEVERAL, count - first)
+        for j in range(some):
+            i, (a, b) = np.uint64(j), ends(indices[np.uint64(first + j), 0])
+            d0 = x[b, 0] - x[a, 0]
+            d1 = x[b, 1] - x[a, 1]
+            d2 = x[b, 2] - x[a, 2]
+            d3 = x[b, 3] - x[a, 3]
+            d[i, 0] = d0
+            d[i, 1] = d1
+            d[i, 2] = d2
+            d[i, 3] = d3
+            density[i] = d0 * d0 + d1 * d1 + d2 * d2
+            if parameters.shape[0] == 3:
+                rate[i] = (v[b, 0] - v[a, 0]) * d0 + (v[b, 1] - v[a, 1]) * d1 + (v[b, 2] - v[a, 2]) * d2
+        if parameters.shape[0] == 3:
+            damped(parameters[0, first:], parameters[1, first:], parameters[2, first:], rate, density, some)
+        else:
+            elastic(parameters[0, first:], parameters[1, first:], density, some)
+        for j in range(some):
+            i, (a, b) = np.uint64(j), ends(indices[np.uint64(first + j), 0])
+            d0 = d[i, 0] * density[i]
+            d1 = d[i, 1] * density[i]
+            d2 = d[i, 2] * density[i]
+            d3 = d[i, 3] * density[i]
+            f[a, 0] += d0
+            f[a, 1] += d1
+            f[a, 2] += d2
+            f[a, 3] += d3
+            f[b, 0] -= d0
+            f[b, 1] -= d1
+            f[b, 2] -= d2
+            f[b, 3] -= d3
+
+
+@device
+def elastic(k: Any, tension: Any, density: Any, count: Any) -> None:
+    """Force densities k - k L0 / l of springs, in the place of the squares of their lengths."""
+    for j in range(count):
+        length = np.sqrt(density[j])
+        less = tension[j] / length
+        density[j] = k[j] - (less if length > 0.0 else 0.0)
+
+
+@device
+def damped(k: Any, tension: Any, c: Any, rate: Any, density: Any, count: Any) -> None:
+    """`elastic` with c times the rate of stretching, by length: `rate` is that of half the square."""
+    for j in range(count):
+        square = density[j]
+        more = c[j] * rate[j] / square - tension[j] / np.sqrt(square)
+        density[j] = k[j] + (more if square > 0.0 else 0.0)
 
 
 @device
@@ -77,11 +84,8 @@ def ends(pair: Any) -> Any:
 
 def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
-    if parameters.shape[1] == 2:
-        pull(x, indices, parameters, f)
-        return energy
-    if parameters.shape[1] == 3:
-        pull_damped(x, v, indices, parameters, f)
+    if indices.shape[1] == 1:
+        pull(x, v, indices, parameters, f)
         return energy
     for e in range(indices.shape[0]):
         a = np.uint64(indices[e, 0])  # unsigned: no index counts from the end
@@ -251,7 +255,7 @@ class Springs(Force):
         if damped and p[:, 1].any():
             table.append(p[:, 1])
         index = block.indices[:, :1] | block.indices[:, 1:] << 32
-        block.plan[:] = [damped, p.copy(), memory.copy(), index, np.column_stack(table)]
+        block.plan[:] = [damped, p.copy(), memory.copy(), index, np.array(table)]
         return index, block.plan[4]
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
