@@ -49,6 +49,12 @@ def living(pid: int) -> bool:
         return False
 
 
+def hears() -> None:
+    """For a child before it starts: signals end it that the shell of these tests may ignore (nohup, background)."""
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 class Home:
     """A state folder and the servers started in it."""
 
@@ -62,7 +68,9 @@ class Home:
         """`hookean serve` with any free port."""
         command = [sys.executable, "-m", "hookean.cli", "serve", *(options or ("--port", "0"))]
         pipes: Any = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-        process = subprocess.Popen(command, env=self.environment, **pipes)
+        process = subprocess.Popen(
+            command, env=self.environment, preexec_fn=hears if os.name == "posix" else None, **pipes
+        )
         self.started.append(process)
         return process
 

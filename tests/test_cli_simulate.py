@@ -21,6 +21,7 @@ from hookean import Scene, Simulation, cli
 from hookean.files import threedm
 from hookean.files.scene_json import write
 from samples import cable
+from serving import hears
 
 LIFT = '[[anchors]]\nanchor = "ends"\ntimes = [0, 1]\nshifts = [[0, 0, 0], [0, 0, 1]]\n'
 WIND = '[[drives]]\nforce = "1"\ncolumn = "vector"\nsource = "speed [m/s]"\nscale = [0, 0.5, -20]\npower = 2\n'
@@ -191,7 +192,7 @@ def test_ctrl_c_writes_what_was_seen(folder: Path):
     process = subprocess.Popen(
         [sys.executable, "-m", "hookean.cli", "simulate", *arguments],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # shells have jobs in the background ignore it
+        preexec_fn=hears,
     )  # fmt: skip
     assert process.stdin is not None
     process.stdin.write(ROWS)

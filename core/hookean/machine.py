@@ -50,8 +50,9 @@ class Compiled:
         kind = kind_of(values)
         if kind is not None and (self.kind is None or kind == self.kind):
             new = self.entry(kind, values)
-            if new is not None and new not in self._called:
-                self._called = (*self._called, new)
+            if new is not None:
+                if new not in self._called:
+                    self._called = (*self._called, new)
                 if (found := new(values)) is not UNFIT:
                     return found
         return self.dispatcher()(*values)
@@ -88,6 +89,7 @@ def kind_of(values: tuple[Any, ...]) -> Kind | None:
     return tuple(kinds)
 
 
+ENGINES: list[Any] = []  # never freed: others keep addresses of their code
 SCALARS: dict[type, type] = {float: float, np.float64: float, int: int, bool: bool}
 UNFIT = object()
 
@@ -118,6 +120,7 @@ class Entry:
         self.engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
         self.engine.add_object_file(binding.ObjectFileRef.from_data(code))
         self.engine.finalize_object()
+        ENGINES.append(self.engine)
         where = self.engine.get_function_address("hookean_entry")
         native = self.engine.get_function_address("hookean_native")
         if not where or not native:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hookean import kernels
+from hookean import kernels, machine
 from hookean.forces.springs import Springs, springs_kernel
 from hookean.machine import Compiled, readable
 
@@ -71,6 +73,34 @@ def test_values_of_two_kinds_in_turn_go_to_the_code_of_each(tmp_path: Path) -> N
             assert run(x, 1.0, 1, False) == (float(x.astype("d").sum()), 3, True)
             assert x.dtype.char == letter and (x == np.full((1, 2), 0.1, letter)).all()
     assert (run.made, run.loaded) == (2, 0)
+
+
+def test_a_thread_that_finds_the_code_just_loaded_calls_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """While it looked what its values are another thread has called the same code: numba is not asked."""
+    run, look = code(tmp_path), machine.kind_of
+
+    def late(values: tuple[object, ...]) -> machine.Kind | None:
+        kind = look(values)
+        assert kind is not None
+        entry = run.entry(kind, values)
+        assert entry is not None
+        run._called, run.dispatcher = (entry,), lambda: pytest.fail("numba was asked")
+        return kind
+
+    monkeypatch.setattr(machine, "kind_of", late)
+    assert run(np.ones((1, 2)), 1.0, 1, False) == (2.0, 3, True)
+
+
+def test_code_stays_where_it_is_when_who_loaded_it_is_gone(tmp_path: Path) -> None:
+    """Tables keep addresses of it."""
+    run = code(tmp_path)
+    run(np.ones((1, 2)), 1.0, 1, False)
+    (entry,) = run._entries.values()
+    assert entry is not None
+    engine = weakref.ref(entry.engine)
+    del run, entry
+    gc.collect()
+    assert engine() is not None
 
 
 def test_what_the_disk_has_no_code_for_is_left_to_numba(tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ def pull(x: Any, v: Any, indices: Any, parameters: Any, f: Any) -> None:
             if parameters.shape[0] == 3:
                 rate[i] = (v[b, 0] - v[a, 0]) * d0 + (v[b, 1] - v[a, 1]) * d1 + (v[b, 2] - v[a, 2]) * d2
         if parameters.shape[0] == 3:
-            damped(parameters[0, first:], parameters[1, first:], parameters[2, first:], rate, density, some)
+            viscous(parameters[0, first:], parameters[1, first:], parameters[2, first:], rate, density, some)
         else:
             elastic(parameters[0, first:], parameters[1, first:], density, some)
         for j in range(some):
@@ -59,21 +59,21 @@ def pull(x: Any, v: Any, indices: Any, parameters: Any, f: Any) -> None:
 
 
 @device
-def elastic(k: Any, tension: Any, density: Any, count: Any) -> None:
+def elastic(k: Any, tension: Any, squares: Any, count: Any) -> None:
     """Force densities k - k L0 / l of springs, in the place of the squares of their lengths."""
     for j in range(count):
-        length = np.sqrt(density[j])
+        length = np.sqrt(squares[j])
         less = tension[j] / length
-        density[j] = k[j] - (less if length > 0.0 else 0.0)
+        squares[j] = k[j] - (less if length > 0.0 else 0.0)
 
 
 @device
-def damped(k: Any, tension: Any, c: Any, rate: Any, density: Any, count: Any) -> None:
+def viscous(k: Any, tension: Any, c: Any, rate: Any, squares: Any, count: Any) -> None:
     """`elastic` with c times the rate of stretching, by length: `rate` is that of half the square."""
     for j in range(count):
-        square = density[j]
+        square = squares[j]
         more = c[j] * rate[j] / square - tension[j] / np.sqrt(square)
-        density[j] = k[j] + (more if square > 0.0 else 0.0)
+        squares[j] = k[j] + (more if square > 0.0 else 0.0)
 
 
 @device
@@ -245,7 +245,8 @@ class Springs(Force):
 
     @classmethod
     def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
-        """Both ends in one number, and k, k x rest length and where it counts c; not with cutoffs or plasticity."""
+        """Both ends in one number; and rows of k, k x rest length and where it counts c, each of all springs; not with
+        cutoffs or plasticity. The one column of indices tells the kernel."""
         p, same = block.parameters, block.plan
         if same and same[0] == damped and np.array_equal(same[1], p) and np.array_equal(same[2], memory):
             return same[3], same[4]

@@ -31,12 +31,13 @@ def laplacian(starts: Ints, columns: Ints, low: Sparse, weights: Floats) -> Spar
     is what of the pattern is below the diagonal, and of which connection each is the mirror image."""
     size = len(columns) + len(low[1])
     whole = np.empty(len(starts), np.int32), np.empty(size, np.int32), np.empty(size)
-    kernels.compiled(mirror)(starts, columns, *low, weights, *whole)
+    kernels.compiled(unfold)(starts, columns, *low, weights, *whole)
     return whole
 
 
-def mirror(starts, columns, low_starts, low_columns, low, weights, all_starts, all_columns, values):  # type: ignore[no-untyped-def]
-    """Write the rows of the Laplacian: what is before the diagonal, the diagonal, what is after it."""
+def unfold(starts, columns, low_starts, low_columns, low, weights, all_starts, all_columns, values):  # type: ignore[no-untyped-def]
+    """Write the rows of the Laplacian: what is before the diagonal; the diagonal, which is first in a row of the
+    pattern; what is after it."""
     end = 0
     for i in range(starts.shape[0] - 1):
         all_starts[i] = end

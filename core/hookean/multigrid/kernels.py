@@ -239,7 +239,7 @@ def turn(p, z, part):  # type: ignore[no-untyped-def]
 
 
 def spell_out(starts, columns, values, scale, matrix):  # type: ignore[no-untyped-def]
-    """Write blocks times a scale into the lower triangle of a dense matrix of zeros, and 1 where its diagonal is 0."""
+    """Write blocks times a scale on and below the diagonal of a dense matrix of zeros, and 1 where that is 0."""
     for i in range(starts.shape[0] - 1):
         for s in range(starts[i], starts[i + 1]):
             for a in range(3):

@@ -2,7 +2,8 @@
 with the loads at them, and `gap`, the misfit of the lengths, step by step.
 
 A net is the tuple of its ends (m, 2; the lower particle first, the free ones before all others), k and rest (m,) of
-its springs, ground (free,) and pull (free, 3) of its free particles, and the first column of each row of its matrices.
+its springs, ground (free,) and pull (free, 3) of its free particles, the first column of each row of its matrix and
+where the rows start. Between steps a person may interrupt.
 """
 
 from __future__ import annotations
@@ -19,58 +20,56 @@ HALVES = 10  # of a step
 POLISH = 4
 
 
-def climb(x, ends, k, rest, ground, pull, first, tension, near, goal, most):  # type: ignore[no-untyped-def]
-    """Newton steps from the best tension that all springs share, at most so many, until one is shorter than `near` and
-    the springs' own law leaves no more than `goal` on any particle; how many, 0 where they do not lead there."""
-    net = (ends, k, rest, ground, pull, first)
-    free, count = first.shape[0], ends.shape[0]
-    starts, starts3 = np.zeros(free + 1, np.int64), np.zeros(3 * free + 1, np.int64)
-    first3 = np.empty(3 * free, np.int64)
-    for i in range(free):
-        starts[i + 1] = starts[i] + i + 1 - first[i]
-        for c in range(3):
-            first3[3 * i + c] = 3 * first[i]
-            starts3[3 * i + c + 1] = starts3[3 * i + c] + 3 * (i - first[i]) + c + 1
-    matrix, matrix3 = np.empty(starts[free]), np.empty(starts3[3 * free])
-    left, step, before = np.empty((3, free)), np.empty(3 * free), np.empty((free, 3))
-    q, dq, now, gap = np.empty(count), np.empty(count), np.empty(count), np.empty(count)
-    if not begin(tension, x, q, net, starts, matrix, left, gap):
-        return 0
-    for done in range(1, most + 1):
-        before[:] = x[:free]
-        slope = direction(x, q, net, gap, first3, starts3, matrix3, step, dq)
-        if np.isnan(slope) or not onward(slope, x, q, dq, net, starts, matrix, left, gap, now):
-            return 0
-        moved = 0.0
-        for i in range(free):
-            for c in range(3):
-                moved = max(moved, abs(x[i, c] - before[i, c]))
-        if moved <= near and polish(goal, x, net, first3, starts3, matrix3, left, step, before):
-            return done
-    return 0
-
-
-@device
-def begin(tension: Any, x: Any, q: Any, net: Any, starts: Any, matrix: Any, left: Any, gap: Any) -> Any:
+def begin(x, q, gap, ends, k, rest, ground, pull, first, starts, tension):  # type: ignore[no-untyped-def]
     """From the best tension that all springs could share, within a factor of 2; False where there is none."""
-    slope = share(tension, x, q, net, starts, matrix, left, gap)
-    rising = slope > 0.0
-    apart = 4.0 if rising else 0.25
-    for _ in range(BEGIN):
-        if np.isnan(slope) or (slope > 0.0) != rising:
+    net = (ends, k, rest, ground, pull, first, starts)
+    slope, rising, apart, last = 0.0, False, 1.0, False
+    for tried in range(BEGIN + 2):
+        slope = share(tension, x, q, gap, net)
+        if last:
             break
-        tension *= apart
-        slope = share(tension, x, q, net, starts, matrix, left, gap)
-    return not np.isnan(share(tension / np.sqrt(apart), x, q, net, starts, matrix, left, gap))
+        if tried == 0:
+            rising = slope > 0.0
+            apart = 4.0 if rising else 0.25
+        last = tried == BEGIN or np.isnan(slope) or (slope > 0.0) != rising
+        tension = tension / np.sqrt(apart) if last else tension * apart
+    return not np.isnan(slope)
+
+
+def onward(x, q, gap, ends, k, rest, ground, pull, first, starts, tangent):  # type: ignore[no-untyped-def]
+    """One Newton step, shortened until D does not fall beyond it: the farthest that a particle goes along an axis,
+    infinite where there is no such step. `tangent` becomes the factor of its matrix."""
+    net = (ends, k, rest, ground, pull, first, starts)
+    before, dq, now = np.empty((ground.shape[0], 3)), np.empty(k.shape[0]), np.empty(k.shape[0])
+    put(x, before)
+    slope = direction(x, q, gap, net, tangent, dq)
+    if np.isnan(slope):
+        return np.inf
+    part, found = 1.0, False
+    for tried in range(HALVES + 1):
+        if tried > 1:
+            part *= 0.5
+        if attempt(part, tried > 0, x, q, dq, now, gap, net) >= -0.9 * slope:
+            found = True
+            break
+    if not found:
+        return np.inf
+    for e in range(k.shape[0]):
+        q[e] = now[e]
+    moved = 0.0
+    for i in range(before.shape[0]):
+        for c in range(3):
+            moved = max(moved, abs(x[i, c] - before[i, c]))
+    return moved
 
 
 @device
-def share(tension: Any, x: Any, q: Any, net: Any, starts: Any, matrix: Any, left: Any, gap: Any) -> Any:
+def share(tension: Any, x: Any, q: Any, gap: Any, net: Any) -> Any:
     """Give all springs one tension; how D changes with its logarithm, nan where it holds nothing."""
     ends, k, rest = net[:3]
     for e in range(ends.shape[0]):
         q[e] = tension / (rest[e] + tension / k[e]) if rest[e] > 0.0 else k[e]
-    if not settle(x, q, net, starts, matrix, left, gap):
+    if not settle(x, q, gap, net):
         return np.nan
     slope = 0.0
     for e in range(ends.shape[0]):
@@ -79,14 +78,14 @@ def share(tension: Any, x: Any, q: Any, net: Any, starts: Any, matrix: Any, left
 
 
 @device
-def settle(x: Any, q: Any, net: Any, starts: Any, matrix: Any, left: Any, gap: Any) -> Any:
+def settle(x: Any, q: Any, gap: Any, net: Any) -> Any:
     """Move the free particles to where force densities q balance the loads; False where nothing holds them.
 
     `gap` becomes half the squared length of each spring, less that of the length its force density asks for.
     """
-    ends, k, rest, ground, pull, first = net
+    ends, k, rest, ground, pull, first, starts = net
     free = ground.shape[0]
-    matrix[:] = 0.0
+    matrix, left = np.zeros(starts[free]), np.empty((3, free))
     for i in range(free):
         matrix[starts[i + 1] - 1] = ground[i]
         for c in range(3):
@@ -120,12 +119,14 @@ def settle(x: Any, q: Any, net: Any, starts: Any, matrix: Any, left: Any, gap: A
 
 
 @device
-def direction(x: Any, q: Any, net: Any, gap: Any, first: Any, starts: Any, matrix: Any, step: Any, dq: Any) -> Any:
+def direction(x: Any, q: Any, gap: Any, net: Any, matrix: Any, dq: Any) -> Any:
     """The Newton step of the force densities; how D changes along it, nan where the tangent is not definite."""
     ends, k, rest, ground = net[:4]
     free = ground.shape[0]
-    matrix[:] = 0.0
-    step[:] = 0.0
+    first, starts = tripled(net[5])
+    step = np.zeros(3 * free)
+    for s in range(matrix.shape[0]):
+        matrix[s] = 0.0
     for i in range(free):
         for c in range(3):
             matrix[starts[3 * i + c + 1] - 1] = ground[i]
@@ -176,33 +177,16 @@ def stiffness(q: Any, k: Any, rest: Any) -> Any:
 
 
 @device
-def onward(
-    slope: Any, x: Any, q: Any, dq: Any, net: Any, starts: Any, matrix: Any, left: Any, gap: Any, now: Any
-) -> Any:
-    """One Newton step, shortened until D does not fall beyond it; False where there is none."""
-    part = 1.0
-    for tried in range(HALVES + 1):
-        if tried > 1:
-            part *= 0.5
-        there = attempt(part, tried > 0, x, q, dq, net, starts, matrix, left, gap, now)
-        if there >= -0.9 * slope:
-            q[:] = now
-            return True
-    return False
-
-
-@device
-def attempt(
-    part: Any, careful: Any, x: Any, q: Any, dq: Any, net: Any, starts: Any, matrix: Any, left: Any, gap: Any, now: Any
-) -> Any:
+def attempt(part: Any, careful: Any, x: Any, q: Any, dq: Any, now: Any, gap: Any, net: Any) -> Any:
     """Take force densities `now` a part of a step away; how D changes there along the step, nan where nothing holds.
 
     Where they grow it is the length asked for that grows evenly, so that none reaches k; with care none falls below a
     tenth of itself.
     """
     ends, k = net[:2]
-    rate = dq.copy()
+    rate = np.empty(k.shape[0])
     for e in range(ends.shape[0]):
+        rate[e] = dq[e]
         now[e] = q[e] + part * dq[e]
         if dq[e] > 0.0:
             # the length asked for is L0 times this, and grows by dq / k times its square
@@ -213,7 +197,7 @@ def attempt(
         elif careful and q[e] > 0.0 and now[e] < 0.1 * q[e]:
             now[e] = 0.1 * q[e]
             rate[e] = 0.0
-    if not settle(x, now, net, starts, matrix, left, gap):
+    if not settle(x, now, gap, net):
         return np.nan
     slope = 0.0
     for e in range(ends.shape[0]):
@@ -221,34 +205,52 @@ def attempt(
     return slope
 
 
-@device
-def polish(goal: Any, x: Any, net: Any, first: Any, starts: Any, tangent: Any, left: Any, step: Any, start: Any) -> Any:
+def polish(x, ends, k, rest, ground, pull, first, starts, tangent, goal):  # type: ignore[no-untyped-def]
     """Correct positions by what the springs' own law leaves; False, and back, unless that comes to the goal.
 
     Rounding of lengths makes force densities uncertain by k / T times as much, and with them x(q).
     """
-    free = start.shape[0]
-    start[:] = x[:free]
-    worst = out_of_balance(x, net, left)
-    for _ in range(POLISH):
-        if worst <= goal:
+    net = (ends, k, rest, ground, pull, first, starts)
+    free = ground.shape[0]
+    left, step, before = np.empty((3, free)), np.empty(3 * free), np.empty((free, 3))
+    put(x, before)
+    first3, starts3 = tripled(first)
+    for tried in range(POLISH + 1):
+        if out_of_balance(x, left, net) <= goal:
             return True
-        for i in range(free):
-            for c in range(3):
-                step[3 * i + c] = left[c, i]
-        solve(tangent, starts, first, step)
-        for i in range(free):
-            for c in range(3):
-                x[i, c] += step[3 * i + c]
-        worst = out_of_balance(x, net, left)
-    if worst <= goal:
-        return True
-    x[:free] = start
+        if tried < POLISH:
+            for i in range(free):
+                for c in range(3):
+                    step[3 * i + c] = left[c, i]
+            solve(tangent, starts3, first3, step)
+            for i in range(free):
+                for c in range(3):
+                    x[i, c] += step[3 * i + c]
+    put(before, x)
     return False
 
 
 @device
-def out_of_balance(x: Any, net: Any, left: Any) -> Any:
+def put(values: Any, target: Any) -> None:
+    """Copy the rows (n, 3) that both have; a slice takes a second to compile."""
+    for i in range(min(values.shape[0], target.shape[0])):
+        for c in range(3):
+            target[i, c] = values[i, c]
+
+
+@device
+def tripled(first: Any) -> Any:
+    """Of the matrix with a row for each axis of each particle, the first columns of the rows and where they start."""
+    firsts, starts = np.empty(3 * first.shape[0], np.int64), np.zeros(3 * first.shape[0] + 1, np.int64)
+    for i in range(first.shape[0]):
+        for c in range(3):
+            firsts[3 * i + c] = 3 * first[i]
+            starts[3 * i + c + 1] = starts[3 * i + c] + 3 * (i - first[i]) + c + 1
+    return firsts, starts
+
+
+@device
+def out_of_balance(x: Any, left: Any, net: Any) -> Any:
     """The largest force that the springs' own law leaves on a particle; infinite where a spring has no length."""
     ends, k, rest, ground, pull = net[:5]
     free = ground.shape[0]

@@ -28,7 +28,7 @@ from hookean import kernels
 from hookean.forces.anchor_spring import AnchorSpring
 from hookean.forces.springs import Springs
 from hookean.forces.unary import unary_kernel
-from hookean.solvers._climb import climb
+from hookean.solvers._climb import begin, onward, polish
 from hookean.solvers._profile import fits, order
 from hookean.solvers.base import Solver
 
@@ -75,16 +75,25 @@ class Method(Solver):
         if net is None:
             return 0
         moving = net.particles[: len(net.first)]
-        ground, pull, x = ground[moving], pull.take(moving, axis=0), state.x.take(net.particles, axis=0)
+        x = state.x.take(net.particles, axis=0)
+        ground, pull = ground[moving], pull.take(moving, axis=0)
+        starts = np.concatenate([[0], np.cumsum(np.arange(1, len(moving) + 1) - net.first)])
+        given = (net.ends, net.k, net.rest, ground, pull, net.first, starts)
+        q, gap, near = np.empty(len(net.k)), np.empty(len(net.k)), NEAR * system.size
+        tangent = np.empty(9 * starts[-1] - 3 * len(moving))
         # what all springs are thought to bear at first
         tension = float(np.abs(pull).sum()) or 0.01 * float((net.k * net.rest).mean())
-        done: int = kernels.compiled(climb)(
-            x, net.ends, net.k, net.rest, ground, pull, net.first, tension, NEAR * system.size, goal, min(count, STEPS)
-        )
-        if done:
-            state.x[moving] = x[: len(moving)]
-            state.iteration += done
-        return done
+        if not kernels.compiled(begin)(x, q, gap, *given, tension):
+            return 0
+        for done in range(1, min(count, STEPS) + 1):
+            moved = kernels.compiled(onward)(x, q, gap, *given, tangent)
+            if moved == np.inf:
+                break
+            if moved <= near and kernels.compiled(polish)(x, *given, tangent, goal):
+                state.x[moving] = x[: len(moving)]
+                state.iteration += done
+                return done
+        return 0
 
 
 def _linear(system: System, state: State) -> tuple[Floats, Floats]:

@@ -59,6 +59,7 @@ def solve(values: Any, starts: Any, first: Any, b: Any) -> None:
 
 
 def profile_work(first, most):  # type: ignore[no-untyped-def]
+    """The products that a factor takes, or some number above `most`."""
     work = 0
     for i in range(first.shape[0]):
         for j in range(first[i], i):
@@ -90,7 +91,8 @@ def order(count: int, low: Ints, high: Ints, most: int) -> Ints | None:
 
 def fits(first: Ints, most: int) -> bool:
     """Whether a factor of rows that begin there takes at most so many products a particle."""
-    return bool(kernels.compiled(profile_work)(first, most * len(first)) <= most * len(first))
+    limit = most * len(first)
+    return bool(kernels.compiled(profile_work)(first, limit) <= limit)
 
 
 def _cuthill_mckee(count: int, low: Ints, high: Ints) -> Ints:

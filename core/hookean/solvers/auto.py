@@ -48,7 +48,7 @@ class Method(Solver):
 
     def start(self, system: System, state: State) -> None:
         """Look at the system and choose."""
-        self.used, self._steps, self.remark = [], 0, ""
+        self.used, self._steps, self.remark, self.work = [], 0, "", 0.0
         self._solves = 0 if self._linear.refuse(system) else SOLVES
         self._prepared = False
         if self._solves:
@@ -125,6 +125,7 @@ class Method(Solver):
         """Newton steps from here; relaxation afterwards starts afresh, and waits twice as long before the next."""
         done = self._newton.advance(system, state, min(count, self._newton.longest, self._steps), goal)
         self._steps = self._steps - done if done else 0
+        self.work += done
         if done:
             self._use("newton")
         if self._steps <= 0:

@@ -17,7 +17,7 @@ class Solver(ABC):
     longest: ClassVar[int] = 10**9  # iterations in one call, so that a run can be cancelled in between
     anew: int = 0  # iteration at which it last went back to the start of the run, to try another way
     remark: str = ""  # a sentence on the shape it found, where there is more to say than that it is at rest
-    work: float = 0.0  # passes over all springs that it took, where that is not one an iteration
+    work: float = 0.0  # passes over all springs since its start; 0: one an iteration
     physical: ClassVar[bool] = False  # advances physical time with the scene's masses, damping and drag
 
     def refuse(self, system: System) -> str:
