@@ -47,7 +47,7 @@ class Watch:
         return max(1, due)
 
     def look(self, system: System, state: State, *, idle: bool = False, known: bool = False) -> Status:
-        """Judge the state as it is now; `known` says that its balance is the one already found."""
+        """Judge the state as it is now; `known` says that it is the one this began with."""
         self.last = state.iteration
         if not self._sane(system, state) or self._collapsed(system, state):
             return Status.DIVERGED
@@ -57,7 +57,8 @@ class Watch:
             self.best, self.best_at = np.inf, self.method.anew
         if self.found.residual < self.best:
             self.best, self.best_at = self.found.residual, state.iteration
-        self.good = state.copy()
+        if not known:
+            self.good = state.copy()
         if self.found.met(self.settings.tolerance) and self._resting(system, state):
             return Status.CONVERGED
         stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
