@@ -63,11 +63,12 @@ class Result:
         return self.status is Status.CONVERGED
 
     def force(self, name: str) -> dict[str, Any]:
-        """The columns of the first force of this name or kind; KeyError if there is none."""
+        """The columns of the first force of this name or kind; KeyError, with what there is, if there is none."""
         for columns in self.forces:
             if name in (columns["name"], columns["kind"]):
                 return columns
-        raise KeyError(name)
+        known = ", ".join(repr(columns["name"] or columns["kind"]) for columns in self.forces) or "none"
+        raise KeyError(f"no force is called {name!r}; there are {known}")
 
     def summary(self) -> list[str]:
         """A few lines for a person: how many particles, the range of every column of force, the reactions."""

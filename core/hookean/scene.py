@@ -123,7 +123,17 @@ class Settings(Model):
         return None if value is False else value
 
 
-class Scene(Model):
+class Told(type(Model)):  # type: ignore[misc]
+    """Of a model made by name: its faults are told as those that are read."""
+
+    def __call__(cls, *given: Any, **named: Any) -> Any:
+        try:
+            return super().__call__(*given, **named)
+        except ValidationError as error:
+            raise first_fault(error) from None
+
+
+class Scene(Model, metaclass=Told):
     """Particles, forces, anchors, carried geometry and settings; the same in Python and in JSON.
 
     Forces and anchors refer to particles by index (`particles`), by coordinates (`points`, `lines`) that are welded

@@ -17,6 +17,14 @@ FIRST_LOOK = 25  # iterations before the first look at the balance; later looks 
 PATIENCE = 20_000  # iterations without a better residual before a run counts as stalled, on top of those spent
 
 
+def seldom(system: System) -> int:
+    """Iterations from look to look that cost little beside them: about 50 ms of springs."""
+    cheap = 8_000_000 // (sum(g.block.indices.size for g in system.groups) + 4_000)
+    if any(g.cls.collapses for g in system.groups):
+        cheap = 0  # looked at often, so that the last good shape is a late one
+    return max(FIRST_LOOK, cheap)
+
+
 class Watch:
     """Looks at a run between bursts of iterations and says when it is over."""
 
@@ -40,10 +48,7 @@ class Watch:
     def burst(self, system: System, state: State) -> int:
         """Iterations until the next look: about 50 ms of springs, or a twenty-fifth of those done."""
         spent = state.iteration - self.first
-        cheap = 8_000_000 // (sum(g.block.indices.size for g in system.groups) + 4_000)
-        if any(g.cls.collapses for g in system.groups):
-            cheap = 0  # looked at often, so that the last good shape is a late one
-        due = min(max(FIRST_LOOK, cheap, spent // 25), self.method.longest, self.settings.max_iterations - spent)
+        due = min(max(seldom(system), spent // 25), self.method.longest, self.settings.max_iterations - spent)
         return max(1, due)
 
     def look(self, system: System, state: State, *, idle: bool = False, known: bool = False) -> Status:

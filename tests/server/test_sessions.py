@@ -342,6 +342,19 @@ def test_topology_has_an_etag_that_edits_keep_and_scenes_change(client: httpx.Cl
     assert client.get("/v1/sessions/a/topology", headers={"if-none-match": tag}).status_code == 200
 
 
+def test_played_fast_it_comes_to_rest_at_the_same_iteration_every_time(client: httpx.Client) -> None:
+    """As quickly as it can, whatever else the machine does: the same iterations, the same bits."""
+    ends = []
+    for key in "ab":
+        put(client, key)
+        client.post(f"/v1/sessions/{key}/play", params={"fast": True})
+        wait_for(lambda key=key: not client.get(f"/v1/sessions/{key}").json()["playing"])
+        told = client.get(f"/v1/sessions/{key}").json()
+        assert told["status"] == "converged"
+        ends.append((told["iteration"], told["residual"], client.get(f"/v1/sessions/{key}/state").json()["particles"]))
+    assert ends[0] == ends[1]
+
+
 def test_an_edit_over_the_socket_is_in_the_frames_that_follow(served: Served, client: httpx.Client) -> None:
     put(client)
     with watch(served) as socket:

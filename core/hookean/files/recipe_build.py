@@ -151,7 +151,7 @@ class _Builder:
                 faces = 0 if used.faces is None else len(used.faces)
                 size = f"a mesh of {count(len(used.array), 'vertex', 'vertices')} and {count(faces, 'face')}"
             else:
-                used = self._on(used, name, table, pointer)
+                used = self._on(used, name, table, pointer, said)
                 table[name] = used.array
                 size = count(len(used.array), name.removesuffix("s"))
             owners = [used.items[i] for i in np.unique(used.owner)]
@@ -162,11 +162,12 @@ class _Builder:
             self.notes.append(f"{group}[{number}] {said}: {count(len(table['points']), 'point')}")
         return (shapes.pulling_only(plain, pointer) if "tension_only" in plain else plain), used
 
-    def _on(self, shape: Shape, name: str, table: dict[str, Any], pointer: str) -> Shape:
+    def _on(self, shape: Shape, name: str, table: dict[str, Any], pointer: str, said: str) -> Shape:
         """Of selected points those on the curves that the table asks them to lie on."""
         if name != "points" or "on" not in table:
             return shape
         curves = self._curves(table.pop("on"), f"{pointer}/on")
+        self._use(curves, f"curve that keeps points of {said}")
         return lying_on(shape, curves, self.drawing.factor, self.tolerance, f"{pointer}/on")
 
     def _pulling(self, placed: Placed) -> Placed:

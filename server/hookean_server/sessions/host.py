@@ -24,6 +24,7 @@ from hookean.errors import InputError
 from hookean.result import Status
 from hookean.scene import faults
 from hookean.simulation import Simulation
+from hookean.watch import seldom
 from hookean_server.problems import Problem, faulty
 from hookean_server.sessions import parts, wire
 
@@ -31,8 +32,6 @@ log = logging.getLogger("hookean.session")
 
 FRAME = 1.0 / 60.0  # seconds from frame to frame while it plays
 SLICE = 0.005  # seconds of solving between commands
-LOOK = 0.010  # seconds from look to look at the shape while it is busy, if somebody wants a frame
-SELDOM = 0.1  # and if nobody does
 BEAT = 0.5
 CHECKPOINT = 0.8
 
@@ -70,7 +69,7 @@ class Host:
         self.shown, self.shown_at = -1, 0.0  # revision and moment of the last frame
         self.due = 0.0  # when the next frame's iterations are due
         self.owed = 0  # iterations until the next frame
-        self.judged, self.looked_at = True, 0.0  # whether, and when, the shape was looked at since it moved
+        self.judged = True  # whether the shape was looked at since it moved
         self.each = 1  # iterations that fit into a slice
         self.saved_at = self.beat_at = time.monotonic()
 
@@ -240,7 +239,9 @@ class Host:
         if not (self.owed or self.left or self.fast):
             self.owed = simulation.scene.settings.sub_iterations
             self.due = max(self.due + FRAME, began)
-        count = min(self.each, self.left or self.owed or self.each)
+        every = seldom(simulation.system)  # counted, not timed: it comes to rest at the same iteration every time
+        before = simulation.state.iteration
+        count = min(self.each, self.left or self.owed or self.each, every - before % every)
         simulation.advance(count)
         self.judged = False
         now = time.monotonic()
@@ -248,14 +249,16 @@ class Host:
         self.left = max(0, self.left - count)
         self.owed = max(0, self.owed - count)
         done = not (self.left or self.owed or (self.playing and self.fast))
-        if done or now >= self.looked_at + (LOOK if self.credit else SELDOM):
+        stands = simulation.state.iteration < before + count
+        edited = self.credit and simulation.state.revision != self.shown  # somebody waits to see it
+        if done or stands or edited or simulation.state.iteration % every == 0:
             self._judge(simulation)
 
     def _judge(self, simulation: Simulation) -> None:
         """Look at the shape, unless it is as it was: whatever is shown, stored or edited has been judged."""
         if self.judged:
             return
-        self.looked_at, self.judged = time.monotonic(), True
+        self.judged = True
         if simulation.look() is not Status.RUNNING:
             self.playing, self.left = False, 0
         if not self.left:
