@@ -78,7 +78,7 @@ def test_relax_writes_everything_asked_for(folder: Path) -> None:
     assert (folder / "cable.3dm").read_bytes() == before
     rows = (folder / "out.csv").read_text(encoding="utf-8").splitlines()
     head = rows[0].split(",")
-    assert head[:6] == ["id", "name", "layer", "force", "kind", "element"] and "length [m]" in head
+    assert head[:7] == ["id", "name", "layer", "force", "kind", "element", "particles"] and "length [m]" in head
     total = sum(float(row.split(",")[head.index("length [m]")]) for row in rows[1:] if ",springs," in row)
     assert total == pytest.approx(10.4679154891668, abs=1e-6)
     assert json.loads((folder / "out.json").read_text(encoding="utf-8"))["result"]["status"] == "converged"

@@ -26,8 +26,10 @@ class Balance:
     """Out-of-balance forces of a shape.
 
     residual = max over free particles of |out of balance| / scale [-]; scale = mean |load| over loaded free
-    particles, or the mean size of the internal element forces where nothing is loaded [force]. `floor`: the residual
-    that rounding of coordinates and sums leaves in the exact answer, u (w |x| + sum |f|) / scale.
+    particles, or the mean size of the internal element forces where nothing is loaded [force]. Rounding of coordinates
+    and sums leaves u (w |x| + |f| + |load|) at a particle of the exact answer, |x| the largest coordinate of all:
+    `floor` is the most that it leaves anywhere, / scale; `beyond` the largest residual of a particle that is more than
+    it leaves there.
     """
 
     forces: Floats  # (n, 3) what is left on free particles
@@ -37,12 +39,13 @@ class Balance:
     out_of_balance: float
     residual: float
     floor: float
+    beyond: float
     worst: int
     energies: Floats  # of each group of elements [force length]
 
     def met(self, tolerance: float) -> bool:
-        """Converged: residual <= max(tolerance, floor)."""
-        return self.residual <= max(tolerance, self.floor)
+        """Converged: what is left at each particle is within the tolerance, or no more than rounding leaves there."""
+        return self.beyond <= tolerance
 
 
 def balance(system: System, state: State) -> Balance:
@@ -53,36 +56,44 @@ def balance(system: System, state: State) -> Balance:
     contact = system.support(state, left) if system.contacts else np.zeros(f.shape)
     reactions = np.empty(f.shape)
     judged = kernels.compiled(judge)(state.x, f, w, state.free, loads, contact, left, reactions)
-    worst, out, floor, load, loaded = judged
+    worst, out, beyond, floor, load, loaded = judged
     scale = load / loaded if loaded else _element_scale(system, state)
     # nothing pushes anywhere: balanced if what is left is rounding
     unit = scale if scale > 0.0 else 1.0
-    return Balance(left, reactions, contact, unit, out, out / unit, floor / unit, worst, energies)
+    return Balance(left, reactions, contact, unit, out, out / unit, floor / unit, beyond / unit, worst, energies)
 
 
 def judge(x, f, w, free, loads, contact, left, reactions):  # type: ignore[no-untyped-def]
-    """Write the reactions; the particle with the largest force left and that force, what rounding leaves [force], and
-    the sizes of loads on what may move: their sum, and how many there are."""
-    worst, out, floor, load, loaded = 0, 0.0, 0.0, 0.0, 0
+    """Write the reactions; the particle with the largest force left, that force, the largest beyond rounding and the
+    most that rounding leaves [force], and the sizes of loads on what may move: their sum, and how many there are."""
+    worst, out, beyond, floor, load, loaded = 0, 0.0, 0.0, 0.0, 0.0, 0
+    reach = 0.0  # of all: what a particle hangs on may be farther out than itself
     for i in range(x.shape[0]):
-        largest, reach, square, weight, moves = 0.0, 0.0, 0.0, 0.0, False
+        for c in range(3):
+            if abs(x[i, c]) > reach and np.isfinite(x[i, c]):
+                reach = abs(x[i, c])
+    for i in range(x.shape[0]):
+        largest, square, weight, moves = 0.0, 0.0, 0.0, False
         for c in range(3):
             reactions[i, c] = -(f[i, c] + contact[i, c]) * (1.0 - free[i, c])
             square += left[i, c] * left[i, c]
             weight += loads[i, c] * free[i, c] * loads[i, c] * free[i, c]
-            largest, reach = max(largest, abs(f[i, c])), max(reach, abs(x[i, c]))
+            largest = max(largest, abs(f[i, c]))
             moves = moves or free[i, c] > 0.0
         # where a position is none, neither is what its springs do
         size = np.sqrt(square) if np.isfinite(x[i, 0] + x[i, 1] + x[i, 2]) else np.nan
         weight = np.sqrt(weight)
+        noise = ROUNDING * (w[i] * reach + largest + weight)
         if size > out or (np.isnan(size) and not np.isnan(out)):
             worst, out = i, size
+        if (size > noise and size > beyond) or np.isnan(size):
+            beyond = size
         if moves:
-            floor = max(floor, ROUNDING * (w[i] * reach + largest + weight))
+            floor = max(floor, noise)
             if weight > 0.0:
                 load += weight
                 loaded += 1
-    return worst, out, floor, load, loaded
+    return worst, out, beyond, floor, load, loaded
 
 
 def _element_scale(system: System, state: State) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from hookean import stability
 from hookean.errors import InputError
@@ -43,6 +44,7 @@ def relax_state(
     if method.physical and (said := stability.warning(system, state)) and said not in system.report.warnings:
         system.report.warnings.append(said)
     method.start(system, state)
+    state.force_scale = 0.0  # of this run alone
     watch = Watch(system, state, method)
     status = watch.look(system, state, known=True)
     while status is Status.RUNNING:
@@ -54,12 +56,14 @@ def relax_state(
         if progress is not None:
             progress(state.iteration, watch.found.residual)
     if status is Status.CONVERGED:
-        system.remember(state)  # other ends are on no physical path, and leave no mark
+        watch.remember(system, state)  # other ends are on no physical path, and leave no mark
     if status is Status.CONVERGED and watch.found.floor > COARSE:
         system.report.warnings.append(
             f"rounding alone leaves a residual of {watch.found.floor:.1g}: stiffness or coordinates are very large for "
             "these loads, and the shape is no better known than that"
         )
+    if status is Status.STALLED and not method.physical:
+        watch.good, watch.found = replace(watch.top, iteration=watch.last), watch.top_found
     _restore(state, watch.good, memory=status is Status.DIVERGED)
     if not method.physical:
         state.v[:] = 0.0  # fictitious: nothing moved

@@ -164,7 +164,7 @@ class Simulation:
         if self.status is Status.DIVERGED:
             self.state = self._watch.good.copy()
         elif self.status is Status.CONVERGED and not self.solver.physical:
-            self.system.remember(self.state)
+            self._watch.remember(self.system, self.state)
         elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):
             self.status = Status.RUNNING  # somebody is watching; they decide when to stop
         return self.status

@@ -295,6 +295,17 @@ def _carried(welded: Welded, number: int) -> Ints:
     return found
 
 
+def _closed(system: System, group: Group, part: Part) -> NDArray[np.bool_]:
+    """Which elements between two particles have a rest length, and no length at the start."""
+    block = group.of(part)
+    rest = [block.parameters[:, i] for i, name in enumerate(block.names) if name in ("rest_length", "rest_factor")]
+    if len(rest) < 2:
+        return np.zeros(len(block.indices), dtype=bool)
+    one, other = system.x.take(block.indices[:, 0], axis=0).T, system.x.take(block.indices[:, 1], axis=0).T
+    here = (one[0] == other[0]) & (one[1] == other[1]) & (one[2] == other[2])
+    return np.asarray(here & (rest[0] * rest[1] > 0.0))
+
+
 def _warn(system: System) -> None:
     """Say what will surprise: springs without length, loads on particles nothing holds."""
     warnings = system.report.warnings
@@ -312,6 +323,13 @@ def _warn(system: System) -> None:
                         f"/forces/{part.number}: {int(same.sum())} of {len(same)} elements start and end at one "
                         f"particle (first: element {int(np.argmax(same))}) and do nothing; lengthen them or lower "
                         "weld_tolerance"
+                    )
+                closed = _closed(system, group, part) & ~same
+                if closed.any():
+                    warnings.append(
+                        f"/forces/{part.number}: {int(closed.sum())} of {len(closed)} elements begin without length "
+                        f"(first: element {int(np.argmax(closed))}), so that they push in no direction; move their "
+                        "ends apart"
                     )
     for anchor in system.held:
         if (anchor.free == 0).all():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import numpy as np
 
@@ -37,13 +38,15 @@ class Watch:
         self.good = state.copy()
         self.found: Balance = balance(system, state)
         self.size = system.size
+        self.strict = False  # whether softer parts are not at rest yet where the stiffest is, but for rounding
+        self.top, self.top_found = self.good, self.found  # of the best residual
         self.fault = ""
         self.collapse = ""
 
     @property
     def goal(self) -> float:
         """The out-of-balance force [force] that meets the tolerance."""
-        return max(self.settings.tolerance, self.found.floor) * self.found.scale
+        return max(self.settings.tolerance, 0.0 if self.strict else self.found.floor) * self.found.scale
 
     def burst(self, system: System, state: State) -> int:
         """Iterations until the next look: about 50 ms of springs, or a twenty-fifth of those done."""
@@ -60,12 +63,15 @@ class Watch:
             self.found = balance(system, state)
         if self.method.anew > self.best_at:  # what the other way had reached is no measure of this one
             self.best, self.best_at = np.inf, self.method.anew
-        if self.found.residual < self.best:
-            self.best, self.best_at = self.found.residual, state.iteration
         if not known:
             self.good = state.copy()
+        if self.found.residual < self.best:
+            self.best, self.best_at = self.found.residual, state.iteration
+            self.top, self.top_found = self.good, self.found
         if self.found.met(self.settings.tolerance) and self._resting(system, state):
             return Status.CONVERGED
+        if not self.strict and self.found.residual <= self.found.floor:
+            self.strict, idle = True, False
         stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
         if idle or (stuck and not self.method.physical):  # what swings may swing for long
             return Status.STALLED
@@ -75,6 +81,12 @@ class Watch:
         if limit is not None and time.monotonic() - self.started > limit:
             return Status.TIME_LIMIT
         return Status.RUNNING
+
+    def remember(self, system: System, state: State) -> None:
+        """Let elements take note of a shape at rest; those that yield have another energy then."""
+        system.remember(state)
+        if system.yields:
+            self.found = replace(self.found, energies=system.evaluate(state)[2])
 
     def _collapsed(self, system: System, state: State) -> bool:
         """Whether some force says that its shape is none any more."""

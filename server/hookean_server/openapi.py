@@ -57,7 +57,10 @@ def _form(file: str) -> dict[str, Any]:
         "type": "object",
         "properties": {
             "file": {"type": "string", "format": "binary", "description": file},
-            "recipe": {"type": "string", "description": "What to make of a .3dm file, as JSON text; none: as drawn"},
+            "recipe": {
+                "type": "string",
+                "description": "What to make of a .3dm file, as TOML or JSON text; none: as drawn",
+            },
         },
         "required": ["file"],
     }

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as some
 
-from hookean import Scene
+from hookean import Scene, Simulation, relax
 from hookean.balance import ROUNDING, Balance, balance
 from hookean.state import State
 from hookean.system import System, compile
@@ -37,7 +37,8 @@ def judged(seed: int, *, loads: bool, floor: bool) -> tuple[System, State, Balan
 @given(seed=some.integers(0, 2**32 - 1), loads=some.booleans(), floor=some.booleans())
 def test_the_residual_is_what_its_definition_says(seed: int, loads: bool, floor: bool) -> None:
     """max |out of balance| / mean |load| on the free axes; reactions and what is left add up to all forces; the floor
-    u (w |x| + |f| + |load|) / scale. Sums in another order: 8 terms, 16 roundings at most."""
+    u (w |x| + |f| + |load|) / scale, |x| the largest of all; beyond it what is more than its own particle's. Sums in
+    another order: 8 terms, 16 roundings at most."""
     system, state, found = judged(seed, loads=loads, floor=floor)
     f, w, _ = system.evaluate(state)
     left = f * state.free
@@ -51,9 +52,10 @@ def test_the_residual_is_what_its_definition_says(seed: int, loads: bool, floor:
     load = np.linalg.norm(system.evaluate(state, only="load")[0] * state.free, axis=1)
     if loads and load.any():
         np.testing.assert_allclose(found.scale, load[load > 0.0].mean(), **close)
-    noise = ROUNDING * (w * np.abs(state.x).max(axis=1) + np.abs(f).max(axis=1) + load)
+    noise = ROUNDING * (w * np.abs(state.x).max() + np.abs(f).max(axis=1) + load)
     np.testing.assert_allclose(found.floor * found.scale, noise[state.free.any(axis=1)].max(), rtol=1e-14)
     np.testing.assert_allclose(found.residual, sizes.max() / found.scale, rtol=1e-14)
+    np.testing.assert_allclose(found.beyond * found.scale, sizes[sizes > noise].max(initial=0.0), rtol=1e-14)
 
 
 @pytest.mark.parametrize("particle", [0, 5])
@@ -64,3 +66,85 @@ def test_a_number_that_is_none_is_told(particle: int) -> None:
     state.x[particle] = np.nan
     found = balance(system, state)
     assert np.isnan(found.residual) and not found.met(1e9)
+
+
+def link(stiff: float, solver: str) -> Scene:
+    """A soft cable of three springs under loads of 1 N, and beside it a stiff chain, 1000 km from the origin."""
+    x = np.array([[0, 0], [1, 0], [2, 0], [3, 0], [0, 5], [1, 5], [2, 5]], float)
+    forces = [
+        {"kind": "springs", "name": "soft", "particles": [[0, 1], [1, 2], [2, 3]], "stiffness": 1.0},
+        {"kind": "springs", "name": "stiff", "particles": [[4, 5], [5, 6]], "stiffness": stiff},
+        {"kind": "unary", "particles": [1, 2], "vector": [0.0, 0.0, -1.0]},
+    ]
+    spec = {
+        "particles": np.column_stack([x + [1e6, 0.0], np.zeros(7)]),
+        "forces": forces,
+        "anchors": [{"particles": [0, 3, 4, 6]}],
+        "settings": {"solver": solver},
+    }
+    return Scene.read(spec)
+
+
+@pytest.mark.parametrize("solver", ["auto", "relaxation", "newton", "momentum"])
+def test_what_is_stiff_does_not_excuse_what_is_soft(solver: str) -> None:
+    """Rounding leaves 4.4 N of a stiffness of 1e10 at 1e6, and nothing of one of 1: the cable hangs as it does beside a
+    soft chain, to the tolerance of 1e-6 of its load over its stiffness across, a hundredth of 1 / 1 or more."""
+    alone, beside = relax(link(1.0, solver)), relax(link(1e10, solver))
+    assert beside.converged and beside.rounding_floor > 1.0
+    assert np.abs(beside.particles[:4] - alone.particles[:4]).max() <= 1e-4
+    assert beside.particles[1, 2] < -1.9
+
+
+def chain(stiffness: object, **more: object) -> Scene:
+    """Six particles in a row under pre-tension, without a load."""
+    springs = {"kind": "springs", "name": "s", "particles": [[i, i + 1] for i in range(5)], "rest_factor": 0.8}
+    anchors = [{"name": "a", "particles": [0]}, {"name": "b", "particles": [5], **more}]
+    x = [[i, 0, 0] for i in range(6)]
+    spec = {"particles": x, "forces": [{**springs, "stiffness": stiffness}], "anchors": anchors}
+    return Scene.read({**spec, "settings": {"solver": "relaxation"}})
+
+
+@pytest.mark.parametrize("stiffness", [1e3, 1.0, 1e-3])
+def test_after_a_patch_forces_are_measured_by_those_of_now(stiffness: float) -> None:
+    """A chain a million times softer than before, and with another end, is as near to rest as one made like that."""
+    running = Simulation(chain(1e6))
+    running.relax()
+    moved = {"move": [{"anchor": "b", "targets": [[5.0, 2.0, 0.0]]}]}
+    running.patch({"forces": {"s": {"stiffness": stiffness}}, **moved})
+    found, made = running.relax(), relax(chain(stiffness, targets=[[5.0, 2.0, 0.0]]))
+    assert found.converged and made.converged
+    assert np.abs(found.particles - made.particles).max() <= 1e-4
+
+
+def test_the_energy_is_that_of_what_has_yielded() -> None:
+    """Two springs that both bear 50 N, one of 1000 N/m that yields, one of 2000 N/m: T^2 / 2k each."""
+    springs = {"kind": "springs", "name": "s", "particles": [[0, 1], [1, 2]], "stiffness": [1000, 2000]}
+    limits = {"rest_length": [0.5, 1.0], "plasticity": [0.1, 0.0]}
+    spec = {"particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0]], "forces": [{**springs, **limits}]}
+    scene = Scene.read({**spec, "anchors": [{"particles": [0, 2]}]})
+    running = Simulation(scene)
+    tension = relax(scene).force("s")["force"]
+    expected = float((tension**2 / [2000.0, 4000.0]).sum())
+    for found in (relax(scene), running.relax(), running.result()):
+        assert found.energy["springs"] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("solver", ["auto", "relaxation", "multilevel"])
+def test_a_run_that_stalls_returns_its_best_shape(solver: str) -> None:
+    """A spring on its lower cutoff works or does not: the load of 1 N is left over, or the spring's 10 and more."""
+    springs = {"kind": "springs", "particles": [[0, 1]], "stiffness": 100, "rest_length": 1.0, "lower_cutoff": 1.1}
+    load = {"kind": "unary", "particles": [1], "vector": [0.0, 0.0, -1.0]}
+    spec = {"particles": [[0, 0, 0], [0, 0, -1]], "forces": [springs, load], "anchors": [{"particles": [0]}]}
+    seen: list[float] = []
+    found = relax(Scene.read({**spec, "settings": {"solver": solver}}), progress=lambda _, left: seen.append(left))
+    assert found.status == "stalled" and found.residual == min(seen) < max(seen)
+    assert found.out_of_balance == pytest.approx(1.0)
+
+
+def test_a_spring_that_begins_without_length_is_told() -> None:
+    """Its ends are two particles at one place: in balance, and the highest energy of all."""
+    springs = {"kind": "springs", "particles": [[0, 1], [1, 2]], "rest_length": [1.0, 2.0]}
+    spec = {"particles": [[0, 0, 0], [0, 0, 0], [2, 0, 0]], "anchors": [{"particles": [0, 2]}]}
+    said = relax(Scene.read({**spec, "forces": [springs]})).report.warnings
+    assert len(said) == 1 and said[0].startswith("/forces/0: 1 of 2 elements begin without length (first: element 0)")
+    assert not relax(Scene.read({**spec, "forces": [{**springs, "rest_length": 0.0}]})).report.warnings

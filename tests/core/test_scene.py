@@ -207,3 +207,14 @@ def test_what_is_no_scene_is_told_how_to_become_one(wrong):
     """The JSON that the service takes is one step away from a scene: the sentence says which."""
     with pytest.raises(InputError, match=rf"scene: a Scene is wanted, not a {type(wrong).__name__}; .*Scene\.read"):
         relax(wrong)
+
+
+@pytest.mark.parametrize("bad", [{"stifness": 5}, {"stiffness": -5}, {"particles": [[0, 7]]}])
+def test_a_scene_made_by_name_tells_faults_as_one_that_is_read(bad: dict[str, object]) -> None:
+    """`Scene(...)` and `Scene.read(...)`: one InputError, the same place and sentence."""
+    spec = {"particles": [[0, 0, 0], [1, 0, 0]], "forces": [{"kind": "springs", "particles": [[0, 1]], **bad}]}
+    with pytest.raises(InputError) as read:
+        Scene.read(spec)
+    with pytest.raises(InputError) as made:
+        Scene(**spec)  # type: ignore[arg-type]
+    assert str(made.value) == str(read.value) and made.value.pointer.startswith("/forces/0")

@@ -213,6 +213,8 @@ def test_a_table_of_forces_has_its_units(client: httpx.Client) -> None:
     result = client.get("/v1/sessions/a/state").json()
     springs = [float(row["force [N]"]) for row in rows if row["kind"] == "springs"]
     assert springs == pytest.approx(result["forces"][0]["force"], rel=1e-12)
+    pairs = [[int(p) for p in row["particles"].split()] for row in rows if row["kind"] == "springs"]
+    assert pairs == result["forces"][0]["particles"]
     upwards = [float(row["force z [N]"]) for row in rows if row["kind"] in ("reaction", "unary")]
     assert len(upwards) == 8 and abs(sum(upwards)) < 1e-5
 

@@ -158,7 +158,7 @@ def _reactions(system: System, result: Result, built: Built | None) -> Section:
 
 def rows(parts: Sequence[Section], result: Result) -> list[Row]:
     """A row for each element and each reaction; keys are the CSV's header, with units. Lengths and forces are in the
-    scene's units, x y z the middle of the relaxed element."""
+    scene's units, x y z the middle of the relaxed element, `particles` those it joins."""
     return [row for part in parts for row in _rows(part, result)]
 
 
@@ -175,6 +175,7 @@ def _rows(part: Section, result: Result) -> Iterator[Row]:
             "force": part.names[i] if part.names else part.name,
             "kind": part.kind,
             "element": i,
+            "particles": " ".join(str(particle) for particle in part.particles[i]),
         }
         row.update({f"{axis} [{units.length}]": float(c) for axis, c in zip("xyz", middle[i], strict=True)})
         for name, values in part.columns.items():
