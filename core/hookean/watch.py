@@ -38,7 +38,6 @@ class Watch:
         self.good = state.copy()
         self.found: Balance = balance(system, state)
         self.size = system.size
-        self.strict = False  # whether softer parts are not at rest yet where the stiffest is, but for rounding
         self.top, self.top_found = self.good, self.found  # of the best residual
         self.fault = ""
         self.collapse = ""
@@ -46,7 +45,10 @@ class Watch:
     @property
     def goal(self) -> float:
         """The out-of-balance force [force] that meets the tolerance."""
-        return max(self.settings.tolerance, 0.0 if self.strict else self.found.floor) * self.found.scale
+        found, tolerance = self.found, self.settings.tolerance
+        # where the stiffest rests, but for rounding, something softer may not
+        softer = found.residual <= found.floor and not found.met(tolerance)
+        return max(tolerance, 0.0 if softer else found.floor) * found.scale
 
     def burst(self, system: System, state: State) -> int:
         """Iterations until the next look: about 50 ms of springs, or a twenty-fifth of those done."""
@@ -70,8 +72,6 @@ class Watch:
             self.top, self.top_found = self.good, self.found
         if self.found.met(self.settings.tolerance) and self._resting(system, state):
             return Status.CONVERGED
-        if not self.strict and self.found.residual <= self.found.floor:
-            self.strict, idle = True, False
         stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
         if idle or (stuck and not self.method.physical):  # what swings may swing for long
             return Status.STALLED
