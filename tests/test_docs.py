@@ -59,9 +59,8 @@ def test_the_page_of_the_scene_names_everything():
     assert not missing, f"docs/scene.md does not tell of {', '.join(missing)}"
     for name, field in Settings.model_fields.items():
         told = re.search(rf"^\| `{name}` \| ([^ |]+)", SCENE, re.M)
-        assert told and told[1] == (
-            "none" if field.default is None else f"{field.default}".replace("1e-06", "1e-6").removesuffix(".0")
-        )
+        shown = f"{field.default}".replace("1e-06", "1e-6").removesuffix(".0")
+        assert told and told[1] == {"None": "none", "False": "false"}.get(shown, shown)
     routes = set(create_app(ServerSettings()).openapi()["paths"])
     for route in re.findall(r"`(?:GET|POST) (/v1[^`]*)`", SCENE):
         assert route in routes | {"/v1/openapi.json", "/v1/discretize/{operation}"}, route

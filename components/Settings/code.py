@@ -21,4 +21,5 @@ settings = canvas.settings(
     force=_force_unit_,
     time=_time_unit_,
     fast=_fast_,
+    allow_unstable=_allow_unstable_,
 )

@@ -1,15 +1,20 @@
-"""Balance: how far a shape is from equilibrium, on what scale, and how near float64 lets it come."""
+"""Balance: how far a shape is from equilibrium, on what scale, and how near float64 lets it come.
+
+Every connected component is judged by its own loads, every particle by the coordinates of its own elements: what is
+heavy, stiff or far away excuses nothing elsewhere.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
+from hookean.components import Components
 from hookean.forces import Block
 from hookean.forces.base import lengths
 from hookean.state import State
@@ -19,33 +24,109 @@ Floats = NDArray[np.float64]
 
 CHUNK = 8192  # elements
 ROUNDING = float(np.finfo(np.float64).eps) / 2.0
+COARSE = 1e-3  # a rounding floor above this leaves too little to call a shape known
+UNSTRAINED = 1e-6  # strain below which the forces of a component without loads count as none
+BALANCED = 1e-9  # part of the loads that may be left of their sum where they balance one another
+
+OUT, WORST, BEYOND, NOISE, LOAD, LOADED, ALONG = 0, 1, 2, 3, 4, 5, slice(6, 9)
+"""Columns of what `judge` finds of each component."""
 
 
 @dataclass(frozen=True)
 class Balance:
     """Out-of-balance forces of a shape.
 
-    residual = max over free particles of |out of balance| / scale [-]; scale = mean |load| over loaded free
-    particles, or the mean size of the internal element forces where nothing is loaded [force]. Rounding of coordinates
-    and sums leaves u (w |x| + |f| + |load|) at a particle of the exact answer, |x| the largest coordinate of all:
-    `floor` is the most that it leaves anywhere, / scale; `beyond` the largest residual of a particle that is more than
-    it leaves there.
+    Of each connected component: residual = max over its particles |out of balance| / scale [-]; scale = mean |load|
+    over its loaded particles, or the mean size of its internal element forces where nothing is loaded [force].
+    Rounding of coordinates and sums leaves u (w |x| + |f| + |load|) at a particle of the exact answer, |x| the largest
+    coordinate of the elements at it: `floors` is the most that it leaves in a component, / scale; `beyond` the largest
+    residual of a particle that is more than it leaves there. `residual`, `scale`, `out_of_balance` and `worst` are
+    those of the component with the largest residual, `floor` is the largest of all.
     """
 
     forces: Floats  # (n, 3) what is left on free particles
     reactions: Floats  # (n, 3) what anchors put on held ones
     contact: Floats  # (n, 3) what contacts put on particles
-    scale: float
-    out_of_balance: float
-    residual: float
-    floor: float
-    beyond: float
-    worst: int
+    components: Components
+    found: Floats  # (k, 9) of each component what `judge` wrote
+    scales: Floats  # (k,) [force]
     energies: Floats  # of each group of elements [force length]
+    stiffness: Floats  # (n,) that particles feel [force/length]
+    extent: Floats  # (n,) largest of the elements at each particle [length]
+
+    @cached_property
+    def residuals(self) -> Floats:
+        """Of each component (k,) [-]."""
+        return np.asarray(self.found[:, OUT] / self.scales)
+
+    @cached_property
+    def floors(self) -> Floats:
+        """Of each component (k,) [-]."""
+        return np.asarray(self.found[:, NOISE] / self.scales)
+
+    @cached_property
+    def part(self) -> int:
+        """The component with the largest residual; -1 where nothing may move."""
+        return int(np.argmax(self.residuals)) if len(self.scales) else -1  # a nan is the largest
+
+    @property
+    def residual(self) -> float:
+        """The largest residual [-]."""
+        return float(self.residuals[self.part]) if self.part >= 0 else 0.0
+
+    @property
+    def scale(self) -> float:
+        """The force by which the residual is measured [force]."""
+        return float(self.scales[self.part]) if self.part >= 0 else 1.0
+
+    @property
+    def out_of_balance(self) -> float:
+        """The force that the residual measures [force]."""
+        return float(self.found[self.part, OUT]) if self.part >= 0 else 0.0
+
+    @property
+    def worst(self) -> int:
+        """The particle with the largest residual."""
+        return int(self.found[self.part, WORST]) if self.part >= 0 else 0
+
+    @property
+    def floor(self) -> float:
+        """The largest rounding floor [-]."""
+        return float(self.floors.max(initial=0.0))
+
+    @property
+    def beyond(self) -> float:
+        """The largest residual of a particle that is more than rounding leaves there [-]."""
+        return float((self.found[:, BEYOND] / self.scales).max(initial=0.0))
+
+    @cached_property
+    def adrift(self) -> NDArray[np.int64]:
+        """Components that nothing supports although their loads have a resultant."""
+        along = np.abs(self.found[:, ALONG]).max(axis=1, initial=0.0)
+        return np.flatnonzero(~self.components.supported & (along > BALANCED * self.found[:, LOAD]))
+
+    @cached_property
+    def coarse(self) -> NDArray[np.int64]:
+        """Components whose forces rounding hides."""
+        return np.flatnonzero(self.floors > COARSE)
+
+    def still(self, tolerance: float) -> bool:
+        """Whether what is left at each particle is within the tolerance, or no more than rounding leaves there."""
+        return self.beyond <= tolerance
 
     def met(self, tolerance: float) -> bool:
-        """Converged: what is left at each particle is within the tolerance, or no more than rounding leaves there."""
-        return self.beyond <= tolerance
+        """Converged: `still`, and that means something: no component is adrift, and rounding hides no forces."""
+        return self.still(tolerance) and not len(self.adrift) and not len(self.coarse)
+
+    def goal(self, tolerance: float) -> float:
+        """The out-of-balance force [force] that meets the tolerance in every component."""
+        if not len(self.scales):
+            return tolerance
+        # where the stiffest rests, but for rounding, something softer may not
+        beyond = self.found[:, BEYOND] / self.scales
+        softer = (self.residuals <= self.floors) & (beyond > tolerance)
+        wanted = np.maximum(np.where(softer, 0.0, self.floors), tolerance) * self.scales
+        return float(wanted.min())
 
 
 def balance(system: System, state: State) -> Balance:
@@ -54,59 +135,114 @@ def balance(system: System, state: State) -> Balance:
     loads, _, _ = system.evaluate(state, only="load")
     left = f * state.free
     contact = system.support(state, left) if system.contacts else np.zeros(f.shape)
-    reactions = np.empty(f.shape)
-    judged = kernels.compiled(judge)(state.x, f, w, state.free, loads, contact, left, reactions)
-    worst, out, beyond, floor, load, loaded = judged
-    scale = load / loaded if loaded else _element_scale(system, state)
-    # nothing pushes anywhere: balanced if what is left is rounding
-    unit = scale if scale > 0.0 else 1.0
-    return Balance(left, reactions, contact, unit, out, out / unit, floor / unit, beyond / unit, worst, energies)
+    parts = system.components(state)
+    reactions, found = np.empty(f.shape), np.zeros((len(parts.first), 9))
+    reach, extent = np.empty(len(f)), np.zeros(len(f))
+    kernels.compiled(reach_alone)(state.x, reach)
+    for group in system.groups:
+        if group.cls.role != "load" and len(group.block.indices):
+            kernels.compiled(reach_of)(group.block.indices, state.x, reach, extent)
+    kernels.compiled(judge)(
+        state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found
+    )  # fmt: skip
+    scales = found[:, LOAD] / np.maximum(found[:, LOADED], 1.0)
+    unloaded = scales <= 0.0
+    if (unloaded & parts.joined).any():
+        scales = np.where(unloaded, _element_scales(system, state, parts, w * extent), scales)
+    # nothing pushes there: balanced if what is left is rounding
+    scales[scales <= 0.0] = 1.0
+    return Balance(left, reactions, contact, parts, found, scales, energies, w, extent)
 
 
-def judge(x, f, w, free, loads, contact, left, reactions):  # type: ignore[no-untyped-def]
-    """Write the reactions; the particle with the largest force left, that force, the largest beyond rounding and the
-    most that rounding leaves [force], and the sizes of loads on what may move: their sum, and how many there are."""
-    worst, out, beyond, floor, load, loaded = 0, 0.0, 0.0, 0.0, 0.0, 0
-    reach = 0.0  # of all: what a particle hangs on may be farther out than itself
+def reach_alone(x, reach):  # type: ignore[no-untyped-def]
+    """The largest coordinate of each particle, where it is a number."""
     for i in range(x.shape[0]):
+        reach[i] = 0.0
         for c in range(3):
-            if abs(x[i, c]) > reach and np.isfinite(x[i, c]):
-                reach = abs(x[i, c])
+            if abs(x[i, c]) > reach[i] and np.isfinite(x[i, c]):
+                reach[i] = abs(x[i, c])
+
+
+def reach_of(indices, x, reach, extent):  # type: ignore[no-untyped-def]
+    """The largest coordinate of the elements at each particle, and their largest extent along an axis."""
+    for e in range(indices.shape[0]):
+        far, wide = 0.0, 0.0
+        for c in range(3):
+            low = high = x[indices[e, 0], c]
+            for j in range(1, indices.shape[1]):
+                low, high = min(low, x[indices[e, j], c]), max(high, x[indices[e, j], c])
+            far, wide = max(far, -low, high), max(wide, high - low)
+        if not np.isfinite(far):
+            continue
+        for j in range(indices.shape[1]):
+            i = indices[e, j]
+            reach[i], extent[i] = max(reach[i], far), max(extent[i], wide)
+
+
+def judge(x, f, w, free, loads, contact, reach, label, left, reactions, found):  # type: ignore[no-untyped-def]
+    """Write the reactions; and of each component the largest force left, the particle with it, the largest beyond
+    rounding and the most that rounding leaves [force], the sizes of loads on what may move: their sum, how many there
+    are, and the loads added up along the axes."""
     for i in range(x.shape[0]):
-        largest, square, weight, moves = 0.0, 0.0, 0.0, False
+        largest, square, weight = 0.0, 0.0, 0.0
         for c in range(3):
             reactions[i, c] = -(f[i, c] + contact[i, c]) * (1.0 - free[i, c])
             square += left[i, c] * left[i, c]
             weight += loads[i, c] * free[i, c] * loads[i, c] * free[i, c]
             largest = max(largest, abs(f[i, c]))
-            moves = moves or free[i, c] > 0.0
+        if label[i] < 0:
+            continue
+        part = found[label[i]]
         # where a position is none, neither is what its springs do
         size = np.sqrt(square) if np.isfinite(x[i, 0] + x[i, 1] + x[i, 2]) else np.nan
         weight = np.sqrt(weight)
-        noise = ROUNDING * (w[i] * reach + largest + weight)
-        if size > out or (np.isnan(size) and not np.isnan(out)):
-            worst, out = i, size
-        if (size > noise and size > beyond) or np.isnan(size):
-            beyond = size
-        if moves:
-            floor = max(floor, noise)
-            if weight > 0.0:
-                load += weight
-                loaded += 1
-    return worst, out, beyond, floor, load, loaded
+        noise = ROUNDING * (w[i] * reach[i] + largest + weight)
+        if size > part[0] or (np.isnan(size) and not np.isnan(part[0])):
+            part[0], part[1] = size, i
+        if (size > noise and size > part[2]) or np.isnan(size):
+            part[2] = size
+        part[3] = max(part[3], noise)
+        if weight > 0.0:
+            part[4] += weight
+            part[5] += 1.0
+            for c in range(3):
+                part[6 + c] += loads[i, c]
 
 
-def _element_scale(system: System, state: State) -> float:
-    """The mean size of the internal element forces [force]."""
-    total, count = 0.0, 0
+def _element_scales(system: System, state: State, parts: Components, stiff: Floats) -> Floats:
+    """The mean size of the internal element forces of each component (k,) [force]; `stiff` (n,) is what particles
+    resist to strains of 1 [force]."""
+    k = len(parts.first)
+    sums = np.zeros((k, 2))
     for group, memory in zip(system.groups, state.memory, strict=True):
         if group.cls.role != "load" and len(group.block.indices):
+            first = 0
             for sizes in _element_sizes(system, group, state, memory):
-                total, count = total + float(sizes.sum()), count + len(sizes)
-    now = total / count if count else 0.0
+                index = group.block.indices[first : first + len(sizes)]
+                first += len(sizes)
+                kernels.compiled(tally)(index, sizes, parts.label, sums)
+    now = sums[:, 0] / np.maximum(sums[:, 1], 1.0)
     # where stress dies out at equilibrium, the scale must not die with it
-    state.force_scale = max(state.force_scale, now)
-    return max(now, 1e-3 * state.force_scale)
+    if len(state.force_scale) != k:
+        state.force_scale = np.zeros(k)
+    state.force_scale = np.maximum(state.force_scale, now)
+    scales = np.maximum(now, 1e-3 * state.force_scale)
+    if scales.min() < UNSTRAINED * stiff.max():
+        own = np.zeros((k, 2))
+        kernels.compiled(tally)(np.arange(len(stiff))[:, None], stiff, parts.label, own)
+        scales = np.maximum(scales, UNSTRAINED * own[:, 0] / np.maximum(own[:, 1], 1.0))
+    return np.asarray(scales)
+
+
+def tally(indices, sizes, label, sums):  # type: ignore[no-untyped-def]
+    """Add the sizes of elements to those of their components, and how many there are."""
+    for e in range(indices.shape[0]):
+        part = -1
+        for j in range(indices.shape[1]):
+            part = max(part, label[indices[e, j]])
+        if part >= 0:
+            sums[part, 0] += sizes[e]
+            sums[part, 1] += 1.0
 
 
 def _element_sizes(system: System, group: Group, state: State, memory: Floats) -> Iterator[Floats]:

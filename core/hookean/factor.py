@@ -1,12 +1,13 @@
 """Factors of a sparse symmetric matrix that changes its values and keeps its pattern.
 
 Made by rslab where it is installed (`pip install hookean[fast]`): supernodal, its order worked out once, three times
-as quick as SciPy's splu on a net of 10,000 particles. Else by splu. Both say whether the matrix is positive definite
-(Sylvester's law of inertia), and both give the same bits on any number of threads.
+as quick as SciPy's splu on a net of 10,000 particles. Else by splu. Both count the negative eigenvalues (Sylvester's
+law of inertia), and both give the same bits on any number of threads.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from typing import Any
@@ -18,6 +19,13 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
+class Factor:
+    """A matrix in factors, and how many of its eigenvalues are negative."""
+
+    def __init__(self, solve: Callable[[Floats], Floats], negatives: int) -> None:
+        self.solve, self.negatives = solve, negatives
+
+
 class Factors:
     """Factors of symmetric matrices of one pattern: the lower triangle by columns, rows (nnz,) sorted within each of
     the columns that begin at `starts` (n + 1,)."""
@@ -26,23 +34,31 @@ class Factors:
         self.rows, self.starts = rows, starts
         self._order: Any = None
 
-    def solve(self, values: Floats, b: Floats) -> Floats | None:
-        """x of A x = b (n,), `values` (nnz,) those of A's lower triangle; None unless A is positive definite."""
+    def factor(self, values: Floats) -> Factor | None:
+        """The matrix with these values (nnz,) of its lower triangle in factors; None where it is singular."""
         import scipy.sparse as sparse
 
-        size = len(b)
+        size = len(self.starts) - 1
         lower = sparse.csc_matrix((values, self.rows, self.starts), shape=(size, size))
         try:
-            x = self._supernodal(lower, b) if supernodal() is not None else _splu(lower, b)
+            return self._supernodal(lower) if supernodal() is not None else _splu(lower)
         except RuntimeError:  # singular
             return None
-        return x if x is not None and np.isfinite(x).all() else None
 
-    def _supernodal(self, lower: Any, b: Floats) -> Floats | None:
+    def solve(self, values: Floats, b: Floats) -> Floats | None:
+        """x of A x = b (n,); None unless A is positive definite."""
+        factor = self.factor(values)
+        if factor is None or factor.negatives:
+            return None
+        x = factor.solve(b)
+        return x if np.isfinite(x).all() else None
+
+    def _supernodal(self, lower: Any) -> Factor | None:
         if self._order is None:
             self._order = supernodal().analyze(lower, path="ldlt", threads=1)
         factor = self._order.factor(lower.data)
-        return np.asarray(factor.solve(b)) if tuple(factor.inertia) == (len(b), 0, 0) else None
+        _, negatives, zeros = factor.inertia
+        return None if zeros else Factor(lambda b: np.asarray(factor.solve(b)), negatives)
 
 
 @cache
@@ -54,10 +70,13 @@ def supernodal() -> Any:
         return None
 
 
-def _splu(lower: Any, b: Floats) -> Floats | None:
+def _splu(lower: Any) -> Factor | None:
     from scipy.sparse import tril
     from scipy.sparse.linalg import splu
 
     whole = (lower + tril(lower, -1).T).tocsc()
     factor = splu(whole, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return np.asarray(factor.solve(b)) if (factor.U.diagonal() > 0).all() else None
+    # pivots have the signs of the eigenvalues as long as all are taken from the diagonal
+    same = np.array_equal(factor.perm_r, factor.perm_c)
+    pivots = factor.U.diagonal()
+    return Factor(lambda b: np.asarray(factor.solve(b)), int((pivots < 0).sum())) if same and pivots.all() else None

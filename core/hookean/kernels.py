@@ -87,6 +87,18 @@ def dispatcher(function: Callable[..., Any], role: str | None = None) -> Any:
     return numba.njit(_signature(role), **options)(prepared)
 
 
+def same(a: Any, b: Any) -> bool:
+    """Whether two arrays of one shape hold the same numbers."""
+    return not a.size or bool(compiled(_same_numbers)(a.reshape(-1), b.reshape(-1)))
+
+
+def _same_numbers(a, b):  # type: ignore[no-untyped-def]
+    differ = 0
+    for i in range(a.size):
+        differ |= a[i] != b[i]
+    return differ == 0
+
+
 def table(role: str, calls: Sequence[tuple[Callable[..., Any], tuple[Any, ...]]]) -> Any:
     """What a loop needs to call kernels of one role on their own arrays: in each row the address of a kernel, and of
     each of its arrays with their shape. The arrays must outlive it."""

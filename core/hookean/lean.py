@@ -74,13 +74,6 @@ def _packed(group: Group, memory: Floats, damped: bool) -> tuple[Any, Any, Any]:
     return block.indices, np.where([name == "damping" for name in block.names], 0.0, block.parameters), memory
 
 
-def same_numbers(a, b):  # type: ignore[no-untyped-def]
-    differ = 0
-    for i in range(a.size):
-        differ |= a[i] != b[i]
-    return differ == 0
-
-
 class Seen:
     """Remembers what the forces of a system are made of, to say whether any of it has changed."""
 
@@ -99,15 +92,11 @@ class Seen:
             self._system is system
             and len(arrays) == len(self._arrays)
             and all(a is b for a, b in zip(arrays, self._arrays, strict=True))
-            and all(_same(a, b) for a, b in zip(arrays, self._copies, strict=True))
+            and all(kernels.same(a, b) for a, b in zip(arrays, self._copies, strict=True))
         ):
             return True
         self._system, self._arrays, self._copies = system, arrays, [a.copy() for a in arrays]
         return False
-
-
-def _same(a: Floats, b: Floats) -> bool:
-    return not a.size or bool(kernels.compiled(same_numbers)(a.reshape(-1), b.reshape(-1)))
 
 
 class Desk:

@@ -98,7 +98,7 @@ def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None
     for anchor in held:
         hold(state, anchor)
     system.put_outside(state)
-    state.force_scale = 0.0  # that of other parameters
+    state.force_scale = np.zeros(0)  # that of other parameters
     state.revision += 1
 
 

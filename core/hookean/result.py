@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.balance import Balance
+from hookean.balance import LOADED, OUT, Balance
+from hookean.equilibrium import Equilibrium, Stability, unknown
 from hookean.forces import KINDS
 from hookean.state import State
 from hookean.system import System
@@ -47,9 +48,16 @@ class Result:
     forces: list[dict[str, Any]]
     reactions: dict[str, Any]
     contacts: dict[str, Any]
+    components: dict[str, Any]
     residual: float
     rounding_floor: float
     out_of_balance: float
+    stability: Stability
+    stability_reason: str
+    soft_particle: int | None
+    soft_modes: int | None
+    position_error: float | None
+    position_reason: str
     energy: dict[str, float]
     iterations: int
     time: float
@@ -116,9 +124,16 @@ class Result:
             "forces": plain(self.forces),
             "reactions": plain(self.reactions),
             "contacts": plain(self.contacts),
+            "components": {**plain(self.components), "position_error": _known(self.components["position_error"])},
             "residual": self.residual,
             "rounding_floor": self.rounding_floor,
             "out_of_balance": self.out_of_balance,
+            "stability": str(self.stability),
+            "stability_reason": self.stability_reason,
+            "soft_particle": self.soft_particle,
+            "soft_modes": self.soft_modes,
+            "position_error": self.position_error,
+            "position_reason": self.position_reason,
             "energy": self.energy,
             "iterations": self.iterations,
             "time": self.time,
@@ -126,6 +141,11 @@ class Result:
             "report": report,
             "units": self.units.model_dump(),
         }
+
+
+def _known(values: Floats) -> list[float | None]:
+    """Numbers, None where one is not known."""
+    return [None if np.isnan(value) else float(value) for value in values]
 
 
 def plain(value: Any) -> Any:
@@ -138,10 +158,19 @@ def plain(value: Any) -> Any:
 
 
 def gather(
-    system: System, state: State, found: Balance, status: Status, message: str, solver: str, *, moving: bool
+    system: System,
+    state: State,
+    found: Balance,
+    rest: Equilibrium | None,
+    status: Status,
+    message: str,
+    solver: str,
+    *,
+    moving: bool,
 ) -> Result:
-    """Collect a result from a state and its balance."""
+    """Collect a result from a state, its balance and, of a shape at rest, what is known of that."""
     report = system.report
+    rest = rest or unknown("the shape is not at rest")
     energy: dict[str, float] = {}
     for group, value in zip(system.groups, found.energies, strict=True):
         kind = str(group.cls.model_fields["kind"].default)
@@ -156,9 +185,16 @@ def gather(
         forces=_measures(system, state),
         reactions=_reactions(system, state, found),
         contacts=_contacts(found),
+        components=_components(found, rest),
         residual=found.residual,
         rounding_floor=found.floor,
         out_of_balance=found.out_of_balance,
+        stability=rest.stability,
+        stability_reason=rest.stability_reason,
+        soft_particle=rest.soft_particle,
+        soft_modes=rest.soft_modes,
+        position_error=rest.position_error,
+        position_reason=rest.position_reason,
         energy=energy,
         iterations=state.iteration,
         time=state.time,
@@ -218,6 +254,27 @@ def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
     for anchor in system.held:
         names.update(dict.fromkeys(anchor.particles.tolist(), anchor.name))
     return {"particles": held, "force": found.reactions[held], "names": [names[p] for p in held.tolist()]}
+
+
+def _components(found: Balance, rest: Equilibrium) -> dict[str, Any]:
+    """Columns of the connected components, where there is more than one that something acts on."""
+    parts = found.components
+    acting = np.flatnonzero(parts.joined | (found.found[:, LOADED] > 0.0))
+    if len(acting) < 2:
+        acting = acting[:0]
+    counts = np.bincount(parts.label[parts.label >= 0], minlength=len(parts.first))
+    errors = rest.position_errors if rest.position_errors is not None else np.full(len(parts.first), np.nan)
+    return {
+        "first_particle": parts.first[acting],
+        "particles": counts[acting],
+        "supported": parts.supported[acting],
+        "loaded": found.found[acting, LOADED] > 0.0,
+        "force_scale": found.scales[acting],
+        "out_of_balance": found.found[acting, OUT],
+        "residual": found.residuals[acting],
+        "rounding_floor": found.floors[acting],
+        "position_error": errors[acting],
+    }
 
 
 def _contacts(found: Balance) -> dict[str, Any]:

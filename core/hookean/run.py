@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from hookean import stability
+from hookean.equilibrium import assess
 from hookean.errors import InputError
 from hookean.result import Result, Status, gather
 from hookean.scene import Scene
@@ -13,8 +16,6 @@ from hookean.solvers import Solver, solver
 from hookean.state import State
 from hookean.system import System, compile
 from hookean.watch import Watch
-
-COARSE = 1e-3  # a rounding floor above this is worth a word
 
 Progress = Callable[[int, float], None]
 """Called with the iteration and the residual now and then while a relaxation runs."""
@@ -44,10 +45,14 @@ def relax_state(
     if method.physical and (said := stability.warning(system, state)) and said not in system.report.warnings:
         system.report.warnings.append(said)
     method.start(system, state)
-    state.force_scale = 0.0  # of this run alone
+    state.force_scale = np.zeros(0)  # of this run alone
     watch = Watch(system, state, method)
     status = watch.look(system, state, known=True)
-    while status is Status.RUNNING:
+    while True:
+        if status is Status.CONVERGED:
+            status = watch.onward(system, state)
+        if status is not Status.RUNNING:
+            break
         if cancelled is not None and cancelled():
             status = Status.CANCELLED
             break
@@ -57,13 +62,10 @@ def relax_state(
             progress(state.iteration, watch.found.residual)
     if status is Status.CONVERGED:
         watch.remember(system, state)  # other ends are on no physical path, and leave no mark
-    if status is Status.CONVERGED and watch.found.floor > COARSE:
-        system.report.warnings.append(
-            f"rounding alone leaves a residual of {watch.found.floor:.1g}: stiffness or coordinates are very large for "
-            "these loads, and the shape is no better known than that"
-        )
-    if status is Status.STALLED and not method.physical:
+    if status is Status.STALLED and not method.physical and watch.rest is None:
         watch.good, watch.found = replace(watch.top, iteration=watch.last), watch.top_found
+        if watch.found.still(system.scene.settings.tolerance):  # in balance, and yet not good enough
+            watch.rest = assess(system, watch.good, watch.found)
     _restore(state, watch.good, memory=status is Status.DIVERGED)
     if not method.physical:
         state.v[:] = 0.0  # fictitious: nothing moved
@@ -72,7 +74,7 @@ def relax_state(
     message = watch.sentence(system, status)
     if status is Status.CONVERGED and method.remark:
         message = f"{message} {method.remark}"
-    return gather(system, state, watch.found, status, message, name, moving=method.physical)
+    return gather(system, state, watch.found, watch.rest, status, message, name, moving=method.physical)
 
 
 def _restore(state: State, good: State, *, memory: bool) -> None:

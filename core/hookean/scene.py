@@ -108,6 +108,10 @@ class Settings(Model):
 
     solver: Literal[NAMES] = Field(default="auto", description="Which solver; auto picks one and says which")  # type: ignore[valid-type]
     tolerance: float = Field(default=1e-6, ge=0, le=1, description="Largest residual of a converged shape [-]")
+    position_tolerance: float | None = Field(
+        default=1e-6, ge=0, le=1, description="Largest position error / model size that auto accepts [-]; null: any"
+    )
+    allow_unstable: bool = Field(default=False, description="Keep unstable equilibria, which auto and newton leave")
     max_iterations: int = Field(default=100_000, ge=0, le=10**9, description="Stop after so many iterations")
     time_limit: float | None = Field(default=None, ge=0, description="Stop after so many seconds of computing [s]")
     time_step: float = Field(default=0.01, gt=0, description="Step of physical time [time]")

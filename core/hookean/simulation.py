@@ -161,6 +161,8 @@ class Simulation:
         self._said = ""
         if self.status is Status.CONVERGED and self.driven:
             self.status = Status.RUNNING  # at rest, but not for long
+        if self.status is Status.CONVERGED:
+            self.status = self._watch.onward(self.system, self.state)
         if self.status is Status.DIVERGED:
             self.state = self._watch.good.copy()
         elif self.status is Status.CONVERGED and not self.solver.physical:
@@ -210,9 +212,11 @@ class Simulation:
         if self.status is Status.RUNNING and not any(w.startswith("/settings/time_step") for w in warnings):
             self._warn()
         found = balance(self.system, self.state)
+        rest = self._watch.rest if self.status is Status.CONVERGED else None
         return gather(
-            self.system, self.state, found, self.status, self.message, self.solver.name, moving=self.solver.physical
-        )
+            self.system, self.state, found, rest, self.status, self.message, self.solver.name,
+            moving=self.solver.physical,
+        )  # fmt: skip
 
     def relax(self, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Result:
         """Go to equilibrium from here with the scene's solver (auto: relaxation and Newton)."""

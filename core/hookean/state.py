@@ -14,7 +14,8 @@ Floats = NDArray[np.float64]
 class State:
     """Positions `x` and velocities `v` (n, 3); `free` (n, 3) is 0 on held axes; `memory` of each group of elements.
 
-    `scratch` is what a solver keeps between steps (kinetic energy, fictitious masses); `revision` counts patches.
+    `scratch` is what a solver keeps between steps (kinetic energy, fictitious masses); `force_scale` the largest forces
+    of each component in this run; `revision` counts patches.
     """
 
     x: Floats
@@ -25,7 +26,7 @@ class State:
     revision: int = 0
     memory: list[Floats] = field(default_factory=list)
     scratch: dict[str, Floats] = field(default_factory=dict)
-    force_scale: float = 0.0
+    force_scale: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def moving(self) -> NDArray[np.bool_]:
@@ -44,7 +45,7 @@ class State:
             self.revision,
             [m.copy() for m in self.memory],
             {k: a.copy() for k, a in self.scratch.items()},
-            self.force_scale,
+            self.force_scale.copy(),
         )
 
     def fits(self, other: State) -> bool:
@@ -55,7 +56,7 @@ class State:
 
     def arrays(self) -> dict[str, Floats]:
         """Everything as named arrays, for a file."""
-        named = {"x": self.x, "v": self.v, "free": self.free, "force_scale": np.array([self.force_scale])}
+        named = {"x": self.x, "v": self.v, "free": self.free, "force_scale": self.force_scale}
         named["clock"] = np.array([self.time, float(self.iteration), float(self.revision)])
         named.update({f"memory_{i}": m for i, m in enumerate(self.memory)})
         named.update({f"scratch_{k}": a for k, a in self.scratch.items()})
@@ -75,5 +76,5 @@ class State:
             int(revision),
             [np.ascontiguousarray(arrays[f"memory_{i}"]) for i in range(count)],
             {k.removeprefix("scratch_"): np.array(a) for k, a in arrays.items() if k.startswith("scratch_")},
-            float(arrays["force_scale"][0]),
+            np.ascontiguousarray(arrays["force_scale"]),
         )

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
+from hookean import components, kernels
+from hookean.components import Components
 from hookean.errors import InputError
 from hookean.forces import Block, Force
 from hookean.scene import Scene
@@ -84,6 +85,7 @@ class System:
     places: Welded
     load_count: Floats
     drag: float = 0.0
+    _components: Components | None = None
 
     @property
     def report(self) -> Report:
@@ -117,6 +119,12 @@ class System:
         self.put_outside(state)
         state.memory = [np.zeros_like(g.block.memory) for g in self.groups]
         return state
+
+    def components(self, state: State) -> Components:
+        """The connected components of what may move."""
+        if self._components is None or not kernels.same(self._components.free, state.free):
+            self._components = components.components(self.groups, state.free, bool(self.contacts))
+        return self._components
 
     def put_outside(self, state: State) -> None:
         """Put particles that contacts do not allow where they are onto the surface of the contact."""

@@ -8,13 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from hookean import stability
-from hookean.balance import Balance, balance
+from hookean.balance import ALONG, Balance, balance
+from hookean.equilibrium import Equilibrium, Stability, assess, excess, leave
 from hookean.result import Status
 from hookean.solvers import Solver
 from hookean.state import State
 from hookean.system import System
 
 FIRST_LOOK = 25  # iterations before the first look at the balance; later looks come at growing distances
+LEAVES = 20  # unstable equilibria that a run leaves
+TRIES = 5  # tighter tolerances that a run takes without half the position error
 PATIENCE = 20_000  # iterations without a better residual before a run counts as stalled, on top of those spent
 
 
@@ -32,6 +35,9 @@ class Watch:
     def __init__(self, system: System, state: State, method: Solver) -> None:
         self.method = method
         self.settings = system.scene.settings
+        self.tolerance = self.settings.tolerance  # of the residual; tighter where the shape is to be known better
+        self.rest: Equilibrium | None = None  # what is known of the equilibrium that was found
+        self._left, self._tries, self._least = 0, 0, np.inf
         self.started = time.monotonic()
         self.first = self.last = state.iteration
         self.best, self.best_at = np.inf, state.iteration
@@ -45,10 +51,7 @@ class Watch:
     @property
     def goal(self) -> float:
         """The out-of-balance force [force] that meets the tolerance."""
-        found, tolerance = self.found, self.settings.tolerance
-        # where the stiffest rests, but for rounding, something softer may not
-        softer = found.residual <= found.floor and not found.met(tolerance)
-        return max(tolerance, 0.0 if softer else found.floor) * found.scale
+        return self.found.goal(self.tolerance)
 
     def burst(self, system: System, state: State) -> int:
         """Iterations until the next look: about 50 ms of springs, or a twenty-fifth of those done."""
@@ -58,7 +61,7 @@ class Watch:
 
     def look(self, system: System, state: State, *, idle: bool = False, known: bool = False) -> Status:
         """Judge the state as it is now; `known` says that it is the one this began with."""
-        self.last = state.iteration
+        self.last, self.rest = state.iteration, None
         if not self._sane(system, state) or self._collapsed(system, state):
             return Status.DIVERGED
         if not known:
@@ -70,8 +73,8 @@ class Watch:
         if self.found.residual < self.best:
             self.best, self.best_at = self.found.residual, state.iteration
             self.top, self.top_found = self.good, self.found
-        if self.found.met(self.settings.tolerance) and self._resting(system, state):
-            return Status.CONVERGED
+        if self.found.still(self.tolerance) and self._resting(system, state):
+            return Status.CONVERGED if self.found.met(self.tolerance) else Status.STALLED
         stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
         if idle or (stuck and not self.method.physical):  # what swings may swing for long
             return Status.STALLED
@@ -80,6 +83,33 @@ class Watch:
         limit = self.settings.time_limit
         if limit is not None and time.monotonic() - self.started > limit:
             return Status.TIME_LIMIT
+        return Status.RUNNING
+
+    def onward(self, system: System, state: State) -> Status:
+        """What follows from equilibrium: RUNNING where the solver leaves one that is unstable, or goes on until the
+        shape is known to the position tolerance; else CONVERGED, or STALLED where neither can be had."""
+        rest = self.rest = assess(system, state, self.found, self.method)
+        leaves = self.method.leaves and not self.settings.allow_unstable and self._left < LEAVES
+        if leaves and rest.stability is Stability.UNSTABLE and leave(system, state, rest):
+            self._left += 1
+            self.tolerance *= 0.1  # near an instability forces are small long before rest
+            self.method.depart(system, state)
+            self.found, self.rest = balance(system, state), None
+            return self._again(state)
+        much = excess(system, state, self.found, rest) if self.method.refines else 0.0
+        if much <= 1.0 or self.found.beyond == 0.0:
+            return Status.CONVERGED  # as well as it is asked for, or as rounding allows
+        self._tries = 0 if much < 0.5 * self._least else self._tries + 1
+        self._least = min(self._least, much)
+        if self._tries > TRIES:
+            return Status.STALLED
+        self.tolerance = min(self.tolerance, self.found.beyond) * min(0.3, 0.3 / much)
+        return self._again(state)
+
+    def _again(self, state: State) -> Status:
+        """Go on from a shape that met the last tolerance, or nearly."""
+        self.best, self.best_at = np.inf, state.iteration
+        self.method.sharpen(state)
         return Status.RUNNING
 
     def remember(self, system: System, state: State) -> None:
@@ -102,8 +132,10 @@ class Watch:
         """In physical time a shape may pass through balance at full speed: then it has not arrived."""
         if not self.method.physical:
             return True
-        moving = float((system.mass[:, None] * state.v**2 * state.free).sum())
-        return moving <= (self.settings.tolerance + self.found.floor) * self.found.scale * self.size
+        found, label = self.found, self.found.components.label
+        moving = system.mass * (state.v**2 * state.free).sum(axis=1)
+        moving = np.bincount(label[label >= 0], moving[label >= 0], len(found.scales))
+        return bool((moving <= (self.tolerance + found.floors) * found.scales * self.size).all())
 
     def _sane(self, system: System, state: State) -> bool:
         """Finite, and not a hundred thousand times the model's size away; else say which particle and force."""
@@ -114,14 +146,7 @@ class Watch:
         if not bad.any():
             bad = away.max(axis=1) > 1e5 * self.size
         particle = int(np.argmax(bad))
-        self.fault = f"particle {particle}"
-        for group in system.groups:
-            hit = (group.block.indices == particle).any(axis=1)
-            for part in group.parts:
-                if hit[part.rows].any() and group.cls.role != "load":
-                    kind = group.cls.model_fields["kind"].default
-                    self.fault += f" (of /forces/{part.number}, {kind})"
-                    return False
+        self.fault = f"particle {particle}{_owner(system, particle)}"
         return False
 
     def sentence(self, system: System, status: Status) -> str:
@@ -131,22 +156,85 @@ class Watch:
         spent = self.last - self.first
         if status is Status.CONVERGED:
             rounding = " (the rounding floor)" if found.residual > self.settings.tolerance else ""
-            return f"In equilibrium after {spent} iterations: {left}{rounding}."
+            return f"In equilibrium after {spent} iterations: {left}{rounding}.{_caveat(self.rest)}"
         if status is Status.DIVERGED and self.collapse:
             return f"Collapsed after {spent} iterations; the last good shape is returned. {self.collapse}."
         if status is Status.DIVERGED:
-            advice = stability.warning(system, self.good) if self.method.physical else ""
-            anchored = any(len(anchor.particles) for anchor in system.held)
-            advice = advice or ("Look for loads that nothing holds" if anchored else "No particle is held: add anchors")
             where = f" after {spent} iterations at {self.fault}" if self.fault else ""  # a state taken up knows no more
-            return f"Diverged{where}; the last good shape is returned. {advice}."
+            return f"Diverged{where}; the last good shape is returned. {self._advice(system)}."
         if status is Status.STALLED:
-            return (
-                f"Stalled after {spent} iterations at particle {found.worst}: {left}. Springs on their cutoff, loads "
-                "that nothing holds, or a shape about to snap do this; look there, or raise the tolerance."
-            )
+            return f"Stalled after {spent} iterations at particle {found.worst}: {left}. {self._obstacle(system)}."
         if status is Status.CANCELLED:
             return f"Cancelled after {spent} iterations: {left}."
         if status is Status.TIME_LIMIT:
             return f"Out of time ({self.settings.time_limit:g} s) after {spent} iterations: {left}. Raise time_limit."
         return f"Not in equilibrium after {spent} iterations: {left}. Raise max_iterations."
+
+    def _advice(self, system: System) -> str:
+        """What to do about a run that diverged."""
+        if self.method.physical and (said := stability.warning(system, self.good)):
+            return said
+        if not any(len(anchor.particles) for anchor in system.held):
+            return "No particle is held: add anchors"
+        return _adrift(system, self.found) or "Check for loads that nothing holds"
+
+    def _obstacle(self, system: System) -> str:
+        """Why a run stalled."""
+        if said := _adrift(system, self.found):
+            return said
+        if len(self.found.coarse):
+            part = int(self.found.coarse[0])
+            return (
+                f"Rounding alone leaves a residual of {self.found.floors[part]:.1g} in "
+                f"{_called(system, self.found, part)}: stiffness or coordinates are too large there for these forces. "
+                "Move the model to the origin, or lower the stiffness"
+            )
+        if self.rest is not None and self.rest.position_error is not None:
+            error, unit = self.rest.position_error, system.scene.units.length
+            return (
+                f"Forces balance, but one more exact step would still move a particle by {error:.2g} {unit}, more than "
+                "position_tolerance allows: the structure is close to an instability. Stiffen it, or raise "
+                "position_tolerance"
+            )
+        return (
+            "Common causes: springs at their cutoff, unsupported loads, a shape near snap-through. Check that "
+            "particle, or raise the tolerance"
+        )
+
+
+def _caveat(rest: Equilibrium | None) -> str:
+    """What a person must know of an equilibrium."""
+    if rest is None or rest.stability not in (Stability.UNSTABLE, Stability.MECHANISM):
+        return ""
+    most = f"; particle {rest.soft_particle} moves most" if rest.soft_particle is not None else ""
+    kind = "It is unstable" if rest.stability is Stability.UNSTABLE else "It is a mechanism"
+    return f" {kind}: {rest.stability_reason}{most}."
+
+
+def _adrift(system: System, found: Balance) -> str:
+    """Which components carry loads that nothing supports; empty where there are none."""
+    if not len(found.adrift):
+        return ""
+    part = int(found.adrift[0])
+    more = f" (and {len(found.adrift) - 1} more such parts)" if len(found.adrift) > 1 else ""
+    load = float(np.abs(found.found[part, ALONG]).max())
+    called = _called(system, found, part)
+    return f"Nothing supports {called}{more}, which carry a load of {load:.3g} {system.scene.units.force}: anchor them"
+
+
+def _called(system: System, found: Balance, part: int) -> str:
+    """A component in words."""
+    count = int(np.count_nonzero(found.components.label == part))
+    particle = int(found.components.first[part])
+    called = f"particle {particle}{_owner(system, particle)}"
+    return called if count == 1 else f"the {count} particles connected with {called}"
+
+
+def _owner(system: System, particle: int) -> str:
+    """The first force, other than a load, with an element at a particle: " (of /forces/3, springs)"."""
+    for group in system.groups:
+        hit = (group.block.indices == particle).any(axis=1)
+        for part in group.parts:
+            if hit[part.rows].any() and group.cls.role != "load":
+                return f" (of /forces/{part.number}, {group.cls.model_fields['kind'].default})"
+    return ""

@@ -137,7 +137,7 @@ def definition() -> Definition:
     with d.group("Compression"):
         rest = d.component(
             "Settings", "Settings, compression", solver=solver, residual=d.text("Residual, compression [-]", "1e-9"),
-            force_unit=unit, fast=fast,
+            force_unit=unit, fast=fast, allow_unstable=d.toggle("Keep unstable equilibria", True),
         )  # fmt: skip
         pressed = d.component(
             "Engine", "Compression", forces=flat(*tables[0], deck), anchors=flat(*held), settings=rest, reset=reset,

@@ -44,7 +44,7 @@ def reverse(result: Result, nudge: float = 0.0) -> Scene:
             {"name": "skin", "kind": "mesh", "mesh": "skin"},
             {"name": "deck", "kind": "lines", "lines": result.geometry[1]["lines"]},
         ],
-        settings={"tolerance": 1e-9, "max_iterations": 1000},
+        settings={"tolerance": 1e-9, "max_iterations": 1000, "allow_unstable": True},
     )
 
 

@@ -153,7 +153,10 @@ def definition() -> Definition:
             load = d.component("Unary", f"{name} load", point=over["points"], force=over["loads"])
             turned.append((name, flat(springs, load), over["supports"], over["struts"]))
     with d.group("Standing"):
-        rest = d.component("Settings", "Settings, standing", solver=newton, force_unit=unit, fast=fast)
+        rest = d.component(
+            "Settings", "Settings, standing", solver=newton, force_unit=unit, fast=fast,
+            allow_unstable=d.toggle("Keep unstable equilibria", True),
+        )  # fmt: skip
         arch, vault = (
             d.component(
                 "Engine", f"{name} stands", forces=forces, anchors=flat(supports), geometry=struts, settings=rest,

@@ -34,6 +34,7 @@ def upside_down(result: Result, stiffness: float) -> Scene:
         anchors=[{"name": "supports", "particles": result.reactions["particles"]}],
         meshes=meshes,
         geometry=[{"name": name, "kind": "mesh", "mesh": name} for name in meshes],
+        settings={"allow_unstable": True},
     )
 
 

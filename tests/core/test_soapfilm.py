@@ -28,7 +28,7 @@ def film(x: np.ndarray, faces: np.ndarray, rim: Any, tolerance: float = 1e-10, *
     """A film relaxed by the default solver, its rim held."""
     scene = Scene(
         particles=x, meshes={"skin": {"vertices": x, "faces": faces}}, forces=[SoapFilm(mesh="skin", **more)],
-        anchors=[{"particles": rim}], settings={"tolerance": tolerance},
+        anchors=[{"particles": rim}], settings={"tolerance": tolerance, "position_tolerance": None},
     )  # fmt: skip
     return relax(scene)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hookean.multigrid.blocks import Blocks, Floats
-from hookean.multigrid.gradients import solve
+from hookean.multigrid.gradients import Steps, solve
 from hookean.multigrid.hierarchy import Hierarchy
 
 if TYPE_CHECKING:
@@ -86,6 +86,15 @@ class Tangent:
         if not positive:
             self._filled = None
         return x, positive
+
+    def settle(self, b: Floats, most: int) -> tuple[Floats | None, Steps, bool]:
+        """`solve`, until x has settled: right within a factor of 3 where it is largest. What the steps say, and whether
+        A is positive definite as far as was seen."""
+        steps = Steps()
+        x, count, positive = solve(self.hierarchy, b, 1e-3, most, steps)
+        self.steps += count
+        self.work += count * (1.0 + self.hierarchy.cycle_work)
+        return x, steps, positive
 
     def _gathered(self, state: State) -> Hierarchy:
         return Hierarchy(self.blocks.starts, self.blocks.columns, self.blocks.weights(), state.moving)

@@ -205,27 +205,34 @@ def attempt(part: Any, careful: Any, x: Any, q: Any, dq: Any, now: Any, gap: Any
     return slope
 
 
-def polish(x, ends, k, rest, ground, pull, first, starts, tangent, goal):  # type: ignore[no-untyped-def]
-    """Correct positions by what the springs' own law leaves; False, and back, unless that comes to the goal.
+def polish(x, ends, k, rest, ground, pull, first, starts, tangent, goal, fine, step):  # type: ignore[no-untyped-def]
+    """Correct positions by what the springs' own law leaves; False, and back, unless that comes to the goal. `step`
+    (free, 3) becomes the next correction, `fine` at most where rounding allows it.
 
     Rounding of lengths makes force densities uncertain by k / T times as much, and with them x(q).
     """
     net = (ends, k, rest, ground, pull, first, starts)
     free = ground.shape[0]
-    left, step, before = np.empty((3, free)), np.empty(3 * free), np.empty((free, 3))
+    left, next_step, before = np.empty((3, free)), np.empty(3 * free), np.empty((free, 3))
     put(x, before)
     first3, starts3 = tripled(first)
     for tried in range(POLISH + 1):
-        if out_of_balance(x, left, net) <= goal:
+        worst = out_of_balance(x, left, net)
+        for i in range(free):
+            for c in range(3):
+                next_step[3 * i + c] = left[c, i]
+        solve(tangent, starts3, first3, next_step)
+        largest = 0.0
+        for i in range(free):
+            for c in range(3):
+                step[i, c] = next_step[3 * i + c]
+                largest = max(largest, abs(step[i, c]))
+        if worst <= goal and (largest <= fine or tried == POLISH):
             return True
         if tried < POLISH:
             for i in range(free):
                 for c in range(3):
-                    step[3 * i + c] = left[c, i]
-            solve(tangent, starts3, first3, step)
-            for i in range(free):
-                for c in range(3):
-                    x[i, c] += step[3 * i + c]
+                    x[i, c] += step[i, c]
     put(before, x)
     return False
 

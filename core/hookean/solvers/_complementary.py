@@ -33,6 +33,7 @@ from hookean.solvers._profile import fits, order
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
+    from hookean.balance import Balance
     from hookean.state import State
     from hookean.system import System
 
@@ -43,12 +44,17 @@ CHAINS = 0.8  # of the free particles have at most two springs; others may be st
 WORK = 200  # products a particle in the factor of a net that is little more than chains
 STEPS = 25
 NEAR = 1e-5  # of the model's size: a last step this short has nothing left to correct
+FINE = 0.01  # of that: a correction this short is the last
 
 
 class Method(Solver):
     """Newton in force densities; for cables and nets that are little more than chains of springs."""
 
     name: ClassVar[str] = "complementary"
+
+    def __init__(self) -> None:
+        self._moving: Ints = np.zeros(0, np.int64)
+        self._step: Floats | None = None
 
     def refuse(self, system: System) -> str:
         """A sentence unless springs have no limits and all else is linear."""
@@ -67,9 +73,11 @@ class Method(Solver):
         """Start from rest."""
         state.scratch.clear()
         state.v[:] = 0.0
+        self._step = None
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """All steps at once; none done, and nothing moved, where they do not lead to balance."""
+        self._step = None
         ground, pull = _linear(system, state)
         net = _net(system, state, ground, pull)
         if net is None:
@@ -80,7 +88,7 @@ class Method(Solver):
         starts = np.concatenate([[0], np.cumsum(np.arange(1, len(moving) + 1) - net.first)])
         given = (net.ends, net.k, net.rest, ground, pull, net.first, starts)
         q, gap, near = np.empty(len(net.k)), np.empty(len(net.k)), NEAR * system.size
-        tangent = np.empty(9 * starts[-1] - 3 * len(moving))
+        tangent, step = np.empty(9 * starts[-1] - 3 * len(moving)), np.empty((len(moving), 3))
         # what all springs are thought to bear at first
         tension = float(np.abs(pull).sum()) or 0.01 * float((net.k * net.rest).mean())
         if not kernels.compiled(begin)(x, q, gap, *given, tension):
@@ -89,11 +97,20 @@ class Method(Solver):
             moved = kernels.compiled(onward)(x, q, gap, *given, tangent)
             if moved == np.inf:
                 break
-            if moved <= near and kernels.compiled(polish)(x, *given, tangent, goal):
+            if moved <= near and kernels.compiled(polish)(x, *given, tangent, goal, FINE * near, step):
                 state.x[moving] = x[: len(moving)]
                 state.iteration += done
+                self._moving, self._step = moving, step
                 return done
         return 0
+
+    def correction(self, system: System, state: State, found: Balance) -> Floats | None:
+        """The step after the last one, by the tangent of that."""
+        if self._step is None:
+            return None
+        moved = np.zeros_like(state.x)
+        moved[self._moving] = self._step
+        return moved
 
 
 def _linear(system: System, state: State) -> tuple[Floats, Floats]:

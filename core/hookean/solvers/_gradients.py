@@ -27,10 +27,9 @@ LARGEST_FACTOR = 5e7  # multiplications
 MOST = 300  # steps
 
 
-def solve(net: Laplacian, b: Floats, goal: float) -> Floats | None:
+def solve(hierarchy: Hierarchy, b: Floats, goal: float) -> Floats | None:
     """x (n, 4) with |b - A x| <= `goal` in each column; None where some of it hangs on nothing, or so many steps do not
     do. `b` (n, 4) is what is left of it afterwards."""
-    hierarchy = Hierarchy(net)
     if not hierarchy.held:
         return None
     onward, go_on = kernels.compiled(turn), kernels.compiled(go_along)

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hookean.balance import balance
+from hookean.balance import Balance, balance
 from hookean.solvers import _complementary, force_density, multilevel, newton, relaxation
-from hookean.solvers.base import Solver
+from hookean.solvers.base import Floats, Solver
 
 if TYPE_CHECKING:
     from hookean.state import State
@@ -28,6 +28,7 @@ MANY = 30_000  # particles from which on relaxation takes minutes, and creases a
 CREASED = "Some springs push, and may crease the net: other shapes of it may be at rest, too."
 FIRST_NEWTON = 4_000
 NEWTON_STEPS = 60
+SHARP_STEPS = 1_000  # from near an equilibrium: along a curved path, if need be
 SOLVES = 2  # of a linear scene: the second one takes off what rounding left in the first
 
 
@@ -36,6 +37,8 @@ class Method(Solver):
     with a Newton finish."""
 
     name: ClassVar[str] = "auto"
+    leaves: ClassVar[bool] = True
+    refines: ClassVar[bool] = True
 
     def __init__(self) -> None:
         self.used: list[str] = []
@@ -45,12 +48,14 @@ class Method(Solver):
         self._newton = newton.Method()
         self._multilevel = multilevel.Method()
         self._levels = False
+        self._last: Solver | None = None
 
     def start(self, system: System, state: State) -> None:
         """Look at the system and choose."""
         self.used, self._steps, self.remark, self.work = [], 0, "", 0.0
+        self._chains = self._levels = False
         self._solves = 0 if self._linear.refuse(system) else SOLVES
-        self._prepared = False
+        self._prepared, self._last = False, None
         if self._solves:
             self._linear.start(system, state)
         else:
@@ -58,9 +63,13 @@ class Method(Solver):
 
     def _prepare(self, system: System, state: State) -> None:
         """Choose among the ways that take more than one solve."""
-        self._prepared = True
         self._chains = not self._complementary.refuse(system)
-        entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if g.cls.role != "load")
+        self._begin(system, state)
+
+    def _begin(self, system: System, state: State) -> None:
+        """Newton steps by multigrid for large nets, else relaxation, and Newton steps where the tangent is small."""
+        self._prepared = True
+        entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if not g.cls.constant)
         self._small = 3 * len(state.x) <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS
         self._levels = len(state.x) >= LEAST_MULTILEVEL and multilevel.suits(system)
         if self._levels:
@@ -71,11 +80,17 @@ class Method(Solver):
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Some iterations of whatever is due."""
+        done = self._advance(system, state, count, goal)
+        if self._last is not None:
+            self.certain, self.tangent = self._last.certain, self._last.tangent
+        return done
+
+    def _advance(self, system: System, state: State, count: int, goal: float) -> int:
         if self._solves:
             done = self._linear.advance(system, state, count, goal)
             self._solves = self._solves - 1 if done else 0
             if done:
-                self._use("force_density")
+                self._use(self._linear)
                 return done
         if not self._prepared:
             self._prepare(system, state)
@@ -83,30 +98,30 @@ class Method(Solver):
             self._chains = False
             done = self._complementary.advance(system, state, count, goal)
             if done:
-                self._use("complementary")
+                self._use(self._complementary)
                 return done
         if self._levels:
             return self._by_levels(system, state, count, goal)
         if self._steps > 0:
             return self._finish(system, state, count, goal)
-        due, _ = state.scratch["next_newton"]
+        due, pause, steps = state.scratch["next_newton"]
         if state.iteration < due or not self._small:
-            self._use("relaxation")
+            self._use(self._relaxation)
             most = min(count, max(int(due) - state.iteration, 1))
             done = self._relaxation.advance(system, state, most, goal)
             self.work += done
             return done
-        self._steps, self._pause = NEWTON_STEPS, float(state.scratch["next_newton"][1])
+        self._steps, self._pause = int(steps), float(pause)
         self._newton.start(system, state)
         return self._finish(system, state, count, goal)
 
     def _relax_from_here(self, system: System, state: State) -> None:
         self._relaxation.start(system, state)
-        state.scratch["next_newton"] = np.array([float(state.iteration + FIRST_NEWTON), FIRST_NEWTON])
+        state.scratch["next_newton"] = np.array([state.iteration + FIRST_NEWTON, FIRST_NEWTON, NEWTON_STEPS])
 
     def _by_levels(self, system: System, state: State, count: int, goal: float) -> int:
         """Newton steps by multigrid, where they lead to the shape of least energy; else relaxation from the start."""
-        self._use("multilevel")
+        self._use(self._multilevel)
         work = self._multilevel.work
         done = self._multilevel.advance(system, state, min(count, self._multilevel.longest), goal)
         self.work += self._multilevel.work - work
@@ -127,13 +142,28 @@ class Method(Solver):
         self._steps = self._steps - done if done else 0
         self.work += done
         if done:
-            self._use("newton")
+            self._use(self._newton)
         if self._steps <= 0:
             self._relaxation.start(system, state)
             pause = 2.0 * self._pause
-            state.scratch["next_newton"] = np.array([state.iteration + pause, pause])
+            state.scratch["next_newton"] = np.array([state.iteration + pause, pause, NEWTON_STEPS])
         return max(done, 1)
 
-    def _use(self, name: str) -> None:
-        if name not in self.used:
-            self.used.append(name)
+    def _use(self, method: Solver) -> None:
+        self._last = method
+        if method.name not in self.used:
+            self.used.append(method.name)
+
+    def depart(self, system: System, state: State) -> None:
+        """Newton steps: what goes to the nearest equilibrium would come back."""
+        self._solves, self._steps, self._chains = 0, 0, False
+        self._begin(system, state)
+
+    def sharpen(self, state: State) -> None:
+        """Newton steps are due: the shape is near."""
+        if "next_newton" in state.scratch:
+            state.scratch["next_newton"][::2] = state.iteration, SHARP_STEPS
+
+    def correction(self, system: System, state: State, found: Balance) -> Floats | None:
+        """By what the solver that came last has in factors."""
+        return None if self._last is None else self._last.correction(system, state, found)

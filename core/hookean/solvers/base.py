@@ -5,9 +5,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 if TYPE_CHECKING:  # the scene lists the solvers' names, so this file must not import the scene's users
+    from hookean.balance import Balance
+    from hookean.multigrid.tangent import Tangent
     from hookean.state import State
     from hookean.system import System
+
+Floats = NDArray[np.float64]
 
 
 class Solver(ABC):
@@ -18,6 +25,10 @@ class Solver(ABC):
     anew: int = 0  # iteration at which it last went back to the start of the run, to try another way
     remark: str = ""  # a sentence on the shape it found, where there is more to say than that it is at rest
     work: float = 0.0  # passes over all springs since its start; 0: one an iteration
+    certain: bool = False  # whether it knows that the tangent of the shape it came to is positive definite
+    tangent: Tangent | None = None  # what it solves with by multigrid, if it does
+    leaves: ClassVar[bool] = False  # a run goes on from an unstable equilibrium, along the mode in which energy falls
+    refines: ClassVar[bool] = False  # and while the shape is not known to the scene's position tolerance
     physical: ClassVar[bool] = False  # advances physical time with the scene's masses, damping and drag
 
     def refuse(self, system: System) -> str:
@@ -27,6 +38,18 @@ class Solver(ABC):
     def start(self, system: System, state: State) -> None:
         """Prepare `state.scratch`; called at the first step and after every patch."""
         state.scratch.clear()
+
+    def depart(self, system: System, state: State) -> None:
+        """Start again from beside an unstable equilibrium that it came to."""
+        self.start(system, state)
+
+    def correction(self, system: System, state: State, found: Balance) -> Floats | None:
+        """The movement (n, 3) [length] that one more exact step would make from the shape that it came to, by what is
+        in factors already; None where nothing is. `found` is what is out of balance there."""
+        return None
+
+    def sharpen(self, state: State) -> None:  # noqa: B027
+        """Prepare for a tighter tolerance, from a shape that meets the last one."""
 
     @abstractmethod
     def advance(self, system: System, state: State, count: int, goal: float) -> int:

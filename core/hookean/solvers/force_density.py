@@ -20,6 +20,10 @@ from hookean.forces.springs import Springs
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
+    from hookean.balance import Balance
+    from hookean.solvers._front import Factor
+    from hookean.solvers._gradients import Hierarchy
+    from hookean.solvers._laplacian import Laplacian
     from hookean.state import State
     from hookean.system import System
 
@@ -54,10 +58,14 @@ class Method(Solver):
             linear = linear or bool(len(p))
         return "" if linear else "there is no spring"
 
+    def __init__(self) -> None:
+        self._solved: list[Solved] = []
+
     def start(self, system: System, state: State) -> None:
         """Start from rest."""
         state.scratch.clear()
         state.v[:] = 0.0
+        self.certain, self._solved = False, []
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Solve K dx = f on the free axes; none done where some particles hang on nothing that is held."""
@@ -65,40 +73,89 @@ class Method(Solver):
             return 0
         f, _, _ = system.evaluate(state)
         x = state.x.copy()
-        left = [0, 1, 2]
+        self._solved, left = [], [0, 1, 2]
+        self.certain = False
         while left:
             free = np.ascontiguousarray(state.free[:, left[0]])
             axes = [axis for axis in left if np.array_equal(state.free[:, axis], free)]
             left = [axis for axis in left if axis not in axes]
-            if not _solve(system, free, np.array(axes), f, x):
+            solved = Solved.of(system, free, np.array(axes), f, x)
+            if solved is None:
                 return 0
+            self._solved.append(solved)
         if not np.isfinite(x).all():
             return 0
         state.x[:] = x
         state.iteration += 1
+        self.certain = True
         return 1
 
+    def correction(self, system: System, state: State, found: Balance) -> Floats | None:
+        """The next solve, by the factors of the last one, or one cycle."""
+        moved = np.zeros_like(state.x)
+        for solved in self._solved:
+            solved.correct(found.forces, moved)
+        return moved if self.certain else None
 
-def _solve(system: System, free: Floats, axes: Ints, f: Floats, x: Floats) -> bool:
-    """Add K^-1 f to x on some axes, on which the particles with `free` (n,) above 0 move; whether that was possible."""
-    from hookean.solvers import _front, _gradients, _laplacian
 
-    net, particles = _laplacian.laplacian(system, free)
-    b = np.empty((len(particles), 4))
-    kernels.compiled(_laplacian.take)(particles, axes, f, b)
-    way = _front.front(net, QUICK * len(particles))
-    if way is None:
-        # |A| |x| is twice the stiffness times what is largest of x: that rounds
-        largest, stiffness = max(float(x.max()), -float(x.min())), net.values[net.diagonal]
-        goal = ROUNDING * largest * float(np.sqrt((stiffness * stiffness).sum()))
-        found = _gradients.solve(net, b.copy(), goal)
-        if found is not None:
-            kernels.compiled(_laplacian.put)(particles, axes, found, x)
-            return True
-        way = _front.front(net, MOST)  # stiffnesses that differ by more than 1e16
-    factor = _front.Factor(net, way) if way is not None and way.held else None
-    if factor is None or not factor.sound:
-        return False
-    factor.solve(b, b)
-    kernels.compiled(_laplacian.put)(particles, axes, b, x)
-    return True
+class Solved:
+    """K in factors, or ready to be solved with by cycles, on some axes, on which the particles with `free` (n,) above 0
+    move."""
+
+    def __init__(self, net: Laplacian, particles: NDArray[np.int32], axes: Ints) -> None:
+        self.net, self.particles, self.axes = net, particles, axes
+        self.factor: Factor | None = None
+        self.hierarchy: Hierarchy | None = None
+
+    @classmethod
+    def of(cls, system: System, free: Floats, axes: Ints, f: Floats, x: Floats) -> Solved | None:
+        """Add K^-1 f to x (n, 3); None where that was not possible."""
+        from hookean.solvers import _laplacian
+
+        self = cls(*_laplacian.laplacian(system, free), axes)
+        b = self._rows(f)
+        largest = max(float(x.max()), -float(x.min()))
+        if not self._solve(b, largest):
+            return None
+        kernels.compiled(_laplacian.put)(self.particles, axes, b, x)
+        return self
+
+    def _rows(self, f: Floats) -> Floats:
+        from hookean.solvers import _laplacian
+
+        b = np.empty((len(self.particles), 4))
+        kernels.compiled(_laplacian.take)(self.particles, self.axes, f, b)
+        return b
+
+    def _solve(self, b: Floats, largest: float) -> bool:
+        """Replace b (rows, 4) by the solution, by a front where that is quick; whether that was possible."""
+        from hookean.solvers import _front, _gradients
+
+        net = self.net
+        way = _front.front(net, QUICK * len(b))
+        if way is None:
+            # |A| |x| is twice the stiffness times what is largest of x: that rounds
+            stiffness = net.values[net.diagonal]
+            goal = ROUNDING * largest * float(np.sqrt((stiffness * stiffness).sum()))
+            self.hierarchy = _gradients.Hierarchy(net)
+            found = _gradients.solve(self.hierarchy, b.copy(), goal)
+            if found is not None:
+                b[:] = found
+                return True
+            way = _front.front(net, MOST)  # stiffnesses that differ by more than 1e16
+        self.factor = _front.Factor(net, way) if way is not None and way.held else None
+        if self.factor is None or not self.factor.sound:
+            return False
+        self.factor.solve(b, b)
+        return True
+
+    def correct(self, f: Floats, moved: Floats) -> None:
+        """Add about K^-1 f to `moved` (n, 3): a cycle is right within a factor of 2."""
+        from hookean.solvers import _laplacian
+
+        b = self._rows(f)
+        if self.factor is not None:
+            self.factor.solve(b, b)
+        elif self.hierarchy is not None:
+            b = self.hierarchy.cycle(b)[0]
+        kernels.compiled(_laplacian.put)(self.particles, self.axes, b, moved)

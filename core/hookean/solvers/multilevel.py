@@ -62,7 +62,7 @@ class Method(Solver):
 
     def __init__(self) -> None:
         self._relaxation = relaxation.Method()
-        self._ready: Tangent | None = None
+        self.tangent = None
         self._judged: Judged | None = None  # the shape as it is, while one advance lasts
         self.largest = np.inf  # force [force] out of balance after the last Newton step
         self.work = 0.0  # passes over all springs; coarser levels count by their size
@@ -74,7 +74,7 @@ class Method(Solver):
     def start(self, system: System, state: State) -> None:
         """Start from rest, with Newton steps."""
         self._relaxation.start(system, state)
-        self._ready = None
+        self.tangent = None
         self.largest = np.inf
         state.scratch["newton"] = np.array([FIRST_SHIFT, CONJUGATE, 0.0])
         state.scratch["turns"] = np.array([0.0, 1.0, 0.0, np.inf])
@@ -175,11 +175,11 @@ class Method(Solver):
         state.scratch["turns"][2:] = 0.0, np.inf
 
     def _readied(self, system: System, state: State) -> Tangent:
-        if self._ready is None:
+        if self.tangent is None:
             from hookean.multigrid.tangent import Tangent
 
-            self._ready = Tangent(system, state)
-        return self._ready
+            self.tangent = Tangent(system, state)
+        return self.tangent
 
 
 class Judged(NamedTuple):
@@ -321,7 +321,13 @@ def pulled(system: System, state: State) -> bool:
 
 
 def lowest(system: System, state: State) -> bool:
-    """Whether a shape at rest of plain springs and constant loads is the one of least energy, as far as can be told.
+    """Whether a shape at rest of plain springs and constant loads is the one of least energy, as far as can be told."""
+    return pulled(system, state) or super_stable(system, state)
+
+
+def super_stable(system: System, state: State) -> bool:
+    """Whether the force densities of a shape of plain springs are positive definite, where that is quick to find out:
+    then it is the shape of least energy, and its tangent positive definite.
 
     With s the squares of the lengths, k (sqrt(s) - L0)^2 / 2 is convex in s: the energy is nowhere below the quadratic
     form of the force densities q = k (1 - L0 / l), which has its minimum at the shape where it is positive definite:
@@ -330,8 +336,6 @@ def lowest(system: System, state: State) -> bool:
     """
     from hookean.solvers import _front
 
-    if pulled(system, state):
-        return True
     net = _form(*_densities(system, state), state.moving)
     way = _front.front(net, CERTAIN)
     return way is not None and way.held and _front.Factor(net, way).sound

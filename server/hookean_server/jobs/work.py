@@ -233,7 +233,7 @@ def shape(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
     method = solver(system.scene.settings.solver)
     found = balance(system, state)
     result = gather(
-        system, state, found, Status(options["status"]), options["message"], method.name, moving=method.physical
+        system, state, found, None, Status(options["status"]), options["message"], method.name, moving=method.physical
     )
     return Done(_relaxed(result, system))
 

@@ -1,0 +1,88 @@
+"""The pattern of a sparse tangent stiffness: worked out once, filled at every shape."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.factor import Factors
+
+if TYPE_CHECKING:
+    from hookean.state import State
+    from hookean.system import System
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Pattern:
+    """Where element blocks go in the lower triangle of the sparse tangent: worked out once, filled at every step."""
+
+    def __init__(self, system: System, free: Floats) -> None:
+        n = len(free)
+        self.free = free
+        self.dofs = np.flatnonzero(free.ravel() > 0)
+        lower = [_lower(g.block.indices) if not g.cls.constant else np.zeros((0, 3), np.int64) for g in system.groups]
+        own = np.arange(n, dtype=np.int64) * (n + 1)
+        pairs, which = np.unique(
+            np.concatenate([*(low[:, 1] * n + low[:, 0] for low in lower), own]), return_inverse=True
+        )
+        place = self._arrange(pairs % n, pairs // n)
+        ends = np.cumsum([len(low) for low in lower], dtype=np.int64)
+        self.takes, places = [], [np.zeros(0, np.int64)]
+        for group, low, end in zip(system.groups, lower, ends, strict=True):
+            wide = 3 * group.block.indices.shape[1]
+            corner = low[:, 2, None, None] + wide * np.arange(3)[:, None] + np.arange(3)
+            mine = place[which[end - len(low) : end]]
+            self.takes.append(corner[mine >= 0])
+            places.append(mine[mine >= 0])
+        self.places = np.concatenate(places)
+
+    def _arrange(self, row: Ints, column: Ints) -> Ints:
+        """Lay out the matrix for pairs of particles sorted by column and row, (i, i) first in each column.
+
+        Returns the place (pairs, 3, 3) of each entry by the axes of its row and its column; -1 where it has none.
+        """
+        free = self.free > 0
+        n = len(free)
+        rank = np.cumsum(free, axis=1) - 1  # of each free axis among its particle's
+        axes = free.sum(axis=1)[row]
+        first = np.searchsorted(column, np.arange(n))
+        above = np.cumsum(axes) - axes
+        above -= above[first][column]  # entries of the column over those of the pair
+        height = np.add.reduceat(axes, first)[:, None] - rank
+        starts = np.concatenate([[0], np.cumsum(height[free])])
+        begin = np.zeros(free.shape, np.int64)
+        begin[free] = starts[:-1]
+        place: Ints = (begin - rank)[column][:, None, :] + (above[:, None] + rank[row])[:, :, None]
+        kept = free[row][:, :, None] & free[column][:, None, :]
+        kept &= (row > column)[:, None, None] | np.tri(3, dtype=bool)
+        place[~kept] = -1
+        number = np.zeros(free.shape, np.int32)
+        number[free] = np.arange(len(self.dofs))
+        rows = np.zeros(starts[-1], np.int32)
+        rows[place[kept]] = np.broadcast_to(number[row][:, :, None], place.shape)[kept]
+        self.diagonal, self.count = starts[:-1], len(rows)
+        self.factors = Factors(rows, starts.astype(np.int32))
+        return place
+
+    def tangent(self, system: System, state: State) -> Floats:
+        """Values of the lower triangle of the sparse tangent stiffness."""
+        values = [np.zeros(0)]
+        for group, memory, take in zip(system.groups, state.memory, self.takes, strict=True):
+            if len(take):
+                values.append(system.stiffness_blocks(group, state, memory).ravel()[take])
+        summed: Floats = np.bincount(self.places, np.concatenate(values), self.count).astype(np.float64)
+        return summed
+
+
+def _lower(index: Ints) -> Ints:
+    """Row and column particle of what is not above the diagonal, and its corner in the flat blocks of all elements."""
+    m, arity = index.shape
+    row, column = np.repeat(index, arity, axis=1).ravel(), np.tile(index, (1, arity)).ravel()
+    i, j = np.divmod(np.arange(arity * arity), arity)
+    corner = (9 * arity * arity * np.arange(m)[:, None] + 9 * arity * i + 3 * j).ravel()
+    below = row >= column
+    return np.column_stack([row[below], column[below], corner[below]])
