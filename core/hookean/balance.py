@@ -28,6 +28,7 @@ COARSE = 1e-3  # a rounding floor above this leaves too little to call a shape k
 UNSTRAINED = 1e-6  # strain below which the forces of a component without loads count as none
 BALANCED = 1e-9  # part of the loads that may be left of their sum where they balance one another
 
+NOTHING: NDArray[np.int64] = np.zeros(0, np.int64)
 OUT, WORST, BEYOND, NOISE, LOAD, LOADED, ALONG = 0, 1, 2, 3, 4, 5, slice(6, 9)
 """Columns of what `judge` finds of each component."""
 
@@ -69,7 +70,7 @@ class Balance:
         """The component with the largest residual; -1 where nothing may move."""
         return int(np.argmax(self.residuals)) if len(self.scales) else -1  # a nan is the largest
 
-    @property
+    @cached_property
     def residual(self) -> float:
         """The largest residual [-]."""
         return float(self.residuals[self.part]) if self.part >= 0 else 0.0
@@ -89,12 +90,12 @@ class Balance:
         """The particle with the largest residual."""
         return int(self.found[self.part, WORST]) if self.part >= 0 else 0
 
-    @property
+    @cached_property
     def floor(self) -> float:
         """The largest rounding floor [-]."""
         return float(self.floors.max(initial=0.0))
 
-    @property
+    @cached_property
     def beyond(self) -> float:
         """The largest residual of a particle that is more than rounding leaves there [-]."""
         return float((self.found[:, BEYOND] / self.scales).max(initial=0.0))
@@ -102,13 +103,15 @@ class Balance:
     @cached_property
     def adrift(self) -> NDArray[np.int64]:
         """Components that nothing supports although their loads have a resultant."""
+        if self.components.supported.all():
+            return NOTHING
         along = np.abs(self.found[:, ALONG]).max(axis=1, initial=0.0)
         return np.flatnonzero(~self.components.supported & (along > BALANCED * self.found[:, LOAD]))
 
     @cached_property
     def coarse(self) -> NDArray[np.int64]:
         """Components whose forces rounding hides."""
-        return np.flatnonzero(self.floors > COARSE)
+        return np.flatnonzero(self.floors > COARSE) if self.floor > COARSE else NOTHING
 
     def still(self, tolerance: float) -> bool:
         """Whether what is left at each particle is within the tolerance, or no more than rounding leaves there."""
@@ -137,8 +140,7 @@ def balance(system: System, state: State) -> Balance:
     contact = system.support(state, left) if system.contacts else np.zeros(f.shape)
     parts = system.components(state)
     reactions, found = np.empty(f.shape), np.zeros((len(parts.first), 9))
-    reach, extent = np.empty(len(f)), np.zeros(len(f))
-    kernels.compiled(reach_alone)(state.x, reach)
+    reach, extent = np.zeros(len(f)), np.zeros(len(f))
     for group in system.groups:
         if group.cls.role != "load" and len(group.block.indices):
             kernels.compiled(reach_of)(group.block.indices, state.x, reach, extent)
@@ -152,15 +154,6 @@ def balance(system: System, state: State) -> Balance:
     # nothing pushes there: balanced if what is left is rounding
     scales[scales <= 0.0] = 1.0
     return Balance(left, reactions, contact, parts, found, scales, energies, w, extent)
-
-
-def reach_alone(x, reach):  # type: ignore[no-untyped-def]
-    """The largest coordinate of each particle, where it is a number."""
-    for i in range(x.shape[0]):
-        reach[i] = 0.0
-        for c in range(3):
-            if abs(x[i, c]) > reach[i] and np.isfinite(x[i, c]):
-                reach[i] = abs(x[i, c])
 
 
 def reach_of(indices, x, reach, extent):  # type: ignore[no-untyped-def]

@@ -31,6 +31,7 @@ DENSE = 400  # unknowns up to which numpy's eigenvalues are quick
 LARGEST_FACTOR = 60_000  # unknowns: more are left to multigrid, or to nobody
 LARGEST_BLOCKS = 3_000_000  # entries of all element blocks; a shell's have 36 x 36 each
 PUSH = 1e-6  # of the force of a contact
+FINEST = 1e-16  # position tolerance that means as well as can be
 LARGE_NET = 4_000  # particles from which on multigrid is quicker than factors
 
 
@@ -189,11 +190,11 @@ def excess(system: System, state: State, found: Balance, rest: Equilibrium) -> f
     errors = rest.position_errors if rest.position_errors is not None else rest.beside
     if tolerance is None or errors is None:
         return 0.0
-    # as drawn or as it is: what is drawn flat may rise, what shrinks to a point has the size that it had
-    sizes = [components.sizes(found.components, system.groups, x) for x in (system.x, state.x)]
-    largest = np.maximum(*sizes)
-    allowed = tolerance * np.where(largest > 0.0, largest, 1.0)
-    return float((errors / allowed).max(initial=0.0))
+    tolerance = max(tolerance, FINEST)
+    sizes = components.sizes(found.components, system.groups, state.x)
+    if (errors > tolerance * sizes).any():  # what has shrunk to a point has the size that it had
+        sizes = np.maximum(sizes, components.sizes(found.components, system.groups, system.x))
+    return float((errors / (tolerance * np.where(sizes > 0.0, sizes, 1.0))).max(initial=0.0))
 
 
 def leave(system: System, state: State, rest: Equilibrium) -> bool:

@@ -256,25 +256,25 @@ def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
     return {"particles": held, "force": found.reactions[held], "names": [names[p] for p in held.tolist()]}
 
 
+COMPONENTS = (
+    "first_particle", "particles", "supported", "loaded", "force_scale", "out_of_balance", "residual",
+    "rounding_floor", "position_error",
+)  # fmt: skip
+
+
 def _components(found: Balance, rest: Equilibrium) -> dict[str, Any]:
     """Columns of the connected components, where there is more than one that something acts on."""
-    parts = found.components
-    acting = np.flatnonzero(parts.joined | (found.found[:, LOADED] > 0.0))
+    parts, loaded = found.components, found.found[:, LOADED] > 0.0
+    acting = np.flatnonzero(parts.joined | loaded) if len(parts.first) > 1 else parts.first
     if len(acting) < 2:
-        acting = acting[:0]
+        return dict.fromkeys(COMPONENTS, np.zeros(0))
     counts = np.bincount(parts.label[parts.label >= 0], minlength=len(parts.first))
     errors = rest.position_errors if rest.position_errors is not None else np.full(len(parts.first), np.nan)
-    return {
-        "first_particle": parts.first[acting],
-        "particles": counts[acting],
-        "supported": parts.supported[acting],
-        "loaded": found.found[acting, LOADED] > 0.0,
-        "force_scale": found.scales[acting],
-        "out_of_balance": found.found[acting, OUT],
-        "residual": found.residuals[acting],
-        "rounding_floor": found.floors[acting],
-        "position_error": errors[acting],
-    }
+    columns = (
+        parts.first, counts, parts.supported, loaded, found.scales, found.found[:, OUT], found.residuals,
+        found.floors, errors,
+    )  # fmt: skip
+    return {name: column[acting] for name, column in zip(COMPONENTS, columns, strict=True)}
 
 
 def _contacts(found: Balance) -> dict[str, Any]:
