@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from hookean.errors import InputError
+from hookean.errors import InputError, refuse_pointer
 
 from .archive_binary import of_bytes, to_bytes
 from .archive_chunk import MOST_BYTES, Chunk, Item, Type
@@ -25,7 +25,8 @@ _XML = re.compile(rb"(\xef\xbb\xbf)?\s*<[?!A-Za-z]|\xff\xfe<\x00|\xfe\xff\x00<")
 def read(path: str | Path, limit: int = MOST_BYTES) -> Chunk:
     """The archive in a file, XML or binary by its content.
 
-    InputError where the file cannot be read, is no archive, is damaged, or has more than `limit` bytes unpacked.
+    InputError where the file cannot be read, is not an archive (a Git LFS pointer, for one), is damaged, or has more
+    than `limit` bytes unpacked.
     """
     path = Path(path)
     try:
@@ -37,6 +38,7 @@ def read(path: str | Path, limit: int = MOST_BYTES) -> Chunk:
         raise InputError(str(path), f"has more than the {limit} bytes allowed; take large geometry out of the file.")
     if not data:
         raise InputError(str(path), "is empty; a Grasshopper archive was expected.")
+    refuse_pointer(data, str(path))
     return of_xml(data, str(path), limit) if _XML.match(data) else of_bytes(data, str(path), limit)
 
 

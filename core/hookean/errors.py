@@ -14,3 +14,12 @@ class InputError(ValueError):
         super().__init__(f"{pointer}: {sentence}" if pointer else sentence)
         self.pointer = pointer
         self.sentence = sentence
+
+
+def refuse_pointer(data: bytes, name: str) -> None:
+    """InputError where the bytes of the file `name` are a Git LFS pointer: the text that stands for a file not fetched.
+
+    Source: the Git LFS specification, docs/spec.md: a pointer's first line is `version` and the address of the version.
+    """
+    if data.startswith(b"version https://git-lfs.github.com/spec/"):
+        raise InputError(name, "is a Git LFS pointer, not the file itself; run `git lfs pull` where it was cloned.")

@@ -224,6 +224,16 @@ def test_what_is_no_archive_is_one_line_and_exit_code_2(command: str, tmp_path: 
     assert result.stderr.count("\n") == 1
 
 
+@pytest.mark.parametrize("command", ["show", "check", "run", "draw", "import"])
+def test_a_git_lfs_pointer_is_named_by_every_command(command: str, tmp_path: Path) -> None:
+    """A pointer as git-lfs writes it (docs/spec.md of git-lfs): what a clone without Git LFS has in a file's place."""
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:" + 32 * "4d" + "\nsize 12345\n"
+    (tmp_path / "form.gh").write_text(pointer)
+    result = run(command, tmp_path / "form.gh", *(["-o", tmp_path / "form.png"] if command == "draw" else []))
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "form.gh: is a Git LFS pointer, not the file itself" in result.stderr and result.stderr.count("\n") == 1
+
+
 SWAPS = [
     (Type.STRING, "text"),
     (Type.INT32, 7),

@@ -109,11 +109,16 @@ def test_endless_rows_of_empty_chunks_are_refused() -> None:
         scan(MAGIC + b"      80" + row)
 
 
+POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:" + b"4d" * 32 + b"\nsize 12345\n"
+"""What a clone without Git LFS holds in a file's place (git-lfs, docs/spec.md)."""
+
+
 @pytest.mark.parametrize(
     ("data", "words"),
     [
         (b"", "empty"),
         (b"hello, a text file", "not a .3dm file"),
+        (POINTER, "is a Git LFS pointer, not the file itself"),
         (MAGIC[:10], "header is cut"),
         (MAGIC + b"  seven ", "no version"),
         (MAGIC + b"       1" + bytes(100), "version 1"),

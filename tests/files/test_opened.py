@@ -295,3 +295,9 @@ def test_damaged_files_give_a_scene_or_a_sentence(seed: int) -> None:
                 faults += 1
                 assert error.sentence and "\n" not in str(error)
     assert faults > 50
+
+
+@pytest.mark.parametrize("name", ["", "a.obj", "a.json"])
+def test_a_git_lfs_pointer_is_named(name: str) -> None:
+    with pytest.raises(InputError, match="is a Git LFS pointer, not the file itself"):
+        scene_in(b"version https://git-lfs.github.com/spec/v1\noid sha256:" + b"4d" * 32 + b"\nsize 1\n", name)

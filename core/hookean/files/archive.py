@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 from uuid import UUID
 
-from hookean.errors import InputError
+from hookean.errors import InputError, refuse_pointer
 from hookean.files.checksums import Checksums
 
 MAGIC = b"3D Geometry File Format "
@@ -167,6 +167,7 @@ class _Damage(Exception):
 def _version(data: bytes, name: str) -> int:
     if not data:
         raise InputError(name, "the file is empty (0 bytes); give a .3dm file.")
+    refuse_pointer(data, name)
     if not data.startswith(MAGIC[: len(data)]):
         raise InputError(
             name,

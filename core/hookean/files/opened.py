@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hookean.discretize.meshes import as_mesh
-from hookean.errors import InputError
+from hookean.errors import InputError, refuse_pointer
 from hookean.files import compas_json, obj_read
 from hookean.files.drawn import Drawn, scene_of
 from hookean.files.recipe_select import count, listed
@@ -36,6 +36,7 @@ def kind(data: bytes, name: str = "") -> str:
 def scene_in(data: bytes, name: str = "") -> tuple[Scene, list[str]]:
     """The scene in an OBJ or JSON file, and what a person should know of it. A scene is as it says; COMPAS documents
     and OBJ are taken as drawn (see `drawn`). InputError, in OBJ with the line, in JSON with a pointer."""
+    refuse_pointer(data, name)
     if kind(data, name) == "obj":
         return scene_of(obj_read.read(data))
     value = parse(data)
