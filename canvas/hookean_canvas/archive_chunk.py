@@ -16,6 +16,7 @@ from hookean.errors import InputError
 MOST_BYTES = 256 * 2**20  # an archive's size once unpacked
 MOST_PARTS = 3_000_000  # items and chunks of an archive, together
 DEEPEST = 200  # chunks within chunks
+CLUSTERS = 20  # clusters within clusters that are looked into
 
 
 class Type(IntEnum):

@@ -39,11 +39,14 @@ def show(
 
 
 @app.command()
-def check(files: Annotated[list[Path], typer.Argument(help=".gh, .ghx and .ghuser files")]) -> None:
-    """Say what is wrong with Grasshopper files, a line for each fault; exits with 1 where there is one."""
+def check(
+    files: Annotated[list[Path], typer.Argument(help=".gh, .ghx and .ghuser files")],
+    strict: Annotated[bool, typer.Option("--strict", help="Also what Grasshopper repairs, drops or ignores")] = False,
+) -> None:
+    """Print why Grasshopper would refuse files or objects in them, a line for each fault; exits with 1 for any."""
     from hookean_canvas.show import check
 
-    raise typer.Exit(check(files))
+    raise typer.Exit(check(files, strict))
 
 
 @app.command()

@@ -14,10 +14,10 @@ from uuid import UUID
 from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.guids import CONVERTERS, HINTS, LIBRARIES, SCRIPT_LIBRARY, SCRIPT_PARAMETER
 from hookean_canvas.natives import PARAMETERS, Native
+from hookean_canvas.parts import Rectangle
 
 TICKS = 638_000_000_000_000_000
 """The date in every file, so that the same definition is the same file."""
-Rectangle = tuple[float, float, float, float]
 
 
 def container(id: UUID, name: str, nickname: str, description: str) -> Chunk:

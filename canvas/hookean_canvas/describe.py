@@ -10,9 +10,9 @@ from uuid import UUID
 
 from hookean.errors import InputError
 
-from . import guids
+from . import guids, kangaroo_guids
 from .archive import Chunk, Item, Type, of_bytes
-from .archive_chunk import labelled
+from .archive_chunk import CLUSTERS, labelled
 from .parts import Part, code, given, inputs, is_floating, outputs, parts, sources
 
 Data = dict[str, Any]
@@ -34,15 +34,18 @@ _COMMON |= {
     "ToolTip",
 }
 _SHOWN = {"Attributes", "ParameterData", "PersistentData", "Script", "ScriptEditor", "PanelProperties"}
-_SHOWN |= {"InputParam", "OutputParam", "param_input", "param_output"}
+_SHOWN |= {"InputParam", "OutputParam", "param_input", "param_output", "EvalUnits"}
 
 
-def describe(root: Chunk) -> Data:
-    """A definition or user object as JSON-ready data; any other archive chunk by chunk, item by item."""
+def describe(root: Chunk, depth: int = 0) -> Data:
+    """A definition or user object as JSON-ready data; any other archive chunk by chunk, item by item.
+
+    `depth`: in how many clusters it is.
+    """
     if root.chunk("Definition") is not None:
-        return _definition(root)
+        return _definition(root, depth)
     if root.name == "UserObject" and root.item("Object") is not None:
-        return _user_object(root)
+        return _user_object(root, depth)
     return {"kind": "archive", "root": raw(root)}
 
 
@@ -77,7 +80,7 @@ def _text(chunk: Chunk | None, name: str) -> str:
 # ------------------------------------------------------------------------------------------------------- definitions
 
 
-def _definition(root: Chunk) -> Data:
+def _definition(root: Chunk, depth: int) -> Data:
     definition = root.chunk("Definition")
     assert definition is not None
     header, properties = definition.chunk("DocumentHeader"), definition.chunk("DefinitionProperties")
@@ -88,8 +91,9 @@ def _definition(root: Chunk) -> Data:
         for part, label in zip(found, labels, strict=True)
         for port in (outputs(part.container) if part.container is not None else [])
     }
+    origins = _Origins(definition)
     objects = [
-        {"index": number, "label": labels[number]} | _part(part, owners)
+        {"index": number, "label": labels[number]} | _part(part, owners, origins, depth)
         for number, part in enumerate(found)
         if part.guid != guids.GROUP
     ]
@@ -124,12 +128,34 @@ def _group(part: Part, labels: dict[UUID | None, str]) -> Data:
     return {"name": title, "members": [labels.get(member, f"{member}, not in the file") for member in members]}
 
 
-def _part(part: Part, owners: Owners) -> Data:
+class _Origins:
+    """Where the components of a definition come from that are not Grasshopper's own."""
+
+    def __init__(self, definition: Chunk) -> None:
+        self._kangaroo = kangaroo_guids.libraries(definition)
+        listed = definition.chunk("GHALibraries")
+        self._names = {one.value("Id"): _text(one, "Name") for one in (listed.chunks if listed is not None else ())}
+
+    def known(self, thing: Chunk) -> tuple[str | None, str | None]:
+        """The name of an object's kind, None where no table has it; the plug-in it is of, None for Grasshopper's."""
+        guid = thing.value("GUID")
+        name = guids.name(guid) if isinstance(guid, UUID) else None
+        if name is not None:
+            return name, None
+        found = kangaroo_guids.recognised(thing, self._kangaroo)
+        if found is not None:
+            return found.name, kangaroo_guids.GENERATIONS[found.generation]
+        return None, self._names.get(thing.value("Lib")) or None
+
+
+def _part(part: Part, owners: Owners, origins: _Origins, depth: int) -> Data:
     guid = part.guid
+    known, plugin = origins.known(part.chunk)
     described: Data = {
         "name": part.name,
         "nickname": _text(part.container, "NickName"),
-        "known": guids.name(guid) if guid is not None else None,
+        "known": known,
+        "plugin": plugin,
         "guid": str(guid),
         "id": str(part.id),
         "library": _text(part.chunk, "Lib") or None,
@@ -138,12 +164,12 @@ def _part(part: Part, owners: Owners) -> Data:
         return described
     attributes = part.container.chunk("Attributes")
     place = given(attributes, "Pivot", ()) or given(attributes, "Bounds", ())[:2]
-    return described | {"pivot": plain(tuple(place))} | _container(guid, part.container, owners)
+    return described | {"pivot": plain(tuple(place))} | _container(guid, part.container, owners, depth)
 
 
-def _container(guid: UUID | None, container: Chunk, owners: Owners) -> Data:
+def _container(guid: UUID | None, container: Chunk, owners: Owners, depth: int) -> Data:
     """What a component or parameter holds, whether it stands in a definition or in a user object."""
-    described: Data = {"description": _text(container, "Description"), "values": _values(guid, container)}
+    described: Data = {"description": _text(container, "Description"), "values": _values(guid, container, depth)}
     if is_floating(container):
         described |= _port(container, owners) | {"nickname": _text(container, "NickName")}
         described["floating"] = True
@@ -206,7 +232,7 @@ def _datum(item: Chunk) -> Any:
     }
 
 
-def _values(guid: UUID | None, container: Chunk) -> Data:
+def _values(guid: UUID | None, container: Chunk, depth: int) -> Data:
     """The object's own settings, without what every object has; the common ones by plain words."""
     slider = container.chunk("Slider")
     if guid == guids.NUMBER_SLIDER and slider is not None:
@@ -220,11 +246,11 @@ def _values(guid: UUID | None, container: Chunk) -> Data:
         entries = [entry for entry in container.chunks if entry.name == "ListItem"]
         chosen = [_text(entry, "Name") for entry in entries if entry.value("Selected", default=False)]
         return {"chosen": chosen, "list": {_text(entry, "Name"): _text(entry, "Expression") for entry in entries}}
-    return _others(container)
+    return _others(container, depth)
 
 
-def _others(container: Chunk) -> Data:
-    shown: Data = {labelled(item.name, item.index): _unpacked(item) for item in container.items if _is_own(item)}
+def _others(container: Chunk, depth: int) -> Data:
+    shown: Data = {labelled(item.name, item.index): _unpacked(item, depth) for item in container.items if _is_own(item)}
     for inner in container.chunks:
         if inner.name not in _SHOWN:
             shown[inner.label] = {labelled(item.name, item.index): plain(item.value) for item in inner.items}
@@ -235,11 +261,11 @@ def _is_own(item: Item) -> bool:
     return item.name not in _COMMON and not item.name.startswith(("Using", "Marsh", "Hide", "Editor"))
 
 
-def _unpacked(item: Item) -> Any:
+def _unpacked(item: Item, depth: int) -> Any:
     """A value; an archive within it (a cluster's definition) as what it holds."""
-    if item.type == Type.BYTEARRAY and item.name == "ClusterDocument":
+    if item.type == Type.BYTEARRAY and item.name == "ClusterDocument" and depth < CLUSTERS:
         try:
-            return describe(of_bytes(item.value, item.name))
+            return describe(of_bytes(item.value, item.name), depth + 1)
         except InputError:
             pass
     return plain(item.value)
@@ -248,7 +274,7 @@ def _unpacked(item: Item) -> Any:
 # ------------------------------------------------------------------------------------------------------ user objects
 
 
-def _user_object(root: Chunk) -> Data:
+def _user_object(root: Chunk, depth: int) -> Data:
     base = root.value("BaseID")
     described: Data = {
         "kind": "user object",
@@ -267,4 +293,4 @@ def _user_object(root: Chunk) -> Data:
         inner = of_bytes(given(root, "Object", b""), "the object in it")
     except InputError as error:
         return described | {"damage": str(error)}
-    return described | {"object": _container(base if isinstance(base, UUID) else None, inner, {})}
+    return described | {"object": _container(base if isinstance(base, UUID) else None, inner, {}, depth)}

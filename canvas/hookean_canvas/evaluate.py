@@ -9,6 +9,7 @@ A toggle that feeds an input called reset is pressed as a person presses it: Tru
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -22,6 +23,7 @@ from hookean_canvas import stand_in as untyped
 from hookean_canvas.graph import Graph, Node, Port, Unread
 from hookean_canvas.guids import BOOLEAN_TOGGLE, BUTTON, NUMBER_SLIDER, PANEL, PARAM_VIEWER, RELAY, TIMER, VALUE_LIST
 from hookean_canvas.natives import NATIVES, PARAMETERS, Native, Unfit, as_kind
+from hookean_canvas.parts import given as typed
 from hookean_canvas.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.trees import ITEM, LIST, TREE, Run, Tree, modified, runs
 
@@ -113,10 +115,17 @@ class Canvas:
                 script.component.expired = 0
             for _, callback in waiting:
                 if callback is not None:
-                    callback(self._document)
+                    self._call(callback)
             again = [script.node for script in self._scripts.values() if script.component.expired]
             self._solve(again)
         return True
+
+    def _call(self, callback: Any) -> None:
+        """What a component scheduled; InputError where it raises, as Grasshopper's solution ends there."""
+        try:
+            callback(self._document)
+        except (Exception, SystemExit) as error:
+            raise InputError("a scheduled solution", f"{type(error).__name__}: {error}") from None
 
     def _solve(self, expired: Sequence[Node] | None) -> None:
         """One solution: the expired objects and all that depend on them."""
@@ -253,20 +262,32 @@ class _standing:
 
 def _known(graph: Graph) -> None:
     """InputError that names every object that cannot be run, and stored data that cannot be read."""
+    where = str(graph.file or graph.name)
+    if graph.damage:
+        raise InputError(where, f"the file is damaged: {'; '.join(graph.damage)}")
     unknown = []
     for node in graph.nodes:
-        if node.guid in SCRIPTS:
-            if code_of(node) is None:
-                unknown.append(f"{node.label} ({node.name}): its code is not Python")
-        elif node.guid not in NATIVES and node.guid not in PARAMETERS and node.guid not in VALUES:
-            unknown.append(f"{node.label} ({node.name}, {node.guid})")
+        unknown += [f"{node.label} ({node.name}{why})" for why in [_strange(node)] if why]
         for port in node.inputs:
             odd = [value for value in (port.data or Tree()).values_in_order() if isinstance(value, Unread)]
             if odd:
                 unknown.append(f"data stored in {node.label}, {port.nickname}: {', '.join(odd[0].items)}")
     if unknown:
         said = "these objects have no stand-in: " if len(unknown) > 1 else "this object has no stand-in: "
-        raise InputError(str(graph.file or graph.name), said + "; ".join(unknown))
+        raise InputError(where, said + "; ".join(unknown))
+
+
+def _strange(node: Node) -> str:
+    """Why an object has no stand-in, as words that follow its name; empty where it has one."""
+    if node.guid in SCRIPTS:
+        return "" if code_of(node) is not None else ": its code is not Python"
+    if node.guid in NATIVES:
+        of = NATIVES[node.guid]
+        held, usual = (f"{len(one.inputs)} inputs and {len(one.outputs)} outputs" for one in (node, of))
+        return "" if held == usual else f" with {held}, not {usual}"
+    if node.guid in PARAMETERS or node.guid in VALUES:
+        return "" if node.floating else " with inputs or outputs of its own"
+    return f", {node.guid}"
 
 
 def _resets(graph: Graph) -> list[Node]:
@@ -301,10 +322,11 @@ def _set_value(node: Node, text: str) -> Any:
     if node.guid == PANEL:
         return text
     if node.guid == VALUE_LIST:
-        names = {c.value("Name"): c.value("Expression") for c in node.container.chunks if c.name == "ListItem"}
+        items = [c for c in node.container.chunks if c.name == "ListItem"]
+        names = {typed(c, "Name", ""): typed(c, "Expression", "") for c in items}
         if text not in names:
             raise InputError(node.nickname, f"{text} is none of its choices {', '.join(names)}")
-        return _expression(str(names[text]))
+        return _expression(names[text])
     try:
         value = as_kind("boolean" if node.guid == BOOLEAN_TOGGLE else "number", text)
     except Unfit:
@@ -313,7 +335,7 @@ def _set_value(node: Node, text: str) -> Any:
         ) from None
     slider = node.container.chunk("Slider")
     if slider is not None:
-        low, high = slider.value("Min"), slider.value("Max")
+        low, high = typed(slider, "Min", -math.inf), typed(slider, "Max", math.inf)
         if not low <= value <= high:
             raise InputError(node.nickname, f"{text} is outside the slider, which goes from {low:g} to {high:g}")
         return _slid(slider, value)
@@ -321,8 +343,8 @@ def _set_value(node: Node, text: str) -> Any:
 
 
 def _slid(slider: Any, value: float) -> float | int:
-    digits = slider.value("Digits", default=0)
-    return round(value) if slider.value("Interval", default=0) else round(float(value), digits)
+    digits, whole = typed(slider, "Digits", 0), typed(slider, "Interval", 0)
+    return round(value) if whole and math.isfinite(value) else round(float(value), digits)
 
 
 def _expression(text: str) -> Any:
@@ -341,25 +363,24 @@ def _expression(text: str) -> Any:
 
 def _slider_value(node: Node) -> list[Any]:
     slider = node.container.chunk("Slider")
-    return [] if slider is None else [_slid(slider, slider.value("Value", default=0.0))]
+    return [] if slider is None else [_slid(slider, typed(slider, "Value", 0.0))]
 
 
 def _list_value(node: Node) -> list[Any]:
     items = [chunk for chunk in node.container.chunks if chunk.name == "ListItem"]
-    return [_expression(str(chunk.value("Expression"))) for chunk in items if chunk.value("Selected", default=False)]
+    return [_expression(typed(chunk, "Expression", "")) for chunk in items if typed(chunk, "Selected", False)]
 
 
 def _panel_value(node: Node) -> list[Any]:
-    text = str(node.container.value("UserText", default=""))
-    properties = node.container.chunk("PanelProperties")
-    if properties is not None and not properties.value("Multiline", default=True):
+    text = typed(node.container, "UserText", "")
+    if not typed(node.container.chunk("PanelProperties"), "Multiline", True):
         return text.splitlines()
     return [text] if text else []
 
 
 _OWN: dict[UUID, Callable[[Node], list[Any]]] = {
     NUMBER_SLIDER: _slider_value,
-    BOOLEAN_TOGGLE: lambda node: [bool(node.container.value("ToggleValue", default=False))],
+    BOOLEAN_TOGGLE: lambda node: [typed(node.container, "ToggleValue", False)],
     VALUE_LIST: _list_value,
     PANEL: _panel_value,
     BUTTON: lambda _: [False],

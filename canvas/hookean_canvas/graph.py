@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,8 +11,10 @@ from uuid import UUID
 
 from hookean.errors import InputError
 from hookean_canvas import archive
-from hookean_canvas.archive import Chunk
+from hookean_canvas import parts as chunks
+from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.guids import GROUP, SCRIBBLE
+from hookean_canvas.parts import SCRIPTS, Part, Rectangle, bounds_of, given, sources
 from hookean_canvas.trees import Tree, path_of
 
 
@@ -44,13 +47,13 @@ class Node:
     container: Chunk
     inputs: list[Port]
     outputs: list[Port]
-    bounds: tuple[float, float, float, float] | None = None
+    bounds: Rectangle | None = None
     locked: bool = False
 
     @property
     def floating(self) -> bool:
         """Whether it is a parameter and no component."""
-        return len(self.inputs) == 1 and self.inputs[0] is self.outputs[0]
+        return len(self.inputs) == len(self.outputs) == 1 and self.inputs[0] is self.outputs[0]
 
     @property
     def label(self) -> str:
@@ -60,7 +63,7 @@ class Node:
 
 @dataclass
 class Group:
-    """Objects with a coloured border and a title."""
+    """Objects and other groups with a coloured border and a title."""
 
     id: UUID
     title: str
@@ -70,7 +73,8 @@ class Group:
 
 @dataclass
 class Graph:
-    """A definition. `id` is the document's, `file` where it was read."""
+    """A definition. `id` is the document's, `file` where it was read; `damage`: a sentence for each object that lacks
+    what Grasshopper needs to read it. Such an object has an id made of its number, or is left out."""
 
     id: UUID
     name: str
@@ -78,6 +82,7 @@ class Graph:
     nodes: list[Node]
     groups: list[Group]
     file: Path | None = None
+    damage: list[str] = field(default_factory=list)
 
     def owners(self) -> dict[UUID, tuple[Node, Port]]:
         """The object and the port behind each id that a wire can come from."""
@@ -93,7 +98,15 @@ class Graph:
                         yield (*owners[source], node, port)
 
     def ordered(self) -> list[Node]:
-        """Objects so that each comes after those that feed it; InputError where wires run in a circle."""
+        """Objects so that each comes after those that feed it.
+
+        InputError where wires run in a circle, or two objects have one id.
+        """
+        twice = [node.label for node, count in zip(self.nodes, self._times(), strict=True) if count > 1]
+        if twice:
+            raise InputError(
+                "ids", f"{', '.join(twice)} have one InstanceGuid; delete all but one and place them again"
+            )
         feeds: dict[UUID, list[Node]] = {}
         missing = {node.id: 0 for node in self.nodes}
         for start, _, end, _ in self.wires():
@@ -109,6 +122,11 @@ class Graph:
             circle = ", ".join(sorted(node.label for node in self.nodes if missing[node.id]))
             raise InputError("wires", f"they run in a circle through {circle}; take one of them away")
         return ready
+
+    def _times(self) -> list[int]:
+        """How often the id of each object is there."""
+        often = Counter(node.id for node in self.nodes)
+        return [often[node.id] for node in self.nodes]
 
 
 def read(path: Path) -> Graph:
@@ -127,74 +145,72 @@ def of(root: Chunk, where: str = "definition") -> Graph:
     header = definition.chunk("DocumentHeader")
     properties = definition.chunk("DefinitionProperties")
     graph = Graph(
-        id=header.value("DocumentID", default=UUID(int=0)) if header is not None else UUID(int=0),
-        name=properties.value("Name", default="") if properties is not None else "",
-        description=properties.value("Description", default="") if properties is not None else "",
+        id=given(header, "DocumentID", UUID(int=0)),
+        name=given(properties, "Name", ""),
+        description=given(properties, "Description", ""),
         nodes=[],
         groups=[],
     )
-    for chunk in objects.chunks:
-        container = chunk.chunk("Container")
-        if chunk.name != "Object" or container is None:
-            continue
-        guid = chunk.value("GUID")
-        if guid == GROUP:
-            graph.groups.append(_group(container))
-        elif guid != SCRIBBLE:
-            graph.nodes.append(_node(guid, chunk.value("Name", default=""), container))
+    for number, part in enumerate(chunks.parts(root)):
+        told = f"object {number} ({part.label})"
+        if part.container is None or part.guid is None:
+            graph.damage.append(f"{told} has no {'Container' if part.container is None else 'GUID'}")
+        elif part.guid == GROUP:
+            graph.groups.append(_group(part.container))
+        elif part.guid != SCRIBBLE:
+            node = _node(part.guid, part, part.container, UUID(int=number))
+            graph.nodes.append(node)
+            if part.id is None:
+                graph.damage.append(f"{told} has no InstanceGuid")
+            nameless = [port.nickname for port in (*node.inputs, *node.outputs) if port.id.int == 0]
+            graph.damage += [f"{told}: {nickname or 'an input or output'} has no InstanceGuid" for nickname in nameless]
     return graph
 
 
 def _group(container: Chunk) -> Group:
-    members = [container.value("ID", i) for i in range(container.value("ID_Count", default=0))]
-    colour = container.value("Colour", default=(255, 150, 150, 150))
-    return Group(container.value("InstanceGuid"), container.value("NickName", default=""), members, colour)
+    items = sorted((item for item in container.items if item.name == "ID"), key=lambda item: item.index)
+    members = [item.value for item in items if isinstance(item.value, UUID)]
+    colour = container.item("Colour")
+    rgb = colour.value if colour is not None and colour.type is Type.DRAWING_COLOR else (255, 150, 150, 150)
+    return Group(given(container, "InstanceGuid", UUID(int=0)), given(container, "NickName", ""), members, rgb)
 
 
-def _node(guid: UUID, name: str, container: Chunk) -> Node:
-    parameters = container.chunk("ParameterData")
-    if parameters is not None:
-        inputs = [port(chunk) for chunk in parameters.chunks if chunk.name == "InputParam"]
-        outputs = [port(chunk) for chunk in parameters.chunks if chunk.name == "OutputParam"]
-    else:
-        inputs = [port(chunk) for chunk in container.chunks if chunk.name == "param_input"]
-        outputs = [port(chunk) for chunk in container.chunks if chunk.name == "param_output"]
-    if not inputs and not outputs:
+def _node(guid: UUID, part: Part, container: Chunk, instead: UUID) -> Node:
+    """An object; one without inputs and outputs that is no script is a parameter, such as a timer."""
+    inputs, outputs = ([port(one) for one in side(container)] for side in (chunks.inputs, chunks.outputs))
+    if chunks.is_floating(container) or not (inputs or outputs or guid in SCRIPTS):
         inputs = outputs = [port(container)]
-    attributes = container.chunk("Attributes")
-    bounds = attributes.value("Bounds") if attributes is not None else None
-    if "InstanceGuid" not in {item.name for item in container.items}:
-        raise InputError(name or "object", "this has no InstanceGuid; the file is damaged")
+        inputs[0].id = part.id or instead
     return Node(
-        id=container.value("InstanceGuid"),
+        id=part.id or instead,
         guid=guid,
-        name=container.value("Name", default=name),
-        nickname=container.value("NickName", default=""),
+        name=given(container, "Name", part.name),
+        nickname=given(container, "NickName", ""),
         container=container,
         inputs=inputs,
         outputs=outputs,
-        bounds=bounds,
-        locked=bool(container.value("Locked", default=False)),
+        bounds=bounds_of(container),
+        locked=given(container, "Locked", False),
     )
 
 
 def port(chunk: Chunk) -> Port:
-    """The parameter that a chunk describes."""
-    access = chunk.value("ScriptParamAccess", default=chunk.value("Access", default=0))
-    data = chunk.chunk("PersistentData")
+    """The parameter that a chunk describes; what is missing, or of another type, is as if never set."""
+    access, mapping = given(chunk, "ScriptParamAccess", given(chunk, "Access", 0)), given(chunk, "Mapping", 0)
+    data, hint = chunk.chunk("PersistentData"), chunk.value("TypeHintID")
     return Port(
-        id=chunk.value("InstanceGuid"),
-        name=chunk.value("Name", default=""),
-        nickname=chunk.value("NickName", default=""),
-        access=int(access),
-        optional=bool(chunk.value("Optional", default=False)),
-        sources=[chunk.value("Source", i) for i in range(chunk.value("SourceCount", default=0))],
-        mapping=int(chunk.value("Mapping", default=0)),
-        reverse=bool(chunk.value("ReverseData", default=False)),
-        simplify=bool(chunk.value("SimplifyData", default=False)),
-        hint=chunk.value("TypeHintID"),
+        id=given(chunk, "InstanceGuid", UUID(int=0)),
+        name=given(chunk, "Name", ""),
+        nickname=given(chunk, "NickName", ""),
+        access=access if access in (0, 1, 2) else 0,
+        optional=given(chunk, "Optional", False),
+        sources=sources(chunk),
+        mapping=mapping if mapping in (0, 1, 2) else 0,
+        reverse=given(chunk, "ReverseData", False),
+        simplify=given(chunk, "SimplifyData", False),
+        hint=hint if isinstance(hint, UUID) else None,
         data=_persistent(data) if data is not None else None,
-        faint=chunk.value("WireDisplay", default=0) != 0,
+        faint=given(chunk, "WireDisplay", 0) != 0,
     )
 
 
@@ -202,17 +218,30 @@ def _persistent(chunk: Chunk) -> Tree:
     tree = Tree()
     for branch in chunk.chunks:
         values = [_stored(item) for item in branch.chunks]
-        tree.add(path_of(str(branch.value("Path", default="{0}"))), values)
+        try:
+            tree.add(path_of(given(branch, "Path", "{0}")), values)
+        except ValueError:
+            tree.add((branch.index,), [Unread(["Path"])])
     return tree
 
 
 def _stored(chunk: Chunk) -> Any:
     """A stored value: a number, text, a truth or the coordinates of a point or vector; anything else is Unread."""
-    for name in ("number", "string", "boolean", "Coordinate", "vector"):
-        value = chunk.value(name)
-        if value is not None:
-            return value
+    for name, kinds in _KINDS.items():
+        item = chunk.item(name)
+        if item is not None and item.type in kinds:
+            return item.value
     return Unread([item.name for item in chunk.items])
+
+
+_KINDS = {
+    "number": (Type.INT32, Type.INT64, Type.SINGLE, Type.DOUBLE),
+    "string": (Type.STRING,),
+    "boolean": (Type.BOOL,),
+    "Coordinate": (Type.POINT3D,),
+    "vector": (Type.POINT3D,),
+}
+"""Under which names values are stored, and as which types."""
 
 
 @dataclass(frozen=True)

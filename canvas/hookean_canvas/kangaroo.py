@@ -3,9 +3,10 @@
     translated, report = kangaroo.translate(archive.read("tensegrity.gh"), "tensegrity.gh")
     print(report.text())
 
-Components of Kangaroo that have a counterpart are swapped for it in their place; every other object stays, and every
-wire whose ends are still there. Ids of components, inputs and outputs are kept, so groups and timers go on working.
-What cannot be translated is in the report, and in a panel in the file.
+A solver of Kangaroo and all goals that flow into it are swapped for components of hookean where each of them has a
+counterpart; otherwise all of them stay. Every other object stays, and every wire whose ends are still there. Ids of
+components, inputs and outputs are kept, so groups and timers go on working. What cannot be translated is in the report,
+and in a panel in the file.
 """
 
 from __future__ import annotations
@@ -17,11 +18,12 @@ from uuid import UUID, uuid5
 from hookean.errors import InputError
 from hookean_canvas import archive, containers
 from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.guids import GROUP, PANEL, PYTHON3_SCRIPT, SCRIPT_LIBRARY, TIMER
-from hookean_canvas.kangaroo_import import Importing, connect
+from hookean_canvas.guids import PANEL, PYTHON3_SCRIPT, SCRIPT_LIBRARY, TIMER
+from hookean_canvas.kangaroo_import import Importing
 from hookean_canvas.kangaroo_make import put_object
 from hookean_canvas.kangaroo_report import Report
 from hookean_canvas.kangaroo_streams import copied
+from hookean_canvas.kangaroo_swap import connect
 from hookean_canvas.parts import inputs, outputs, parts, sources
 
 NOTE = (255, 255, 235, 205)
@@ -56,31 +58,21 @@ def translate(root: Chunk, name: str = "definition") -> tuple[Chunk, Report]:
 
 
 def _rename(work: Importing) -> None:
-    """Groups and timers follow ids that changed; members and wires that were never there go."""
-    present = {part.id for part in parts(work.root)}
+    """Groups and timers follow ids that changed; wires from outputs that are gone go. All else stays as it was."""
     ports = {
         port.value("InstanceGuid") for part in parts(work.root) if part.container for port in outputs(part.container)
     }
-    absent = 0
     for part in parts(work.root):
         container = part.container
         if container is None:
             continue
         for port in inputs(container):
-            connect(port, [source for source in sources(port) if source in ports])
+            there = [one for one in sources(port) if one in ports or work.streams.owner(one) is None]
+            if there != sources(port):
+                connect(port, there)
         for item in container.items:
             if item.name in ("ID", "Target"):
                 item.value = work.renamed.get(item.value, item.value)
-        if part.guid == GROUP:
-            members = [item.value for item in container.items if item.name == "ID"]
-            there = [member for member in members if member in present]
-            absent += len(members) - len(there)
-            container.items = [item for item in container.items if item.name != "ID"]
-            container.put("ID_Count", Type.INT32, len(there))
-            for i, member in enumerate(there):
-                container.put("ID", Type.GUID, member, i)
-    if absent:
-        work.report.notes.append(f"{absent} members of groups were not in the file before either")
     engines = {
         part.id for part in parts(work.root) if part.container and part.container.value("Name") == "Hookean Engine"
     }
@@ -113,7 +105,9 @@ def _count(work: Importing) -> None:
             why = work.because.get(wire[1]) or work.because.get(wire[0]) or "its end is gone"
             report.lost.append((work.streams.told(wire), why))
     report.wires = len(work.streams.wires)
-    report.notes += [f"the wire {work.streams.told(wire)} led nowhere before either" for wire in work.streams.dangling]
+    report.notes += [
+        f"the wire {work.streams.told(wire)} comes from nothing in the file" for wire in work.streams.dangling
+    ]
 
 
 def _libraries(work: Importing) -> None:

@@ -1,8 +1,8 @@
-"""Ids by which Kangaroo's components are known in files, for `hookean canvas import` and nothing else.
+"""Ids by which Kangaroo's components are known in files, for `hookean canvas import` and `show`.
 
 Read from public definitions (github.com/naysok/Study-Kangaroo: 126 files of both generations) and from a public listing
-of Rhino's components (github.com/hellguz/ScriptBridgeJS, gh_docs_generation). Only five ids of classic components were
-found in files; others are known by their library and name.
+of Rhino's components (github.com/hellguz/ScriptBridgeJS, gh_docs_generation). Other classic components are known by
+their library and name.
 """
 
 from __future__ import annotations
@@ -14,11 +14,14 @@ from uuid import UUID
 from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Type
+from hookean_canvas.archive_chunk import CLUSTERS
 from hookean_canvas.guids import CLUSTER, PANEL, SCRIBBLE
 
 CLASSIC_LIBRARY = UUID("6bb8ff08-9dd5-cccd-7191-72c85ccf8b6a")
 SECOND_LIBRARY = UUID("c2ea695e-1a09-6f42-266d-113498879f60")
 Generation = Literal["classic", "second"]
+
+GENERATIONS: dict[Generation, str] = {"classic": "Kangaroo 0.099", "second": "Kangaroo 2"}
 
 _CLASSIC = """
 0db23e16-f91a-4105-3067-8d7ab0c60e4f KangarooPhysics
@@ -26,6 +29,19 @@ _CLASSIC = """
 c5a96f87-dae5-407c-9180-0c0e6ef7ddf9 SpringsFromLine
 3ba652e9-f566-441d-8d04-02151edf69b4 SpringsFromLine
 e097cb71-d5d0-4bba-a0d3-a35fae35b384 UnaryForce
+7a01aec4-142c-4319-836d-a550b6b63d2d removeDuplicatePts
+7a02aec5-143c-4319-836d-a550b6b65d1d removeDuplicateLines
+502f3639-bf2e-4c15-b50f-a14c8344edea MeshMachine
+459a1da8-409f-491d-b264-367952758072 Sequence
+7201e22c-8588-4385-a080-78fbe7b7b6d7 Counter
+d357c146-402e-4fbd-abfb-d7e5d4514181 Trail
+3ec0b1a3-d39a-4a47-abe2-96f68d5053c8 Combine&Clean
+6d5fdb14-6456-4817-999e-813d58655f8a RefineStrips
+1ec4ad46-0e55-487a-b2de-ed94650420b4 Refine
+f792e9d1-1f8d-4f79-a4a2-91b9474858be NakedVertices
+7d7418df-2bd6-40bf-9edb-8f4d626b18ee HingePoints
+ffa8c1b0-a6db-438f-893b-15203b0b55f0 WarpWeft
+2af1f7ef-7321-4193-b4be-e97410eb9905 FoldAngle
 """
 _SECOND = """
 c681ef8e-fbf7-4277-a6a8-8a00d94cc953 Length(Pts)
@@ -141,6 +157,12 @@ bdda1028-13e6-41ee-b410-701234f9d39f TangentCircles
 dca330b6-f705-4d5e-b9d4-ea90c915ddaf Unroller
 fecd8879-9e63-4ff9-a16e-fe85bb0de884 VertexNeighbours
 cb7c0f04-123f-4b12-8f81-583b9fc793be WarpWeft
+866222ee-6093-4af8-8944-2f9264885385 TriRemesh
+4bfe1bf6-fbc9-4ad2-bf28-a7402e1392ee MultiPipe
+f1b75016-5818-4ece-be56-065253a2357d MultiPipe
+74953dd1-9af7-4736-983c-f258302de692 SplitAtCorners
+5e2f9e3f-d467-46f6-870c-6fa7cd01e1ed removeDuplicatePts
+5b882297-9063-439e-82b9-70961f743c5d removeDuplicateLines
 """
 
 
@@ -155,6 +177,11 @@ class Known:
 def _table(generation: Generation, text: str) -> dict[UUID, Known]:
     lines = (line.split(" ", 1) for line in text.strip().splitlines())
     return {UUID(guid): Known(generation, name) for guid, name in lines}
+
+
+def key(name: str) -> str:
+    """A name as the tables of the import have it: lower case, without spaces."""
+    return "".join(name.lower().split())
 
 
 COMPONENTS: dict[UUID, Known] = _table("classic", _CLASSIC) | _table("second", _SECOND)
@@ -180,7 +207,7 @@ def recognised(thing: Chunk, of: dict[UUID, Generation]) -> Known | None:
     return known
 
 
-def hidden(thing: Chunk, of: dict[UUID, Generation]) -> str | None:
+def hidden(thing: Chunk, of: dict[UUID, Generation], depth: int = 0) -> str | None:
     """What of Kangaroo an object carries without being of it, in words: parts of a cluster, imports of a script."""
     container = thing.chunk("Container")
     if container is None or thing.value("GUID") in (PANEL, SCRIBBLE):
@@ -188,22 +215,24 @@ def hidden(thing: Chunk, of: dict[UUID, Generation]) -> str | None:
     document = container.value("ClusterDocument")
     if document is not None:
         try:
-            inside = archive.of_bytes(document, "cluster")
+            inside = archive.of_bytes(document, "cluster") if isinstance(document, bytes) and depth < CLUSTERS else None
         except InputError:
+            inside = None
+        if inside is None:
             return "a cluster that cannot be looked into; it may hold components of Kangaroo"
-        names = _names(inside, of)
+        names = _names(inside, of, depth + 1)
         return f"a cluster that holds {', '.join(names)} of Kangaroo" if names else None
     if thing.value("GUID") != CLUSTER and any(_imports(chunk) for chunk in container.walk()):
         return "a script that uses Kangaroo's solver"
     return None
 
 
-def _names(inside: Chunk, of: dict[UUID, Generation]) -> list[str]:
+def _names(inside: Chunk, of: dict[UUID, Generation], depth: int) -> list[str]:
     found = []
     for thing in inside.walk():
         if thing.name == "Object":
             known = recognised(thing, of | libraries(inside))
-            words = None if known else hidden(thing, of)
+            words = None if known else hidden(thing, of, depth)
             found += [known.name] if known else [words] if words else []
     return found
 

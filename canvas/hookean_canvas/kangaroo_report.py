@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -9,6 +10,8 @@ from dataclasses import dataclass, field
 @dataclass
 class Report:
     """`swapped`: (component, what stands for it, what differs); `stays`: (component, why); `lost`: (wire, why).
+
+    `systems` counts the solvers, those that share goals as one, `whole` those that were translated with all goals.
 
     `values`: (input, why its typed value is gone). `kangaroo` counts the components of Kangaroo there were, `wires`
     those that led somewhere, `kept` those that are in the translated file.
@@ -19,6 +22,8 @@ class Report:
     kangaroo: int = 0
     wires: int = 0
     kept: int = 0
+    systems: int = 0
+    whole: int = 0
     swapped: list[tuple[str, str, str]] = field(default_factory=list)
     stays: list[tuple[str, str]] = field(default_factory=list)
     lost: list[tuple[str, str]] = field(default_factory=list)
@@ -38,8 +43,9 @@ class Report:
         yield (
             f"{self.name}: {self.objects} objects, {self.kangaroo} of Kangaroo's, {len(self.swapped)} translated; "
             f"{self.wires} wires, {self.kept} kept, {len(self.lost)} not"
+            + (f"; {self.whole} of {self.systems} solvers translated with all goals" if self.systems else "")
         )
-        yield from _part("Not translated", [f"{what}: {why}" for what, why in self.stays])
+        yield from _part("Not translated", _together(self.stays))
         yield from _part("Wires that are gone", [f"{wire}: {why}" for wire, why in self.lost])
         yield from _part("Typed values that are gone", [f"{where}: {why}" for where, why in self.values])
         yield from _part("Translated", _told_once(self.swapped))
@@ -51,6 +57,17 @@ def _part(title: str, lines: list[str]) -> Iterator[str]:
         yield ""
         yield title
         yield from (f"- {line}" for line in lines)
+
+
+def _together(stays: list[tuple[str, str]]) -> list[str]:
+    """A line for each reason, with all components that stay for it; equal names are counted."""
+    reasons: dict[str, Counter[str]] = {}
+    for what, why in stays:
+        reasons.setdefault(why, Counter())[what] += 1
+    return [
+        f"{', '.join(what if count == 1 else f'{count} {what}' for what, count in found.items())}: {why}"
+        for why, found in reasons.items()
+    ]
 
 
 def _told_once(swapped: list[tuple[str, str, str]]) -> list[str]:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from hookean_canvas import containers
-from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.containers import Rectangle
+from hookean_canvas.archive import Chunk
 from hookean_canvas.definition import CHARACTER, ROW
-from hookean_canvas.parts import parts
+from hookean_canvas.parts import Rectangle, bounds_of, parts
 
 GAP = 8.0
 """Room around a box, in pixels of the canvas."""
@@ -60,16 +58,6 @@ def size(inputs: Sequence[str], outputs: Sequence[str]) -> tuple[float, float]:
     """Width and height of a component with inputs and outputs of these names."""
     wide = sum(CHARACTER * max((len(name) for name in side), default=0) + 8.0 for side in (inputs, outputs))
     return wide + 32.0, ROW * max(len(inputs), len(outputs), 1) + 4.0
-
-
-def bounds_of(container: Chunk | None) -> Rectangle | None:
-    """Where an object stands: x, y, width, height; None where the file does not say."""
-    attributes = container.chunk("Attributes") if container is not None else None
-    bounds = attributes.item("Bounds") if attributes is not None else None
-    if bounds is None or bounds.type != Type.DRAWING_RECTANGLEF:
-        return None
-    x, y, width, height = map(float, bounds.value)
-    return (x, y, width, height) if math.isfinite(x + y + width + height) else None
 
 
 def _meet(one: Rectangle, other: Rectangle, gap: float = GAP) -> bool:

@@ -20,6 +20,11 @@ class Streams:
         self.parts = parts(root)
         self._inputs = {id(part.chunk): [copied(port) for port in _side(part, inputs)] for part in self.parts}
         self._owner = {_id(port): part for part in self.parts for port in _side(part, outputs)}
+        self._takers: dict[UUID, list[tuple[Part, Chunk]]] = {}
+        for part in self.parts:
+            for port in self._inputs[id(part.chunk)]:
+                for source in sources(port):
+                    self._takers.setdefault(source, []).append((part, port))
         self._labels = dict(self._named())
         found = [(source, _id(port)) for ports in self._inputs.values() for port in ports for source in sources(port)]
         self.wires: list[Wire] = [wire for wire in dict.fromkeys(found) if wire[0] in self._owner]
@@ -29,20 +34,30 @@ class Streams:
         """The inputs of an object as they were."""
         return self._inputs[id(part.chunk)]
 
-    def above(self, port: Chunk) -> set[UUID]:
-        """Ids of all objects whose data reaches an input."""
+    def owner(self, output: UUID) -> Part | None:
+        """The object that an output belongs to; None where there is no such output."""
+        return self._owner.get(output)
+
+    def takers(self, output: UUID) -> list[tuple[Part, Chunk]]:
+        """The objects that a wire leads to from an output, each with the input it enters."""
+        return self._takers.get(output, [])
+
+    def all_above(self, part: Part) -> set[UUID]:
+        """Ids of all objects whose data reaches an object."""
         found: set[UUID] = set()
-        waiting = sources(port)
+        waiting = [part]
         while waiting:
-            owner = self._owner.get(waiting.pop())
-            if owner is not None and owner.id is not None and owner.id not in found:
-                found.add(owner.id)
-                waiting += [source for one in self._inputs[id(owner.chunk)] for source in sources(one)]
+            for port in self._inputs[id(waiting.pop().chunk)]:
+                for source in sources(port):
+                    owner = self._owner.get(source)
+                    if owner is not None and owner.id is not None and owner.id not in found:
+                        found.add(owner.id)
+                        waiting.append(owner)
         return found
 
     def taken(self, output: UUID) -> bool:
         """Whether any wire leaves an output."""
-        return any(wire[0] == output for wire in self.wires)
+        return output in self._takers
 
     def told(self, wire: Wire) -> str:
         """A wire as a person reads it: `Slider > Solver.On`."""

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from hookean_canvas.kangaroo_guids import Known
+from hookean_canvas.kangaroo_guids import Known, key
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,7 @@ class Swap:
 
     `pieces`: the first stands in its place. `differs`: a sentence. `without`: why an input has no counterpart.
     `usual`: what Kangaroo types into such an input, which says nothing. `needs`: inputs that tell which version it is.
+    `unless`: inputs that must be empty, each with the reason.
     """
 
     pieces: tuple[Piece, ...]
@@ -40,6 +41,7 @@ class Swap:
     without: Mapping[str, str] = field(default_factory=dict)
     usual: Mapping[str, Any] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
+    unless: Mapping[str, str] = field(default_factory=dict)
 
 
 def _force(bundle: str, output: str, differs: str = "", needs: str = "", **inputs: str) -> Swap:
@@ -282,8 +284,8 @@ SECOND: dict[str, Swap] = {
     "edgelengths": _force("Springs", "el", mesh="connection", lengthfactor="rest_factor", strength="stiffness"),
     "anchor": Swap(
         (Piece("AnchorSpring", {"p": "point", "t": "targets", "strength": "strength"}, {"force": "a"}),),
-        "the same soft anchor; the component Anchors holds exactly and tells reactions",
-        {"i": "anchors go by their points"},
+        "the same soft anchor; the component Anchors holds exactly and reports reactions",
+        unless=dict.fromkeys(("i", "index"), "it goes by index; anchors here go by their points"),
     ),
     "anchorxyz": Swap(
         (Piece("Anchors", {"p": "point", "x": "x", "y": "y", "z": "z"}, {"anchors": "a"}),),
@@ -345,6 +347,12 @@ SECOND: dict[str, Swap] = {
         "EI is the same number; the two lines have to meet at an end",
     ),
     "show": Swap((Piece("*geometry", {"g": "in"}, {"in": "g"}),), "a parameter that hands its geometry on"),
+    "grab": Swap(
+        (Piece("*nothing", {}),),
+        "an empty parameter, as it acts only while the mouse drags; drag particles in the studio (`hookean studio`)",
+        dict.fromkeys(("on", "strength", "range", "anchors"), "particles are dragged in the studio"),
+        dict.fromkeys(("on", "strength", "range"), None),
+    ),
     "vertexloads": Swap(
         (
             Piece("Unary", {}, {"force": "l"}),
@@ -362,70 +370,10 @@ SECOND: dict[str, Swap] = {
     **_TOOLS,
 }
 
-_PURE = "geometry without mechanics (equal, planar, parallel, tangent ...) is not here"
-_COLLIDE = "collisions other than floors are not here"
-_TOOL = "a tool for meshes"
-_PURE_NAMES = """
-planarize equallength equalangle equalize equalizeangles align direction lengthratio lengthsnap anglesnap
-cyclicquad tangentincircles conicalize developablize isothermic coplanar colinear cospherical cocircular
-polygonarea g2 transform coincident mirror translationlock
-"""
-_COLLIDE_NAMES = """
-collide2d collider curvecollide curvepointcollide imagecircles softbodycollide solidpointcollide spherecollide
-solidplanecollide rigidbody rigidbodycollide rigidpointset floorfriction collidemesh collidesurf
-"""
-_TOOL_NAMES = """
-bipartite byparent checkerboard combine&clean diagonalize facefaceoffset foldangle hingepoints meshdirection
-meshmap meshturn planarityanalysis refine refinestrips remeshbycolour simple simpleremesh stripper
-tangentcircles unroller vertexneighbours meshmachine removeduplicatepts
-"""
-REASONS: dict[str, str] = {
-    "fd": "hookean takes the force density itself: Springs with rest length 0",
-    "constanttension": "for the same tension everywhere use SoapFilm; Springs with rest length 0 pull with k x length",
-    "clamplength": "Springs with lower_cutoff at their rest length are a cable; upper_cutoff a strut",
-    "plasticlength": "Springs with plasticity, which is a part of the rest length and not a distance",
-    "dynamicweight1d": "Self Weight takes a weight per length, of the start length",
-    "areaweight": "Self Weight takes a total or a weight per length",
-    "tangentialsmooth": "SoapFilm keeps its triangles even by itself",
-    "smooth": "smoothing is not here",
-    "grab": "drag particles in the studio instead; `hookean serve` opens it",
-    "soapfilm": "connect a mesh to SoapFilm",
-    "pressure": "connect a mesh to Pressure",
-    "wind": "wind is not here; Pressure acts along the normals",
-    "volume": "gas volumes are not here; Pressure is",
-    "onplane": "Anchors with axes hold in x, y or z; Pull To Mesh pulls to a flat mesh",
-    "particle": "masses and first velocities are fields of a scene; the canvas has no component for them",
-    "counter": "the Engine's iterations count",
-    "sequence": "the service keeps the frames of a run",
-    "beam": "beams of six degrees of freedom are not here",
-    "support": "supports of six degrees of freedom are not here",
-    **dict.fromkeys(_PURE_NAMES.split(), _PURE),
-    **dict.fromkeys(_COLLIDE_NAMES.split(), _COLLIDE),
-    **dict.fromkeys(_TOOL_NAMES.split(), _TOOL),
-    "meshcorners": f"{_TOOL} that gives corners round the boundary; Mesh Corners here gives them by the numbers of the"
-    " vertices, which would mix up lists that go with them",
-}
-"""Why a component has no counterpart, or what to use instead."""
-
-
-def key(name: str) -> str:
-    """A name as this table has it: lower case, without spaces."""
-    return "".join(name.lower().split())
-
 
 def swap_of(known: Known) -> Swap | None:
     """What a component of Kangaroo is swapped for; None where it stays."""
     return (CLASSIC if known.generation == "classic" else SECOND).get(key(known.name))
-
-
-def reason(known: Known) -> str:
-    """Why a component of Kangaroo stays as it is."""
-    return REASONS.get(key(known.name), "it has no counterpart")
-
-
-def is_tool(known: Known) -> bool:
-    """Whether it works on meshes and points alone, without a solver; such components of Kangaroo 2 go on working."""
-    return known.generation == "second" and REASONS.get(key(known.name), "").startswith(_TOOL)
 
 
 def markdown() -> str:
@@ -443,6 +391,7 @@ def markdown() -> str:
 
 _HELPER = {
     "*geometry": "a parameter",
+    "*nothing": "an empty parameter",
     "*corners": "a script for corners",
     "*upwards": "a script for vectors",
     "*lines": "a script for lines",

@@ -1,7 +1,8 @@
 """Checks of Grasshopper files before Grasshopper sees them: what would make it refuse, repair or lose something.
 
-Grasshopper's reader takes nearly everything and drops in silence what it does not understand; these checks are what
-470 definitions saved by Grasshopper itself were found to have in common.
+Grasshopper's reader takes nearly everything and drops in silence what it does not understand. What it does not take is
+in `lint_refused`; the rest is here: what a file written by a program should have, and one that Grasshopper saved may
+lack, as it holds components of plug-ins that are not known here, or groups with members that are gone.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from . import guids
 from .archive import Chunk, Type, of_bytes
 from .archive_chunk import labelled, sort_key
 from .lint_code import script_faults
+from .lint_refused import OUTER, miscounted, missing, named, refusals
 from .parts import SCRIPTS, Part, given, inputs, outputs, parts, sources
 
 EXPOSURES = {-1, *(2**power for power in range(1, 9))}
@@ -27,12 +29,12 @@ OBSCURE = 2**16
 
 
 def faults(chunk: Chunk) -> list[str]:
-    """What is wrong with a definition or a user object, a sentence each; nothing where all is well."""
+    """What is wrong with a definition or a user object, a sentence each: first what Grasshopper would refuse it for."""
     if chunk.chunk("Definition") is not None:
-        return [*_order_faults(chunk), *_definition_faults(chunk)]
+        return [*refusals(chunk), *_order_faults(chunk), *_definition_faults(chunk)]
     if chunk.name == "UserObject" and chunk.item("Object") is not None:
-        return [*_order_faults(chunk), *_user_object_faults(chunk)]
-    return [f"the archive ({chunk.label}) holds neither a definition nor a user object"]
+        return [*refusals(chunk), *_order_faults(chunk), *_user_object_faults(chunk)]
+    return refusals(chunk)
 
 
 def _order_faults(root: Chunk) -> Iterator[str]:
@@ -47,29 +49,6 @@ def _order_faults(root: Chunk) -> Iterator[str]:
                     yield f"{chunk.label} holds {count} {what}s {labelled(name, index)}"
 
 
-def _missing(chunk: Chunk, where: str, wanted: dict[str, Type]) -> Iterator[str]:
-    """Items that have to be there, each with its type."""
-    for name, type in wanted.items():
-        item = chunk.item(name)
-        if item is None:
-            yield f"{where} has no {name}"
-        elif item.type != type:
-            yield f"{where} has {name} as {Type(item.type).label}, not {type.label}"
-
-
-def _count_faults(
-    chunk: Chunk, where: str, count: str, names: tuple[str, ...], of_items: bool = False
-) -> Iterator[str]:
-    """A counting item agrees with what it counts, and that has the indices 0, 1, 2 ..."""
-    entries = chunk.items if of_items else chunk.chunks
-    indices = [entry.index for entry in entries if entry.name in names]
-    counted = chunk.value(count, default=0)
-    if counted != len(indices):
-        yield f"{where} counts {counted} in {count}, but holds {len(indices)}"
-    if sorted(indices) != list(range(len(indices))):
-        yield f"{where} numbers its {names[0]} {indices}, not 0 to {len(indices) - 1}"
-
-
 # ------------------------------------------------------------------------------------------------------- definitions
 
 
@@ -78,21 +57,19 @@ def _definition_faults(root: Chunk) -> Iterator[str]:
     assert definition is not None
     if root.name != "Root":
         yield f"the archive is called {root.name!r}, not 'Root'"
-    yield from _missing(root, "the archive", {"ArchiveVersion": Type.VERSION})
-    yield from _missing(definition, "the definition", {"plugin_version": Type.VERSION})
+    yield from missing(root, "the archive", {"ArchiveVersion": Type.VERSION})
+    yield from missing(definition, "the definition", {"plugin_version": Type.VERSION})
     header = definition.chunk("DocumentHeader")
     if header is None:
         yield "the definition has no DocumentHeader"
     else:
-        yield from _missing(header, "DocumentHeader", {"DocumentID": Type.GUID})
+        yield from missing(header, "DocumentHeader", {"DocumentID": Type.GUID})
     libraries = definition.chunk("GHALibraries")
     if libraries is not None:
-        yield from _count_faults(libraries, "GHALibraries", "Count", ("Library",))
+        yield from miscounted(libraries, "GHALibraries", "Count", "Library")
     objects = definition.chunk("DefinitionObjects")
     if objects is None:
-        yield "the definition has no DefinitionObjects"
         return
-    yield from _count_faults(objects, "DefinitionObjects", "ObjectCount", ("Object",))
     known = {library.value("Id") for library in libraries.chunks} if libraries is not None else set()
     found = parts(root)
     for number, part in enumerate(found):
@@ -103,13 +80,12 @@ def _definition_faults(root: Chunk) -> Iterator[str]:
 
 
 def _part_faults(part: Part, libraries: set[object]) -> Iterator[str]:
-    yield from _missing(part.chunk, "it", {"GUID": Type.GUID, "Name": Type.STRING})
+    yield from missing(part.chunk, "it", {"Name": Type.STRING})
     yield from _kind_faults(part, libraries)
     container = part.container
     if container is None:
-        yield "it has no Container"
         return
-    yield from _missing(container, "its Container", {"InstanceGuid": Type.GUID, "Name": Type.STRING})
+    yield from missing(container, "its Container", {"Name": Type.STRING})
     yield from _port_faults(container)
     if part.guid in SCRIPTS:
         yield from script_faults(part.guid, container)
@@ -132,32 +108,23 @@ def _kind_faults(part: Part, libraries: set[object]) -> Iterator[str]:
 
 
 def _port_faults(container: Chunk) -> Iterator[str]:
-    """Inputs and outputs: counted, numbered, each with an id; wires counted; data of its own counted."""
-    data = container.chunk("ParameterData")
-    if data is not None:
-        for side in ("Input", "Output"):
-            yield from _count_faults(data, "ParameterData", f"{side}Count", (f"{side}Param",))
-            yield from _count_faults(data, "ParameterData", f"{side}Count", (f"{side}Id",), of_items=True)
-        for item in data.items:
-            if item.name in ("InputId", "OutputId") and item.type != Type.GUID:
-                yield f"ParameterData has {labelled(item.name, item.index)} as {Type(item.type).label}, not gh_guid"
+    """Inputs and outputs: numbered, each with a name; data of its own counted."""
     for name in ("param_input", "param_output"):
         indices = [port.index for port in container.chunks if port.name == name]
         if sorted(indices) != list(range(len(indices))):
             yield f"it numbers its {name} {indices}, not 0 to {len(indices) - 1}"
     for port in {id(port): port for port in (*inputs(container), *outputs(container))}.values():
-        where = f"{port.label} ({port.value('NickName', default='')})" if port is not container else "it"
-        yield from _missing(port, where, {"InstanceGuid": Type.GUID, "NickName": Type.STRING})
-        yield from _count_faults(port, where, "SourceCount", ("Source",), of_items=True)
+        where = named(port, container)
+        yield from missing(port, where, {"NickName": Type.STRING})
         stored = port.chunk("PersistentData")
         if stored is not None:
             yield from _data_faults(stored, where)
 
 
 def _data_faults(stored: Chunk, where: str) -> Iterator[str]:
-    yield from _count_faults(stored, f"the data of {where}", "Count", ("Branch",))
+    yield from miscounted(stored, f"the data of {where}", "Count", "Branch")
     for branch in stored.chunks:
-        yield from _count_faults(branch, f"a branch of the data of {where}", "Count", ("Item",))
+        yield from miscounted(branch, f"a branch of the data of {where}", "Count", "Item")
         path = str(branch.value("Path", default=""))
         if not re.fullmatch(r"\{-?\d+(;-?\d+)*\}", path, re.ASCII):
             yield f"the data of {where} has a branch with the path {path!r}, not one like '{{0;1}}'"
@@ -170,14 +137,12 @@ def _own_faults(guid: UUID | None, container: Chunk) -> Iterator[str]:
         if slider is None:
             yield "the slider has no chunk Slider"
         else:
-            yield from _missing(slider, "the slider", dict.fromkeys(("Min", "Max", "Value"), Type.DOUBLE))
+            yield from missing(slider, "the slider", dict.fromkeys(("Min", "Max", "Value"), Type.DOUBLE))
             low, high, value = (given(slider, name, 0.0) for name in ("Min", "Max", "Value"))
             if not low <= value <= high:
                 yield f"the slider stands at {value:g}, outside its limits {low:g} to {high:g}"
     elif guid == guids.VALUE_LIST:
-        yield from _count_faults(container, "the list", "ListCount", ("ListItem",))
-    elif guid == guids.GROUP:
-        yield from _count_faults(container, "the group", "ID_Count", ("ID",), of_items=True)
+        yield from miscounted(container, "the list", "ListCount", "ListItem")
 
 
 def _id_faults(found: list[Part]) -> Iterator[str]:
@@ -251,7 +216,7 @@ _OUTER = {
 
 
 def _user_object_faults(root: Chunk) -> Iterator[str]:
-    yield from _missing(root, "the user object", _OUTER)
+    yield from missing(root, "the user object", {name: _OUTER[name] for name in _OUTER.keys() - OUTER.keys()})
     base = root.value("BaseID")
     if base not in guids.NAMES:
         yield f"its base {base} is not known"
@@ -261,8 +226,7 @@ def _user_object_faults(root: Chunk) -> Iterator[str]:
     yield from _icon_faults(given(root, "Icon", b""))
     try:
         inner = of_bytes(given(root, "Object", b""), "the object in it")
-    except InputError as error:
-        yield str(error)
+    except InputError:
         return
     yield from _order_faults(inner)
     yield from _port_faults(inner)

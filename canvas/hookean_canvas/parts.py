@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import base64
 import binascii
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeVar
 from uuid import UUID
 
 from . import guids
-from .archive import Chunk
+from .archive import Chunk, Type
 
 Value = TypeVar("Value")
+Rectangle = tuple[float, float, float, float]
 
-_INPUTS, _OUTPUTS = ("InputParam", "param_input"), ("OutputParam", "param_output")
+FARTHEST = 1e6
+"""Places and sizes on a canvas are below this [pixels]; anything above is damage."""
+
+_NAMES = {"input": ("InputParam", "param_input"), "output": ("OutputParam", "param_output")}
 SCRIPTS = {
     guids.SCRIPT,
     guids.PYTHON3_SCRIPT,
@@ -78,35 +81,60 @@ def parts(root: Chunk) -> list[Part]:
 
 def inputs(container: Chunk) -> list[Chunk]:
     """The inputs of a component; of a floating parameter (a slider, a panel, a point), the container itself."""
-    if is_floating(container):
-        return [container]
-    return [port for place in _places(container) for port in place.chunks if port.name in _INPUTS]
+    return [container] if is_floating(container) else _ports(container, "input")
 
 
 def outputs(container: Chunk) -> list[Chunk]:
     """The outputs of a component; of a floating parameter, the container itself."""
-    if is_floating(container):
-        return [container]
-    return [port for place in _places(container) for port in place.chunks if port.name in _OUTPUTS]
+    return [container] if is_floating(container) else _ports(container, "output")
 
 
 def is_floating(container: Chunk) -> bool:
     """Whether an object is a parameter by itself and no component."""
-    if any(port.name in _INPUTS + _OUTPUTS for place in _places(container) for port in place.chunks):
+    if _ports(container, "input") or _ports(container, "output"):
         return False
     return container.item("SourceCount") is not None
 
 
-def _places(container: Chunk) -> Iterator[Chunk]:
-    yield container
-    data = container.chunk("ParameterData")
-    if data is not None:
-        yield data
+def _ports(container: Chunk, side: str) -> list[Chunk]:
+    """The inputs or outputs of a component, wherever its kind keeps them; those of evaluation units come last."""
+    places = [container, container.chunk("ParameterData")]
+    found = [port for place in places if place is not None for port in place.chunks if port.name in _NAMES[side]]
+    for unit in _units(container):
+        params = unit.chunk("params")
+        group = params.chunk(side) if params is not None else None
+        found += [port for port in group.chunks if port.name in ("p", "param")] if group is not None else []
+    return found
+
+
+def _units(container: Chunk) -> list[Chunk]:
+    """The evaluation unit in use of a component that has several sets of inputs and outputs, as plug-ins write them.
+
+    The chunk `EvalUnits` holds all units, `ActiveUnit` names the one whose inputs and outputs the canvas shows; where
+    it names none of them, none is known to be out of use. Source: GH_SwitcherComponent.cs and EvaluationUnit.cs of
+    github.com/mariuszhermansdorfer/SandWorm.
+    """
+    held, active = container.chunk("EvalUnits"), container.chunk("ActiveUnit")
+    units = [unit for unit in held.chunks if unit.name == "unit"] if held is not None else []
+    name = active.value("unitname") if active is not None else None
+    return [unit for unit in units if unit.value("name") == name] or units
 
 
 def sources(port: Chunk) -> list[UUID]:
-    """The ids that the wires into an input come from."""
-    return [item.value for item in port.items if item.name == "Source" and isinstance(item.value, UUID)]
+    """The ids that the wires into an input come from, in the order of their numbers."""
+    wires = [item for item in port.items if item.name == "Source" and isinstance(item.value, UUID)]
+    return [item.value for item in sorted(wires, key=lambda item: item.index)]
+
+
+def bounds_of(container: Chunk | None) -> Rectangle | None:
+    """Where an object is on the canvas: x, y, width, height [pixels]; None where the file does not say, or not so."""
+    attributes = container.chunk("Attributes") if container is not None else None
+    bounds = attributes.item("Bounds") if attributes is not None else None
+    if bounds is None or bounds.type not in (Type.DRAWING_RECTANGLE, Type.DRAWING_RECTANGLEF):
+        return None
+    x, y, width, height = map(float, bounds.value)
+    # a number that is not finite compares as False
+    return (x, y, max(width, 0.0), max(height, 0.0)) if all(abs(n) < FARTHEST for n in bounds.value) else None
 
 
 def code(container: Chunk) -> Code | None:

@@ -7,6 +7,7 @@ import binascii
 import contextlib
 import io
 import traceback
+import warnings
 from collections.abc import Sequence
 from typing import Any
 from uuid import UUID
@@ -31,7 +32,8 @@ _KINDS = {
 def code_of(node: Node) -> str | None:
     """The Python code in a script component; None where it is another language's or there is none."""
     if node.guid == GHPYTHON_SCRIPT:
-        return str(node.container.value("CodeInput", default=""))
+        plain = node.container.value("CodeInput")
+        return plain if isinstance(plain, str) else None
     script = node.container.chunk("Script")
     if script is None:
         return None
@@ -39,8 +41,8 @@ def code_of(node: Node) -> str | None:
     if language is not None and "python" not in str(language.value("Taxon", default="")):
         return None
     try:
-        return base64.b64decode(script.value("Text", default=""), validate=True).decode("utf-8")
-    except (binascii.Error, UnicodeDecodeError):
+        return base64.b64decode(str(script.value("Text")), validate=True).decode("utf-8")
+    except (binascii.Error, ValueError):
         raise InputError(node.label, "its code is no base64 of UTF-8; the file is damaged") from None
 
 
@@ -50,9 +52,13 @@ class Script:
     def __init__(self, node: Node, code: str, document: Any) -> None:
         self.node = node
         try:
-            self._code = compile(code, f"<{node.label}>", "exec", dont_inherit=True)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # about escapes in strings, which compile
+                self._code = compile(code, f"<{node.label}>", "exec", dont_inherit=True)
         except SyntaxError as error:
             raise InputError(f"{node.label}, line {error.lineno}", f"its code does not compile: {error.msg}") from None
+        except (ValueError, RecursionError, MemoryError) as error:
+            raise InputError(node.label, f"its code does not compile: {error or 'it is nested too deep'}") from None
         self.component = stand_in.Component(
             node.name, node.label, [p.nickname for p in node.inputs], [p.nickname for p in node.outputs],
             guid=str(node.id), document=document,
@@ -70,7 +76,7 @@ class Script:
         try:
             with contextlib.redirect_stdout(said):
                 exec(self._code, names)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             line = next(
                 (
                     f.lineno

@@ -18,6 +18,7 @@ from hookean.errors import InputError
 from . import archive
 from .describe import Data, describe, raw
 from .lint import faults
+from .lint_refused import refusals
 
 SOME = 8
 """Values shown of a longer list."""
@@ -46,12 +47,15 @@ def show(file: Path, with_code: bool, as_json: bool, everything: bool, console: 
         console.file.write(text(top))
 
 
-def check(files: Iterable[Path]) -> int:
-    """Print what is wrong with each file: 0 where nothing is, 1 where something is, 2 where one cannot be read."""
+def check(files: Iterable[Path], strict: bool = False) -> int:
+    """Print why Grasshopper would refuse each file, or with `strict` all that is wrong with it.
+
+    0 where nothing is, 1 where something is, 2 where one cannot be read.
+    """
     worst = 0
     for file in files:
         try:
-            found = faults(archive.read(file))
+            found = (faults if strict else refusals)(archive.read(file))
         except InputError as error:
             print(f"hookean: {error}", file=sys.stderr)
             worst = 2
@@ -130,13 +134,15 @@ def _user_object(described: Data, name: str, with_code: bool) -> Line:
 
 
 def _object(part: Data, with_code: bool) -> Line:
-    known, name, nickname = part["known"], part["name"], part["nickname"]
+    known, name, nickname, plugin = part["known"], part["name"], part["nickname"], part["plugin"]
     heading = name or known or "?"
     if nickname and nickname != name:
         heading += f" {nickname!r}"
     if part["label"].endswith(f" #{part['index']}"):
         heading += f" #{part['index']}"
-    if known is None:
+    if plugin is not None:
+        heading += f" ({plugin})" if known in (None, name) else f" ({known} of {plugin})"
+    elif known is None:
         heading += f" (unknown component {part['guid']})"
     elif known != name:
         heading += f" ({known})"

@@ -9,12 +9,12 @@ from uuid import UUID, uuid5
 from hookean_canvas import containers
 from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.definition import Definition, Made
-from hookean_canvas.kangaroo_guids import CLASSIC_LIBRARY, COMPONENTS, SECOND_LIBRARY
+from hookean_canvas.guids import CLUSTER
+from hookean_canvas.kangaroo_guids import CLASSIC_LIBRARY, COMPONENTS, SECOND_LIBRARY, Known
 from hookean_canvas.parts import inputs, parts, sources
 
 CLASSIC = "KangarooPhysics"
-NAMED = {known.name: guid for guid, known in reversed(COMPONENTS.items()) if known.generation == "second"}
-NAMED |= {known.name: guid for guid, known in reversed(COMPONENTS.items()) if known.generation == "classic"}
+NAMED = {known: guid for guid, known in reversed(COMPONENTS.items())}
 SPRINGS = (
     ("Connection", None), ("Stiffness", 1000.0), ("Damping", 10.0), ("Rest Length", 0.0), ("UpperCutoff", 0.0),
     ("LowerCutoff", 0.0), ("Plasticity", 0.0),
@@ -36,6 +36,9 @@ SETTINGS = (
 SOLVER = (("GoalObjects", None), ("Reset", False), ("Threshold", 1e-15), ("Tolerance", 0.01), ("On", True))
 LENGTH = (("Line", None), ("Length", None), ("Strength", 10.0))
 ANCHOR = (("P", None), ("T", None), ("Strength", 10000.0))
+
+PLUGIN = UUID("59c7a9a5-5b1c-4d29-92b9-6e0f9d6a7c11")
+"""A plug-in of others, made up."""
 
 Inputs = Sequence[tuple[str, Any]]
 
@@ -62,9 +65,16 @@ class Kangaroo(Definition):
             port = chunk.add("param_output", i)
             _named(port, uuid5(id_, f"out {i}"), title)
             results[title] = (port.value("InstanceGuid"), port)
-        library = CLASSIC_LIBRARY if classic else SECOND_LIBRARY
+        library, generation = (CLASSIC_LIBRARY, "classic") if classic else (SECOND_LIBRARY, "second")
         made = Made(
-            id_, guid or NAMED[name], name, chunk, given, results, (120.0, 24.0 + 20.0 * len(inputs)), library=library
+            id_,
+            guid or NAMED[Known(generation, name)],
+            name,
+            chunk,
+            given,
+            results,
+            (120.0, 24.0 + 20.0 * len(inputs)),
+            library=library,
         )
         return self._component(made, wires, {})
 
@@ -73,11 +83,48 @@ class Kangaroo(Definition):
         root = super().archive()
         listed = root.chunk("Definition").chunk("GHALibraries")  # type: ignore[union-attr]
         assert listed is not None
-        for id_, name in ((CLASSIC_LIBRARY, "Kangaroo Components"), (SECOND_LIBRARY, "Kangaroo2 Components")):
+        names = {CLASSIC_LIBRARY: "Kangaroo Components", SECOND_LIBRARY: "Kangaroo2 Components"}
+        if any(made.library == PLUGIN for made in self._made):
+            names[PLUGIN] = "Engineering"
+        for id_, name in names.items():
             library = listed.add("Library", len(listed.chunks)).put("Id", Type.GUID, id_).put("Name", Type.STRING, name)
-            library.put("Author", Type.STRING, "Daniel Piker").put("Version", Type.STRING, "")
+            version = "1.2" if id_ == PLUGIN else ""
+            library.put("Author", Type.STRING, "Daniel Piker").put("Version", Type.STRING, version)
         listed.put("Count", Type.INT32, len(listed.chunks))
         return root
+
+    def solved(self, *goals: Any, classic: bool = False, **wires: Any) -> Made:
+        """A solver of these goals."""
+        if classic:
+            return self.kangaroo(
+                CLASSIC,
+                PHYSICS,
+                PHYSICS_OUT,
+                classic=True,
+                **({"force_objects": list(goals)} if goals else {}),
+                **wires,
+            )
+        return self.kangaroo(
+            "Solver", SOLVER, ["I", "V", "O"], **({"goalobjects": list(goals)} if goals else {}), **wires
+        )
+
+    def native_like(self, name: str, guid: str, inputs: Sequence[str], output: str, **wires: Any) -> Made:
+        """One of Grasshopper's own components by its id, with one output; inputs by their names."""
+        made = self.kangaroo(name, [(one, None) for one in inputs], [output], guid=UUID(guid), **wires)
+        made.library = None
+        return made
+
+    def cluster(self, name: str, document: bytes, *sources: Any) -> Made:
+        """A cluster with one input and one output that holds a definition."""
+        made = self.native_like(name, str(CLUSTER), ["In"], "Out", **({"in": list(sources)} if sources else {}))
+        made.container.put("ClusterDocument", Type.BYTEARRAY, document)
+        return made
+
+    def foreign(self, name: str, inputs: Sequence[str] = (), plugin: UUID = PLUGIN, **wires: Any) -> Made:
+        """A component of another plug-in, with one output."""
+        made = self.kangaroo(name, [(one, None) for one in inputs], ["R"], guid=uuid5(plugin, name), **wires)
+        made.library = plugin
+        return made
 
     def springs(self, line: Any, typed: Mapping[str, Any] | None = None, **wires: Any) -> Made:
         """Classic springs; `typed` instead of what Kangaroo types in."""
@@ -165,6 +212,29 @@ def tent() -> Kangaroo:
     d.panel("particles", solver["V"])
     d.panel("shown", solver["O"])
     return d
+
+
+def in_units(made: Made, *idle: str) -> Made:
+    """The outputs of a component moved into evaluation units: those in use into `mesh`, others, unused, into `idle`.
+
+    Laid out as GH_SwitcherComponent.cs and EvaluationUnit.cs of github.com/mariuszhermansdorfer/SandWorm write it.
+    """
+    container = made.container
+    held = [chunk for chunk in container.chunks if chunk.name == "param_output"]
+    container.chunks = [chunk for chunk in container.chunks if chunk.name != "param_output"]
+    container.add("ActiveUnit").put("unitname", Type.STRING, "mesh")
+    units = container.add("EvalUnits").put("count", Type.INT32, 2)
+    for number, (name, ports) in enumerate([("idle", []), ("mesh", held)]):
+        params = units.add("unit", number).put("name", Type.STRING, name).add("params")
+        params.add("input").put("count", Type.INT32, 0).put("index", Type.INT32, 0)
+        output = params.add("output").put("count", Type.INT32, len(ports)).put("index", Type.INT32, 0)
+        for i, port in enumerate(ports):
+            port.name, port.index = "p", i
+            output.chunks.append(port)
+        for i, title in enumerate(idle if name == "idle" else ()):
+            _named(output.add("p", i), uuid5(made.id, f"idle {i}"), title)
+        units.chunks[number].add("context")
+    return made
 
 
 def store(port: Chunk, values: Sequence[Any], path: str = "{0}") -> None:

@@ -1,4 +1,4 @@
-"""Real definitions, in a folder that HOOKEAN_DEFINITIONS names: each is translated, checked, and told about honestly.
+"""Real definitions, in a folder that HOOKEAN_DEFINITIONS names: each is read by every command and translated.
 
 Public ones are github.com/naysok/Study-Kangaroo, Tensegrity-1.ghx, Tensegrity-2.ghx and Kangaroo1-vs-Kangaroo2.ghx
 (classic), Tensile-Simple.ghx, Bending-Rod.ghx and 5/Inflation.ghx (Kangaroo 2). They carry no licence, so none is kept
@@ -14,10 +14,14 @@ from pathlib import Path
 import pytest
 
 from canvas.kangaroo_samples import wires
-from hookean_canvas import archive, kangaroo, lint
+from hookean.errors import InputError
+from hookean_canvas import archive, drawing, graph, kangaroo, lint, lint_refused
 from hookean_canvas.archive import Chunk
+from hookean_canvas.describe import describe
+from hookean_canvas.evaluate import Canvas
 from hookean_canvas.kangaroo_guids import Known, libraries, recognised
 from hookean_canvas.parts import parts
+from hookean_canvas.show import lines, text
 
 FOLDER = os.environ.get("HOOKEAN_DEFINITIONS", "")
 FILES = sorted([*Path(FOLDER).glob("*.gh"), *Path(FOLDER).glob("*.ghx")]) if FOLDER else []
@@ -49,6 +53,19 @@ def test_a_real_definition_is_translated_without_a_fault_or_a_wire_lost_unseen(f
     assert all(told[name] == count for name, count in stays.items()), (stays, report.stays)
 
 
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+def test_a_real_definition_is_drawn_shown_and_not_refused(file: Path, tmp_path: Path) -> None:
+    """Grasshopper saved it, so Grasshopper opens it."""
+    root = archive.read(file)
+    assert lint_refused.refusals(root) == []
+    text(lines(describe(root), file.name, with_code=True))
+    try:
+        drawing.draw(graph.read(file), tmp_path / "canvas.png")
+        Canvas(graph.read(file))
+    except InputError as error:
+        assert "\n" not in str(error)
+
+
 def _shown(root: Chunk) -> set[object]:
-    """Components Show become parameters, which go by the id of their output."""
-    return {part.id for part in parts(root) if part.name == "Show"}
+    """Components Show and Grab become parameters, which go by the id of their output."""
+    return {part.id for part in parts(root) if part.name in ("Show", "Grab")}

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from canvas.archives import PACKAGES, samples, user_objects
-from hookean_canvas import archive, guids, lint, lint_code
+from hookean_canvas import archive, guids, lint, lint_code, lint_refused
 from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.parts import Code
 
@@ -217,6 +217,14 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
         "object 4 (group Group): its member 00000000-0000-0000-0000-000000000042 is not in the definition",
     ),
     "count of members": (lambda r: container(r, 4).put("ID_Count", Type.INT32, 1), "the group counts 1 in ID_Count"),
+    "a wire that is no id": (
+        lambda r: port(r).put("Source", Type.STRING, "1", 0),
+        "(x) has Source[0] as gh_string, not gh_guid",
+    ),
+    "a member that is no id": (
+        lambda r: container(r, 4).put("ID", Type.INT32, 1, 1),
+        "the group has ID[1] as gh_int32, not gh_guid",
+    ),
     "items out of order": (lambda r: port(r).items.reverse(), "the items of InputParam[0] are not sorted"),
     "an item twice": (
         lambda r: port(r).items.append(Item("TypeHintID", -1, Type.INT32, 1)),
@@ -229,11 +237,24 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
 }
 
 
-@pytest.mark.parametrize(("spoil", "says"), SPOILED.values(), ids=SPOILED)
-def test_each_fault_of_a_definition_is_named(spoil: Spoil, says: str) -> None:
+REFUSED = {
+    "count of objects", "indices of objects", "two objects of one index", "no ids of the kind", "no container",
+    "no own id", "an id as text", "count of wires", "count of inputs", "no type of an input", "count of members",
+    "no objects", "a wire that is no id", "a member that is no id",
+}  # fmt: skip
+"""Of these Grasshopper reads an object not at all or not whole; the others it repairs, drops or ignores."""
+
+
+@pytest.mark.parametrize("fault", SPOILED)
+def test_each_fault_of_a_definition_is_named_and_refused_only_where_grasshopper_does(fault: str) -> None:
+    """Grasshopper's reader (GH_IO 7.23) was seen to take unsorted items, wrong root names and ids that mean nothing."""
+    spoil, says = SPOILED[fault]
     root = definition()
     spoil(root)
-    assert any(says in fault for fault in lint.faults(root)), lint.faults(root)
+    assert any(says in one for one in lint.faults(root)), lint.faults(root)
+    refused = lint_refused.refusals(root)
+    assert bool(refused) == (fault in REFUSED), refused
+    assert set(refused) <= set(lint.faults(root))
 
 
 def test_components_of_a_declared_library_pass() -> None:
@@ -246,14 +267,35 @@ def test_components_of_a_declared_library_pass() -> None:
 
 
 def test_an_archive_of_another_kind_is_said() -> None:
+    assert lint_refused.refusals(Chunk("Root")) == lint.faults(Chunk("Root"))
     assert lint.faults(Chunk("Root")) == ["the archive (Root) holds neither a definition nor a user object"]
 
 
 # ------------------------------------------------------------------------------------------------------ real files
 
 
+def test_what_grasshopper_saves_is_not_refused() -> None:
+    """Components of plug-ins, members of groups that were deleted, wires from what is gone, items of older versions."""
+    root = definition()
+    for number, odd in ((2, "Weaverbird"), (3, "Pt")):
+        objects(root).chunks[number].put("GUID", Type.GUID, guid(300 + number)).put("Name", Type.STRING, odd)
+    container(root, 4).put("ID", Type.GUID, guid(66), 1)
+    container(root, 2).put("Source", Type.GUID, guid(77), 0)
+    port(root).items.reverse()
+    at(container(root, 0), "Slider").put("Value", Type.DOUBLE, 9.5)
+    script(root).put("Text", Type.STRING, encoded("a = (1\n"))
+    assert len(lint.faults(root)) >= 7 and lint_refused.refusals(root) == []
+
+
 def test_shared_files_have_no_faults() -> None:
     assert {file.name: lint.faults(archive.read(file)) for file in samples()} == {file.name: [] for file in samples()}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_nothing_is_refused_of_installed_user_objects(package: str) -> None:
+    """All of them were saved by Grasshopper or its library, also those with odd names."""
+    files = user_objects(package)
+    assert files and [file.name for file in files if lint_refused.refusals(archive.read(file))] == []
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -6,6 +6,7 @@ import io
 import json
 import math
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,10 +16,12 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from canvas.archives import PACKAGES, samples, user_objects
+from canvas.kangaroo_samples import CLASSIC, LENGTH, PHYSICS, PHYSICS_OUT, SOLVER, Kangaroo
 from canvas.test_lint import add_object, add_port, at, container, definition, guid, objects, port, user_object
 from hookean.cli import app
 from hookean_canvas import archive, guids, lint, lint_code
 from hookean_canvas.archive import Chunk, Type
+from hookean_canvas.archive_chunk import DEEPEST
 from hookean_canvas.describe import describe
 from hookean_canvas.show import lines, text
 
@@ -196,16 +199,34 @@ def test_a_damaged_definition_is_still_shown(damage: str) -> None:
     assert "An arch" in shown and "8.13 (McNeel)" in shown
 
 
-def test_check_prints_a_line_for_each_fault_and_exits_with_1(file: Path, tmp_path: Path) -> None:
+def test_check_is_quiet_where_grasshopper_would_be_and_strict_says_the_rest(file: Path, tmp_path: Path) -> None:
     archive.write(definition(), tmp_path / "good.ghx")
-    good = run("check", tmp_path / "good.ghx")
-    assert (good.exit_code, good.output) == (0, f"{tmp_path / 'good.ghx'}: no faults\n")
-    bad = run("check", tmp_path / "good.ghx", file)
+    for words in ((), ("--strict",)):
+        good = run("check", *words, tmp_path / "good.ghx")
+        assert (good.exit_code, good.output) == (0, f"{tmp_path / 'good.ghx'}: no faults\n")
+    quiet = run("check", tmp_path / "good.ghx", file)
+    assert (quiet.exit_code, quiet.output) == (0, f"{tmp_path / 'good.ghx'}: no faults\n{file}: no faults\n")
+    bad = run("check", "--strict", tmp_path / "good.ghx", file)
     assert bad.exit_code == 1
     told = bad.output.splitlines()
     assert told[0].endswith("good.ghx: no faults")
     assert all(line.startswith(f"{file}: ") for line in told[1:])
     assert any("no output here" in line for line in told) and any("is not known" in line for line in told)
+
+
+def test_check_prints_a_line_for_each_refusal_and_exits_with_1(tmp_path: Path) -> None:
+    root = definition()
+    objects(root).put("ObjectCount", Type.INT32, 9)
+    container(root, 2).put("SourceCount", Type.INT32, 3)
+    archive.write(root, tmp_path / "bad.gh")
+    bad = run("check", tmp_path / "bad.gh")
+    assert (bad.exit_code, bad.output.splitlines()) == (
+        1,
+        [
+            f"{tmp_path / 'bad.gh'}: DefinitionObjects counts 9 in ObjectCount, but holds 5",
+            f"{tmp_path / 'bad.gh'}: object 2 (Panel): it counts 3 in SourceCount, but holds 1",
+        ],
+    )
 
 
 def test_check_goes_on_after_a_file_it_cannot_read(tmp_path: Path) -> None:
@@ -257,3 +278,52 @@ def test_items_of_another_type_break_neither_show_nor_check(
             json.dumps(describe(root), allow_nan=False)
             text(lines(describe(root), "a.gh", with_code=True))
             lint.faults(root)
+
+
+def test_components_of_kangaroo_and_of_plug_ins_are_named(tmp_path: Path) -> None:
+    """By the table of ids, also under another name and without a library; else by the library that the file lists."""
+    d = Kangaroo("named", "Named", "Solvers of both generations.")
+    d.kangaroo("Solver", SOLVER, ["O"]).library = None
+    d.kangaroo("Length(Line)", LENGTH, ["S"])
+    d.kangaroo(CLASSIC, PHYSICS, PHYSICS_OUT, classic=True)
+    d.kangaroo("A goal of tomorrow", (("P", None),), ["G"], guid=guid(7))
+    d.foreign("Bar")
+    root = d.archive()
+    next(chunk for chunk in objects(root).chunks if chunk.value("Name") == "Length(Line)").put(
+        "Name", Type.STRING, "Springs"
+    )
+    archive.write(root, tmp_path / "named.gh")
+    shown = run("show", tmp_path / "named.gh").output
+    heads = [line[2:] for line in shown.splitlines() if re.match(r"  \S", line)]
+    assert "Solver (Kangaroo 2)" in heads and "KangarooPhysics (Kangaroo 0.099)" in heads
+    assert "Springs 'Length(Line)' (Length(Line) of Kangaroo 2)" in heads
+    assert "A goal of tomorrow (Kangaroo 2)" in heads and "Bar (Engineering)" in heads
+    assert "unknown component" not in shown
+    found = json.loads(run("show", "--json", tmp_path / "named.gh").output)["objects"]
+    assert [(one["known"], one["plugin"]) for one in found if one["name"] in ("Solver", "Bar", "Panel")] == [
+        ("Panel", None),
+        ("Solver", "Kangaroo 2"),
+        (None, "Engineering"),
+    ]
+
+
+def test_what_is_nested_as_deep_as_an_archive_may_be_is_shown(tmp_path: Path) -> None:
+    chunk = Chunk("0")
+    for level in range(1, DEEPEST):
+        chunk = Chunk(str(level), chunks=[chunk])
+    archive.write(chunk, tmp_path / "deep.gh")
+    for words in ((), ("--all",), ("--all", "--json")):
+        shown = run("show", *words, tmp_path / "deep.gh")
+        assert shown.exit_code == 0 and shown.exception is None, shown.exception
+
+
+def test_clusters_within_clusters_end_somewhere(tmp_path: Path) -> None:
+    inner = archive.to_bytes(definition())
+    for _ in range(150):
+        d = Kangaroo("outer", "Outer", "A cluster.")
+        d.cluster("Inner", inner)
+        inner = archive.to_bytes(d.archive())
+    (tmp_path / "deep.gh").write_bytes(inner)
+    for command in ("show", "check", "import"):
+        found = run(command, tmp_path / "deep.gh")
+        assert found.exit_code == 0 and found.exception is None, found.exception
