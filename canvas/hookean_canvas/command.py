@@ -105,7 +105,9 @@ def draw(
     """Draw a definition as its canvas looks: boxes, groups and wires."""
     from hookean_canvas import drawing, graph
 
-    _told(lambda: drawing.draw(graph.read(file), output))
+    left = _told(lambda: drawing.draw(graph.read(file), output))
+    if left:
+        typer.echo(f"{output}: without {', '.join(left)}, which the file gives no place on the canvas", err=True)
 
 
 @app.command("import")

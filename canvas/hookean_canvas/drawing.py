@@ -23,8 +23,10 @@ LINE = 11.0  # height of a line of text, in pixels of the canvas
 LEGIBLE = 0.1  # of the size on the canvas; a smaller picture has no words
 
 
-def draw(graph: Graph, path: Path) -> None:
-    """Write a PNG. Objects without bounds are left out; a canvas larger than a picture can be is drawn smaller.
+def draw(graph: Graph, path: Path) -> list[str]:
+    """Write a PNG; returns the labels of the objects without bounds, which are left out.
+
+    A canvas larger than a picture can be is drawn smaller.
 
     InputError where no object has bounds, or the picture cannot be written.
     """
@@ -52,6 +54,7 @@ def draw(graph: Graph, path: Path) -> None:
             figure.savefig(path, format="png", dpi=SCALE * factor, metadata={"Software": None})
     except OSError as error:
         raise InputError(str(path), f"cannot be written: {error.strerror or error}") from None
+    return [node.label for node in graph.nodes if node.bounds is None]
 
 
 def _fill(axes: Any, graph: Graph, shown: list[Node], words: bool) -> None:

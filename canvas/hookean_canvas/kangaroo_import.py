@@ -71,14 +71,14 @@ class Importing:
     def _decide(self) -> None:
         """Which components are swapped: those of systems that are whole, and tools of no system that stays."""
         report, systems = self.report, self.systems
-        report.systems = len(systems.found)
         kept: set[UUID] = set()
         for system in systems.found:
+            report.solvers += len(system.solvers)
             if system.blocks:
                 report.stays += [line for line in system.foreign if line not in report.stays]
                 kept |= {one for solver in system.solvers for one in self.streams.all_above(solver)}
             else:
-                report.whole += 1
+                report.whole += len(system.solvers)
             name = " and ".join(dict.fromkeys(solver.label for solver in system.solvers))
             for part in (*system.solvers, *system.goals):
                 if system.blocks:

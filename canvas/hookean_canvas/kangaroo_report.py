@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 class Report:
     """`swapped`: (component, what stands for it, what differs); `stays`: (component, why); `lost`: (wire, why).
 
-    `systems` counts the solvers, those that share goals as one, `whole` those that were translated with all goals.
+    `solvers` counts the solvers of Kangaroo, `whole` those that were translated with all goals.
 
     `values`: (input, why its typed value is gone). `kangaroo` counts the components of Kangaroo there were, `wires`
     those that led somewhere, `kept` those that are in the translated file.
@@ -22,7 +22,7 @@ class Report:
     kangaroo: int = 0
     wires: int = 0
     kept: int = 0
-    systems: int = 0
+    solvers: int = 0
     whole: int = 0
     swapped: list[tuple[str, str, str]] = field(default_factory=list)
     stays: list[tuple[str, str]] = field(default_factory=list)
@@ -43,7 +43,7 @@ class Report:
         yield (
             f"{self.name}: {self.objects} objects, {self.kangaroo} of Kangaroo's, {len(self.swapped)} translated; "
             f"{self.wires} wires, {self.kept} kept, {len(self.lost)} not"
-            + (f"; {self.whole} of {self.systems} solvers translated with all goals" if self.systems else "")
+            + (f"; {self.whole} of {self.solvers} solvers translated with all goals" if self.solvers else "")
         )
         yield from _part("Not translated", _together(self.stays))
         yield from _part("Wires that are gone", [f"{wire}: {why}" for wire, why in self.lost])

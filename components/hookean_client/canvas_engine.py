@@ -248,10 +248,13 @@ def _warn(ghenv, player):
     if rest > 0:
         canvas.warning(ghenv, "%d more points meet no particle." % rest)
     frame = player.frame()
-    if frame["status"] == "diverged":
-        canvas.error(ghenv, player.state["message"])
+    if player.falls:
+        canvas.warning(ghenv, player.falls)
+    if frame["status"] == "diverged" and player.exact:
+        (canvas.warning if player.falls else canvas.error)(ghenv, player.state["message"])
     for sentence in report["warnings"]:
         canvas.warning(ghenv, _placed(player.kept, sentence))
+    said += [player.falls] if player.falls else []
     player.shown.report = said + [_placed(player.kept, one) for one in report["warnings"]] + player.shown.report
 
 

@@ -9,6 +9,7 @@ import time
 
 from . import Problem
 from . import canvas_draw as drawing
+from . import canvas_fall as fall
 from . import canvas_link as link
 from . import canvas_scene as compose
 
@@ -26,6 +27,7 @@ class Player(object):
         self.sent = self.form = self.where = self.topology = self.state = self.frames = self.task = None
         self.anchors, self.revision, self.running = {}, -1, True
         self.shown = self.seen = self.component = None
+        self.falls = None  # why the form falls freely
         self.ended = self._watched = False
         self._branch, self._met, self._trouble = None, False, None
         self._heard, self._read, self._cost = (-1, link.now()), 0.0, 0.0
@@ -112,7 +114,8 @@ class Player(object):
     def exact(self):
         """Whether `state` is the state of the newest frame, with all digits."""
         frame = self.frame()
-        return bool(frame and self.state) and self.state["at"] == (frame["revision"], frame["iteration"])
+        at = frame and (frame["revision"], frame["iteration"], frame["status"])
+        return bool(frame and self.state) and self.state["at"] == at
 
     @property
     def settled(self):
@@ -169,6 +172,7 @@ class Player(object):
         if new or self.state is None:
             self._fetch(session, None)
         self._judge(wanted)
+        self.falls = fall.sentence(scene, fall.unmatched(self.state["report"]))
         if self.frames is None or self.frames.ended:
             self.frames = session.frames()
             self._keep_watch()
@@ -189,7 +193,7 @@ class Player(object):
         began = link.now()
         before = session.read()
         state = link.unpacked(session.state(arrays="buffer"))
-        state["at"] = (before["revision"], state["iterations"])
+        state["at"] = (before["revision"], state["iterations"], state["status"])
         self.state, self._read = state, link.now()
         self._cost = self._read - began
 

@@ -9,6 +9,7 @@ import json
 import uuid
 
 from . import canvas
+from . import canvas_fall as fall
 from . import canvas_geometry as geometry
 from . import canvas_link as link
 from . import canvas_scene as compose
@@ -90,7 +91,7 @@ class Sweep(object):
             key = wanted.signature + self._again
             self.status = client.post("/v1/jobs", wanted.body, headers={"idempotency-key": key}, timeout=120.0)
             self.job, self.signature = "/v1/jobs/%s" % self.status["id"], wanted.signature
-            self.rows = None
+            self.rows, wanted.falls = None, fall.sentence(wanted.scene)
             if client.get(self.job)["status"] != "cancelled":
                 return
             self._again = uuid.uuid4().hex
@@ -107,7 +108,8 @@ class Wanted(object):
     """The inputs of a sweep, read: its items as patches, by name the values of each, and the request."""
 
     def __init__(self, scene, names, columns):
-        self.names, self.columns = names, columns
+        self.scene, self.names, self.columns = scene, names, columns
+        self.falls = None  # why its form falls freely, once the service has taken it
         self.patches = [_patch(names, values) for values in zip(*columns)]
         self.body = compose.text({"scene": scene, "sweep": {"patches": self.patches}}).encode("ascii")
         self.signature = hashlib.sha1(canvas.VERSION.encode("ascii") + self.body).hexdigest()
@@ -123,6 +125,8 @@ def sweep(ghenv, forces, anchors, settings, scene, parameters, values, mode, res
     if read is not None and found.wanted is not None and read.signature == found.wanted.signature:
         read = found.wanted
     wanted = read if tools.flag(run, False) else None
+    if wanted is not None and wanted.falls:
+        canvas.warning(ghenv, wanted.falls)
     if wanted is not None or found.job is not None:
         found.look(wanted)
         if found.task is not None:

@@ -7,6 +7,7 @@ the same engine.
 from __future__ import absolute_import
 
 from . import Problem, canvas, compas
+from . import canvas_fall as fall
 from . import canvas_link as link
 from . import canvas_scene as scene
 
@@ -79,7 +80,7 @@ def relax(ghenv, given, forces, anchors_=None, settings_=None):
         found.structures = canvas.geometry.to_tree(rows)
         found.geometry = canvas.geometry.to_tree([(path, _drawn(items)) for path, items in rows])
         found.status, found.residual = answer["status"], answer["residual"]
-        found.report = _report(ghenv, answer)
+        found.report = _report(ghenv, answer, fall.sentence(made, fall.unmatched(answer["report"])))
 
     _told(ghenv, make)
     return found
@@ -105,12 +106,12 @@ def _scene(flat, forces, anchors_, settings_):
     return made, tolerance
 
 
-def _report(ghenv, answer):
-    """Sentences on how it ended; what a person should look at is a warning too."""
+def _report(ghenv, answer, falls):
+    """Sentences on how it ended; what a person should look at is a warning too. `falls`: why it falls, or None."""
     told = answer["report"]
     lines = [answer["message"]]
     lines += ["%d coordinates are one particle with another one." % told["merged"]] if told["merged"] else []
-    worth = list(told["warnings"]) + [_unmatched(one) for one in told["unmatched"]]
+    worth = ([falls] if falls else []) + list(told["warnings"]) + [_unmatched(one) for one in told["unmatched"]]
     for sentence in worth + ([answer["message"]] if answer["status"] != "converged" else []):
         canvas.warning(ghenv, sentence)
     canvas.note(ghenv, answer["status"].replace("_", " "))

@@ -164,7 +164,8 @@ class Simulation:
         if self.status is Status.CONVERGED:
             self.status = self._watch.onward(self.system, self.state)
         if self.status is Status.DIVERGED:
-            self.state = self._watch.good.copy()
+            revision, self.state = self.state.revision, self._watch.good.copy()
+            self.state.revision = revision  # the shape goes back, not the count of patches
         elif self.status is Status.CONVERGED and not self.solver.physical:
             self._watch.remember(self.system, self.state)
         elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):

@@ -212,7 +212,7 @@ def test_a_goal_without_counterpart_keeps_its_whole_system_as_it_was() -> None:
     edges = d.kangaroo("EdgeLengths", (("Mesh", None), ("LengthFactor", 1.0), ("Strength", 1.0)), ["EL"], mesh=refined)
     d.solved(d.kangaroo("Planarize", (("M", None), ("Strength", 1.0)), ["P"], m=refined), edges)
     after, report = translated(d)
-    assert (report.systems, report.whole, report.swapped, report.lost) == (1, 0, [], [])
+    assert (report.solvers, report.whole, report.swapped, report.lost) == (1, 0, [], [])
     assert dict(report.stays) == {
         "Refine": "a tool for geometry; it stays on, as it comes with Rhino",
         "Planarize": "geometry without mechanics (equal, planar, parallel, tangent ...) is not here",
@@ -252,7 +252,7 @@ def test_every_component_of_kangaroo_is_translated_or_named(known: Known) -> Non
         text = report.text()
         assert known.name in text
         if report.swapped:
-            assert remaining(after) == 0 and report.lost and "Another" in text and report.whole == report.systems
+            assert remaining(after) == 0 and report.lost and "Another" in text and report.whole == report.solvers
         else:
             assert remaining(after) == report.kangaroo and report.kept == report.wires
             whys = dict(report.stays)

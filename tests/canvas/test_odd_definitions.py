@@ -136,6 +136,18 @@ def test_a_definition_without_places_and_a_picture_that_cannot_be_written_are_on
         assert (found.exit_code, found.stderr.count("\n")) == (2, 1) and words in found.stderr
 
 
+def test_objects_without_a_place_are_named(tmp_path: Path) -> None:
+    root = placed()
+    place(root, 1, (float("nan"), 0.0, float("inf"), 1.0))
+    found = told("draw", saved(root, tmp_path))
+    target = tmp_path / "odd.png"
+    assert (found.exit_code, found.stderr) == (
+        0,
+        f"{target}: without Python 3 Script, which the file gives no place on the canvas\n",
+    )
+    assert told("draw", saved(placed(), tmp_path)).stderr == ""
+
+
 def test_a_group_is_drawn_around_the_groups_in_it() -> None:
     """As Grasshopper draws nested groups; here two that hold each other besides."""
     from hookean_canvas.drawing import _members
@@ -159,7 +171,10 @@ def test_a_run_names_what_is_damaged_or_twice(tmp_path: Path) -> None:
     named = next(chunk for chunk in objects(root).chunks if chunk.value("Name") == "Series")
     held = at(named, "Container")
     held.chunks = [chunk for chunk in held.chunks if (chunk.name, chunk.index) != ("param_input", 1)]
-    assert "Series (Series with 2 inputs and 1 outputs, not 3 and 1)" in told("run", saved(root, tmp_path)).stderr
+    assert (
+        "Series (Series with 2 inputs and 1 outputs, not 3 inputs and 1 outputs)"
+        in told("run", saved(root, tmp_path)).stderr
+    )
 
 
 # ------------------------------------------------------------------------------------------------------------- random

@@ -135,6 +135,20 @@ def test_every_way_to_end_has_a_status_and_a_sentence():
     assert any("nothing" in w or "no spring" in w for w in ended[Status.DIVERGED].report.warnings)
 
 
+def test_a_step_that_diverges_takes_the_shape_back_and_not_the_revision():
+    """Clients wait for frames of the revision they made; an older one would never be taken for it."""
+    scene = {"particles": [[0, 0, 0], [1, 0, 0]], "settings": {"solver": "newton"}}
+    scene["forces"] = [
+        {"kind": "springs", "particles": [[0, 1]]},
+        {"kind": "unary", "particles": [0, 1], "vector": [0, 0, -1]},
+    ]
+    simulation = Simulation(Scene.read(scene))
+    simulation.reset()
+    simulation.state.revision += 1  # as a session counts a reset
+    assert simulation.step(100) == "diverged"
+    assert (simulation.state.revision, simulation.state.x.tolist()) == (1, [[0, 0, 0], [1, 0, 0]])
+
+
 def test_a_diverged_simulation_that_is_loaded_says_no_more_than_it_knows(tmp_path):
     """Where it flew apart is not in the file: the sentence leaves it out, and has no gap."""
     flying = Simulation(cable(time_step=0.5))
