@@ -39,7 +39,7 @@ _TEXT_SCRIPTS = {UUID("a9a8ebd2-fff5-4c44-a8f5-739736d129ba"), UUID("079bd9bd-54
 """The C# and VB scripts of Rhino 5 to 7."""
 
 
-@dataclass
+@dataclass(eq=False)
 class System:
     """Solvers that share goals, mostly one, with all their goals; it can be translated where nothing is in `blocks`.
 
@@ -148,21 +148,18 @@ class Systems:
                 yield source, stream and self._carries(part, port)
 
     def _downstream(self, goal: Part) -> list[Part]:
-        """Objects of others, no solvers of Kangaroo, that a goal flows into."""
-        waiting, seen, found = [goal], {id(goal.chunk)}, []
+        """Objects of others, no solvers of Kangaroo, that a goal flows into; it comes out of its first output."""
+        waiting, seen, found = _ids(goal)[:1], {id(goal.chunk)}, []
         while waiting:
-            part = waiting.pop()
-            for port in outputs(part.container) if part.container is not None else []:
-                for taker, into in self._streams.takers(port.value("InstanceGuid")):
-                    if id(taker.chunk) in seen or self._role(taker, stream=True) is not None:
-                        continue
-                    if self._is_foreign(taker):
-                        found.append(taker)
-                    elif not self._carries(taker, into):
-                        continue
-                    else:
-                        waiting.append(taker)
-                    seen.add(id(taker.chunk))
+            for taker, into in self._streams.takers(waiting.pop()):
+                known = id(taker.chunk) in seen or self._role(taker, stream=True) is not None
+                if known or not self._carries(taker, into):
+                    continue
+                seen.add(id(taker.chunk))
+                if self._is_foreign(taker):
+                    found.append(taker)
+                else:
+                    waiting += _ids(taker)
         return found
 
     def _role(self, part: Part, stream: bool) -> Role | None:
@@ -191,6 +188,11 @@ class Systems:
         if found is None:
             found = self._kinds[id(part.chunk)] = foreign(part.chunk, self._generations, self._plugins)
         return found
+
+
+def _ids(part: Part) -> list[UUID]:
+    """The ids of an object's outputs."""
+    return [port.value("InstanceGuid") for port in outputs(part.container)] if part.container is not None else []
 
 
 def plugins(definition: Chunk) -> dict[UUID, str]:

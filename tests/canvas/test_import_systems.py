@@ -162,6 +162,16 @@ def test_a_goal_that_a_script_takes_too_keeps_the_system() -> None:
     assert untouched(d)['Python 3 Script "Other" (a script)'] == "it takes goals of Solver and is not Kangaroo's"
 
 
+def test_shapes_that_a_goal_gives_beside_itself_are_anybodys() -> None:
+    """A goal comes out of the first output; what comes out of others, such as frames, is geometry."""
+    d, line = start()
+    goal = d.kangaroo("Length(Line)", LENGTH, ["S", "Lines"], line=line)
+    d.solved(goal["S"])
+    d.script("Draw", "out = lines", {"lines": goal["Lines"]}, ["out"])
+    _, report = translated(d)
+    assert (report.solvers, report.whole) == (1, 1)
+
+
 def test_two_solvers_are_decided_each_on_its_own() -> None:
     d, line, spring = sprung()
     d.solved(spring)
