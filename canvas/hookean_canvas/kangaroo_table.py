@@ -383,7 +383,11 @@ def markdown() -> str:
         for name, swap in table.items():
             by = ", ".join(_HELPER.get(piece.bundle, piece.bundle) for piece in swap.pieces)
             told = "; ".join(
-                [swap.differs, *(f"{key}: {why}" for key, why in swap.without.items() if why not in swap.differs)]
+                [
+                    swap.differs,
+                    *(f"{key}: {why}" for key, why in swap.without.items() if why not in swap.differs),
+                    *(f"stays where {why}" for why in dict.fromkeys(swap.unless.values())),
+                ]
             )
             lines.append(f"| {generation} | {name} | {by} | {told.strip('; ')} |")
     return "\n".join(lines) + "\n"

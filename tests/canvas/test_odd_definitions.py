@@ -247,7 +247,7 @@ SAMPLES: dict[str, Callable[[], Chunk]] = {
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_altered_definitions_end_every_command_with_a_result_or_a_sentence(sample: str, tmp_path: Path) -> None:
     root, chance = SAMPLES[sample](), random.Random(sample)
-    for _ in range(400 if SOAK else 12):
+    for _ in range(400 if SOAK else 6):
         try:
             file = saved(altered(root, chance), tmp_path)
         except InputError:
