@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as some
-from scipy.optimize import root
+from scipy.optimize import brentq, root
 
 from hookean import Result, Scene, kernels, relax
 from hookean.balance import balance
@@ -332,3 +332,50 @@ def test_profile_factors_solve_what_dense_ones_do(seed: int, size: int, reach: i
             solve(rows, starts, first, x)
             expected = np.linalg.solve(whole, b)
             assert np.abs(x - expected).max() <= 1e-13 * np.linalg.cond(whole) * np.abs(expected).max()
+
+
+def hung(pieces: int, stiffness: float, length: float, weight: float) -> np.ndarray:
+    """Positions (n + 1, 2) of a chain between anchors 1 apart, by its horizontal force alone: by symmetry the vertical
+    force of each piece is known, and each piece is L0 / n (1 + T / EA) long in the direction of its force."""
+    vertical = weight / pieces * (0.5 * (pieces - 1) - np.arange(pieces))
+
+    def drawn(horizontal: float) -> np.ndarray:
+        tension = np.hypot(horizontal, vertical)
+        along = np.column_stack([np.full(pieces, horizontal), -vertical]) / tension[:, None]
+        steps = (length / pieces * (1.0 + tension / stiffness))[:, None] * along
+        return np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+
+    found = brentq(lambda h: drawn(h)[-1, 0] - 1.0, 1e-6 * weight, weight, xtol=1e-15 * weight, rtol=1e-15)
+    return drawn(found)
+
+
+@pytest.mark.parametrize("pieces", [200, 500, 1000, 2000])
+@pytest.mark.parametrize("stiffness", [1e7, 1e8])
+def test_slack_stiff_chains_fall_from_the_straight_line(stiffness: float, pieces: int) -> None:
+    """A chain of 10 drawn straight between anchors 1 apart, EA of 1e7 and 1e8 N, under 1000 N. Rounding leaves
+    u k x / F of the loads, k = EA n / L0: 6e-5 at most here. The oracle's sums of n pieces round to n u L0."""
+    x = np.column_stack([np.linspace(0.0, 1.0, pieces + 1), *np.zeros((2, pieces + 1))])
+    forces = [
+        {"kind": "springs", "particles": [[i, i + 1] for i in range(pieces)], "stiffness": stiffness * pieces / 10.0,
+         "rest_length": 10.0 / pieces},
+        {"kind": "unary", "particles": list(range(pieces + 1)), "vector": [0.0, 0.0, -1000.0 / pieces]},
+    ]  # fmt: skip
+    found = relax(Scene.read({"particles": x, "forces": forces, "anchors": [{"particles": [0, pieces]}]}))
+    assert found.converged and found.stability == "stable", found.message
+    assert found.rounding_floor <= 1.2e-16 * 4 * stiffness * pieces / 10.0 * 5.0 / (1000.0 / pieces)
+    assert np.abs(found.particles[:, [0, 2]] - hung(pieces, stiffness, 10.0, 1000.0)).max() <= 1e-9
+
+
+def test_a_chain_too_stiff_for_its_load_hangs_right_and_is_no_equilibrium() -> None:
+    """EA of 1e8 N under 1 N in 2000 pieces: rounding of coordinates alone leaves 0.06 of a load."""
+    x = np.column_stack([np.linspace(0.0, 1.0, 2001), *np.zeros((2, 2001))])
+    springs = {
+        "kind": "springs",
+        "particles": [[i, i + 1] for i in range(2000)],
+        "stiffness": 2e10,
+        "rest_length": 5e-3,
+    }
+    load = {"kind": "unary", "particles": list(range(2001)), "vector": [0.0, 0.0, -1.0 / 2000]}
+    found = relax(Scene.read({"particles": x, "forces": [springs, load], "anchors": [{"particles": [0, 2000]}]}))
+    assert found.status == "stalled" and found.rounding_floor > 1e-3 and "Rounding alone" in found.message
+    assert np.abs(found.particles[:, [0, 2]] - hung(2000, 1e8, 10.0, 1.0)).max() <= 1e-6

@@ -18,6 +18,7 @@ from hookean.solvers._profile import factor, solve
 BEGIN = 60  # factors of 4 between tensions that all springs could share
 HALVES = 10  # of a step
 POLISH = 4
+ROUNDING = 1e-15  # of the largest coordinate
 
 
 def begin(x, q, gap, ends, k, rest, ground, pull, first, starts, tension):  # type: ignore[no-untyped-def]
@@ -207,7 +208,8 @@ def attempt(part: Any, careful: Any, x: Any, q: Any, dq: Any, now: Any, gap: Any
 
 def polish(x, ends, k, rest, ground, pull, first, starts, tangent, goal, fine, step):  # type: ignore[no-untyped-def]
     """Correct positions by what the springs' own law leaves; False, and back, unless that comes to the goal. `step`
-    (free, 3) becomes the next correction, `fine` at most where rounding allows it.
+    (free, 3) becomes the next correction, `fine` at most where rounding allows it; one that is rounding of the
+    coordinates alone is the last, whatever it leaves.
 
     Rounding of lengths makes force densities uncertain by k / T times as much, and with them x(q).
     """
@@ -216,6 +218,10 @@ def polish(x, ends, k, rest, ground, pull, first, starts, tangent, goal, fine, s
     left, next_step, before = np.empty((3, free)), np.empty(3 * free), np.empty((free, 3))
     put(x, before)
     first3, starts3 = tripled(first)
+    reach = 0.0
+    for i in range(x.shape[0]):
+        for c in range(3):
+            reach = max(reach, abs(x[i, c]))
     for tried in range(POLISH + 1):
         worst = out_of_balance(x, left, net)
         for i in range(free):
@@ -227,7 +233,7 @@ def polish(x, ends, k, rest, ground, pull, first, starts, tangent, goal, fine, s
             for c in range(3):
                 step[i, c] = next_step[3 * i + c]
                 largest = max(largest, abs(step[i, c]))
-        if worst <= goal and (largest <= fine or tried == POLISH):
+        if worst <= goal and (largest <= fine or tried == POLISH) or (worst < np.inf and largest <= ROUNDING * reach):
             return True
         if tried < POLISH:
             for i in range(free):

@@ -55,6 +55,7 @@ class Method(Solver):
     def __init__(self) -> None:
         self._moving: Ints = np.zeros(0, np.int64)
         self._step: Floats | None = None
+        self.near: Floats | None = None  # positions (n, 3) at the highest point, as near as rounding let it come
 
     def refuse(self, system: System) -> str:
         """A sentence unless springs have no limits and all else is linear."""
@@ -77,7 +78,7 @@ class Method(Solver):
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """All steps at once; none done, and nothing moved, where they do not lead to balance."""
-        self._step = None
+        self._step = self.near = None
         ground, pull = _linear(system, state)
         net = _net(system, state, ground, pull)
         if net is None:
@@ -97,7 +98,11 @@ class Method(Solver):
             moved = kernels.compiled(onward)(x, q, gap, *given, tangent)
             if moved == np.inf:
                 break
-            if moved <= near and kernels.compiled(polish)(x, *given, tangent, goal, FINE * near, step):
+            if moved > near:
+                continue
+            self.near = state.x.copy()
+            self.near[moving] = x[: len(moving)]
+            if kernels.compiled(polish)(x, *given, tangent, goal, FINE * near, step):
                 state.x[moving] = x[: len(moving)]
                 state.iteration += done
                 self._moving, self._step = moving, step

@@ -100,6 +100,10 @@ class Method(Solver):
             if done:
                 self._use(self._complementary)
                 return done
+            if self._complementary.near is not None:  # too stiff for its own last digits
+                state.x[:] = self._complementary.near
+                self._begin(system, state)
+                self.sharpen(state)
         if self._levels:
             return self._by_levels(system, state, count, goal)
         if self._steps > 0:
