@@ -45,6 +45,7 @@ WORK = 200  # products a particle in the factor of a net that is little more tha
 STEPS = 25
 NEAR = 1e-5  # of the model's size: a last step this short has nothing left to correct
 FINE = 0.01  # of that: a correction this short is the last
+FITS = 1e-3  # of squared rest lengths that lengths may be off by
 
 
 class Method(Solver):
@@ -100,6 +101,8 @@ class Method(Solver):
                 break
             if moved > near:
                 continue
+            if (np.abs(gap) > FITS * net.rest * net.rest).any():
+                break  # something is slack, and has no definite place
             self.near = state.x.copy()
             self.near[moving] = x[: len(moving)]
             if kernels.compiled(polish)(x, *given, tangent, goal, FINE * near, step):
