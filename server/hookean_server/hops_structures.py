@@ -31,6 +31,7 @@ _LEAST = item("Least force", "Fn", "Number", "The smallest force, tension positi
 _SHAPE = (scenes.MESH, scenes.SPRINGS, _FORCES, _REACTIONS, scenes.SUPPORTS, _LARGEST, _LEAST, scenes.STATUS)
 _OVER = item("Upside down", "U", "Boolean", "True: turned over, every force reversed", False)
 _UNITS = {"force": "kN"}
+_STANDING = {"allow_unstable": True}  # a thrust line of hinged struts balances, as on a knife's edge
 
 
 def _net(result: Any, mesh: Mesh, *names: str) -> dict[str, Any]:
@@ -78,6 +79,7 @@ def _over(result: Any, name: str, stiffness: float, units: Any) -> dict[str, Any
         "particles": result.particles * [1.0, 1.0, -1.0],
         "forces": [struts, loads],
         "anchors": [{"particles": result.reactions["particles"]}],
+        "settings": _STANDING,
     }
 
 
@@ -218,7 +220,7 @@ def _reversed(result: Any, feet: Any, stiffness: float, units: Any) -> dict[str,
         "particles": result.particles,
         "forces": [*struts, {"kind": "unary", "name": "deck", "particles": held[~feet], "vector": pressed[~feet]}],
         "anchors": [{"particles": held[feet]}, {"particles": held[~feet], "axes": "xy"}],
-        "settings": {"max_iterations": 1000},
+        "settings": {"max_iterations": 1000, **_STANDING},
     }
 
 
