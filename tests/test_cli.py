@@ -127,6 +127,35 @@ def test_notes_are_told_without_explain(folder: Path) -> None:
     assert recipe.stderr.startswith("hookean: recipe.toml is a recipe; give it with -r")
 
 
+def test_a_load_that_meets_nothing_exits_with_2_whatever_the_limits(folder: Path) -> None:
+    """Wind on another division of the same net: nothing is written, and limits cannot pass for want of wind."""
+
+    def square(count: int) -> dict[str, object]:
+        number = np.arange((count + 1) ** 2).reshape(count + 1, count + 1)
+        faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1)
+        vertices = np.argwhere(number >= 0) @ np.eye(2, 3) / count
+        return {"vertices": vertices.tolist(), "faces": faces.reshape(-1, 4).tolist()}
+
+    wind = {"kind": "pressure", "name": "wind", "mesh": "b", "pressure": 1.0}
+    scene: dict[str, object] = {"forces": [{"kind": "springs", "mesh": "a"}, wind]}
+    scene |= {"meshes": {"a": square(4), "b": square(7)}, "anchors": [{"points": [[0, 0, 0], [1, 1, 0]]}]}
+    (folder / "scene.json").write_text(json.dumps(scene), encoding="utf-8")
+    (folder / "limits.toml").write_text("max_displacement = 0.1\n", encoding="utf-8")
+    said = "wind: 60 of 64 vertices met no particle; the nearest is 0.0357143 m away from (0, 0.285714, 0)"
+    result = run("relax", "scene.json", "-o", "out.json", "--check", "limits.toml")
+    assert result.exit_code == 2 and not (folder / "out.json").exists()
+    assert result.stderr.startswith(f"hookean: scene.json /forces/1/mesh: {said}. Move them onto particles, ")
+    moved = run("simulate", "scene.json")
+    assert (moved.exit_code, moved.stderr) == (2, result.stderr)
+    explained = run("relax", "scene.json", "--explain")
+    assert explained.exit_code == 2 and said in explained.stderr
+    assert "a scene with springs, pressure" in explained.stdout
+    (folder / "scene.json").write_text(json.dumps({**scene, "strict": False}), encoding="utf-8")
+    result = run("relax", "scene.json", "-o", "out.json")
+    assert result.exit_code == 0 and f"note: /forces/1/mesh: {said}, so that part of the load is left" in result.stderr
+    assert said in run("relax", "scene.json", "--explain").stdout
+
+
 def test_no_equilibrium_exits_with_3_and_writes_the_last_shape(folder: Path) -> None:
     (folder / "recipe.toml").write_text(CABLE + "[settings]\nmax_iterations = 1\n", encoding="utf-8")
     result = run("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml")

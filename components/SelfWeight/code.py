@@ -2,9 +2,10 @@
 line ends.
 
 With a total, give particles, points or a mesh (nothing: every particle of the scene): 10 N on 51
-particles is 0.196 N each. With a weight per length, give lines, pairs of particles or a mesh (its
-edges). The load does not change as the lines stretch: weight is conserved. Energy -W d . x. Source:
-the chapter, 9.5.
+particles is 0.196 N each, also where some of the given points met no particle (the scene is not
+`strict`) and their part of the total is left out. With a weight per length, give lines, pairs of
+particles or a mesh (its edges). The load does not change as the lines stretch: weight is conserved.
+Energy -W d . x. Source: the chapter, 9.5.
 
 E = -W d.x
 """

@@ -16,7 +16,7 @@ from .canvas_geometry import listed
 from .canvas_player import Player
 
 FRAME, POLL = 30, 100  # milliseconds to the next solution: while it runs, while it waits
-MANY = 8  # sentences on points that met nothing
+MANY = 8  # sentences on forces and anchors with points that met nothing
 OUTPUTS = ("iterations", "particles", "geometry", "forces", "reactions", "residual", "energy", "status", "report")
 _players, _keys = {}, {}  # by session; the session of a component in an open document
 
@@ -200,7 +200,7 @@ def _tell(ghenv, player):
     refused = task is not None and task.done and player.refused is player.wanted
     if refused:
         canvas.note(ghenv, "refused")
-        canvas.error(ghenv, _placed(player.wanted, trouble))
+        canvas.error(ghenv, placed(player.wanted.forces, player.wanted.anchors, trouble))
         return
     if trouble:
         patient = task is not None and task.patient
@@ -220,42 +220,39 @@ def _tell(ghenv, player):
         canvas.schedule(ghenv, FRAME)
 
 
-def _placed(wanted, said):
-    """A refusal with the names of components in the place of pointers."""
-    for i, one in enumerate(wanted.forces):
-        said = said.replace("/forces/%d/" % i, "%s, " % one["source"]["title"])
-    return said.replace("/settings/", "Settings, ")
+def placed(forces, anchors, said):
+    """A sentence on a scene of these forces and anchors with the names of components in the place of pointers."""
+    for i, one in enumerate(forces):
+        title = one["source"]["title"]
+        for name in ("points", "lines", "mesh"):
+            said = said.replace("/forces/%d/%s: %s: " % (i, name, one.get("name") or title), title + ": ")
+        said = said.replace("/forces/%d/" % i, title + ", ")
+    for i, one in enumerate(anchors):
+        said = said.replace("/anchors/%d/points: %s: " % (i, one["name"]), one["label"] + ": ")
+    said = said.replace("/settings/", "Settings, ").replace("weld_tolerance", "the tolerance in Settings")
+    return said[:1].upper() + said[1:]
+
+
+def sentences(report, forces, anchors):
+    """What a report says to people: what met no particle, a sentence for each force and anchor, then warnings."""
+    missed = [placed(forces, anchors, one["message"]) + "." for one in report["missed"]]
+    if len(missed) > MANY:
+        missed[MANY:] = ["%d more forces or anchors have points that met no particle." % (len(missed) - MANY)]
+    return missed + [placed(forces, anchors, one) for one in report["warnings"]]
 
 
 def _warn(ghenv, player):
-    """Points that met no particle, by the names of components, and other warnings."""
-    report, title = player.state["report"], "%s: item %s"
-    said = []
-    for one in report["unmatched"]:
-        parts = one["pointer"].split("/")
-        wanted = player.kept
-        if parts[1] == "anchors":
-            who = wanted.anchors[int(parts[2])]["label"]
-        elif parts[1] == "forces":
-            who = title % (wanted.forces[int(parts[2])]["source"]["title"], parts[-1])
-        else:
-            who = title % (parts[1], parts[-1])
-        words = one["message"].split(": ", 1)[-1].replace("weld_tolerance", "the tolerance in Settings")
-        said.append("%s: %s." % (who[:1].upper() + who[1:], words))
-    rest = len(said) - MANY
-    for sentence in said[:MANY]:
+    """What met no particle, by the names of components, and other warnings."""
+    said = sentences(player.state["report"], player.kept.forces, player.kept.anchors)
+    for sentence in said:
         canvas.warning(ghenv, sentence)
-    if rest > 0:
-        canvas.warning(ghenv, "%d more points meet no particle." % rest)
     frame = player.frame()
     if player.falls:
         canvas.warning(ghenv, player.falls)
+        said.append(player.falls)
     if frame["status"] == "diverged" and player.exact:
         (canvas.warning if player.falls else canvas.error)(ghenv, player.state["message"])
-    for sentence in report["warnings"]:
-        canvas.warning(ghenv, _placed(player.kept, sentence))
-    said += [player.falls] if player.falls else []
-    player.shown.report = said + [_placed(player.kept, one) for one in report["warnings"]] + player.shown.report
+    player.shown.report = said + player.shown.report
 
 
 # outputs

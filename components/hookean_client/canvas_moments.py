@@ -23,7 +23,7 @@ def moments(ghenv, forces, anchors, settings, rides, times):
     found = Moments()
 
     def work():
-        made, steps, step, makers = _asked(ghenv, forces, anchors, settings, rides, times)
+        made, steps, step, makers, words = _asked(ghenv, forces, anchors, settings, rides, times)
 
         def relax(client):
             return [client.relax(one, query={"arrays": "buffer"}, timeout=600.0) for one in made]
@@ -38,15 +38,16 @@ def moments(ghenv, forces, anchors, settings, rides, times):
         rows = [[make(places(entry)) for entry, make in zip(one["geometry"], makers)] for one in answers]
         found.geometry = geometry.to_tree(_branches(rows))
         found.times = [count * step for count in steps]
-        found.report = _report(ghenv, answers)
+        found.report = _report(ghenv, answers, words)
 
     canvas._told(ghenv, work)
     return found
 
 
 def _asked(ghenv, forces, anchors, settings, rides, times):
-    """A scene for each moment, its number of steps, the step [time], and what makes geometry of moved points."""
-    scene, step, makers = setup(ghenv, forces, anchors, settings, rides)
+    """A scene for each moment, its number of steps, the step [time], what makes geometry of moved points, and `words`
+    as `setup` gives them."""
+    scene, step, makers, words = setup(ghenv, forces, anchors, settings, rides)
     try:
         wanted = [geometry.number(one) for one in listed(times)]
     except Unfit as unfit:
@@ -57,12 +58,12 @@ def _asked(ghenv, forces, anchors, settings, rides, times):
         raise Unfit("_times: %g is before the start; give moments from 0 on" % min(wanted))
     steps = [int(one / step + 0.5) for one in wanted]
     made = [dict(scene, settings=dict(scene["settings"], max_iterations=count)) for count in steps]
-    return made, steps, step, makers
+    return made, steps, step, makers, words
 
 
 def setup(ghenv, forces, anchors, settings, rides):
-    """The scene of a motion in physical time that never counts as at rest, its step [time], and what makes geometry of
-    moved points."""
+    """The scene of a motion in physical time that never counts as at rest, its step [time], what makes geometry of
+    moved points, and what makes sentences for people of a report on it."""
     read = compose.read(forces, None, "_forces")
     if not read:
         raise compose.missing("_forces is missing; connect the outputs of force components")
@@ -75,7 +76,8 @@ def setup(ghenv, forces, anchors, settings, rides):
     if solver not in PHYSICAL:
         raise Unfit("settings_: %s has no time; moments need verlet or yoshida" % solver)
     fixed = {"solver": "yoshida" if solver == "yoshida" else "verlet", "tolerance": 0.0}
-    return dict(scene, settings=dict(scene["settings"], **fixed)), step, [make for _, make in carried]
+    made = dict(scene, settings=dict(scene["settings"], **fixed))
+    return made, step, [make for _, make in carried], lambda report: canvas_engine.sentences(report, read, held)
 
 
 def places(entry):
@@ -89,12 +91,11 @@ def _branches(rows):
     return [("{%d}" % i, row) for i, row in enumerate(rows)]
 
 
-def _report(ghenv, answers):
-    """What a person should know: points that met no particle, warnings, a motion that flew apart."""
-    said = []
-    for sentence in [one["message"] for one in answers[0]["report"]["unmatched"]] + answers[0]["report"]["warnings"]:
+def _report(ghenv, answers, words):
+    """What a person should know: what met no particle, warnings, a motion that flew apart."""
+    said = words(answers[0]["report"])
+    for sentence in said:
         canvas.warning(ghenv, sentence)
-        said.append(sentence)
     for one in answers:
         if one["status"] == "diverged":
             canvas.warning(ghenv, one["message"])

@@ -152,6 +152,7 @@ class Player(object):
             self._go_on_from(session)
         if not self._met:
             self._recall(session)
+        before = self.anchors
         scene = wanted.scene(self._held(wanted))
         form = compose.structure(scene)
         answer, new = None, self.sent is None or form != self.form
@@ -164,7 +165,11 @@ class Player(object):
                     raise
                 new = True  # what cannot be patched after all is a new scene
         if new:
-            answer = session.put(scene, query={"label": self.title[:200]})
+            try:
+                answer = session.put(scene, query={"label": self.title[:200]})
+            except Problem:
+                self.anchors = before  # a scene that is refused gives no anchor a home
+                raise
             self.topology = dict(link.unpacked(session.read("topology", arrays="buffer")), mark=form)
         answer = self._set_going(session, wanted, new) or answer
         self.sent, self.form, self.where = scene, form, compose.places(scene)

@@ -203,6 +203,7 @@ def compose(forces, anchors, setting, carried, lengths=None):
     rides = [dict(one, mesh=shared(link.packed(one["mesh"]))) if "mesh" in one else dict(one) for one in carried]
     setting = setting or {"units": {}, "settings": {}}
     scene = {"forces": made, "geometry": rides, "meshes": meshes, "settings": setting["settings"]}
+    scene["strict"] = False  # people drag points: what meets no particle is a warning on the component
     scene["units"] = dict({"length": lengths} if lengths else {}, **setting["units"])
     if "weld_tolerance" in setting:
         scene["weld_tolerance"] = setting["weld_tolerance"]

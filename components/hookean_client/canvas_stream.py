@@ -24,7 +24,7 @@ def stream(ghenv, forces, anchors, settings, rides, file, column, force, scale, 
     found = Stream()
 
     def work():
-        scene, step, makers = moments.setup(ghenv, forces, anchors, settings, rides)
+        scene, step, makers, words = moments.setup(ghenv, forces, anchors, settings, rides)
         rows = _table(canvas_file.file_of(ghenv, _first(file, "_file")), str(_first(column, "_column")))
         loads = _loads(rows, geometry.point(_first(scale, "_scale")), float((listed(power) or [1.0])[0]))
         number = _number(scene, str(_first(force, "_force")))
@@ -42,7 +42,7 @@ def stream(ghenv, forces, anchors, settings, rides, file, column, force, scale, 
         shapes = [[make(place) for make, place in zip(makers, state["geometry"])] for state in states]
         found.geometry = geometry.to_tree([("{%d}" % i, row) for i, row in enumerate(shapes)])
         found.report = ["%d frames of %g time, %d rows." % (len(states), pieces * step, len(rows))]
-        for sentence in states[0]["report"]["warnings"]:
+        for sentence in words(states[0]["report"]):
             canvas.warning(ghenv, sentence)
 
     canvas._told(ghenv, work)

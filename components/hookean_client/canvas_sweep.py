@@ -107,8 +107,8 @@ class Sweep(object):
 class Wanted(object):
     """The inputs of a sweep, read: its items as patches, by name the values of each, and the request."""
 
-    def __init__(self, scene, names, columns):
-        self.scene, self.names, self.columns = scene, names, columns
+    def __init__(self, scene, names, columns, placed):
+        self.scene, self.names, self.columns, self.placed = scene, names, columns, placed
         self.falls = None  # why its form falls freely, once the service has taken it
         self.patches = [_patch(names, values) for values in zip(*columns)]
         self.body = compose.text({"scene": scene, "sweep": {"patches": self.patches}}).encode("ascii")
@@ -152,7 +152,8 @@ def _wanted(ghenv, forces, anchors, settings, scene, parameters, values, mode):
         said = "values: %d branches for %d parameters; give a branch of values for each parameter"
         raise Unfit(said % (len(rows), len(names)))
     columns = _columns(rows, tools.word(mode, ("product", "zip"), "mode"))
-    return Wanted(_scene(ghenv, forces, anchors, settings, scene), names, columns)
+    made, placed = _scene(ghenv, forces, anchors, settings, scene)
+    return Wanted(made, names, columns, placed)
 
 
 def _parameter(item):
@@ -198,7 +199,8 @@ def _patch(names, values):
 
 
 def _scene(ghenv, forces, anchors, settings, scene):
-    """The scene of the engine's inputs, or the one that is given as text."""
+    """The scene of the engine's inputs, or the one that is given as text; and what puts the names of components into a
+    sentence on it."""
     given, texts = listed(scene), listed(forces)
     if given and texts:
         raise Unfit("a scene and forces are connected; connect one of them")
@@ -209,7 +211,7 @@ def _scene(ghenv, forces, anchors, settings, scene):
             found = None
         if not isinstance(found, dict):
             raise Unfit("scene: it is no JSON text of a scene")
-        return found
+        return found, lambda said: said
     if not texts:
         raise compose.missing("_forces is missing; connect the outputs of force components, or a scene")
     from . import canvas_engine as engine
@@ -219,7 +221,8 @@ def _scene(ghenv, forces, anchors, settings, scene):
     ]
     setting = compose.read(settings, "settings", "settings_")[-1:]
     read = compose.read([str(item) for item in texts], None, "_forces")
-    return compose.compose(read, held, setting[0] if setting else None, [], engine._length_unit())
+    made = compose.compose(read, held, setting[0] if setting else None, [], engine._length_unit())
+    return made, lambda said: engine.placed(read, held, said)
 
 
 # words and outputs
@@ -230,11 +233,15 @@ def _tell(ghenv, found):
     task, status = found.task, found.status
     if task is not None and task.done and task.problem is not None and not link.wants_server(task.problem):
         canvas.note(ghenv, "refused")
-        canvas.error(ghenv, link.plainly(task.trouble.replace("/sweep/forces/", "/").replace("/scene/", "/")))
+        said = task.trouble.replace("/scene/", "/")
+        said = found.wanted.placed(said) if found.wanted is not None else said
+        canvas.error(ghenv, link.plainly(said.replace("/sweep/forces/", "/")))
         return
     trouble = task.trouble if task is not None else None
     if trouble:
         (canvas.remark if task.patient else canvas.warning)(ghenv, trouble)
+    for sentence in found.rows.get("warnings", ()) if found.ours and found.rows else ():
+        canvas.warning(ghenv, link.plainly(found.wanted.placed(sentence)))
     if found.settled:
         told = "off" if found.wanted is None else "%d of %d" % (status["done"], status["total"])
         canvas.note(ghenv, told)

@@ -111,17 +111,17 @@ def _report(ghenv, answer, falls):
     told = answer["report"]
     lines = [answer["message"]]
     lines += ["%d coordinates are one particle with another one." % told["merged"]] if told["merged"] else []
-    worth = ([falls] if falls else []) + list(told["warnings"]) + [_unmatched(one) for one in told["unmatched"]]
+    worth = ([falls] if falls else []) + list(told["warnings"]) + [_missed(one) for one in told["missed"]]
     for sentence in worth + ([answer["message"]] if answer["status"] != "converged" else []):
         canvas.warning(ghenv, sentence)
     canvas.note(ghenv, answer["status"].replace("_", " "))
     return "\n".join(lines + worth)
 
 
-def _unmatched(one):
-    """A sentence on an anchor or load that meets no particle."""
-    said = "%s at (%s) meets no vertex; the nearest is %.6g away. Move it there, or raise the tolerance."
-    return said % (one["name"] or one["pointer"], ", ".join("%.6g" % c for c in one["point"]), one["distance"])
+def _missed(one):
+    """A sentence on an anchor or load with points that met no particle, by its name if it has one."""
+    said = one["message"].partition(": ")[2] if one["name"] else one["message"]
+    return said.replace("weld_tolerance", "the tolerance in Settings") + "."
 
 
 def _force(ghenv, made, name):

@@ -190,7 +190,7 @@ def home(system: System, held: Held, pointer: str) -> Floats:
         return system.x[held.particles]
     at = anchor.particles
     if at is None:
-        at = system.places.meet(np.asarray(anchor.points), "", silent=True)
+        at = system.places.meet(np.asarray(anchor.points))
     rows = {int(particle): row for row, particle in enumerate(at)}
     return np.asarray(anchor.targets)[[rows[int(particle)] for particle in held.particles]]
 

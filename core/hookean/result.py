@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from hookean.balance import LOADED, OUT, Balance
 from hookean.equilibrium import Equilibrium, Stability, unknown
 from hookean.forces import KINDS
+from hookean.report import Report
 from hookean.state import State
 from hookean.system import System
 from hookean.units import Units
-from hookean.weld import Report
 
 Floats = NDArray[np.float64]
 
@@ -114,6 +114,7 @@ class Result:
                 }
                 for u in self.report.unmatched
             ],
+            "missed": [{**asdict(m), "point": list(m.point), "message": m.warning} for m in self.report.missed],
             "warnings": list(self.report.warnings),
         }
         return {

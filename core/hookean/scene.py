@@ -22,7 +22,7 @@ from hookean.columns import (
     Positives,
     fault,
 )
-from hookean.errors import InputError
+from hookean.errors import InputError, several
 from hookean.forces import KINDS, Force
 from hookean.forces.floor import Floor
 from hookean.solvers import NAMES
@@ -147,7 +147,9 @@ class Scene(Model, metaclass=Told):
 
     units: Units = Field(default=Units(), description="Units of all numbers")
     weld_tolerance: float = Field(default=0.001, ge=0, description="Coordinates this near are one particle [length]")
-    strict: bool = Field(default=False, description="Anchors and loads that meet no particle are errors")
+    strict: bool = Field(
+        default=True, description="Anchors and loads that meet no particle are errors; false: warnings"
+    )
     particles: Points = Field(
         default=np.zeros((0, 3)), description="Start positions [length]; never merged or renumbered"
     )
@@ -346,11 +348,8 @@ def _inside(hint: Any, step: Any) -> list[Any]:
 
 
 def first_fault(error: ValidationError) -> InputError:
-    """The first fault of a validation error; its sentence says how many more there are."""
-    found = faults(error)
-    if len(found) > 1:
-        return InputError(found[0].pointer, f"{found[0].sentence} (and {len(found) - 1} more faults)")
-    return found[0]
+    """The faults of a validation error as one; its sentence is the first one and has how many more there are."""
+    return several(faults(error))
 
 
 __all__ = ["Anchor", "Force", "Geometry", "MeshData", "Scene", "Settings", "Units", "faults", "first_fault"]

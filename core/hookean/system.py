@@ -12,9 +12,10 @@ from hookean import components, kernels
 from hookean.components import Components
 from hookean.errors import InputError
 from hookean.forces import Block, Force
+from hookean.report import Report
 from hookean.scene import Scene
 from hookean.state import State
-from hookean.weld import Report, Welded, fits
+from hookean.weld import Welded, fits
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -234,6 +235,7 @@ def compile(scene: Scene) -> System:
     else:
         mass[:] = scene.masses
     held = _anchors(welded)
+    welded.report.settle(strict=scene.strict, held=any(len(anchor.particles) for anchor in held))
     carried = [_carried(welded, i) for i in range(len(scene.geometry))]
     system = System(scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded, load_count)
     system.drag = scene.settings.drag
@@ -248,6 +250,7 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
         pointer = f"/forces/{number}" if number >= 0 else "/settings/floor"
         fits(force, pointer, welded)
         block = force.compile(welded)
+        welded.check_force(force, pointer)
         inputs = np.arange(len(block.indices))
         if block.indices.min(initial=0) < 0:
             inputs = np.flatnonzero((block.indices >= 0).all(axis=1))
@@ -278,7 +281,9 @@ def _anchors(welded: Welded) -> list[Held]:
         if anchor.particles is not None:
             particles = np.asarray(anchor.particles)
         else:
-            particles = welded.meet(np.asarray(anchor.points), f"/anchors/{i}/points", anchor.name)
+            points = np.asarray(anchor.points)
+            particles = welded.meet(points)
+            welded.check(f"/anchors/{i}/points", anchor.name, points, particles, "point", "anchor")
         met = particles >= 0
         targets = welded.x[particles] if anchor.targets is None else np.asarray(anchor.targets)
         free = np.array([0.0 if axis in anchor.axes else 1.0 for axis in "xyz"])
@@ -292,10 +297,9 @@ def _carried(welded: Welded, number: int) -> Ints:
     if item.particles is not None:
         return np.asarray(item.particles)
     if item.mesh is not None:
-        return welded.vertices(item.mesh)
-    points = np.asarray(item.points if item.points is not None else item.lines)
-    name = "points" if item.points is not None else "lines"
-    found = welded.meet(points.reshape(-1, 3), f"/geometry/{number}/{name}", item.name, silent=True)
+        found = welded.vertices(item.mesh)
+    else:
+        found = welded.meet(np.asarray(item.points if item.points is not None else item.lines).reshape(-1, 3))
     if (found < 0).any():
         welded.report.warnings.append(
             f"/geometry/{number}: {int((found < 0).sum())} of {len(found)} points meet no particle and stay in place"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,55 +16,11 @@ from hookean.errors import InputError
 from hookean.forces import Block, Force
 from hookean.forces.base import PLACES
 from hookean.mesh import Mesh
+from hookean.report import Missed, Report, Unmatched
 from hookean.scene import Scene
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-MOST_TOLD = 10  # points that meet no particle, told one by one
-
-
-@dataclass(frozen=True)
-class Unmatched:
-    """An anchor or load that met no particle: where it stands, and the nearest particle with its distance."""
-
-    pointer: str
-    name: str
-    point: tuple[float, float, float]
-    nearest: int
-    distance: float
-
-    @property
-    def sentence(self) -> str:
-        """One line for a person."""
-        if self.nearest < 0:
-            return f"{self.pointer}: no particle here, nor anywhere else in the scene"
-        spot = ", ".join(f"{c:.6g}" for c in self.point)
-        return (
-            f"{self.pointer}: no particle at ({spot}); the nearest is particle {self.nearest}, {self.distance:.6g} "
-            "away. Move the point onto it, or raise weld_tolerance"
-        )
-
-
-@dataclass
-class Report:
-    """What was done to the description on the way to particles, and what a person should know before solving."""
-
-    merged: int = 0
-    unmatched: list[Unmatched] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-    beside: int = 0
-    """Coordinates that lay beside a particle and were moved onto it."""
-
-    def sentences(self) -> list[str]:
-        """What a person should know: warnings, the first few of what met no particle, what was moved onto one."""
-        said = [*self.warnings, *(unmatched.sentence for unmatched in self.unmatched[:MOST_TOLD])]
-        if len(self.unmatched) > MOST_TOLD:
-            said.append(f"and {len(self.unmatched) - MOST_TOLD} more points meet no particle")
-        if self.beside:
-            what = "1 coordinate was" if self.beside == 1 else f"{self.beside} coordinates were"
-            said.append(f"{what} moved onto a particle nearby, within weld_tolerance")
-        return said
 
 
 class Welded:
@@ -136,7 +92,7 @@ class Welded:
             points = getattr(force, name, None)
             if points is not None:
                 if id(force) not in self._rows:
-                    self._rows[id(force)] = self.meet(points, f"{pointer}/{name}", force.name)
+                    self._rows[id(force)] = self.meet(points)
                 rows = self._rows[id(force)]
                 flat = rows.reshape(len(points), -1) if len(points) else np.zeros((0, arity), np.int64)
                 return self._checked(flat, arity, f"{pointer}/{name}")
@@ -193,7 +149,7 @@ class Welded:
     def vertices(self, mesh: str) -> Ints:
         """Particles of a mesh's vertices `(n,)`; -1 where one met none."""
         if mesh not in self._meshes:
-            self._meshes[mesh] = self.meet(self.scene.meshes[mesh].vertices, f"/meshes/{mesh}/vertices", mesh)
+            self._meshes[mesh] = self.meet(self.scene.meshes[mesh].vertices)
         return self._meshes[mesh]
 
     def faces(self, name: str) -> Ints:
@@ -207,37 +163,67 @@ class Welded:
             raise InputError("/meshes", f"mesh {name!r} does not exist; the scene has {known}")
         return self.scene.meshes[name].vertices, self.scene.meshes[name].faces
 
-    def meet(self, points: Floats, pointer: str, name: str = "", *, silent: bool = False) -> Ints:
-        """The particle of each point: the first within the tolerance, as welding has it; else -1, and a line in the
-        report names the nearest."""
+    def meet(self, points: Floats) -> Ints:
+        """The particle of each point: the first within the tolerance, as welding has it; -1 where there is none."""
         flat = points.reshape(-1, 3)
-        if not len(self.x) or not len(flat):
-            distance, nearest = np.full(len(flat), np.inf), np.full(len(flat), -1)
-        else:
+        found = np.full(len(flat), -1, dtype=np.int64)
+        if len(self.x) and len(flat):
             distances, which = self._tree.query(flat, k=2, distance_upper_bound=_bound(self.tolerance))
-            lost = distances[:, 0] > self.tolerance  # no bound for these: the report names the nearest
-            distances[lost], which[lost] = self._tree.query(flat[lost], k=2)
-            distance, nearest = distances[:, 0], which[:, 0]
+            met = distances[:, 0] <= self.tolerance
+            found[met] = which[met, 0]
             # where more than one is near enough, the first one wins
             for i in np.flatnonzero(distances[:, 1] <= self.tolerance):
-                nearest[i] = min(self._tree.query_ball_point(flat[i], self.tolerance))
-        missed = distance > self.tolerance
-        if not silent:
-            for i in np.flatnonzero(missed):
-                spot = tuple(float(c) for c in flat[i])
-                self._miss(Unmatched(f"{pointer}/{i}", name, spot, int(nearest[i]), float(distance[i])))  # type: ignore[arg-type]
-        found = np.where(missed, -1, nearest).astype(np.int64)
+                found[i] = min(self._tree.query_ball_point(flat[i], self.tolerance))
         return np.ascontiguousarray(found.reshape(points.shape[:-1]))
+
+    def check_force(self, force: Force, pointer: str) -> None:
+        """Report the points, lines or vertices of a force that met no particle."""
+        kinds: tuple[tuple[str, Literal["point", "line"]], ...] = (("points", "point"), ("lines", "line"))
+        for name, what in kinds:
+            points = getattr(force, name, None)
+            if points is not None and id(force) in self._rows:
+                self.check(f"{pointer}/{name}", force.name, points, self._rows[id(force)], what, force.role)
+        mesh = getattr(force, "mesh", None)
+        if mesh is not None and (self.vertices(mesh) < 0).any():
+            data, found = self.scene.meshes[mesh], self.vertices(mesh)
+            used = np.arange(len(found)) if force.element_arity == 1 else np.unique(data.faces)
+            at = [f"/meshes/{mesh}/vertices/{v}" for v in used]
+            self.check(f"{pointer}/mesh", force.name, data.vertices[used], found[used], "vertex", force.role, at)
+
+    def check(
+        self,
+        pointer: str,
+        name: str,
+        points: Floats,
+        found: Ints,
+        what: Literal["point", "line", "vertex"],
+        role: str,
+        at: Sequence[str] = (),
+    ) -> None:
+        """Report which of the `points` of a force or anchor met no particle: where `found` is -1.
+
+        `at` are the pointers of the points, where these are not below `pointer`.
+        """
+        lost = found < 0
+        if not lost.any():
+            return
+        distance, nearest = (column.ravel() for column in self._tree.query(points[lost], k=1))
+        spots = [tuple(row) for row in points[lost].tolist()]
+        least = int(np.argmin(distance))
+        counts = int(np.count_nonzero(lost.reshape(len(lost), -1).any(axis=1))), len(lost)
+        unit = self.scene.units.length
+        self.report.missed.append(
+            Missed(pointer, name, role, what, *counts, spots[least], float(distance[least]), unit)
+        )
+        known = {unmatched.pointer for unmatched in self.report.unmatched}  # two forces may name the same mesh
+        for place, spot, i, away in zip(np.argwhere(lost).tolist(), spots, nearest, distance, strict=True):
+            where = at[place[0]] if at else "/".join([pointer, *map(str, place)])
+            if where not in known:
+                self.report.unmatched.append(Unmatched(where, name, spot, int(i), float(away)))
 
     @cached_property
     def _tree(self) -> Any:
         return near.tree(self.x)
-
-    def _miss(self, unmatched: Unmatched) -> None:
-        if self.scene.strict:
-            pointer, sentence = unmatched.sentence.split(": ", 1)
-            raise InputError(pointer, sentence)
-        self.report.unmatched.append(unmatched)
 
 
 def weld(given: Floats, points: Floats, tolerance: float) -> tuple[Floats, Ints]:

@@ -51,8 +51,7 @@ def relaxed(inputs: Inputs, scene: dict[str, Any], cancelled: Cancelled) -> Any:
     from hookean.scene import Scene
 
     settings = {"tolerance": 1e-9, **scene.get("settings", {}), "time_limit": inputs.seconds}
-    common = {"units": {"length": inputs.units}, "weld_tolerance": inputs.tolerance}
-    result = relax(Scene.model_validate({**common, **scene, "settings": settings}), cancelled=cancelled)
+    result = relax(Scene.model_validate({**_common(inputs), **scene, "settings": settings}), cancelled=cancelled)
     if result.status in ("time_limit", "cancelled"):
         raise out_of_time(inputs)
     inputs.warnings += remarks(result)
@@ -64,8 +63,7 @@ def moved(inputs: Inputs, scene: dict[str, Any], until: float, cancelled: Cancel
     from hookean.scene import Scene
     from hookean.simulation import Simulation
 
-    common = {"units": {"length": inputs.units}, "weld_tolerance": inputs.tolerance}
-    running = Simulation(Scene.model_validate({**common, **scene}))
+    running = Simulation(Scene.model_validate({**_common(inputs), **scene}))
     settings = running.scene.settings
     frames = round(until / (settings.time_step * settings.sub_iterations))
     stop = time.monotonic() + inputs.seconds
@@ -77,7 +75,7 @@ def moved(inputs: Inputs, scene: dict[str, Any], until: float, cancelled: Cancel
     result = running.result()
     if result.status == "diverged":
         inputs.warnings.append(result.message)
-    inputs.warnings += list(result.report.warnings)[:5]
+    inputs.warnings += _notes(result)
     return result
 
 
@@ -90,7 +88,16 @@ def out_of_time(inputs: Inputs) -> Problem:
 def remarks(result: Any) -> list[str]:
     """What a person should know of a result."""
     said = [] if result.converged else [result.message]
-    return said + [u.sentence for u in result.report.unmatched][:5] + list(result.report.warnings)[:5]
+    return said + _notes(result)
+
+
+def _common(inputs: Inputs) -> dict[str, Any]:
+    """What all scenes have; people drag points on a canvas, so one that meets no particle is a warning."""
+    return {"units": {"length": inputs.units}, "weld_tolerance": inputs.tolerance, "strict": False}
+
+
+def _notes(result: Any) -> list[str]:
+    return [*result.report.left_out()[:5], *result.report.warnings[:5]]
 
 
 def common(result: Any, *names: str) -> dict[str, Any]:

@@ -150,7 +150,12 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         iterations={"type": "integer"},
         time=_NUMBER,
         solver={"type": "string"},
-        report=_object(merged={"type": "integer"}, unmatched={"type": "array"}, warnings={"type": "array"}),
+        report=_object(
+            merged={"type": "integer"},
+            unmatched={"type": "array", "description": "Each point of an anchor or load that met no particle"},
+            missed={"type": "array", "description": "Each force and anchor with such points: count, total, message"},
+            warnings={"type": "array"},
+        ),
         units={"$ref": "#/components/schemas/Units"},
     ),
 }

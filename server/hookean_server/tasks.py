@@ -51,7 +51,7 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
     except Problem as problem:
         return _failed(problem), b""
     except InputError as error:
-        return _failed(faulty(slug, [error])), b""
+        return _failed(faulty(slug, list(error.faults))), b""
     except ValidationError as error:
         return _failed(faulty(slug, faults(error))), b""
     except RecursionError:

@@ -113,7 +113,7 @@ def test_what_does_not_fit_is_one_sentence(told: dict[str, Any]) -> None:
         assert found == level and sentence in said, (name, said)
     status, _, report, messages = told["faults"]["an anchor beside"]
     assert status == "converged" and [level for level, _ in messages] == ["Warning"]
-    assert "at (9, 9, 9) meets no vertex" in messages[0][1] and messages[0][1] in report
+    assert "its point met no particle; the nearest is" in messages[0][1] and messages[0][1] in report
 
 
 @pytest.mark.parametrize("version", ["2.7", "3.9", "3.13"])

@@ -275,8 +275,8 @@ def test_points_that_meet_no_particle_are_named_and_drawn(home: Home) -> None:
     cable.run()
     [said] = sentences(cable.engine, "Warning")
     assert said == (
-        "Anchor 2 of anchors_, branch {0}: no particle at (5.3, 0, 0); the nearest is particle 5, 0.3 away. Move the "
-        "point onto it, or raise the tolerance in Settings."
+        "Anchor 2 of anchors_, branch {0}: its point met no particle; the nearest is 0.3 m away from (5.3, 0, 0), so "
+        "nothing is held there. Move it onto a particle or raise the tolerance in Settings."
     )
     assert said in cable.out.report
     display = canvas_draw._displays[cable.player.key]
@@ -285,6 +285,31 @@ def test_points_that_meet_no_particle_are_named_and_drawn(home: Home) -> None:
     cable.anchors[2] = point(5, 0, 0)  # put onto one, it holds that one
     cable.run()
     assert close(cable.at(5), (5, 0, 0)) and not sentences(cable.engine)
+
+
+def test_a_load_is_one_sentence_and_anchors_of_which_none_meets_are_an_error(home: Home) -> None:
+    """The net goes on without loads that miss; without any anchor it is refused until one is put onto a particle."""
+    cable = Cable()
+    cable.count = 4
+    cable.anchors = [point(0, 0, 0), point(4, 0, 0)]
+    wide = Cable(cable.bench)
+    cable.forces = lambda: [Cable.forces(cable)[0], Cable.forces(wide)[1]]  # type: ignore[method-assign]
+    cable.run()
+    [said] = sentences(cable.engine, "Warning")
+    assert said == (
+        "Load: 6 of 11 points met no particle; the nearest is 1 m away from (5, 0, 0), so that part of the load is "
+        "left out. Move them onto particles or raise the tolerance in Settings."
+    )
+    assert cable.out.status.startswith("In equilibrium")
+    astray = Cable()
+    astray.anchors = [point(0.5, 0, 0), point(9.5, 0, 0)]
+    astray.run(lambda out: bool(sentences(astray.engine, "Error")))
+    [said] = sentences(astray.engine, "Error")
+    assert said.startswith("Anchor 0 of anchors_, branch {0}: its point met no particle; the nearest is 0.5 m away")
+    assert "No anchor holds anything: move it onto a particle or raise the tolerance in Settings (and 1 more" in said
+    astray.anchors = [point(0, 0, 0), point(10, 0, 0)]
+    astray.run()
+    assert not sentences(astray.engine) and astray.out.reactions.Branch(0)[0] is not None
 
 
 def test_forces_are_drawn_in_colours_with_a_legend(home: Home) -> None:

@@ -83,7 +83,7 @@ def test_shapes_are_the_frames_of_the_simulation(home: Home) -> None:
         ({"_times": [-1.0]}, "Error", "-1 is before the start"),
         ({"_times": ["soon"]}, "Error", '_times: the text "soon" is no number'),
         ({"solver": "newton"}, "Error", "newton has no time; moments need verlet or yoshida"),
-        ({"anchor": (9, 9, 9)}, "Warning", "no particle at (9, 9, 9)"),
+        ({"anchor": (9, 9, 9)}, "Warning", "its point met no particle; the nearest is"),
     ],
 )
 def test_what_does_not_fit_is_one_sentence(home: Home, change: dict[str, Any], level: str, said: str) -> None:

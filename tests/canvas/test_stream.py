@@ -83,6 +83,18 @@ def test_frames_are_those_of_the_simulation(home: Home, tmp_path: Path) -> None:
     assert len(largest["{0}"]) == 11 and max(largest["{0}"]) > 0
 
 
+def test_an_anchor_that_meets_no_particle_is_a_warning(home: Home, tmp_path: Path) -> None:
+    """The motion goes on with the anchors that did meet."""
+    (tmp_path / "wind.csv").write_text(TABLE)
+    bench = Bench(str(tmp_path / "sail.gh"))
+    placed, given = Placed("Stream", bench), cable(bench)
+    given["anchors_"] = [*given["anchors_"], point(1, 0, 5)]
+    found = placed.run(**given, _file=["wind.csv"])
+    [sentence] = sentences(placed.ghenv, "Warning")
+    assert sentence.startswith("Anchor 2 of anchors_, branch {0}: its point met no particle; the nearest is 5 m away")
+    assert found["times"] is not None
+
+
 @pytest.mark.parametrize(
     ("change", "level", "said"),
     [

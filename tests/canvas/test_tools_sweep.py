@@ -103,6 +103,20 @@ def test_every_value_with_every_other(home: Home) -> None:
     assert text[1].startswith("0, 500.0, 0.0 0.0 -20.0, converged, ") and len(text) == 5
 
 
+def test_loads_and_anchors_that_meet_no_particle_are_warnings_or_an_error(home: Home) -> None:
+    """As on the engine: a sentence for each, by the names of components; none of the anchors met is an error."""
+    bench = Bench()
+    placed, given = Placed("Sweep", bench), cable(bench)
+    given |= {"_parameters": ["Springs.stiffness"], "_values": [500.0, 1000.0], "_run": True}
+    some = placed.run(**given | {"anchors_": [*given["anchors_"], point(3, 0, 0)]})
+    [sentence] = sentences(placed.ghenv, "Warning")
+    assert sentence.startswith("Anchor 2 of anchors_, branch {0}: its point met no particle; the nearest is 1 m away")
+    assert some["statuses"] == ["converged"] * 2
+    none = Placed("Sweep", bench)
+    none.run(**given | {"anchors_": [point(3, 0, 0)]}, until=lambda found: bool(sentences(none.ghenv, "Error")))
+    assert sentences(none.ghenv, "Error")[0].startswith("Anchor 0 of anchors_, branch {0}: its point met no particle")
+
+
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.lists(st.integers(), min_size=1, max_size=4), min_size=1, max_size=4))
 def test_items_are_counted_with_the_last_parameter_fastest(rows: list[list[int]]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hookean import Scene, Simulation, relax, simulate
+from hookean import InputError, Scene, Simulation, relax, simulate
 from samples import cable
 
 
@@ -58,10 +58,12 @@ def test_anchor_dragged_away_and_back_returns_to_the_first_equilibrium():
 
 
 def test_anchor_that_meets_no_particle_is_told_with_the_nearest():
-    """9.3: an anchor drawn in the middle of a spring has no influence; here it is reported, not silent."""
+    """9.3: an anchor drawn in the middle of a spring has no influence; here it is an error, or reported, not silent."""
     base = cable().model_dump(exclude={"anchors"})
     anchors = [{"particles": [0, 5]}, {"name": "mid", "points": [[5.0, 0, 0]]}]
-    result = relax(Scene(**base, anchors=anchors))
+    with pytest.raises(InputError, match=r"^/anchors/1/points: mid: its point met no particle"):
+        relax(Scene(**base, anchors=anchors))
+    result = relax(Scene(**{**base, "strict": False}, anchors=anchors))
     (unmatched,) = result.report.unmatched
     assert (unmatched.pointer, unmatched.name) == ("/anchors/1/points/0", "mid")
     assert unmatched.nearest in (2, 3)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hookean import InputError, Scene
+from hookean import InputError, Scene, relax
 from hookean.system import compile
 from hookean.weld import weld
 
@@ -49,23 +49,130 @@ def test_welding_is_the_plain_greedy_rule(points: list[tuple[int, int, int]], to
 
 
 def test_loads_and_anchors_create_no_particles_and_are_told_when_they_miss():
-    """A warning by default with the nearest particle and its distance; an error with strict."""
+    """An error by default; with strict false the report has each point, with the nearest particle and its distance."""
     scene = {
+        "strict": False,
         "forces": [
             {"kind": "springs", "lines": lines((0, 1))},
             {"kind": "unary", "name": "wind", "points": [[1, 0, 0], [3, 4, 0]], "vector": [0, 0, 1]},
         ],
-        "anchors": [{"name": "foot", "points": [[0, 0, 0.5]]}],
+        "anchors": [{"name": "head", "particles": []}, {"name": "foot", "points": [[0, 0, 0.5], [1, 0, 0]]}],
     }
     system = compile(Scene.read(scene))
     assert len(system.x) == 2
     anchor, load = sorted(system.report.unmatched, key=lambda u: u.pointer)
-    assert (anchor.pointer, anchor.nearest, anchor.distance) == ("/anchors/0/points/0", 0, 0.5)
+    assert (anchor.pointer, anchor.nearest, anchor.distance) == ("/anchors/1/points/0", 0, 0.5)
     assert (load.pointer, load.name, load.nearest) == ("/forces/1/points/1", "wind", 1)
     assert load.distance == pytest.approx(np.hypot(2, 4))
     assert system.load_count.tolist() == [0, 1]
-    with pytest.raises(InputError, match="no particle at"):
-        compile(Scene.read({**scene, "strict": True}))
+    del scene["strict"]
+    with pytest.raises(InputError) as caught:
+        compile(Scene.read(scene))
+    load, anchor = caught.value.faults
+    assert (load.pointer, anchor.pointer) == ("/forces/1/points", "/anchors/1/points")
+    assert load.sentence == (
+        "wind: 1 of 2 points met no particle; the nearest is 4.47214 m away from (3, 4, 0). Move it onto a particle, "
+        "raise weld_tolerance, or set strict to false to go on with what did meet"
+    )
+    assert str(caught.value) == f"/forces/1/points: {load.sentence} (and 1 more fault)"
+
+
+def mesh(count: int) -> dict[str, object]:
+    """A square of 2 m in `count` x `count` faces."""
+    number = np.arange((count + 1) ** 2).reshape(count + 1, count + 1)
+    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
+    return {"vertices": np.argwhere(number >= 0) @ np.eye(2, 3) * 2.0 / count, "faces": faces}
+
+
+def blown(**more: object) -> dict[str, object]:
+    """A net in 4 x 4 faces, and wind on the same square in 7 x 7: of its 64 vertices only the corners meet."""
+    forces = [
+        {"kind": "springs", "mesh": "net", "stiffness": 100.0},
+        {"kind": "pressure", "name": "wind", "mesh": "other", "pressure": 5.0},
+        {"kind": "self_weight", "mesh": "other", "total": 6.4},
+    ]
+    corners = [{"points": [[0, 0, 0], [2, 0, 0], [0, 2, 0], [2, 2, 0]]}]
+    return {"meshes": {"net": mesh(4), "other": mesh(7)}, "forces": forces, "anchors": corners, **more}
+
+
+def test_a_load_of_another_division_is_an_error_with_one_sentence_for_each_force():
+    """Vertices at 2 i / 7 and at j / 2 m meet at the corners; the smallest distance is 4 / 7 - 1 / 2 = 1 / 14 m."""
+    with pytest.raises(InputError) as caught:
+        relax(Scene.read(blown()))
+    wind, weight = caught.value.faults
+    assert (wind.pointer, weight.pointer) == ("/forces/1/mesh", "/forces/2/mesh")
+    said = "60 of 64 vertices met no particle; the nearest is 0.0714286 m away from (0, 0.571429, 0)"
+    assert wind.sentence.startswith(f"wind: {said}") and weight.sentence.startswith(said)
+
+
+def test_it_goes_on_with_what_did_meet_where_strict_is_false():
+    """The same sentences are warnings; of 6.4 N on 64 vertices each corner has its 0.1 N, and the rest is left out."""
+    result = relax(Scene.read(blown(strict=False)))
+    wind, weight = result.report.left_out()
+    assert wind.startswith("/forces/1/mesh: wind: 60 of 64 vertices met no particle; the nearest is 0.0714286 m away")
+    assert "so that part of the load is left out" in wind and weight.startswith("/forces/2/mesh: 60 of 64")
+    assert [(m.count, m.total) for m in result.report.missed] == [(60, 64)] * 2
+    assert len(result.report.unmatched) == 60  # each point once, though two forces name the mesh
+    assert not result.report.warnings and result.to_dict()["report"]["missed"][0]["message"] == wind
+    assert result.force("self_weight")["force"] == pytest.approx(np.tile([0, 0, -0.1], (4, 1)), abs=1e-15)
+    assert result.force("self_weight")["particles"].tolist() == [[0], [4], [20], [24]]
+
+
+@pytest.mark.parametrize("strict", [True, False])
+def test_anchors_of_which_none_meets_are_an_error_always(strict: bool):
+    """There are anchors, so something was to be held; strict false cannot mean that nothing is."""
+    stray = [{"name": "a", "points": [[0, 0, 0.5]]}, {"name": "b", "points": [[2, 0, 1], [2, 2, 1]]}]
+    net = {"meshes": {"net": mesh(4)}, "forces": [{"kind": "springs", "mesh": "net"}], "strict": strict}
+    with pytest.raises(InputError) as caught:
+        compile(Scene.read({**net, "anchors": stray}))
+    assert [fault.pointer for fault in caught.value.faults] == ["/anchors/0/points", "/anchors/1/points"]
+    assert caught.value.faults[0].sentence == (
+        "a: its point met no particle; the nearest is 0.5 m away from (0, 0, 0.5). No anchor holds anything: move it "
+        "onto a particle or raise weld_tolerance"
+    )
+    one_meets = {**net, "anchors": [*stray, {"particles": []}, {"points": [[2, 2, 0]]}], "strict": False}
+    assert len(compile(Scene.read(one_meets)).report.missed) == 2
+    compile(Scene.read({**net, "anchors": []}))
+    compile(Scene.read({**net, "anchors": [{"particles": []}]}))
+
+
+def test_lines_are_counted_as_lines_and_their_ends_pointed_at():
+    """A weight per length on two lines, one of which has an end off the cable."""
+    scene = {
+        "forces": [
+            {"kind": "springs", "lines": lines((0, 1), (1, 2))},
+            {"kind": "self_weight", "name": "own", "lines": lines((0, 1), (1, 2.25)), "per_length": 4.0},
+        ]
+    }
+    with pytest.raises(InputError, match=r"own: 1 of 2 lines met no particle; the nearest is 0\.25 m away") as caught:
+        compile(Scene.read(scene))
+    assert caught.value.pointer == "/forces/1/lines"
+    system = compile(Scene.read({**scene, "strict": False}))
+    assert [unmatched.pointer for unmatched in system.report.unmatched] == ["/forces/1/lines/1/1"]
+    assert system.groups[1].block.parameters[:, 2].tolist() == [-2, -2]  # the line that met, and no other
+
+
+def test_geometry_that_meets_no_particle_stays_and_is_a_warning():
+    """Strict or not: points, and a mesh, that ride along act on nothing."""
+    scene = blown(geometry=[{"kind": "mesh", "mesh": "other"}, {"kind": "points", "points": [[0, 0, 0], [9, 9, 9]]}])
+    scene["forces"] = scene["forces"][:1]
+    system = compile(Scene.read(scene))
+    assert system.report.warnings == [
+        "/geometry/0: 60 of 64 points meet no particle and stay in place",
+        "/geometry/1: 1 of 2 points meet no particle and stay in place",
+    ]
+    assert not system.report.missed
+
+
+def test_many_anchors_that_miss_are_a_few_sentences():
+    """An anchor for each of 40 points, 38 of which miss: ten sentences and how many more there are."""
+    anchors = [{"points": [[i, 0, 0]]} for i in range(40)]
+    scene = {"forces": [{"kind": "springs", "lines": lines((0, 1))}], "anchors": anchors}
+    said = compile(Scene.read({**scene, "strict": False})).report.sentences()
+    assert len(said) == 11 and said[0].startswith("/anchors/2/points: its point met no particle; the nearest is 1 m")
+    assert said[10] == "points of 28 more forces or anchors met no particle"
+    with pytest.raises(InputError, match=r"\(and 37 more faults\)$"):
+        compile(Scene.read(scene))
 
 
 def test_columns_must_fit_their_elements():

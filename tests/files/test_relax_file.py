@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -319,9 +320,27 @@ def test_lines_drawn_twice_and_anchors_that_miss_are_told(tmp_path: Path) -> Non
         tmp_path / "a.3dm", [NewObject(LINE, "cable"), NewObject(LINE[::-1], "cable"), NewObject(LINE[0] + 3, "masts")]
     )
     recipe = '[[forces]]\nkind = "springs"\nlines = "layer:cable"\n[[anchors]]\npoints = "*, ends:layer:cable"\n'
-    warnings = relax_file(source, None, recipe).warnings
+    missed = r"1 of 3 points met no particle; the nearest is 5.19615 m away from \(3, 3, 3\)"
+    with pytest.raises(InputError, match=rf"^r.toml /anchors/0/points: {missed}"):
+        relax_file(source, None, recipe, recipe_name="r.toml")
+    warnings = relax_file(source, None, "strict = false\n" + recipe).warnings
     assert any("1 element joins the same particles" in w for w in warnings)
-    assert any("no particle at (3, 3, 3)" in w for w in warnings)
+    assert any(re.match(f"/anchors/0/points: {missed}", w) for w in warnings)
+
+
+def test_a_file_read_by_its_layers_takes_the_rest_of_the_scene_from_a_recipe(tmp_path: Path) -> None:
+    """A stray anchor is an error with the file's name; `strict` and `weld_tolerance` alone keep the layers' meaning."""
+    there = [NewObject(LINE, "cables"), NewObject(LINE[0], "anchors"), NewObject(LINE[-1] + [0, 0, 0.1], "anchors")]
+    source = drawn(tmp_path / "a.3dm", there)
+    with pytest.raises(InputError, match=r"^a.3dm /anchors/0/points: anchors: 1 of 2 points met no particle; .* 0.1 m"):
+        relax_file(source)
+    found = relax_file(source, None, "strict = false", recipe_name="r.toml")
+    assert any("anchors: 1 of 2 points met no particle" in w for w in found.warnings)
+    assert len(found.result.reactions["particles"]) == 1
+    found = relax_file(source, None, "weld_tolerance = 0.2\n[settings]\nsolver = 'relaxation'", recipe_name="r.toml")
+    assert len(found.result.reactions["particles"]) == 2 and found.result.solver == "relaxation"
+    with pytest.raises(InputError, match=r"^r.toml /units: .*layer names decide, in m, N and s"):
+        relax_file(source, None, 'units = {length = "mm"}', recipe_name="r.toml")
 
 
 def test_seams_and_objects_of_a_joined_mesh_keep_their_ids(tmp_path: Path) -> None:

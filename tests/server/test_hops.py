@@ -268,7 +268,9 @@ def test_what_is_not_reached_is_a_warning(hops: httpx.Client) -> None:
     """An anchor that meets no line."""
     stray = cable(Anchors=branch("Rhino.Geometry.Point3d", point((0, 0, 0)), point((10, 0, 0)), point((5, 5, 5))))
     answer = hops.post("/solve", json=stray)
-    assert answer.status_code == 200 and "no particle at (5, 5, 5)" in answer.json()["warnings"][0]
+    assert answer.status_code == 200 and "1 of 3 points met no particle" in answer.json()["warnings"][0]
+    lost = hops.post("/solve", json=cable(Anchors=branch("Rhino.Geometry.Point3d", point((5, 5, 5)))))
+    assert lost.status_code == 422 and "No anchor holds anything" in lost.json()["errors"][0]
 
 
 def test_no_page_may_call(served: Served, hops: httpx.Client) -> None:

@@ -69,6 +69,7 @@ def test_a_large_net_is_the_same_to_the_bit(client: httpx.Client) -> None:
             {"kind": "unary", "points": vertices, "vector": [0, 0, 0.01]},
         ],
         "anchors": [{"points": [[0, 0, 0], [10, 0, 0], [0, 10, 0], [10, 10, 3]], "targets": None}],
+        "strict": False,
     }
     answer = client.post("/v1/relax", json=scene).json()
     assert answer == json.loads(json.dumps(relax(Scene.read(scene)).to_dict()))
@@ -114,10 +115,18 @@ def test_scenes_without_forces_are_scenes(client: httpx.Client) -> None:
         assert answer.json() == json.loads(json.dumps(relax(Scene.read(scene)).to_dict()))
 
 
-def test_a_load_that_meets_no_particle_is_in_the_report(client: httpx.Client) -> None:
-    scene = {**CABLE, "forces": [*CABLE["forces"], {"kind": "unary", "points": [[9, 9, 9]], "vector": [0, 0, 1]}]}
-    found = client.post("/v1/relax", json=scene).json()["report"]["unmatched"]
-    assert found[0]["pointer"] == "/forces/2/points/0"
+def test_loads_that_meet_no_particle_are_a_problem_or_in_the_report(client: httpx.Client) -> None:
+    """422 with each force by its pointer; with strict false the answer has their points, and a sentence for each."""
+    gusts = [
+        {"kind": "unary", "name": name, "points": [[0, 0, 0], [9, 9, 9]], "vector": [0, 0, 1]} for name in ("a", "b")
+    ]
+    scene = {**CABLE, "forces": [*CABLE["forces"], *gusts]}
+    errors = problem(client.post("/v1/relax", json=scene), 422, "invalid-scene")["errors"]
+    assert [error["pointer"] for error in errors] == ["/forces/2/points", "/forces/3/points"]
+    assert errors[1]["detail"].startswith("b: 1 of 2 points met no particle; the nearest is 12.7671 m away from (9, 9")
+    report = client.post("/v1/relax", json={**scene, "strict": False}).json()["report"]
+    assert report["unmatched"][0]["pointer"] == "/forces/2/points/1"
+    assert [(one["name"], one["count"], one["total"]) for one in report["missed"]] == [("a", 1, 2), ("b", 1, 2)]
 
 
 def test_answers_take_the_form_of_the_request(client: httpx.Client) -> None:

@@ -17,7 +17,7 @@ from hookean import Scene, Simulation, relax
 from hookean_server.sessions.wire import Shown, decode
 from serving import CABLE, wait_for
 
-from .conftest import Served
+from .conftest import Served, problem
 
 
 @pytest.fixture(scope="module")
@@ -253,8 +253,10 @@ def test_a_summary_says_what_a_person_should_know(client: httpx.Client) -> None:
     stiff = client.patch("/v1/sessions/a", json={"forces": {"0": {"stiffness": 1e9}}}).json()
     assert len(stiff["warnings"]) == 1 and "too large" in stiff["warnings"][0]
     assert client.patch("/v1/sessions/a", json={"forces": {"0": {"stiffness": 1000}}}).json()["warnings"] == []
-    astray = {**CABLE, "anchors": [{"particles": [0, 5]}, {"name": "post", "points": [[3, 0, 7]]}]}
-    assert ["the nearest is particle" in said for said in put(client, scene=astray)["warnings"]] == [True]
+    astray = {**CABLE, "strict": False, "anchors": [{"particles": [0, 5]}, {"name": "post", "points": [[3, 0, 7]]}]}
+    assert ["post: its point met no particle" in said for said in put(client, scene=astray)["warnings"]] == [True]
+    refused = client.put("/v1/sessions/b", json={**astray, "strict": True})
+    assert problem(refused, 422, "invalid-scene")["errors"][0]["pointer"] == "/anchors/1/points"
     lines = [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0.0005], [2, 0, 0]]]
     near = put(client, scene={"forces": [{"kind": "springs", "lines": lines}]})["warnings"]
     assert near == ["1 coordinate was moved onto a particle nearby, within weld_tolerance"]

@@ -140,14 +140,15 @@ def forgotten(source: Path, recipe: Path | str | None) -> list[str]:
 
 
 def _explained(file: Path, recipe: str | None, name: str) -> int:
-    from hookean.files.relax_file import explain_file
+    from hookean.files.relax_file import explained
 
     try:
-        typer.echo("\n".join(explain_file(file, recipe, recipe_name=name)))
-        tell(file, forgotten(file, recipe))
+        lines, fault = explained(file, recipe, name)
     except InputError as error:
         return bad(error)
-    return CONVERGED
+    typer.echo("\n".join(lines))
+    tell(file, forgotten(file, recipe))
+    return CONVERGED if fault is None else bad(fault)
 
 
 def bad(error: InputError) -> int:

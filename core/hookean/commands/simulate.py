@@ -124,7 +124,7 @@ def _ready(options: Options) -> tuple[Source, Simulation]:
     recipe = None if options.recipe is None else command.text_of(options.recipe)
     name = str(options.recipe) if options.recipe is not None else ""
     read = open_file(options.source, recipe, name)
-    with about(name):
+    with about(name or options.source.name):
         compile(read.scene)
     if options.script is None:
         return read, Simulation(read.scene, None, options.stream)

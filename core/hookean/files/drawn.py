@@ -60,7 +60,9 @@ def _tables(
     meshes: list[tuple[str, Mesh]], lines: list[tuple[str, Floats]], anchors: list[dict[str, Any]], weld: float
 ) -> dict[str, Any]:
     """The scene as plain tables; forces have names of their own."""
-    scene: dict[str, Any] = {"weld_tolerance": weld, "meshes": {}, "forces": [], "geometry": [], "anchors": anchors}
+    # points are anchors by guess, and these files cannot set strict: one that meets no particle is a warning
+    scene: dict[str, Any] = {"weld_tolerance": weld, "strict": False, "meshes": {}, "forces": [], "geometry": []}
+    scene["anchors"] = anchors
     used: set[str] = set()
     for name, mesh in meshes:
         called = _unused(name or "membrane", used)

@@ -37,7 +37,8 @@ stands for anything inside a name. Several are joined by commas or in a list.
 * `[[geometry]]` rides along: kind `points`, `lines`, `mesh`, or `polyline` and `curve` with points = a curve.
 
 `tension_only = true` on springs along lines makes them slack below their rest length. `hidden = true` takes hidden
-objects too. Where a file is read without a recipe, see `hookean.files.recipe_convention`.
+objects too. Where a file is read without a recipe, or with one that has no forces, anchors or geometry, see
+`hookean.files.recipe_convention`.
 """
 
 from __future__ import annotations
@@ -58,6 +59,9 @@ from hookean.files.threedm_model import Model
 if TYPE_CHECKING:
     from hookean.files.relax_file import FileResult as FileResult
     from hookean.files.relax_file import relax_file as relax_file
+
+DRAWN = ("forces", "anchors", "geometry", "meshes", "particles")
+"""The fields of a recipe that say what is what; without them layer names do."""
 
 __all__ = ["Built", "FileResult", "Understood", "parse_recipe", "relax_file", "understand"]
 
@@ -98,28 +102,32 @@ def parse_recipe(text: str, name: str = "recipe") -> dict[str, Any]:
 def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Understood:
     """The scene in a .3dm model, by a recipe or, with None, by the convention of layer names and user text.
 
+    A recipe without forces, anchors, geometry, meshes and particles leaves these to the convention, and adds the rest.
     Raises InputError: a selector that finds nothing, an object that does not fit, a fault of the scene.
     """
-    if recipe is None:
+    given = {} if recipe is None else dict(recipe)
+    check(given)
+    hidden = given.get("hidden", False)
+    if not isinstance(hidden, bool):
+        raise InputError("/hidden", f"{hidden!r} given; give true or false")
+    conventional = not any(group in given for group in DRAWN)
+    if conventional:
         from hookean.files.recipe_convention import UNITS, by_convention
 
-        seen = drawing(model, UNITS)
-        built, said, nothing = by_convention(seen)
+        if "units" in given:
+            raise InputError("/units", "without forces in the recipe, layer names decide, in m, N and s; remove units")
+        seen = drawing(model, UNITS, hidden=hidden)
+        built, said, nothing = by_convention(seen, given)
     else:
-        nothing = ""
-        check(recipe)
-        hidden = recipe.get("hidden", False)
-        if not isinstance(hidden, bool):
-            raise InputError("/hidden", f"{hidden!r} given; give true or false")
-        seen = drawing(model, recipe.get("units"), hidden=hidden)
-        built, said = build(seen, recipe), "a recipe"
+        seen = drawing(model, given.get("units"), hidden=hidden)
+        built, said, nothing = build(seen, given), "a recipe", ""
     lines = _told(seen, built, said)
-    if recipe is not None and "units" not in recipe:
+    if not conventional and "units" not in given:
         length, force = built.scene.units.length, built.scene.units.force
         lines.insert(
             2, f"no units in the recipe: its lengths are {length}, its forces {force}, stiffness {force}/{length}"
         )
-    told = tuple(notes(seen, built, conventional=recipe is None))
+    told = tuple(notes(seen, built, conventional=conventional))
     return Understood(built, [*lines, f"{model.name} {nothing}"] if nothing else lines, nothing, told)
 
 

@@ -26,7 +26,7 @@ loose ends and naked vertices are held the same way.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, get_args
 
@@ -90,9 +90,10 @@ def role_of(item: Item) -> str:
     return ""
 
 
-def by_convention(drawing: Drawing) -> tuple[Built, str, str]:
+def by_convention(drawing: Drawing, given: Mapping[str, Any]) -> tuple[Built, str, str]:
     """The scene of a file without a recipe, how it was read, and a sentence where it holds nothing to relax.
 
+    `given` has further fields of the scene, such as `weld_tolerance`, `strict` and `settings`.
     Raises InputError where a user text is not what its key asks for.
     """
     roles = {item: role_of(item) for item in drawing.items}
@@ -106,7 +107,8 @@ def by_convention(drawing: Drawing) -> tuple[Built, str, str]:
         _read(item, role, reading)
     marked = bool(reading.anchors)
     if not marked:
-        _hold_loose(drawing, reading)
+        weld = given.get("weld_tolerance")  # the scene refuses what is not a number
+        _hold_loose(drawing, reading, weld if isinstance(weld, int | float) and weld >= 0 else drawing.tolerance)
         held = " and ".join(dict.fromkeys(str(table["name"]) for table in reading.anchors.values()))
         said += f"; nothing is marked as an anchor: {held + ' are' if held else 'nothing is'} held"
     nothing = ""
@@ -120,7 +122,7 @@ def by_convention(drawing: Drawing) -> tuple[Built, str, str]:
         reading.left.update({i: f"no use as {roles[i]} without springs" for i in roles if i not in reading.left})
         reading.forces.clear()
         reading.anchors.clear()
-    built = build(drawing, _recipe(drawing, reading), lenient=True)
+    built = build(drawing, _recipe(drawing, reading, given), lenient=True)
     built.left = {i: why for i, why in {**reading.left, **built.left}.items() if i not in built.uses}
     built.guessed = not marked and not nothing
     return built, said, nothing
@@ -255,12 +257,12 @@ def _along(item: Item, reading: _Reading) -> None:
     reading.geometry.append({"name": name, **table})
 
 
-def _hold_loose(drawing: Drawing, reading: _Reading) -> None:
+def _hold_loose(drawing: Drawing, reading: _Reading, tolerance: float) -> None:
     """Hold the ends of lines that no other line meets, and the naked vertices of meshes."""
     pieces = [shapes.lines_of(i, _division(i), "") for i in reading.elastic if shapes.is_curve(i)]
     if pieces:
         ends = np.concatenate(pieces).reshape(-1, 3) * drawing.factor
-        kept, place = unique_points(ends, drawing.tolerance)
+        kept, place = unique_points(ends, tolerance)
         alone = np.bincount(place, minlength=len(kept)) == 1
         if alone.any():
             reading.anchors[("loose",)] = {"name": "loose ends", "points": ends[kept][alone]}
@@ -286,16 +288,17 @@ def _leave(item: Item, reading: _Reading, why: str) -> None:
             del reading.forces[key]
 
 
-def _recipe(drawing: Drawing, reading: _Reading) -> dict[str, Any]:
+def _recipe(drawing: Drawing, reading: _Reading, given: Mapping[str, Any]) -> dict[str, Any]:
     names: dict[str, int] = {}
     for table in reading.forces.values():
         name = str(table["name"])
         names[name] = names.get(name, 0) + 1
         table["name"] = name if names[name] == 1 else f"{name}/{names[name]}"
-    recipe: dict[str, Any] = {"forces": list(reading.forces.values()), "anchors": list(reading.anchors.values())}
+    recipe = {**given, "forces": list(reading.forces.values()), "anchors": list(reading.anchors.values())}
     recipe["geometry"] = reading.geometry
-    if reading.floor is not None:
-        recipe["settings"] = {"floor": {"point": [0.0, 0.0, reading.floor * drawing.factor]}}
+    settings = given.get("settings", {})
+    if reading.floor is not None and isinstance(settings, Mapping):
+        recipe["settings"] = {"floor": {"point": [0.0, 0.0, reading.floor * drawing.factor]}, **settings}
     return recipe
 
 

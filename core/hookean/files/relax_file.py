@@ -99,8 +99,30 @@ def read_scene(source: Path, recipe: Path | None = None) -> Scene:
 
 
 def explain_file(source: Path, recipe_text: str | None = None, *, recipe_name: str = "") -> list[str]:
-    """How a file would be read, in lines for a person; nothing is solved. Raises InputError as `relax_file`."""
-    return _read(source, recipe_text, recipe_name).lines
+    """How a file would be read, in lines for a person; nothing is solved.
+
+    Raises InputError as `relax_file`, but where the file can be read and its scene not be solved: the last line then
+    has the error.
+    """
+    lines, fault = explained(source, recipe_text, recipe_name)
+    return lines if fault is None else [*lines, str(fault)]
+
+
+def explained(
+    source: Path, recipe_text: str | None = None, recipe_name: str = ""
+) -> tuple[list[str], InputError | None]:
+    """How a file would be read, with what a person should know of its scene, and the error if that cannot be solved."""
+    from hookean.system import compile
+
+    read = _read(source, recipe_text, recipe_name)
+    if read.nothing:
+        return read.lines, None
+    try:
+        with about(recipe_name if recipe_text is not None else source.name):
+            report = compile(read.scene).report
+    except InputError as error:
+        return read.lines, error
+    return [*read.lines, *report.left_out(), *report.warnings], None
 
 
 def relax_file(
@@ -132,7 +154,7 @@ def relax_file(
     check_output(target, source)
     with reading or contextlib.nullcontext():
         read = open_file(Path(source), recipe_text, recipe_name)
-    with about(recipe_name):
+    with about(recipe_name if recipe_text is not None else Path(source).name):
         system = compile(read.scene)
         result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)
     return conclude(read, Path(source), system, result, target, limits=limits, limits_name=limits_name)
@@ -171,8 +193,7 @@ def conclude(
     found = FileResult(
         result, read.scene, read.lines, tables.rows(parts, result), tables.per_object(parts, result.units)
     )
-    report = result.report
-    found.warnings = [*read.warnings, *report.warnings, *(u.sentence for u in report.unmatched)]
+    found.warnings = [*read.warnings, *result.report.left_out(), *result.report.warnings]
     found.warnings += [*_doubled(parts), *_overstretched(parts, read.built), *_idle(parts, system)]
     found.moved = float(np.linalg.norm(result.particles - system.x, axis=1).max(initial=0.0))
     fault: InputError | None = None

@@ -105,7 +105,7 @@ def _owners(system: System, number: int, particles: Ints, shape: Shape) -> Ints:
         met = (elements >= 0).all(axis=1)
         if len(elements) == len(shape.owner) and np.array_equal(elements[met], particles):
             return shape.owner[met]
-        at = places.meet(shape.array, "", silent=True).reshape(len(shape.owner), -1)
+        at = places.meet(shape.array).reshape(len(shape.owner), -1)
         return _looked_up(at[:, 0], shape.owner, particles[:, 0])
     at = places.vertices(str(getattr(force, "mesh", "")))
     if particles.shape[1] < 2:
@@ -135,7 +135,7 @@ def _reactions(system: System, result: Result, built: Built | None) -> Section:
     owners: list[Ints] = []
     for shape in built.anchors if built is not None else ():
         if shape is not None:
-            keys.append(system.places.meet(shape.array, "", silent=True))
+            keys.append(system.places.meet(shape.array))
             owners.append(shape.owner + len(items))
             items.extend(shape.items)
     owner = np.full(len(particles), -1)

@@ -16,7 +16,8 @@ class SelfWeight(Force):
     """Weight as loads: `total` / number of particles on each, or half of `per_length` x start length on line ends.
 
     With a total, give particles, points or a mesh (nothing: every particle of the scene): 10 N on 51 particles is
-    0.196 N each. With a weight per length, give lines, pairs of particles or a mesh (its edges). The load does not
+    0.196 N each, also where some of the given points met no particle (the scene is not `strict`) and their part of the
+    total is left out. With a weight per length, give lines, pairs of particles or a mesh (its edges). The load does not
     change as the lines stretch: weight is conserved. Energy -W d . x. Source: the chapter, 9.5.
     """
 
@@ -63,9 +64,8 @@ class SelfWeight(Force):
         index = places.elements(self)
         down = np.asarray(self.direction) / np.linalg.norm(self.direction)
         if self.per_length is None:
-            met = index[index[:, 0] >= 0]
-            share = float(self.total or 0.0) / max(len(met), 1)
-            return Block.of(met, vector=np.broadcast_to(share * down, (len(met), 3)))
+            share = float(self.total or 0.0) / max(len(index), 1)  # of all points, also of those that met no particle
+            return Block.of(index, vector=np.broadcast_to(share * down, (len(index), 3)))
         index = index[(index >= 0).all(axis=1)]
         length = np.linalg.norm(places.x[index[:, 1]] - places.x[index[:, 0]], axis=1)
         half = 0.5 * np.broadcast_to(self.per_length, length.shape) * length

@@ -64,13 +64,14 @@ SCHEMAS["JobTable"] = {
     "properties": {
         **SCHEMAS["Job"]["properties"],
         "parameters": {"type": "array", "items": _TEXT},
+        "warnings": {"type": "array", "items": _TEXT, "description": "On the scene: what met no particle, for example"},
         "columns": {
             "type": "array",
             "items": {"type": "object", "properties": {"name": _TEXT, "unit": _TEXT}, "required": ["name", "unit"]},
         },
         "rows": {"type": "array", "items": {"$ref": "#/components/schemas/JobRow"}},
     },
-    "required": [*_JOB, "parameters", "columns", "rows"],
+    "required": [*_JOB, "parameters", "warnings", "columns", "rows"],
 }
 SCHEMAS["Sweep"] = {**Sweep.model_json_schema(), "description": Sweep.__doc__}
 SCHEMAS["JobRequest"] = {

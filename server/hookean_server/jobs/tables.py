@@ -24,8 +24,8 @@ def line_of(row: rows.Row) -> bytes:
 
 
 async def as_json(live: Live, about: dict[str, Any], pages: AsyncIterator[list[rows.Row]]) -> AsyncIterator[bytes]:
-    """`{"id", ..., "parameters", "columns", "rows"}`."""
-    head = {**summary(live), "parameters": about["names"]}
+    """`{"id", ..., "parameters", "warnings", "columns", "rows"}`."""
+    head = {**summary(live), "parameters": about["names"], "warnings": about.get("warnings", [])}
     head["columns"] = [{"name": name, "unit": unit} for name, unit in about["columns"]]
     yield json.dumps(head).encode()[:-1] + b', "rows": ['
     first = True

@@ -54,7 +54,8 @@ def check(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
             raise InputError(f"/{name}", "this is not known here; known are scene and sweep")
     if "scene" not in value:
         raise InputError("/scene", "this is required")
-    scene, plain = _scene(value["scene"])
+    system, plain = _scene(value["scene"])
+    scene = system.scene
     total, names = 1, []
     if value.get("sweep") is not None:
         sweep = _placed("/sweep", Sweep.read, value["sweep"])
@@ -64,12 +65,13 @@ def check(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
         _placed("/sweep", _first, scene, sweep)
     about = {"kind": "sweep" if value.get("sweep") is not None else "relaxation", "total": total, "names": names}
     about["columns"] = columns(scene)
+    about["warnings"] = [*system.report.left_out(), *system.report.warnings]
     kept = answers.dump({"scene": plain, "sweep": value.get("sweep")}, "list")
     return Done(kept, headers={"about": json.dumps(about)})
 
 
-def _scene(value: Any) -> tuple[Scene, Any]:
-    """The scene, and its JSON without documents; its faults are those of an invalid scene, under /scene."""
+def _scene(value: Any) -> tuple[System, Any]:
+    """The system of a scene, and its JSON without documents; its faults are those of an invalid scene, under /scene."""
     found: list[InputError]
     try:
         plain = compas_json.plain_scene(value)[0]
@@ -78,9 +80,9 @@ def _scene(value: Any) -> tuple[Scene, Any]:
         refusal = solver(scene.settings.solver).refuse(system)
         if refusal:
             raise InputError("/settings/solver", refusal)
-        return scene, plain
+        return system, plain
     except InputError as error:
-        found = [error]
+        found = list(error.faults)
     except ValidationError as error:
         found = faults(error)
     raise faulty("invalid-scene", [InputError(_under("/scene", f.pointer), f.sentence) for f in found])

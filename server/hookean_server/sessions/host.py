@@ -123,7 +123,7 @@ class Host:
         except Problem as problem:
             return _failed(problem), b""
         except InputError as error:
-            return _failed(faulty(head.get("slug", "invalid-input"), [error])), b""
+            return _failed(faulty(head.get("slug", "invalid-input"), list(error.faults))), b""
         except ValidationError as error:
             return _failed(faulty("invalid-scene", faults(error))), b""
         except RecursionError:

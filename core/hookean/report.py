@@ -1,0 +1,115 @@
+"""Report: what became of a description on its way to particles, and what a person should know before solving."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from hookean.errors import InputError, several
+
+MOST_LISTED = 10  # warnings on forces and anchors with points that met no particle, one each
+
+_PLURALS = {"point": "points", "line": "lines", "vertex": "vertices"}
+_WITHOUT = {"anchor": "nothing is held there", "load": "that part of the load is left out"}
+
+
+@dataclass(frozen=True)
+class Unmatched:
+    """A point of an anchor or load that met no particle: where it is, and the nearest particle with its distance."""
+
+    pointer: str
+    name: str
+    point: tuple[float, float, float]
+    nearest: int
+    distance: float
+
+    @property
+    def sentence(self) -> str:
+        """One line for a person."""
+        spot = ", ".join(f"{c:.6g}" for c in self.point)
+        return (
+            f"{self.pointer}: no particle at ({spot}); the nearest is particle {self.nearest}, {self.distance:.6g} "
+            "away. Move the point onto it, or raise weld_tolerance"
+        )
+
+
+@dataclass(frozen=True)
+class Missed:
+    """What of one force or anchor met no particle: `count` of `total` points, lines or vertices (`what`).
+
+    `role` is that of the force, or `anchor`; `distance` is the smallest distance [length, `unit`] from such a point to
+    a particle, `point` the point that is so near.
+    """
+
+    pointer: str
+    name: str
+    role: str
+    what: str
+    count: int
+    total: int
+    point: tuple[float, float, float]
+    distance: float
+    unit: str
+
+    @property
+    def sentence(self) -> str:
+        """How many of how many met no particle, and how near one is."""
+        who = f"{self.name}: " if self.name else ""
+        what = f"its {self.what}" if self.total == 1 else f"{self.count} of {self.total} {_PLURALS[self.what]}"
+        spot = ", ".join(f"{c:.6g}" for c in self.point)
+        return f"{who}{what} met no particle; the nearest is {self.distance:.6g} {self.unit} away from ({spot})"
+
+    @property
+    def warning(self) -> str:
+        """One line for a person, where the scene goes on with what did meet."""
+        without = _WITHOUT.get(self.role, "nothing acts there")
+        return f"{self.pointer}: {self.sentence}, so {without}. {self._advice} or raise weld_tolerance"
+
+    def refusal(self, *, strict: bool) -> InputError:
+        """The error where it does not: it would go on but for `strict`, or else no anchor of the scene is held."""
+        if strict:
+            advice = f"{self._advice}, raise weld_tolerance, or set strict to false to go on with what did meet"
+        else:
+            advice = f"No anchor holds anything: {self._advice.lower()} or raise weld_tolerance"
+        return InputError(self.pointer, f"{self.sentence}. {advice}")
+
+    @property
+    def _advice(self) -> str:
+        return "Move it onto a particle" if self.count == 1 else "Move them onto particles"
+
+
+@dataclass
+class Report:
+    """What was done to the description on the way to particles, and what a person should know before solving.
+
+    `missed` has an entry for each force and anchor with points that met no particle, `unmatched` each of these points;
+    `warnings` has sentences on all else; `beside` counts the coordinates that were moved onto a particle nearby.
+    """
+
+    merged: int = 0
+    unmatched: list[Unmatched] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    beside: int = 0
+    missed: list[Missed] = field(default_factory=list)
+
+    def settle(self, *, strict: bool, held: bool) -> None:
+        """Judge what met no particle, once all of it is known.
+
+        InputError where the scene is strict, or where none of its anchors met any (`held`: one did).
+        """
+        refused = [m for m in self.missed if strict or (m.role == "anchor" and not held)]
+        if refused:
+            raise several([m.refusal(strict=held or m.role != "anchor") for m in refused])
+
+    def left_out(self) -> list[str]:
+        """A sentence for each force and anchor with points that met no particle: the first few, and how many more."""
+        said = [missed.warning for missed in self.missed[:MOST_LISTED]]
+        more = len(self.missed) - MOST_LISTED
+        return [*said, f"points of {more} more forces or anchors met no particle"] if more > 0 else said
+
+    def sentences(self) -> list[str]:
+        """All that a person should know: what met no particle, warnings, how much was moved onto a particle."""
+        said = [*self.left_out(), *self.warnings]
+        if self.beside:
+            what = "1 coordinate was" if self.beside == 1 else f"{self.beside} coordinates were"
+            said.append(f"{what} moved onto a particle nearby, within weld_tolerance")
+        return said
