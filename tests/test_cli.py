@@ -156,6 +156,19 @@ def test_a_load_that_meets_nothing_exits_with_2_whatever_the_limits(folder: Path
     assert said in run("relax", "scene.json", "--explain").stdout
 
 
+def test_cables_divided_otherwise_than_an_edge_are_a_note(folder: Path) -> None:
+    """A line in 5 pieces over a line in 4: in the notes, in the report and by --explain, without more ado."""
+    recipe = CABLE + '[[forces]]\nkind = "springs"\nname = "belt"\nlines = "layer:cable"\ndivide = 4\n'
+    (folder / "recipe.toml").write_text(recipe, encoding="utf-8")
+    said = "/forces/0: 4 of 6 particles lie on lines of belt, within a tenth of their length, but are not joined to it"
+    explained = run("relax", "cable.3dm", "--explain", "-r", "recipe.toml")
+    assert explained.exit_code == 0 and said in explained.stdout.splitlines()[-1]
+    result = run("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml", "--report", "out.json")
+    assert result.exit_code == 0 and f"note: {said}" in result.stderr
+    report = json.loads((folder / "out.json").read_text(encoding="utf-8"))
+    assert any(said in warning for warning in report["result"]["report"]["warnings"])
+
+
 def test_no_equilibrium_exits_with_3_and_writes_the_last_shape(folder: Path) -> None:
     (folder / "recipe.toml").write_text(CABLE + "[settings]\nmax_iterations = 1\n", encoding="utf-8")
     result = run("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml")

@@ -352,3 +352,7 @@ def _warn(system: System) -> None:
             f"particle {alone[0]} carries a load but no spring, other force or anchor holds it"
             + (f" (and {len(alone) - 1} more)" if len(alone) > 1 else "")
         )
+    if sum(len(group.parts) for group in system.groups if group.cls.role == "internal") > 1:
+        from hookean.near_misses import near_misses
+
+        warnings += near_misses(system)
