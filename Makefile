@@ -35,6 +35,7 @@ screenshots: .venv/test # of six figures in the studio, by chromium
 
 docs: .venv/run
 	$(BIN)/python -c "from hookean.catalogue import page; print(page(), end='')" > docs/forces.md
+	$(BIN)/python -c "from hookean.catalogue import write_exports; write_exports()"
 
 page: .venv/test
 	$(BIN)/python hatch_build.py

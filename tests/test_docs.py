@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from hookean.catalogue import page
+import hookean
+from hookean.catalogue import exports, page
 
 ROOT = Path(__file__).parents[1]
 
@@ -14,6 +15,16 @@ def test_the_page_of_forces_is_the_catalogue():
     """docs/forces.md is what `make docs` would write now."""
     same = (ROOT / "docs" / "forces.md").read_text(encoding="utf-8") == page()
     assert same, "docs/forces.md is not what the classes say: run make docs"
+
+
+def test_every_force_is_exported():
+    """`hookean/__init__.py` is what `make docs` would write now, without forces that are gone, and all is there."""
+    text = Path(hookean.__file__).read_text(encoding="utf-8")
+    assert exports(text) == text, "hookean/__init__.py does not export the forces there are: run make docs"
+    gone = text.replace("import Unary as Unary", "import Gone as Gone").replace('"Unary"', '"Gone"')
+    assert exports(gone) == text
+    assert {getattr(hookean, name).__name__ for name in hookean.__all__} >= set(hookean.__all__) - {"Anchors"}
+    assert hookean.Anchors is hookean.Anchor
 
 
 def test_the_recipe_and_the_limits_of_the_docs_are_read():

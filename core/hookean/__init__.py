@@ -8,8 +8,14 @@
 
 `relax` brings a Scene to equilibrium and returns a Result with its Status. `simulate` yields the Frames of a scene in
 motion; a Simulation is stepped, patched (Patch), saved and loaded; a Script and a Stream lead either through time. Bad
-input raises InputError, one sentence with its place. Every force is a class here by its name (`hookean.Springs`,
-`hookean.Unary` ...). docs/scene.md tells of every field, docs/forces.md of every force.
+input raises InputError, one sentence with its place. What a scene is made of are classes, too, each force by its name:
+
+    from hookean import Anchors, Scene, Settings, Springs
+
+    cable = Springs(name="cable", lines=[[[0, 0, 0], [1, 0, 0]]], stiffness=1000)
+    scene = Scene(forces=[cable], anchors=[Anchors(points=[[0, 0, 0]])], settings=Settings(tolerance=1e-8))
+
+docs/scene.md describes every field, docs/forces.md every force.
 """
 
 from __future__ import annotations
@@ -20,25 +26,55 @@ from typing import TYPE_CHECKING, Any
 from hookean.errors import InputError as InputError
 
 if TYPE_CHECKING:
+    from hookean.forces.anchor_spring import AnchorSpring as AnchorSpring
+    from hookean.forces.base import Force as Force
+    from hookean.forces.bend import Bend as Bend
+    from hookean.forces.floor import Floor as Floor
+    from hookean.forces.hinge import Hinge as Hinge
+    from hookean.forces.pressure import Pressure as Pressure
+    from hookean.forces.pull_to_curve import PullToCurve as PullToCurve
+    from hookean.forces.pull_to_mesh import PullToMesh as PullToMesh
+    from hookean.forces.self_weight import SelfWeight as SelfWeight
+    from hookean.forces.shell import Shell as Shell
+    from hookean.forces.soapfilm import SoapFilm as SoapFilm
+    from hookean.forces.springs import Springs as Springs
+    from hookean.forces.unary import Unary as Unary
+    from hookean.patch import Move as Move
     from hookean.patch import Patch as Patch
+    from hookean.report import Report as Report
     from hookean.result import Result as Result
     from hookean.result import Status as Status
     from hookean.run import relax as relax
+    from hookean.scene import Anchor as Anchor
+    from hookean.scene import Anchors as Anchors
+    from hookean.scene import Geometry as Geometry
+    from hookean.scene import MeshData as MeshData
     from hookean.scene import Scene as Scene
+    from hookean.scene import Settings as Settings
     from hookean.script import Script as Script
     from hookean.simulation import Frame as Frame
     from hookean.simulation import Simulation as Simulation
     from hookean.simulation import simulate as simulate
     from hookean.stream import Stream as Stream
+    from hookean.units import Units as Units
 
 __version__ = "0.1.0"
 
 _HOMES = {
     "Scene": "scene",
+    "Anchor": "scene",
+    "Anchors": "scene",
+    "Geometry": "scene",
+    "MeshData": "scene",
+    "Settings": "scene",
+    "Units": "units",
+    "Force": "forces",
+    "Report": "report",
     "Result": "result",
     "Status": "result",
     "Frame": "simulation",
     "Simulation": "simulation",
+    "Move": "patch",
     "Patch": "patch",
     "Script": "script",
     "Stream": "stream",
@@ -47,33 +83,54 @@ _HOMES = {
 }
 
 __all__ = [
+    "Anchor",
+    "AnchorSpring",
+    "Anchors",
+    "Bend",
+    "Floor",
+    "Force",
     "Frame",
+    "Geometry",
+    "Hinge",
     "InputError",
+    "MeshData",
+    "Move",
     "Patch",
+    "Pressure",
+    "PullToCurve",
+    "PullToMesh",
+    "Report",
     "Result",
     "Scene",
     "Script",
+    "SelfWeight",
+    "Settings",
+    "Shell",
     "Simulation",
+    "SoapFilm",
+    "Springs",
     "Status",
     "Stream",
+    "Unary",
+    "Units",
     "relax",
     "simulate",
 ]
 
 
-def __getattr__(name: str) -> Any:
-    # loaded when first used: `import hookean` alone costs nothing
-    if name in _HOMES:
-        return getattr(importlib.import_module(f"hookean.{_HOMES[name]}"), name)
-    from hookean.forces import KINDS
+if not TYPE_CHECKING:  # type checkers know the names above, and no others
 
-    for cls in KINDS.values():
-        if cls.__name__ == name:
-            return cls
-    raise AttributeError(f"module 'hookean' has no attribute {name!r}")
+    def __getattr__(name: str) -> Any:
+        # loaded when first used: `import hookean` alone costs nothing
+        if name in _HOMES:
+            return getattr(importlib.import_module(f"hookean.{_HOMES[name]}"), name)
+        from hookean.forces import KINDS
+
+        for cls in KINDS.values():
+            if cls.__name__ == name:
+                return cls
+        raise AttributeError(f"module 'hookean' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    from hookean.forces import KINDS
-
-    return sorted([*__all__, *(cls.__name__ for cls in KINDS.values()), "__doc__", "__version__"])
+    return sorted([*__all__, "__doc__", "__version__"])

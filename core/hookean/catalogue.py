@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -65,6 +66,28 @@ def schema() -> dict[str, Any]:
 def page() -> str:
     """The page docs/forces.md."""
     return "# Forces\n\nMade from the classes in `core/hookean/forces`: `make docs` writes this page.\n\n" + markdown()
+
+
+def exports(text: str) -> str:
+    """The text of `hookean/__init__.py` with the forces there are: as imports for type checkers, and in `__all__`."""
+    classes: list[type[Force]] = [*KINDS.values(), Force]
+    before = re.findall(r"from hookean\.forces\.\w+ import (\w+)", text)
+    lines = text.splitlines(keepends=True)
+    first = lines.index("if TYPE_CHECKING:\n") + 1
+    last = lines.index("\n", first)
+    begin, end = lines.index("__all__ = [\n") + 1, lines.index("]\n")
+    imports = {line for line in lines[first:last] if "hookean.forces" not in line}
+    imports |= {f"    from {cls.__module__} import {cls.__name__} as {cls.__name__}\n" for cls in classes}
+    names = {line for line in lines[begin:end] if line.strip(' ",\n') not in before}
+    names |= {f'    "{cls.__name__}",\n' for cls in classes}
+    listed = sorted(names, key=lambda line: (line[5].islower(), line))  # classes come before functions
+    return "".join([*lines[:first], *sorted(imports), *lines[last:begin], *listed, *lines[end:]])
+
+
+def write_exports() -> None:
+    """Bring `hookean/__init__.py` up to date."""
+    path = Path(__file__).with_name("__init__.py")
+    path.write_text(exports(path.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def markdown() -> str:

@@ -5,19 +5,28 @@ from __future__ import annotations
 import base64
 import binascii
 import math
+from collections.abc import Mapping
 from itertools import chain
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, PlainSerializer, PlainValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from hookean.fields import OneError
+
+if TYPE_CHECKING:
+    from hookean.fields import Column
+
 LARGEST = 1e12  # beyond this, squares of lengths and products with stiffness lose all meaning in float64
 
 
-class Model(BaseModel):
-    """Base of everything a person describes: frozen, no unknown names, finite numbers only."""
+class Model(BaseModel, metaclass=OneError):
+    """Base of everything a person describes: frozen, no unknown names, finite numbers only.
+
+    Constructors and `model_copy` raise InputError.
+    """
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, arbitrary_types_allowed=True, validate_default=True
@@ -28,6 +37,18 @@ class Model(BaseModel):
 
     def __hash__(self) -> int:
         return hash(self.model_dump_json())
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy with other values of some fields; InputError for an unknown name or a value that is not allowed."""
+        if not update:
+            return super().model_copy(deep=deep)
+        given = {name: getattr(self, name) for name in self.model_fields_set}
+        copied = type(self)(**{**given, **update})
+        return copied.model_copy(deep=True) if deep else copied
+
+    def replaced(self, **values: Any) -> Self:
+        """A copy with other values of some fields that are known to be right: nothing is checked."""
+        return super().model_copy(update=values)
 
 
 def fault(sentence: str, at: str = "") -> PydanticCustomError:
@@ -258,54 +279,70 @@ _TRIPLE = {"type": "array", "items": _NUMBER, "minItems": 3, "maxItems": 3}
 _WHOLE = {"type": "integer", "minimum": 0}
 _out = PlainSerializer(_plain)
 
-Points = Annotated[NDArray[np.float64], PlainValidator(_points), _out, _json(_TRIPLE)]
-"""Coordinates `(n, 3)`."""
-PointRows = Annotated[
-    NDArray[np.float64], PlainValidator(_point_rows), _out, _json({"type": "array", "items": _TRIPLE})
-]
-"""Coordinates of each element's particles `(m, arity, 3)`."""
-Lines = Annotated[
-    NDArray[np.float64],
-    PlainValidator(_lines),
-    _out,
-    _json({"type": "array", "items": _TRIPLE, "minItems": 2, "maxItems": 2}),
-]
-"""Straight lines `(m, 2, 3)`."""
-Table = Annotated[NDArray[np.float64], PlainValidator(_real), _out, _json({})]
-"""Numbers of any shape."""
-Vector = Annotated[NDArray[np.float64], PlainValidator(_vector), _out, WithJsonSchema(_TRIPLE)]
-"""One vector `(3,)`."""
-Vectors = Annotated[NDArray[np.float64], PlainValidator(_vectors), _out, _json(_TRIPLE, _TRIPLE)]
-"""One vector `(3,)` or one for each element `(m, 3)`."""
-Indices = Annotated[NDArray[np.int64], PlainValidator(_indices), _out, _json(_WHOLE)]
-"""Particles `(m,)`, counted from 0."""
-IndexRows = Annotated[
-    NDArray[np.int64],
-    PlainValidator(_index_rows),
-    _out,
-    _json({"anyOf": [_WHOLE, {"type": "array", "items": _WHOLE}]}),
-]
-"""Particles of each element `(m, arity)`."""
-Faces = Annotated[
-    NDArray[np.int64],
-    PlainValidator(_faces),
-    _out,
-    _json({"type": "array", "items": _WHOLE, "minItems": 3, "maxItems": 4}),
-]
-"""Faces of a mesh `(m, 4)`; a triangle repeats its last corner."""
-NonNegatives = Annotated[
-    float | NDArray[np.float64],
-    _numbers(0.0),
-    _out,
-    _json({"type": "number", "minimum": 0}, {"type": "number", "minimum": 0}),
-]
-"""One value >= 0, or one for each element."""
-Positives = Annotated[
-    float | NDArray[np.float64],
-    _numbers(0.0, strictly=True),
-    _out,
-    _json({"type": "number", "exclusiveMinimum": 0}, {"type": "number", "exclusiveMinimum": 0}),
-]
-"""One value > 0, or one for each element."""
-Reals = Annotated[float | NDArray[np.float64], _numbers(-LARGEST), _out, _json(_NUMBER, _NUMBER)]
-"""One value, or one for each element."""
+if TYPE_CHECKING:
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int64]
+    Points = Column[Floats]
+    PointRows = Column[Floats]
+    Lines = Column[Floats]
+    Table = Column[Floats]
+    Vector = Column[Floats]
+    Vectors = Column[Floats]
+    Indices = Column[Ints]
+    IndexRows = Column[Ints]
+    Faces = Column[Ints]
+    NonNegatives = Column[float | Floats]
+    Positives = Column[float | Floats]
+    Reals = Column[float | Floats]
+else:
+    Points = Annotated[NDArray[np.float64], PlainValidator(_points), _out, _json(_TRIPLE)]
+    """Coordinates `(n, 3)`."""
+    PointRows = Annotated[
+        NDArray[np.float64], PlainValidator(_point_rows), _out, _json({"type": "array", "items": _TRIPLE})
+    ]
+    """Coordinates of each element's particles `(m, arity, 3)`."""
+    Lines = Annotated[
+        NDArray[np.float64],
+        PlainValidator(_lines),
+        _out,
+        _json({"type": "array", "items": _TRIPLE, "minItems": 2, "maxItems": 2}),
+    ]
+    """Straight lines `(m, 2, 3)`."""
+    Table = Annotated[NDArray[np.float64], PlainValidator(_real), _out, _json({})]
+    """Numbers of any shape."""
+    Vector = Annotated[NDArray[np.float64], PlainValidator(_vector), _out, WithJsonSchema(_TRIPLE)]
+    """One vector `(3,)`."""
+    Vectors = Annotated[NDArray[np.float64], PlainValidator(_vectors), _out, _json(_TRIPLE, _TRIPLE)]
+    """One vector `(3,)` or one for each element `(m, 3)`."""
+    Indices = Annotated[NDArray[np.int64], PlainValidator(_indices), _out, _json(_WHOLE)]
+    """Particles `(m,)`, counted from 0."""
+    IndexRows = Annotated[
+        NDArray[np.int64],
+        PlainValidator(_index_rows),
+        _out,
+        _json({"anyOf": [_WHOLE, {"type": "array", "items": _WHOLE}]}),
+    ]
+    """Particles of each element `(m, arity)`."""
+    Faces = Annotated[
+        NDArray[np.int64],
+        PlainValidator(_faces),
+        _out,
+        _json({"type": "array", "items": _WHOLE, "minItems": 3, "maxItems": 4}),
+    ]
+    """Faces of a mesh `(m, 4)`; a triangle repeats its last corner."""
+    NonNegatives = Annotated[
+        float | NDArray[np.float64],
+        _numbers(0.0),
+        _out,
+        _json({"type": "number", "minimum": 0}, {"type": "number", "minimum": 0}),
+    ]
+    """One value >= 0, or one for each element."""
+    Positives = Annotated[
+        float | NDArray[np.float64],
+        _numbers(0.0, strictly=True),
+        _out,
+        _json({"type": "number", "exclusiveMinimum": 0}, {"type": "number", "exclusiveMinimum": 0}),
+    ]
+    """One value > 0, or one for each element."""
+    Reals = Annotated[float | NDArray[np.float64], _numbers(-LARGEST), _out, _json(_NUMBER, _NUMBER)]
+    """One value, or one for each element."""

@@ -7,10 +7,11 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, StrictInt, StrictStr, ValidationError, model_validator
+from pydantic import StrictInt, StrictStr, ValidationError, model_validator
 
 from hookean.columns import Indices, Model, Points, Vector, fault
 from hookean.errors import InputError
+from hookean.fields import Field, Maybe, Parts
 from hookean.forces.base import PLACES
 from hookean.scene import Anchor, Scene, Settings, first_fault
 from hookean.state import State
@@ -23,8 +24,8 @@ class Move(Model):
     """An anchor moved, by its name or its number in the scene: to targets, or as a whole by a shift."""
 
     anchor: StrictStr | StrictInt = Field(description="Name or number of an anchor")
-    targets: Points | None = Field(default=None, description="Where its particles go [length], one each")
-    shift: Vector | None = Field(default=None, description="How far from where the scene holds them [length]")
+    targets: Maybe[Points] = Field(default=None, description="Where its particles go [length], one each")
+    shift: Maybe[Vector] = Field(default=None, description="How far from where the scene holds them [length]")
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -41,9 +42,9 @@ class Patch(Model):
     values of its columns; `settings` to new settings.
     """
 
-    pin: tuple[Anchor, ...] = Field(default=(), description="Particles to hold from now on")
+    pin: Parts[Anchor] = Field(default=(), description="Particles to hold from now on")
     release: Indices = Field(default=np.zeros(0, np.int64), description="Particles to free")
-    move: tuple[Move, ...] = Field(default=(), description="Anchors to move")
+    move: Parts[Move] = Field(default=(), description="Anchors to move")
     forces: dict[str, dict[str, Any]] = Field(default={}, description="New values by force and column")
     settings: dict[str, Any] = Field(default={}, description="New values of settings")
 
@@ -85,7 +86,7 @@ def apply(system: System, state: State, patch: Patch) -> None:
     held = _held(system, state, patch)
     forces = changed_forces(system.scene, patch.forces)
     settings = _settings(system, patch)
-    retune(system, state, _with(system.scene, forces).model_copy(update={"settings": settings}), held)
+    retune(system, state, _with(system.scene, forces).replaced(settings=settings), held)
 
 
 def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None:
@@ -108,7 +109,7 @@ def lead_forces(system: System, forces: Mapping[int, Any]) -> None:
 
 
 def _with(scene: Scene, forces: Mapping[int, Any]) -> Scene:
-    return scene.model_copy(update={"forces": tuple(forces.get(i, f) for i, f in enumerate(scene.forces))})
+    return scene.replaced(forces=tuple(forces.get(i, f) for i, f in enumerate(scene.forces)))
 
 
 def _put_forces(system: System, scene: Scene) -> None:

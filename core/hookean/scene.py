@@ -10,7 +10,7 @@ from types import UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, get_args, get_origin
 
 import numpy as np
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import ValidationError, field_validator, model_validator
 
 from hookean.columns import (
     Faces,
@@ -23,6 +23,7 @@ from hookean.columns import (
     fault,
 )
 from hookean.errors import InputError, several
+from hookean.fields import Field, Maybe, Named, Part, Parts, Switch
 from hookean.forces import KINDS, Force
 from hookean.forces.floor import Floor
 from hookean.solvers import NAMES
@@ -60,9 +61,9 @@ class Anchor(Model):
     """
 
     name: str = Field(default="", description="Name under which reactions list this anchor")
-    particles: Indices | None = Field(default=None, description="Held particles")
-    points: Points | None = Field(default=None, description="Coordinates of held particles")
-    targets: Points | None = Field(default=None, description="Where to hold them [length]; none: where they are")
+    particles: Maybe[Indices] = Field(default=None, description="Held particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of held particles")
+    targets: Maybe[Points] = Field(default=None, description="Where to hold them [length]; none: where they are")
     axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = Field(default="xyz", description="Held directions")
 
     @model_validator(mode="after")
@@ -75,6 +76,10 @@ class Anchor(Model):
         return self
 
 
+Anchors = Anchor
+"""The same: one anchor may hold many particles."""
+
+
 class Geometry(Model):
     """Geometry that rides along: each of its points that meets a particle moves with it.
 
@@ -84,13 +89,13 @@ class Geometry(Model):
 
     name: str = Field(default="", description="Name under which results list this geometry")
     kind: Literal["points", "lines", "polyline", "curve", "mesh"] = Field(description="What it is")
-    particles: Indices | None = Field(default=None, description="Particles it goes through (lines: start, end, ...)")
-    points: Points | None = Field(default=None, description="Coordinates [length]")
-    lines: Lines | None = Field(default=None, description="Straight lines [length]")
+    particles: Maybe[Indices] = Field(default=None, description="Particles it goes through (lines: start, end, ...)")
+    points: Maybe[Points] = Field(default=None, description="Coordinates [length]")
+    lines: Maybe[Lines] = Field(default=None, description="Straight lines [length]")
     mesh: str | None = Field(default=None, description="Name of one of the scene's meshes")
     degree: int = Field(default=3, ge=1, le=11, description="Degree of a curve [-]")
     knots: tuple[float, ...] | None = Field(default=None, description="Knots, as Rhino counts them; none: uniform")
-    weights: NonNegatives | None = Field(default=None, description="Weights of a curve's control points [-]")
+    weights: Maybe[NonNegatives] = Field(default=None, description="Weights of a curve's control points [-]")
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
@@ -117,7 +122,7 @@ class Settings(Model):
     time_step: float = Field(default=0.01, gt=0, description="Step of physical time [time]")
     sub_iterations: int = Field(default=20, ge=1, le=100_000, description="Time steps in a frame")
     drag: float = Field(default=1.0, ge=0, description="Viscous drag on every particle [force time/length]")
-    floor: Floor | None = Field(default=None, description="A floor: {} or true is the XY plane")
+    floor: Switch[Floor] = Field(default=None, description="A floor: {} or true is the XY plane")
 
     @field_validator("floor", mode="before")
     @classmethod
@@ -127,25 +132,15 @@ class Settings(Model):
         return None if value is False else value
 
 
-class Told(type(Model)):  # type: ignore[misc]
-    """Of a model made by name: its faults are told as those that are read."""
-
-    def __call__(cls, *given: Any, **named: Any) -> Any:
-        try:
-            return super().__call__(*given, **named)
-        except ValidationError as error:
-            raise first_fault(error) from None
-
-
-class Scene(Model, metaclass=Told):
+class Scene(Model):
     """Particles, forces, anchors, carried geometry and settings; the same in Python and in JSON.
 
     Forces and anchors refer to particles by index (`particles`), by coordinates (`points`, `lines`) that are welded
-    within `weld_tolerance`, or to a named mesh. Raises pydantic's ValidationError with the place of every fault;
-    `Scene.read` raises InputError with one sentence instead.
+    within `weld_tolerance`, or to a named mesh. `Scene(...)` and `Scene.read` raise InputError with the place of the
+    first fault and one sentence; pydantic's `model_validate` raises ValidationError with all of them.
     """
 
-    units: Units = Field(default=Units(), description="Units of all numbers")
+    units: Part[Units] = Field(default=Units(), description="Units of all numbers")
     weld_tolerance: float = Field(default=0.001, ge=0, description="Coordinates this near are one particle [length]")
     strict: bool = Field(
         default=True, description="Anchors and loads that meet no particle are errors; false: warnings"
@@ -154,12 +149,12 @@ class Scene(Model, metaclass=Told):
         default=np.zeros((0, 3)), description="Start positions [length]; never merged or renumbered"
     )
     masses: Positives = Field(default=1.0, description="Mass of given particles [force time^2/length]; welded ones: 1")
-    velocities: Points | None = Field(default=None, description="Start velocities [length/time], one for each particle")
-    meshes: dict[str, MeshData] = Field(default={}, description="Meshes by name")
-    forces: tuple[AnyForce, ...] = Field(default=(), description="What acts on the particles")
-    anchors: tuple[Anchor, ...] = Field(default=(), description="Particles that are held")
-    geometry: tuple[Geometry, ...] = Field(default=(), description="Geometry that rides along")
-    settings: Settings = Field(default=Settings(), description="How to solve")
+    velocities: Maybe[Points] = Field(default=None, description="Start velocities [length/time], one for each particle")
+    meshes: Named[MeshData] = Field(default={}, description="Meshes by name")
+    forces: Parts[AnyForce] = Field(default=(), description="What acts on the particles")
+    anchors: Parts[Anchor] = Field(default=(), description="Particles that are held")
+    geometry: Parts[Geometry] = Field(default=(), description="Geometry that rides along")
+    settings: Part[Settings] = Field(default=Settings(), description="How to solve")
 
     @classmethod
     def read(cls, value: Any) -> Scene:
@@ -352,4 +347,15 @@ def first_fault(error: ValidationError) -> InputError:
     return several(faults(error))
 
 
-__all__ = ["Anchor", "Force", "Geometry", "MeshData", "Scene", "Settings", "Units", "faults", "first_fault"]
+__all__ = [
+    "Anchor",
+    "Anchors",
+    "Force",
+    "Geometry",
+    "MeshData",
+    "Scene",
+    "Settings",
+    "Units",
+    "faults",
+    "first_fault",
+]

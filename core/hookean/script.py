@@ -29,15 +29,16 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PlainSerializer, PlainValidator, StrictInt, StrictStr, ValidationError, model_validator
+from pydantic import PlainSerializer, PlainValidator, StrictInt, StrictStr, ValidationError, model_validator
 from pydantic import WithJsonSchema as Schema
 
 from hookean.columns import Model, Points, _real, fault
 from hookean.errors import InputError
+from hookean.fields import Field, Maybe, Parts
 from hookean.patch import Move, Patch, changed_forces, home, lead_forces, named
 from hookean.scene import first_fault
 from hookean.state import State
@@ -59,9 +60,16 @@ def _times(value: Any) -> Floats:
 
 
 _PLAIN = PlainSerializer(lambda a: a.tolist())
-Times = Annotated[Floats, PlainValidator(_times), _PLAIN, Schema({"type": "array", "items": {"type": "number"}})]
-Rows = Annotated[Floats, PlainValidator(_real), _PLAIN, Schema({"type": "array", "items": {}})]
-Values = Annotated[Floats, PlainValidator(_real), _PLAIN, Schema({"type": ["number", "array"]})]
+if TYPE_CHECKING:
+    from hookean.fields import Column
+
+    Times = Column[Floats]
+    Rows = Column[Floats]
+    Values = Column[Floats]
+else:
+    Times = Annotated[Floats, PlainValidator(_times), _PLAIN, Schema({"type": "array", "items": {"type": "number"}})]
+    Rows = Annotated[Floats, PlainValidator(_real), _PLAIN, Schema({"type": "array", "items": {}})]
+    Values = Annotated[Floats, PlainValidator(_real), _PLAIN, Schema({"type": ["number", "array"]})]
 
 
 class AnchorPath(Model):
@@ -69,8 +77,8 @@ class AnchorPath(Model):
 
     anchor: StrictStr | StrictInt = Field(description="Name or number of an anchor")
     times: Times = Field(description="Growing times (k,) [time]")
-    shifts: Points | None = Field(default=None, description="(k, 3) from where the scene holds it [length]")
-    targets: Rows | None = Field(default=None, description="(k, particles, 3) [length]")
+    shifts: Maybe[Points] = Field(default=None, description="(k, 3) from where the scene holds it [length]")
+    targets: Maybe[Rows] = Field(default=None, description="(k, particles, 3) [length]")
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -144,9 +152,9 @@ class Drive(Model):
 class Script(Model):
     """What moves by itself while a simulation runs; see the head of `hookean.script`."""
 
-    anchors: tuple[AnchorPath, ...] = Field(default=(), description="Anchors led along paths")
-    forces: tuple[ForcePath, ...] = Field(default=(), description="Columns of forces led through values")
-    drives: tuple[Drive, ...] = Field(default=(), description="Columns of forces driven by a stream")
+    anchors: Parts[AnchorPath] = Field(default=(), description="Anchors led along paths")
+    forces: Parts[ForcePath] = Field(default=(), description="Columns of forces led through values")
+    drives: Parts[Drive] = Field(default=(), description="Columns of forces driven by a stream")
 
     @classmethod
     def read(cls, value: Any, name: str = "") -> Script:

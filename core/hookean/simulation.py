@@ -5,10 +5,10 @@ from __future__ import annotations
 import contextlib
 import zipfile
 import zlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +50,7 @@ def simulate(
     scene: Scene,
     frames: int | None = None,
     *,
-    script: Script | dict[str, object] | str | None = None,
+    script: Script | Mapping[str, Any] | str | None = None,
     stream: Source | None = None,
 ) -> Iterator[Frame]:
     """Frames of a scene in motion, `sub_iterations` steps apart, bouncing included; ends at rest, after `frames` or
@@ -75,7 +75,7 @@ class Simulation:
     """
 
     def __init__(
-        self, scene: Scene, script: Script | dict[str, object] | str | None = None, stream: Source | None = None
+        self, scene: Scene, script: Script | Mapping[str, Any] | str | None = None, stream: Source | None = None
     ) -> None:
         self.system = compile(scene)
         self._playing: Playing | None = None
@@ -226,7 +226,7 @@ class Simulation:
         self.status, self._said = result.status, result.message
         return result
 
-    def patch(self, edit: Patch | dict[str, object], *, gesture: str = "") -> int:
+    def patch(self, edit: Patch | Mapping[str, Any], *, gesture: str = "") -> int:
         """Change anchors, loads, stiffness, rest lengths or settings while it runs; returns the new revision.
 
         Edits of one `gesture`, such as the drag of an anchor, are taken back as one. InputError says what does not

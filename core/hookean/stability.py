@@ -107,7 +107,7 @@ def in_motion(scene: Scene) -> tuple[Scene, str]:
     if "sub_iterations" not in settings.model_fields_set:
         changed["sub_iterations"] = min(round(settings.sub_iterations * settings.time_step / step), MOST_STEPS)
     said = f"time goes on in steps of {step:g} {scene.units.time}; longer ones explode with this stiffness and mass"
-    return scene.model_copy(update={"settings": settings.model_copy(update=changed)}), said
+    return scene.replaced(settings=settings.replaced(**changed)), said
 
 
 def _bounds(system: System, state: State) -> tuple[float, float]:

@@ -14,10 +14,11 @@ from collections.abc import Callable, Mapping
 from typing import Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import ValidationError, model_validator
 
 from hookean.columns import Model, fault
 from hookean.errors import InputError
+from hookean.fields import Field
 from hookean.forces import KINDS
 from hookean.patch import Patch, Undo, apply
 from hookean.result import Result

@@ -38,5 +38,4 @@ def bounded(scene: Scene, seconds: float) -> Scene:
     given = scene.settings.time_limit
     if given is not None and given <= seconds:
         return scene
-    settings = scene.settings.model_copy(update={"time_limit": seconds})
-    return scene.model_copy(update={"settings": settings})
+    return scene.replaced(settings=scene.settings.replaced(time_limit=seconds))

@@ -9,9 +9,27 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
-from hookean import InputError, Scene, relax
-from hookean.units import Units
+from hookean import (
+    Anchor,
+    Floor,
+    Geometry,
+    InputError,
+    MeshData,
+    Patch,
+    Scene,
+    Script,
+    SelfWeight,
+    Settings,
+    Springs,
+    Unary,
+    Units,
+    relax,
+)
+from hookean.columns import Model
+from hookean.scene import faults
+from hookean.sweep import Sweep
 
 EXAMPLE = {
     "units": {"length": "m", "force": "N", "time": "s"},
@@ -218,3 +236,65 @@ def test_a_scene_made_by_name_tells_faults_as_one_that_is_read(bad: dict[str, ob
     with pytest.raises(InputError) as made:
         Scene(**spec)  # type: ignore[arg-type]
     assert str(made.value) == str(read.value) and made.value.pointer.startswith("/forces/0")
+
+
+MODELS = {
+    Springs: ({"particles": [[0, 1]]}, {"stiffness": -1}, "/stiffness", "-1 given; at least 0 allowed"),
+    Unary: ({"particles": [0], "vector": [0, 0, 1]}, {"vector": [0, 0]}, "/vector", "shape [2] given"),
+    SelfWeight: ({"total": 1}, {"per_length": 1}, "/", "give either total or per_length"),
+    Floor: ({}, {"restitution": 2}, "/restitution", "2 given; at most 1 allowed"),
+    Anchor: ({"particles": [0]}, {"axes": "zx"}, "/axes", '"zx" given'),
+    Settings: ({}, {"tolerance": "small"}, "/tolerance", "a number expected"),
+    MeshData: ({"vertices": [[0, 0, 0]], "faces": []}, {"faces": [[0, 0, 1]]}, "/faces/0/2", "vertex 1 does not exist"),
+    Geometry: ({"kind": "points", "points": []}, {"degree": 0}, "/degree", "0 given; at least 1 allowed"),
+    Units: ({}, {"length": "mile"}, "/length", '"mile" given'),
+    Patch: ({}, {"pin": [{"axes": "x"}]}, "/pin/0", "give exactly one of particles, points"),
+    Script: ({}, {"anchors": [{}]}, "/anchors/0/anchor", "anchor is needed"),
+    Sweep: ({"patches": [{}]}, {"mode": "both"}, "/mode", '"both" given'),
+    Scene: ({}, {"forces": [{"kind": "springs", "mesh": "m"}]}, "/forces/0/mesh", "mesh 'm' does not exist"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.__name__)
+def test_every_class_raises_the_same_error(model: type[Model]) -> None:
+    """Made by name, and copied with other values: pointer and sentence; a misspelt name is refused in both."""
+    right, change, pointer, sentence = MODELS[model]
+    made = model(**right)
+    for make in (lambda more: model(**{**right, **more}), lambda more: made.model_copy(update=more)):
+        with pytest.raises(InputError) as caught:
+            make(change)
+        assert caught.value.pointer == pointer and sentence in caught.value.sentence
+        with pytest.raises(InputError, match=r"^/nam: \"nam\" is no field of") as caught:
+            make({"nam": 1})
+        assert caught.value.__cause__ is None and caught.value.__suppress_context__
+    assert made.model_copy(update={}) == made == made.model_copy(deep=True)
+
+
+def test_a_copy_is_checked_as_a_whole_and_keeps_the_rest() -> None:
+    """References are those of the copy; unchanged parts are the same objects, changed arrays frozen."""
+    scene = Scene.read(EXAMPLE)
+    with pytest.raises(InputError, match=r"^/forces/0/particles/0/1: particle 1 does not exist; the scene gives 1"):
+        scene.model_copy(update={"particles": [[0, 0, 0]]})
+    copied = scene.model_copy(update={"particles": [[0, 0, 0], [3, 0, 0]], "settings": {"drag": 2}})
+    assert copied.forces[0] is scene.forces[0] and copied.settings.drag == 2 and scene.settings.drag == 1
+    assert not copied.particles.flags.writeable and copied.particles[1, 0] == 3 and scene.particles[1, 0] == 2
+    assert copied.model_fields_set == scene.model_fields_set
+    assert copied == Scene.read({**EXAMPLE, "particles": [[0, 0, 0], [3, 0, 0]], "settings": {"drag": 2}})
+    assert scene.model_copy(update={"strict": False}).model_copy(update={"strict": True}).digest == scene.digest
+
+
+def test_several_faults_are_told_apart() -> None:
+    with pytest.raises(InputError) as caught:
+        Springs(particles=[[0, 1]], stiffness=-1, damping="much", kind="spring")
+    assert [fault.pointer for fault in caught.value.faults] == ["/kind", "/stiffness", "/damping"]
+    assert caught.value.sentence == f"{caught.value.faults[0].sentence} (and 2 more faults)"
+    with pytest.raises(InputError) as caught:
+        Springs()
+    assert caught.value.faults == (caught.value,)
+
+
+def test_only_what_a_person_makes_raises_it() -> None:
+    """Inside of pydantic's own reading the faults stay its own, all of them, whatever is nested in what."""
+    with pytest.raises(ValidationError) as caught:
+        Scene.model_validate({"settings": {"drag": -1}, "forces": [{"kind": "springs", "stiffness": -1}]})
+    assert [fault.pointer for fault in faults(caught.value)] == ["/forces/0/stiffness", "/settings/drag"]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
 from hookean.columns import IndexRows, NonNegatives, Points
+from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Places
 
 
@@ -32,9 +32,9 @@ class AnchorSpring(Force):
     """
 
     kind: Literal["anchor_spring"] = "anchor_spring"
-    particles: IndexRows | None = Field(default=None, description="Anchored particles")
-    points: Points | None = Field(default=None, description="Coordinates of anchored particles")
-    targets: Points | None = Field(default=None, description="T [length], one for each; none: the start positions")
+    particles: Maybe[IndexRows] = Field(default=None, description="Anchored particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of anchored particles")
+    targets: Maybe[Points] = Field(default=None, description="T [length], one for each; none: the start positions")
     strength: NonNegatives = Field(default=10000.0, description="S [force/length]")
 
     formula: ClassVar[str] = "E = S |T - x|²/2"

@@ -8,9 +8,10 @@ from typing import Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from hookean.columns import Model, fault
+from hookean.fields import Field
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
 from hookean.columns import IndexRows, NonNegatives, PointRows
+from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 
 
@@ -86,10 +86,10 @@ class Bend(Force):
     """
 
     kind: Literal["bend"] = "bend"
-    particles: IndexRows | None = Field(default=None, description="Three particles a, b, c of each corner")
-    points: PointRows | None = Field(default=None, description="Coordinates of a, b, c of each corner")
+    particles: Maybe[IndexRows] = Field(default=None, description="Three particles a, b, c of each corner")
+    points: Maybe[PointRows] = Field(default=None, description="Coordinates of a, b, c of each corner")
     stiffness: NonNegatives = Field(default=1.0, description="EI, bending stiffness [force length^2]")
-    rest_angle: NonNegatives | None = Field(default=None, description="phi0 [rad], 0 straight; none: the start angle")
+    rest_angle: Maybe[NonNegatives] = Field(default=None, description="phi0 [rad], 0 straight; none: the start angle")
     angle_factor: NonNegatives = Field(default=1.0, description="Factor on the rest angle [-]; 0: straight")
 
     formula: ClassVar[str] = "E = EI (φ - φ0)²/(2 l)"

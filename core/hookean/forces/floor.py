@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from hookean.columns import Vector, fault
+from hookean.fields import Field
 from hookean.forces.base import Block, Floats, Force, Places
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
 from hookean.columns import IndexRows, NonNegatives, PointRows, Reals
+from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Places
 from hookean.forces.dihedral import fold, fold_angles, wrapped
 
@@ -42,10 +42,10 @@ class Hinge(Force):
     """
 
     kind: Literal["hinge"] = "hinge"
-    particles: IndexRows | None = Field(default=None, description="Edge start, edge end, tip 1, tip 2 of each hinge")
-    points: PointRows | None = Field(default=None, description="Coordinates of edge start, edge end, tip 1, tip 2")
+    particles: Maybe[IndexRows] = Field(default=None, description="Edge start, edge end, tip 1, tip 2 of each hinge")
+    points: Maybe[PointRows] = Field(default=None, description="Coordinates of edge start, edge end, tip 1, tip 2")
     strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
-    rest_angle: Reals | None = Field(default=None, description="theta0 [rad], 0 flat; none: the start angle")
+    rest_angle: Maybe[Reals] = Field(default=None, description="theta0 [rad], 0 flat; none: the start angle")
     angle_factor: Reals = Field(default=1.0, description="Factor on the rest angle [-]; 0: flat")
 
     formula: ClassVar[str] = "E = S (θ - θ0)²/2"

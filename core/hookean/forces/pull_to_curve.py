@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from hookean.columns import IndexRows, NonNegatives, Points, fault
+from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Places
 from hookean.forces.pull_to_mesh import away, pull_hessian, pull_kernel, pulls, tree
 
@@ -24,8 +25,8 @@ class PullToCurve(Force):
     """
 
     kind: Literal["pull_to_curve"] = "pull_to_curve"
-    particles: IndexRows | None = Field(default=None, description="Pulled particles")
-    points: Points | None = Field(default=None, description="Coordinates of pulled particles")
+    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
     mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are pulled")
     curve: Points = Field(description="Corners of the polyline [length], at least two")
     closed: bool = Field(default=False, description="Whether the last corner is joined to the first")

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from hookean.columns import Faces, IndexRows, NonNegatives, Points, fault
 from hookean.errors import InputError
+from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.kernels import device, keep, rows
 
@@ -183,12 +184,12 @@ class PullToMesh(Force):
     """
 
     kind: Literal["pull_to_mesh"] = "pull_to_mesh"
-    particles: IndexRows | None = Field(default=None, description="Pulled particles")
-    points: Points | None = Field(default=None, description="Coordinates of pulled particles")
+    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
     mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are pulled")
     target: str | None = Field(default=None, description="Name of the scene's mesh to pull to")
-    vertices: Points | None = Field(default=None, description="Or the target's vertices [length]")
-    faces: Faces | None = Field(default=None, description="and its faces, three or four vertices each")
+    vertices: Maybe[Points] = Field(default=None, description="Or the target's vertices [length]")
+    faces: Maybe[Faces] = Field(default=None, description="and its faces, three or four vertices each")
     strength: NonNegatives = Field(default=1000.0, description="S [force/length]")
 
     formula: ClassVar[str] = "E = S |C - x|²/2"

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from hookean.columns import IndexRows, Lines, Points, Reals, Vector, fault
+from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Places
 from hookean.forces.unary import unary_kernel
 
@@ -22,12 +23,12 @@ class SelfWeight(Force):
     """
 
     kind: Literal["self_weight"] = "self_weight"
-    particles: IndexRows | None = Field(default=None, description="Particles, or pairs with a weight per length")
-    points: Points | None = Field(default=None, description="Coordinates of particles")
-    lines: Lines | None = Field(default=None, description="Straight lines, for a weight per length")
+    particles: Maybe[IndexRows] = Field(default=None, description="Particles, or pairs with a weight per length")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of particles")
+    lines: Maybe[Lines] = Field(default=None, description="Straight lines, for a weight per length")
     mesh: str | None = Field(default=None, description="Name of a mesh: its vertices, or its edges")
     total: float | None = Field(default=None, description="Total weight [force], shared equally")
-    per_length: Reals | None = Field(default=None, description="Weight per length [force/length]")
+    per_length: Maybe[Reals] = Field(default=None, description="Weight per length [force/length]")
     direction: Vector = Field(
         default=np.array([0.0, 0.0, -1.0]), description="Direction of gravity; its size does not count"
     )

@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from hookean.errors import InputError
+from hookean.fields import Field
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.dihedral import SLIVER, fold, fold_angles, wrapped
 from hookean.forces.shell_edges import Plan, bend, places

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
+from hookean.fields import Field
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.kernels import device
 

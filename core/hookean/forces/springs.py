@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
 from hookean.columns import IndexRows, Lines, NonNegatives
+from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.kernels import device
 
@@ -203,13 +203,13 @@ class Springs(Force):
     """
 
     kind: Literal["springs"] = "springs"
-    particles: IndexRows | None = Field(default=None, description="Pairs of particles")
-    lines: Lines | None = Field(default=None, description="Straight lines; their ends become particles")
+    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
+    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
     mesh: str | None = Field(default=None, description="Name of a mesh whose edges become springs")
     edges: Edges = Field(default="all", description="Which edges of the mesh; diagonals of quads both, or one a face")
     stiffness: NonNegatives = Field(default=1000.0, description="k [force/length]")
     damping: NonNegatives = Field(default=10.0, description="c along the spring [force time/length]")
-    rest_length: NonNegatives | None = Field(default=None, description="L0 [length]; none: the start length")
+    rest_length: Maybe[NonNegatives] = Field(default=None, description="L0 [length]; none: the start length")
     rest_factor: NonNegatives = Field(default=1.0, description="Factor on the rest length [-]")
     upper_cutoff: NonNegatives = Field(default=0.0, description="Works only up to this length [length]; 0: always")
     lower_cutoff: NonNegatives = Field(default=0.0, description="Works only from this length on [length]; 0: always")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
 from hookean.columns import IndexRows, Points, Vectors
+from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Places
 
 
@@ -27,8 +27,8 @@ class Unary(Force):
     """A load: a constant force vector F on each particle. Energy -F . x. Source: the chapter, 9.3."""
 
     kind: Literal["unary"] = "unary"
-    particles: IndexRows | None = Field(default=None, description="Loaded particles")
-    points: Points | None = Field(default=None, description="Coordinates of loaded particles")
+    particles: Maybe[IndexRows] = Field(default=None, description="Loaded particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of loaded particles")
     vector: Vectors = Field(description="F [force], one vector or one for each particle")
 
     formula: ClassVar[str] = "E = -F·x"

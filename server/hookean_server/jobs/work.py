@@ -198,7 +198,7 @@ def relaxation(options: dict[str, Any], body: bytes, link: Any) -> Done:
     system = compile(scene)
     state = _state(kept, system)
     left = max(0, scene.settings.max_iterations - state.iteration)
-    system.scene = scene.model_copy(update={"settings": scene.settings.model_copy(update={"max_iterations": left})})
+    system.scene = scene.replaced(settings=scene.settings.replaced(max_iterations=left))
     method = solver(scene.settings.solver)
     _look_often(method, system)
     teller = _Teller(state, getattr(link, "say", None))
