@@ -66,6 +66,17 @@ def test_points_are_anchors_and_then_nothing_else_is_held() -> None:
     assert anchors(scene) == {"posts": [(0, 0, 0), (0, 2, 0), (2, 0, 0)]}
 
 
+def test_points_taken_as_anchors_that_meet_nothing_are_warnings() -> None:
+    """These files cannot set strict, and nobody said that their points hold: the rest is opened; none at all is an
+    error."""
+    document = [Line([0, 0, 0], [1, 0, 0]), Pointcloud([[0, 0, 0], [5, 0, 0]])]
+    scene, _ = opened(compas.data.json_dumps(document), "a.json")
+    [said] = relax(scene).report.left_out()
+    assert said.startswith("/anchors/0/points: points: 1 of 2 points met no particle; the nearest is 4 m away")
+    with pytest.raises(InputError, match="No anchor holds anything"):
+        relax(opened(compas.data.json_dumps([document[0], Pointcloud([[5, 0, 0]])]), "a.json")[0])
+
+
 def test_a_closed_mesh_is_held_nowhere_and_that_is_said() -> None:
     scene, warnings = opened(CUBE)
     assert not scene.anchors and len(warnings) == 1 and "closed" in warnings[0] and "pin" in warnings[0]

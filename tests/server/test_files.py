@@ -93,6 +93,23 @@ def test_faulty_recipes(client: httpx.Client, drawing: bytes) -> None:
         assert "/tmp" not in answer.text
 
 
+def test_what_meets_no_particle_is_a_problem_unless_the_recipe_goes_on(client: httpx.Client, drawing: bytes) -> None:
+    """A load beside the cable: its pointer leads into the recipe, and it is a warning with strict false."""
+    astray = {"kind": "unary", "name": "gust", "points": [[0, 0, 0], [0, 0, 9]], "vector": [0, 0, 1]}
+    recipe = {**RECIPE, "forces": [*RECIPE["forces"], astray]}
+    said = "gust: 1 of 2 points met no particle; the nearest is 9 m away from (0, 0, 9)"
+    found = problem(_with(client, drawing, recipe), 422, "invalid-input")
+    assert found["errors"][0]["pointer"] == f"/recipe/forces/{len(RECIPE['forces'])}/points"
+    assert found["errors"][0]["detail"].startswith(said)
+    answer = _with(client, drawing, {**recipe, "strict": False}, params={"answer": "report"})
+    assert any(said in warning for warning in answer.json()["warnings"]), answer.text
+
+
+def _with(client: httpx.Client, drawing: bytes, recipe: dict[str, Any], **more: Any) -> httpx.Response:
+    data = {"recipe": json.dumps(recipe)}
+    return client.post("/v1/relax/3dm", files={"file": ("a.3dm", drawing)}, data=data, **more)
+
+
 @pytest.mark.parametrize("part", [0.2, 0.5, 0.9, 0.99])
 def test_damaged_files(client: httpx.Client, drawing: bytes, part: float) -> None:
     found = problem(post(client, drawing[: int(part * len(drawing))]), 422, "invalid-input")
