@@ -6,7 +6,7 @@ import contextlib
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -26,7 +26,9 @@ from hookean.solvers import solver
 from hookean.state import State
 from hookean.stream import Stream
 from hookean.system import Held, System, compile, hold
-from hookean.watch import Watch
+from hookean.watch import Watch, seldom
+
+OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
 
 Floats = NDArray[np.float64]
 Source = Stream | str | Path | Iterable[str]
@@ -114,8 +116,15 @@ class Simulation:
         if start:
             self.solver.start(self.system, self.state)
         self._watch = Watch(self.system, self.state, self.solver)
+        self._judged()
         self.status = Status.RUNNING
         self._said = ""
+
+    def _judged(self) -> None:
+        """The goal of what follows, kept with the state so that a resumed run stops where this one does."""
+        self._seen: Balance | None = self._watch.found
+        if not self.solver.physical:
+            self.state.scratch["goal"] = np.array([self._watch.goal])
 
     def _warn(self) -> None:
         warnings = self.system.report.warnings
@@ -136,10 +145,31 @@ class Simulation:
         self.advance(count)
         return self.look()
 
+    def play(self, count: int) -> Status:
+        """Advance by `count` iterations, or a few more, of a run that ends where it is at rest.
+
+        It is judged at iterations that follow from the system alone, and passes through the same states to the same
+        end however it is divided into calls of `play`, and whatever is read in between.
+        """
+        until, together = self.state.iteration + count, self.solver.together
+        every = together or min(seldom(self.system), OFTEN * self.scene.settings.sub_iterations)
+        while self.status is Status.RUNNING and self.state.iteration < until:
+            before = self.state.iteration
+            due = together or every - before % every
+            several = due if together else min(due, until - before)
+            self.advance(several)
+            done = self.state.iteration - before
+            if several == due or done < several:
+                self.look()
+            if not done:
+                break
+        return self.status
+
     def advance(self, count: int) -> None:
         """Advance by at most `count` iterations of the solver; `look` judges where that led."""
         if self.status is Status.DIVERGED:
             return
+        self._seen = None
         playing = self._playing
         while count and playing is not None and not playing.finished:
             step = self.scene.settings.time_step
@@ -150,11 +180,12 @@ class Simulation:
             playing.after(self.system, self.state)
             count -= several
         if count:
-            goal = 0.0 if self.solver.physical else self._watch.goal
+            goal = 0.0 if self.solver.physical else float(self.state.scratch["goal"][0])
             self.solver.advance(self.system, self.state, count, goal)
 
     def look(self) -> Status:
-        """Judge the state as it is now; one that diverged goes back to the last good one."""
+        """Judge the state as it is now; one that diverged goes back to the last good one. To see how it stands, read
+        `balance`, `message` or `frame()`, which change nothing."""
         if self.status is Status.DIVERGED:
             return self.status
         self.status = self._watch.look(self.system, self.state)
@@ -170,27 +201,38 @@ class Simulation:
             self._watch.remember(self.system, self.state)
         elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):
             self.status = Status.RUNNING  # somebody is watching; they decide when to stop
+        self._judged()
         return self.status
 
     @property
+    def finite(self) -> bool:
+        """Whether all positions and velocities are finite."""
+        return bool(np.isfinite(self.state.x).all() and np.isfinite(self.state.v).all())
+
+    @property
     def balance(self) -> Balance:
-        """How far the shape was from equilibrium when it was last looked at."""
-        return self._watch.found
+        """How far the shape is from equilibrium now."""
+        if self._seen is None:
+            self._seen = self._balance()
+        return self._seen
+
+    def _balance(self) -> Balance:
+        """The balance of the present state, which stays as it is: judging one notes the scale of its forces."""
+        return balance(self.system, replace(self.state))
 
     @property
     def energy(self) -> float | None:
-        """Of all forces when the shape was last looked at, and of motion [force length]; None where a force, such as
-        pressure, has none."""
+        """Of all forces and of motion now [force length]; None where a force, such as pressure, has none."""
         if not all(group.cls.conservative for group in self.system.groups):
             return None
         moving = kinetic(self.system, self.state) if self.solver.physical else 0.0
-        return float(self._watch.found.energies.sum()) + moving
+        return float(self.balance.energies.sum()) + moving
 
     @property
     def message(self) -> str:
         """How it stands, in a sentence."""
-        found, unit = self._watch.found, self.scene.units.force
         if self.status is Status.RUNNING:
+            found, unit = self.balance, self.scene.units.force
             return f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance."
         return self._said or self._watch.sentence(self.system, self.status)
 
@@ -202,7 +244,7 @@ class Simulation:
             self.state.time,
             self.state.iteration,
             self.state.revision,
-            self._watch.found.residual,
+            self.balance.residual,
             self.status,
             self.message,
         )
@@ -212,12 +254,9 @@ class Simulation:
         warnings = self.system.report.warnings
         if self.status is Status.RUNNING and not any(w.startswith("/settings/time_step") for w in warnings):
             self._warn()
-        found = balance(self.system, self.state)
+        found, moving = self._balance(), self.solver.physical
         rest = self._watch.rest if self.status is Status.CONVERGED else None
-        return gather(
-            self.system, self.state, found, rest, self.status, self.message, self.solver.name,
-            moving=self.solver.physical,
-        )  # fmt: skip
+        return gather(self.system, self.state, found, rest, self.status, self.message, self.solver.name, moving=moving)
 
     def relax(self, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Result:
         """Go to equilibrium from here with the scene's solver (auto: relaxation and Newton)."""
@@ -286,8 +325,12 @@ class Simulation:
         the state of another system."""
         if not state.fits(self.state):
             raise ValueError("a state of another system")
+        goal, scale = state.scratch.get("goal"), state.force_scale
         self.state = state
         self._begin(start=False, warn=False)
+        self.state.force_scale = scale  # of what was judged; this was only looked at
+        if goal is not None and not self.solver.physical:
+            self.state.scratch["goal"] = goal
         self.status = status
 
     def save(self, path: str | Path | IO[bytes]) -> None:

@@ -22,6 +22,7 @@ class Solver(ABC):
 
     name: ClassVar[str]
     longest: ClassVar[int] = 10**9  # iterations in one call, so that a run can be cancelled in between
+    together: ClassVar[int] = 0  # iterations that one call does where other calls give other numbers; 0: none do
     anew: int = 0  # iteration at which it last went back to the start of the run, to try another way
     remark: str = ""  # a sentence on the shape it found, where there is more to say than that it is at rest
     work: float = 0.0  # passes over all springs since its start; 0: one an iteration

@@ -38,6 +38,7 @@ class Method(Solver):
     """One linear solve; only for springs of rest length 0, soft anchors and loads."""
 
     name: ClassVar[str] = "force_density"
+    together: ClassVar[int] = 1
 
     def refuse(self, system: System) -> str:
         """A sentence unless every internal force is linear."""

@@ -58,6 +58,7 @@ class Method(Solver):
     """Newton and multigrid for large nets."""
 
     name: ClassVar[str] = "multilevel"
+    together: ClassVar[int] = 1
     longest: ClassVar[int] = 100
 
     def __init__(self) -> None:

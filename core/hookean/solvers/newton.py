@@ -30,6 +30,7 @@ class Method(Solver):
     """Sparse Newton; best from a shape that is already near, for tight tolerances."""
 
     name: ClassVar[str] = "newton"
+    together: ClassVar[int] = 3
     longest: ClassVar[int] = 3
     leaves: ClassVar[bool] = True
 

@@ -24,13 +24,13 @@ from hookean.errors import InputError
 from hookean.result import Status
 from hookean.scene import faults
 from hookean.simulation import Simulation
-from hookean.watch import seldom
 from hookean_server.problems import Problem, faulty
 from hookean_server.sessions import parts, wire
 
 log = logging.getLogger("hookean.session")
 
 FRAME = 1.0 / 60.0  # seconds from frame to frame while it plays
+FAST = 0.05  # and at full speed, where each frame costs iterations
 SLICE = 0.005  # seconds of solving between commands
 BEAT = 0.5
 CHECKPOINT = 0.8
@@ -69,7 +69,6 @@ class Host:
         self.shown, self.shown_at = -1, 0.0  # revision and moment of the last frame
         self.due = 0.0  # when the next frame's iterations are due
         self.owed = 0  # iterations until the next frame
-        self.judged = True  # whether the shape was looked at since it moved
         self.each = 1  # iterations that fit into a slice
         self.saved_at = self.beat_at = time.monotonic()
 
@@ -110,7 +109,7 @@ class Host:
             self.stored = -1  # the last checkpoint: another one is due
             return
         if self.simulation is not None:
-            self._judge(self.simulation)
+            self._finite(self.simulation)
         answer = self._do(head, body)
         if answer is not None:
             self._send({"id": head["id"], **answer[0]}, answer[1])
@@ -234,36 +233,41 @@ class Host:
     # running
 
     def _advance(self, simulation: Simulation) -> None:
-        """One slice of iterations, and a look at the shape where a frame is complete."""
+        """One slice of iterations. The clock decides how many; where the run leads and ends does not depend on it."""
         began = time.monotonic()
+        frame, before = simulation.scene.settings.sub_iterations, simulation.state.iteration
         if not (self.owed or self.left or self.fast):
-            self.owed = simulation.scene.settings.sub_iterations
+            self.owed = frame
             self.due = max(self.due + FRAME, began)
-        every = seldom(simulation.system)  # counted, not timed: it comes to rest at the same iteration every time
-        before = simulation.state.iteration
-        count = min(self.each, self.left or self.owed or self.each, every - before % every)
-        simulation.advance(count)
-        self.judged = False
-        now = time.monotonic()
-        self.each = max(1, min(2 * self.each, int(count * SLICE / max(now - began, 1e-6)), 100_000))
-        self.left = max(0, self.left - count)
-        self.owed = max(0, self.owed - count)
-        done = not (self.left or self.owed or (self.playing and self.fast))
-        stands = simulation.state.iteration < before + count
-        edited = self.credit and simulation.state.revision != self.shown  # somebody waits to see it
-        if done or stands or edited or simulation.state.iteration % every == 0:
-            self._judge(simulation)
+        count = min(self.each, (self.left % frame or frame) if self.left else self.owed or self.each)
+        if not self.left or simulation.solver.together:
+            simulation.play(count)
+        elif self.left % frame != count % frame:
+            simulation.advance(count)
+        else:  # as `Simulation.step` judges
+            simulation.iterate(count)
+        done, took = max(count, simulation.state.iteration - before), time.monotonic() - began
+        self.each = max(1, min(2 * self.each, int(done * SLICE / max(took, 1e-6)), 100_000))
+        self.left, self.owed = max(0, self.left - done), max(0, self.owed - done)
+        self._note(simulation)
 
-    def _judge(self, simulation: Simulation) -> None:
-        """Look at the shape, unless it is as it was: whatever is shown, stored or edited has been judged."""
-        if self.judged:
-            return
-        self.judged = True
-        if simulation.look() is not Status.RUNNING:
-            self.playing, self.left = False, 0
+    def _note(self, simulation: Simulation) -> None:
+        """Something has moved, and may have come to its end."""
+        if simulation.status is not Status.RUNNING:
+            self.playing, self.left, self.owed = False, 0, 0
         if not self.left:
             self._stepped()
         self._mark()
+
+    def _finite(self, simulation: Simulation) -> None:
+        """A state that is not finite is neither shown nor stored: the run goes on to where it is judged, and back to
+        its last good shape."""
+        while simulation.status is Status.RUNNING and not simulation.finite:
+            if self.left:
+                simulation.look()
+            else:
+                simulation.play(1)
+            self._note(simulation)
 
     def _stepped(self) -> None:
         """Answer the `step` that has ended."""
@@ -275,26 +279,31 @@ class Host:
         self.now += 1
 
     def _show(self) -> None:
-        """Send a frame, if one is wanted and there is anything new in it."""
-        if not self.credit or not self.judged or self.simulation is None or self.changed == self.now:
+        """Send a frame, if one is wanted and there is anything new in it; in real time, once it is whole."""
+        simulation, now = self.simulation, time.monotonic()
+        if not self.credit or simulation is None or self.changed == self.now:
             return
-        now = time.monotonic()
-        revision = self.simulation.state.revision
-        if not (self.playing or self.left) or revision != self.shown or now >= self.shown_at + 0.5 * FRAME:
-            self.credit, self.changed, self.shown, self.shown_at = 0, self.now, revision, now
+        apart = FAST if self.playing and self.fast else 0.5 * FRAME
+        due = now >= self.shown_at + apart and not self.owed
+        if due or not (self.playing or self.left) or simulation.state.revision != self.shown:
+            self._finite(simulation)
+            self.credit, self.changed = 0, self.now
+            self.shown, self.shown_at = simulation.state.revision, now
             self.number += 1
-            frame = parts.frame(self.simulation, self.number, self.playing or bool(self.left))
+            frame = parts.frame(simulation, self.number, self.playing or bool(self.left))
             self._send({"event": "frame", "number": self.number}, wire.encode(frame))
 
     def _keep(self) -> None:
         """A checkpoint or a sign of life, when one is due."""
         now = time.monotonic()
-        wanted = self.judged and self.now != self.stored and now >= self.saved_at + CHECKPOINT
-        if self.simulation is not None and wanted:
+        if self.simulation is not None and self.now != self.stored and now >= self.saved_at + CHECKPOINT:
+            self._finite(self.simulation)
             self.saved_at, self.stored = now, self.now
             self._send({"event": "checkpoint", **self._described()}, parts.state_bytes(self.simulation))
         if now >= self.beat_at + BEAT:
             self.beat_at = now
+            if self.simulation is not None:
+                self._finite(self.simulation)
             self._send({"event": "beat", **(self._described() if self.simulation else {})}, b"")
 
     def _described(self) -> dict[str, Any]:
