@@ -40,12 +40,27 @@ _OBJECT_TYPE = 0x82000071
 _OBJECT_ATTRIBUTES = 0x02008072
 _RECORD_END = 0x8200007F
 _OTHER_PARTS = (0x02000073, 0x02008074)  # user data of the attributes, history
-_WORDS = {
-    OBJECT_RECORD: "objects do",
-    LAYER_RECORD: "layers do",
-    LIGHT_RECORD: "lights do",
-    UNITS_RECORD: "settings of units do",
+_WORDS = {LAYER_RECORD: "layer", LIGHT_RECORD: "light", UNITS_RECORD: "setting of units"}
+OBJECT_TYPES = {
+    0x1: "point",
+    0x2: "point cloud",
+    0x4: "curve",
+    0x8: "surface",
+    0x10: "Brep",
+    0x20: "mesh",
+    0x100: "light",
+    0x200: "annotation",
+    0x1000: "block instance",
+    0x2000: "text dot",
+    0x8000: "detail view",
+    0x10000: "hatch",
+    0x20000: "morph control",
+    0x40000: "SubD",
+    0x20000000: "clipping plane",
+    0x40000000: "extrusion",
 }
+"""What the bit of an object's type stands for."""
+_NAMED = 3  # damaged objects that a note names
 _MAX_TOP_LEVEL = 4096  # a file has about 20: one per table and one per plug-in
 
 
@@ -82,7 +97,7 @@ class LayerRecord:
 @dataclass(frozen=True, slots=True)
 class ObjectRecord:
     """An object record: span `start:end`, uuid of its class, bit of its object type, and from its attributes
-    the object's id and layer number (None if unreadable)."""
+    the object's id and layer number (None if unreadable) and name ("" for none, and before Rhino 5)."""
 
     start: int
     end: int
@@ -90,6 +105,12 @@ class ObjectRecord:
     object_type: int
     id: UUID | None
     layer_index: int | None
+    name: str
+
+    @property
+    def label(self) -> str:
+        """Type, name and id, for a person."""
+        return _label(self.object_type, self.name, self.id)
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +217,8 @@ class _Scan:
         self.current_layer: int | None = None
         self.strange = self.units = 0
         self.checksums = Checksums(data, self.size)
-        self.damaged = {LAYER_RECORD: 0, OBJECT_RECORD: 0, LIGHT_RECORD: 0, UNITS_RECORD: 0}
+        self.damaged = dict.fromkeys(_WORDS, 0)
+        self.damaged_objects: list[int] = []
 
     def run(self) -> Archive:
         end_mark = self._top_level()
@@ -248,30 +270,35 @@ class _Scan:
                 self.units += 1
             elif chunk.typecode in (OBJECT_TABLE, LAYER_TABLE):
                 self.strange += 1
-            if record.typecode in self.damaged and not self._holds(record):
+            if record.typecode == OBJECT_RECORD and not self._holds(record):
+                self.damaged_objects.append(len(self.objects) - 1)
+            elif record.typecode in self.damaged and not self._holds(record):
                 self.damaged[record.typecode] += 1
         if tail is None:
             raise _Damage(f"the table at byte {chunk.start} has no end")
         self.tables.append(Table(chunk.typecode, chunk.start, chunk.body, tail, chunk.end))
 
     def _object(self, record: Chunk) -> ObjectRecord:
-        class_id: UUID | None = None
-        kind = 0
-        attributes: tuple[UUID | None, int | None] = (None, None)
-        ended = False
-        for part in self._parts(record):
-            if part.typecode == _OBJECT_TYPE:
-                kind = part.value & 0xFFFFFFFF
-            elif part.typecode == _CLASS and class_id is None:
-                class_id = self._class_id(part)
-            elif part.typecode == _OBJECT_ATTRIBUTES:
-                attributes = self._attributes(part)
-            elif part.typecode == _RECORD_END:
-                ended = True
-            elif part.typecode not in _OTHER_PARTS:
-                self.strange += 1
-        if class_id is None or not ended:
-            raise _Damage(f"the object record at byte {record.start} has no class or no end")
+        """Raises _Damage that names the object by its place, and by its type, name and id where those are read."""
+        kind, class_id, ended = 0, None, False
+        attributes: tuple[UUID | None, int | None, str] = (None, None, "")
+        try:
+            for part in self._parts(record):
+                if part.typecode == _OBJECT_TYPE:
+                    kind = part.value & 0xFFFFFFFF
+                elif part.typecode == _CLASS and class_id is None:
+                    class_id = self._class_id(part)
+                elif part.typecode == _OBJECT_ATTRIBUTES:
+                    attributes = self._attributes(part)
+                elif part.typecode == _RECORD_END:
+                    ended = True
+                elif part.typecode not in _OTHER_PARTS:
+                    self.strange += 1
+            if class_id is None or not ended:
+                raise _Damage(f"its record at byte {record.start} has no {'end' if class_id else 'class'}")
+        except _Damage as damage:
+            label = _label(kind, attributes[2], attributes[0])
+            raise _Damage(f"object {len(self.objects)} ({label}) cannot be read: {damage}") from None
         return ObjectRecord(record.start, record.end, class_id, kind, *attributes)
 
     def _layer(self, record: Chunk) -> LayerRecord:
@@ -291,7 +318,7 @@ class _Scan:
     def _class_id(self, wrapper: Chunk) -> UUID:
         first = next(chunks(self.data, wrapper.body, wrapper.end, self.size), None)
         if first is None or first.typecode != _CLASS_UUID or first.end - first.body != 20:
-            raise _Damage(f"the object at byte {wrapper.start} does not name its class")
+            raise _Damage(f"the record at byte {wrapper.start} does not name its class")
         return UUID(bytes_le=self.data[first.body : first.body + 16])
 
     def _holds(self, record: Chunk) -> bool:
@@ -300,11 +327,18 @@ class _Scan:
             return self.checksums.hold(record.typecode, record.body, record.end)
         return all(self.checksums.hold(part.typecode, part.body, part.end) for part in self._parts(record))
 
-    def _attributes(self, part: Chunk) -> tuple[UUID | None, int | None]:
+    def _attributes(self, part: Chunk) -> tuple[UUID | None, int | None, str]:
+        """Id, layer number and name."""
         # a version byte whose high four bits are 1 or 2 (before and from Rhino 5), then id and layer number
         if part.end - part.body < 25 or self.data[part.body] >> 4 not in (1, 2):
-            return None, None
-        return UUID(bytes_le=self.data[part.body + 1 : part.body + 17]), self._int32(part.body + 17)
+            return None, None, ""
+        id, layer = UUID(bytes_le=self.data[part.body + 1 : part.body + 17]), self._int32(part.body + 17)
+        name, at = "", part.body + 22
+        # from Rhino 5 on items follow, each behind its number; the name is the first of them
+        if self.data[part.body] >> 4 == 2 and self.data[at - 1] == 1 and at + 8 <= part.end:
+            end = at + 4 + 2 * max(0, self._int32(at) - 1)
+            name = self.data[at + 4 : end].decode("utf-16-le", "replace") if end <= part.end else ""
+        return id, layer, name
 
     def _int32(self, position: int) -> int:
         return int.from_bytes(self.data[position : position + 4], "little", signed=True)
@@ -320,7 +354,19 @@ class _Scan:
             notes.append("the unit of length is not where it should be: the file is damaged, look at the result.")
         if self.strange:
             notes.append(f"{self.strange} records among objects and layers are of no known kind and are left out.")
+        for place in self.damaged_objects[:_NAMED]:
+            said = f"object {place} ({self.objects[place].label}) does not agree with its checksums"
+            notes.append(f"{said}: it is damaged, check the result there.")
+        if (more := len(self.damaged_objects) - _NAMED) > 0:
+            notes.append(f"{more} more object{'s do' if more > 1 else ' does'} not agree with their checksums.")
         for typecode, what in _WORDS.items():
             if count := self.damaged[typecode]:
-                notes.append(f"{count} {what} not agree with their checksums: the file is damaged, look at the result.")
+                whole = f"{count} {what}s do" if count > 1 else f"1 {what} does"
+                notes.append(f"{whole} not agree with the checksum: the file is damaged, check the result.")
         return tuple(notes)
+
+
+def _label(kind: int, name: str, id: UUID | None) -> str:
+    what = OBJECT_TYPES.get(kind, f"type {kind:#x}") if kind else "unknown type"
+    called = f' "{" ".join(name.split())[:80]}"' if name else ""
+    return what + called + (f", id {id}" if id is not None else "")

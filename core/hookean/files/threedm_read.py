@@ -30,6 +30,7 @@ from hookean.files.threedm_model import (
 )
 from hookean.files.threedm_old import FIRST_WITH_TEXT, clean_layer_names
 
+MOST_NAMED = 3  # lost objects named in one warning
 _NO_ID = UUID(int=0)
 
 
@@ -78,7 +79,10 @@ def _unreadable(archive: Archive, name: str) -> InputError:
             f"a .3dm file of version {archive.version // 10}, newer than the 8 that can be read; "
             "save it as Rhino 8 or earlier.",
         )
-    return InputError(name, "damaged .3dm file: its contents cannot be read; open it in Rhino and save it anew.")
+    found = f" ({archive.notes[0].rstrip('.')})" if archive.notes else ""
+    return InputError(
+        name, f"damaged .3dm file: its contents cannot be read{found}; open it in Rhino and save it again."
+    )
 
 
 class _Reader:
@@ -199,9 +203,11 @@ class _Reader:
         if unit not in METRES:
             self.warnings.append(f"the file's unit system is {unit}, so its lengths in metres are not known.")
         for group in lost:
+            which = ", ".join(str(id or "unknown") for id in group.ids[:MOST_NAMED])
             self.warnings.append(
-                f"{group.count} objects of class {group.class_id} cannot be read and are left out of the model; "
-                "they stay in the file."
+                f"{group.count} object{'s' * (group.count != 1)} of class {group.class_id} cannot be read and "
+                f"{'is' if group.count == 1 else 'are'} left out of the model, but kept in the file: id {which}"
+                f"{' ...' if group.count > MOST_NAMED else ''}."
             )
         if len(self.layers) < len(self.archive.layers):
             self.warnings.append(f"{len(self.archive.layers) - len(self.layers)} layers cannot be read.")
