@@ -82,3 +82,11 @@ def _restore(state: State, good: State, *, memory: bool) -> None:
     state.x, state.v, state.free, state.time, state.iteration = good.x, good.v, good.free, good.time, good.iteration
     if memory:
         state.memory = good.memory
+
+
+def bounded(scene: Scene, seconds: float) -> Scene:
+    """The scene with a time limit of at most `seconds`."""
+    given = scene.settings.time_limit
+    if given is not None and given <= seconds:
+        return scene
+    return scene.replaced(settings=scene.settings.replaced(time_limit=seconds))

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import importlib
-import json
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hookean.errors import InputError
-from hookean_server import answers
+from hookean_server import answers, claimed
 from hookean_server.problems import Problem
 from hookean_server.tasks import Cancelled, Clock, Done
 from hookean_server.workers import limited
@@ -21,14 +20,15 @@ if TYPE_CHECKING:
 
 MODEL = "model/vnd.3dm"
 RECIPE_LIMIT = 2**20
-TOLD = 20  # warnings told in a header
 
 
 def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
-    """The relaxed file, or with `options["answer"] == "report"` the report of its results as JSON.
+    """The relaxed file, or with `options["answer"] == "report"` the report of its results as JSON; headers say how the
+    run ended.
 
-    Options: `path` of the multipart body, `content_type` with its boundary, `answer` (`file` or `report`). The form
-    has a part `file`, and may have a part `recipe` (JSON text). Raises InputError naming the part.
+    Options: `path` of the multipart body, `content_type` with its boundary, `answer` (`file` or `report`), `seconds`,
+    the longest solve [s]. The form has a part `file`, and may have a part `recipe` (TOML or JSON text). Raises
+    InputError naming the part.
     """
     clock = Clock()
     with _beside(options["path"]) as folder:
@@ -38,16 +38,21 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         source.write_bytes(data)
         report = options["answer"] == "report"
         try:
-            reading = limited(options["read_seconds"])
-            done = _relax_file()(source, None if report else target, recipe, cancelled=cancelled, reading=reading)
+            done = _relax_file()(
+                source, None if report else target, recipe, cancelled=cancelled,
+                reading=limited(options["read_seconds"]), seconds=options["seconds"],
+            )  # fmt: skip
         except InputError as error:
             if isinstance(error.__cause__, OSError):
                 raise error.__cause__ from None  # our disk is at fault, not the file
             raise InputError(_place(error.pointer, recipe), error.sentence.replace(folder, "")) from None
         clock.lap("solve")
+        said = claimed.headers(done.result, done.warnings)
         if report:
-            return Done(answers.dump(done.to_dict(), "list"), timing=clock.parts)
-        named = {"content-disposition": 'attachment; filename="relaxed.3dm"', **_told(done.warnings)}
+            return Done(answers.dump(done.to_dict(), "list"), headers=said, timing=clock.parts)
+        if not target.exists():
+            raise Problem("out-of-time", "This was stopped before it was done, and nothing was written.")
+        named = {"content-disposition": 'attachment; filename="relaxed.3dm"', **said}
         return Done(target.read_bytes(), MODEL, named, clock.parts)
 
 
@@ -72,7 +77,7 @@ def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         except InputError as error:
             pointer = _place(error.pointer, recipe) if drawing else f"/file{error.pointer.rstrip('/')}"
             raise InputError(pointer, error.sentence.replace(folder, "")) from None
-    return Done(scene.canonical.encode(), headers=_told([*warnings, *([said] if said else [])]))
+    return Done(scene.canonical.encode(), headers=claimed.warned([*warnings, *([said] if said else [])]))
 
 
 def _drawing(data: bytes, recipe: str | None, folder: str) -> tuple[Scene, list[str]]:
@@ -158,11 +163,6 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None, str]:
         return found["file"], recipe.decode("utf-8") if recipe else None, name
     except UnicodeDecodeError:
         raise InputError("/recipe", "the text is not UTF-8") from None
-
-
-def _told(warnings: Sequence[str]) -> dict[str, str]:
-    """What a person should know of a file, in a header: a JSON list of sentences in ASCII."""
-    return {"hookean-warnings": json.dumps([w[:200] for w in warnings[:TOLD]])} if warnings else {}
 
 
 def _place(pointer: str, recipe: str | None) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from hookean_server.claimed import NAMES
 from hookean_server.problems import Problem, is_function
 from hookean_server.settings import Settings
 from hookean_server.tokens import Tokens, cookie_name, cookies
@@ -17,7 +18,7 @@ CORS = {
     ),
     "access-control-max-age": "600",
 }
-EXPOSED = "etag, location, retry-after, server-timing, x-request-id"
+EXPOSED = ", ".join(("etag", "location", "retry-after", "server-timing", "x-request-id", *NAMES))
 
 
 def needs_token(method: str, path: str) -> bool:

@@ -38,9 +38,10 @@ async def compute(request: Request, task: str, options: dict[str, Any], *, once:
         return respond(await answered(request, pool, job))
 
 
-async def compute_upload(request: Request, task: str, options: dict[str, Any]) -> Response:
-    """Run a task on the multipart body of a request, which is streamed to disk; the worker is replaced afterwards."""
-    return respond(await _uploaded(request, task, options))
+async def compute_upload(request: Request, task: str, options: dict[str, Any], *, seconds: float = 0.0) -> Response:
+    """Run a task on the multipart body of a request, which is streamed to disk; the worker is replaced afterwards.
+    `seconds` that it may take on top of what reading a file may."""
+    return respond(await _uploaded(request, task, options, seconds))
 
 
 async def uploaded_scene(request: Request) -> tuple[bytes, list[str]]:
@@ -49,7 +50,7 @@ async def uploaded_scene(request: Request) -> tuple[bytes, list[str]]:
     return reply.body, json.loads(reply.head["headers"].get("hookean-warnings", "[]"))
 
 
-async def _uploaded(request: Request, task: str, options: dict[str, Any]) -> Reply:
+async def _uploaded(request: Request, task: str, options: dict[str, Any], seconds: float = 0.0) -> Reply:
     pool, settings = _service(request)
     if media_type(request.headers) != "multipart/form-data":
         raise Problem("unsupported-media", "Send the file as a form: Content-Type: multipart/form-data.")
@@ -66,7 +67,8 @@ async def _uploaded(request: Request, task: str, options: dict[str, Any]) -> Rep
                 raise not_stored(error) from None
             told = {"content_type": request.headers["content-type"], "read_seconds": settings.read_seconds}
             given = {**options, "path": str(path), **told}
-            job = Job(task, given, b"", settings.file_seconds + settings.grace_seconds, once=True)
+            longest = 2.0 * settings.read_seconds + seconds + settings.grace_seconds
+            job = Job(task, given, b"", longest, once=True)
             return await answered(request, pool, job)
         finally:
             await asyncio.to_thread(shutil.rmtree, folder, ignore_errors=True)

@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
 import hookean
+from hookean_server import claimed
 from hookean_server.problems import CATALOGUE, MEDIA_TYPE
 from hookean_server.schemas import EXAMPLES, SCHEMAS, operation_schema
 
@@ -30,11 +31,12 @@ def problems(
     computed: bool = False,
     live: bool = False,
     open_to_all: bool = False,
+    headers: dict[str, Any] | None = None,
 ) -> dict[int | str, dict[str, Any]]:
-    """`responses` of an operation: its success and every problem it can give."""
+    """`responses` of an operation: its success, with `headers`, and every problem it can give."""
     found: dict[int | str, dict[str, Any]] = {}
     if success is not None:
-        found[200] = {"description": "Done", "content": success}
+        found[200] = {"description": "Done", "content": success, **({"headers": headers} if headers else {})}
     for code in codes:
         found[code] = {"description": "As before"} if code == 304 else {"description": "Done", "content": success or {}}
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
@@ -70,7 +72,8 @@ def relax() -> dict[str, Any]:
     """What the route of `/v1/relax` says of itself."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/Result"}}}
     scene = {"$ref": "#/components/schemas/Scene"}
-    return {"responses": problems(success, computed=True), "openapi_extra": _takes(scene, EXAMPLES["relax"])}
+    found = problems(success, computed=True, headers=claimed.described())
+    return {"responses": found, "openapi_extra": _takes(scene, EXAMPLES["relax"])}
 
 
 def example_scene() -> dict[str, Any]:
@@ -87,7 +90,7 @@ def relax_file() -> dict[str, Any]:
         "application/json": {"schema": {"type": "object"}},
     }
     return {
-        "responses": problems(success, computed=True),
+        "responses": problems(success, computed=True, headers=claimed.described()),
         "openapi_extra": _takes(_form("The .3dm file"), {}, "multipart/form-data"),
     }
 

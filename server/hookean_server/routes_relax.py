@@ -24,8 +24,9 @@ Meshes = Annotated[
 
 @router.post("/v1/relax", summary="Relax a scene to equilibrium", **openapi.relax())
 async def relax(request: Request, arrays: Arrays = None, meshes: Meshes = None) -> Response:
-    """The shape in equilibrium and what holds it. Every finished run is an answer with status 200: one that stalled,
-    diverged or ran out of iterations or time says so in `status` and `message`."""
+    """The shape in equilibrium and what holds it. Every run that ends by itself is an answer with status 200: one that
+    stalled, diverged or ran out of iterations or time has its last good shape, and says so in `status`, `message` and
+    the headers."""
     seconds = request.app.state.settings.solve_seconds
     return await compute(request, "relax", {"arrays": arrays, "meshes": meshes, "seconds": seconds})
 
@@ -38,7 +39,10 @@ async def relax_file(
         Query(description="The relaxed file, or what was found as JSON; default: by the header Accept, else the file"),
     ] = None,
 ) -> Response:
-    """The uploaded file with the relaxed shape added to it. Parts of the form: `file`, and optionally `recipe`."""
+    """The uploaded file with the relaxed shape added to it. Parts of the form: `file`, and optionally `recipe`. As of
+    `/v1/relax`, every run that ends by itself is an answer with status 200, with its last good shape: headers such as
+    `Hookean-Status` say how it ended, and so does the document text of the file (`hookean:status`)."""
+    seconds = request.app.state.settings.file_seconds
     wanted = request.headers.get("accept", "").split(",")[0].split(";")[0].strip().lower()
     chosen = answer or ("report" if wanted == "application/json" else "file")
-    return await compute_upload(request, "file", {"answer": chosen})
+    return await compute_upload(request, "file", {"answer": chosen, "seconds": seconds}, seconds=seconds)

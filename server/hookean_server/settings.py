@@ -27,7 +27,7 @@ class Settings:
     solve_seconds: float = 300.0
     """Longest solve; a scene with a longer or no `time_limit` ends here with the status `time_limit`."""
     file_seconds: float = 180.0
-    """Longest time for reading, solving and writing one file."""
+    """Longest solve of an uploaded file; it ends here with the status `time_limit`."""
     read_seconds: float = 60.0
     """Longest time for reading one file: of computing, and twice that by the clock."""
     grace_seconds: float = 10.0

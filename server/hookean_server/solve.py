@@ -6,8 +6,9 @@ from typing import Any
 
 from hookean.files import compas_json
 from hookean.files.scene_json import parse
+from hookean.run import bounded, relax
 from hookean.scene import Scene
-from hookean_server import answers
+from hookean_server import answers, claimed
 from hookean_server.tasks import Cancelled, Clock, Done
 
 
@@ -17,8 +18,6 @@ def relax_scene(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> D
     Options: `arrays` (`list`, `buffer` or none: as in the request), `meshes` (`plain`, `compas` or none: as in the
     request), `seconds`, the longest solve [s]. Raises InputError and pydantic's ValidationError for a faulty scene.
     """
-    from hookean.run import relax
-
     clock = Clock()
     value = parse(body)
     plain, documents, _ = compas_json.plain_scene(value)
@@ -30,12 +29,4 @@ def relax_scene(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> D
     meshes = options.get("meshes") or ("compas" if documents else "plain")
     text = answers.encode(result, scene, arrays, documents if meshes == "compas" else None)
     clock.lap("encode")
-    return Done(text, timing=clock.parts)
-
-
-def bounded(scene: Scene, seconds: float) -> Scene:
-    """The scene with a time limit of at most `seconds`."""
-    given = scene.settings.time_limit
-    if given is not None and given <= seconds:
-        return scene
-    return scene.replaced(settings=scene.settings.replaced(time_limit=seconds))
+    return Done(text, headers=claimed.headers(result, result.report.sentences()), timing=clock.parts)

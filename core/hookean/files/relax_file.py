@@ -9,13 +9,14 @@ import contextlib
 import json
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hookean.claims import document_text
 from hookean.errors import InputError
 from hookean.files import tables
 from hookean.files.threedm_atomic import check_target, put, read_bytes
@@ -136,18 +137,20 @@ def relax_file(
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
     reading: contextlib.AbstractContextManager[None] | None = None,
+    seconds: float | None = None,
 ) -> FileResult:
     """Relax what `source` holds and write it to `target` (None: nowhere), replaced in one step or not at all.
 
     A .3dm target is a copy of a .3dm source with results below the layer `hookean`, or a new file; a .json target is
     the result (of a COMPAS document the document with its new shape). A shape short of equilibrium is written too, a
     cancelled one is not. `limits` as `tables.read_limits` gives them; pointers into the recipe are told behind
-    `recipe_name`. The source is never written. `reading` is entered while the source is read.
+    `recipe_name`. The source is never written. `reading` is entered while the source is read. A solve longer than
+    `seconds` ends with the status `time_limit`.
 
     Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written; LimitsError,
     with everything written, where limits name what the file does not have.
     """
-    from hookean.run import relax_state
+    from hookean.run import bounded, relax_state
     from hookean.solvers import solver
     from hookean.system import compile
 
@@ -155,7 +158,7 @@ def relax_file(
     with reading or contextlib.nullcontext():
         read = open_file(Path(source), recipe_text, recipe_name)
     with about(recipe_name if recipe_text is not None else Path(source).name):
-        system = compile(read.scene)
+        system = compile(read.scene if seconds is None else bounded(read.scene, seconds))
         result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)
     return conclude(read, Path(source), system, result, target, limits=limits, limits_name=limits_name)
 
@@ -331,17 +334,24 @@ def _write(
 
     added, refused = additions(system, found.result, parts, read.built, read.unit, read.factor)
     found.warnings += refused
+    where = [f"{item.layer} {item.name}".strip() for item in added.objects]
+
+    def text(notes: Sequence[str]) -> dict[str, str]:
+        """What the document says of the result; what writing it adds to the warnings is among them."""
+        told(notes)
+        return document_text(found.result, found.warnings)
+
+    def told(notes: Sequence[str]) -> None:
+        said = [re.sub(r"^/objects/(\d+): ", lambda m: f"result on layer {where[int(m[1])]}: ", n) for n in notes]
+        found.warnings = list(dict.fromkeys([*found.warnings, *said]))
+
     if read.built is not None:
-        written = threedm.write(source, target, added)
+        written = threedm.write(source, target, added, text)
     else:
         names = {short: name for name, short in UNIT_NAMES.items()}
-        written = threedm.write_new(target, added, unit=names[read.scene.units.length])
+        written = threedm.write_new(target, added, unit=names[read.scene.units.length], text=text)
+    told(written.warnings)
     found.ids = [str(id) for id in written.ids]
-    where = [f"{item.layer} {item.name}".strip() for item in added.objects]
-    for warning in written.warnings:
-        said = re.sub(r"^/objects/(\d+): ", lambda m: f"result on layer {where[int(m[1])]}: ", warning)
-        if said not in found.warnings:
-            found.warnings.append(said)
 
 
 def _answer(found: FileResult, read: Source) -> Any:

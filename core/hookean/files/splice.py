@@ -1,14 +1,15 @@
-"""Adding layers and objects to a .3dm file without touching what is already in it.
+"""Adding layers, objects and document text to a .3dm file without touching what is already in it.
 
 A round trip through rhino3dm changes more than one expects: plug-in classes, some geometry, unknown objects.
 So the new records are copied as bytes from a file rhino3dm wrote into a copy of the original's bytes; only
-the lengths of the two tables and the end mark change.
+the lengths of the two tables and the end mark change. Document text is a table of its own, replaced as a whole.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+from uuid import UUID
 
 from hookean.errors import InputError
 from hookean.files.archive import (
@@ -23,6 +24,8 @@ from hookean.files.archive import (
 
 OLDEST_SPLICED = 50  # Rhino 5; before it the records of a table depend on other tables
 
+_USER_TABLE = 0x10000017
+_TEXT = UUID("06f3218e-f5ec-4f6c-b74c-14583f0ed7bc")  # of the table that holds the document's user text
 _FILE_NAME = 0x20008027
 _REVISION_HISTORY = 0x20008021
 
@@ -44,6 +47,7 @@ def splice(
     objects: int,
     drop_objects: Collection[int] = (),
     drop_layers: int = 0,
+    text: bool = False,
     name: str = "file",
 ) -> bytes:
     """`original` with the last `layers` layer and last `objects` object records of `addition` put at the ends
@@ -51,8 +55,9 @@ def splice(
 
     Both are .3dm bytes of the same version, 50 or later. The new layers must have the numbers they will have
     in the result: `addition` holds as many layers before them as `original` keeps. `drop_objects` are places
-    of object records to leave out, `drop_layers` how many layer records at the end to leave out. Every other
-    record of the original stays byte for byte, in order. Raises InputError when the two do not fit.
+    of object records to leave out, `drop_layers` how many layer records at the end to leave out; `text` puts the
+    document text of `addition` in place of the original's. Every other record of the original stays byte for byte, in
+    order. Raises InputError when the two do not fit.
     """
     old, new = scan(original, name), scan(addition, "addition")
     _fit(old, new, layers, objects, drop_layers, name)
@@ -67,7 +72,22 @@ def splice(
     for typecode, records in ((LAYER_TABLE, new_layers), (OBJECT_TABLE, new_objects)):
         tail = _table(old, typecode).tail
         edits[typecode].append(_Edit(tail, tail, records))
-    return _rewrite(original, old, edits)
+    return _rewrite(original, old, edits, _text_edits(original, old, addition, new) if text else [])
+
+
+def _text_edits(original: bytes, old: Archive, addition: bytes, new: Archive) -> list[_Edit]:
+    """The original's table of document text out, the addition's in: in its place, or behind all tables."""
+    edits = [_Edit(table.start, table.end, b"") for table in _text_tables(original, old)]
+    found = b"".join(addition[table.start : table.end] for table in _text_tables(addition, new))
+    place = edits[0].start if edits else old.end_mark.start
+    return [*edits, _Edit(place, place, found)]
+
+
+def _text_tables(data: bytes, archive: Archive) -> list[Table]:
+    """Tables of a plug-in begin with a record that has its id: here the id of document text."""
+    head = 4 + archive.length_size
+    users = (table for table in archive.tables if table.typecode == _USER_TABLE)
+    return [t for t in users if data[t.body + head : t.body + head + 16] == _TEXT.bytes_le]
 
 
 def without_history(data: bytes) -> bytes:
@@ -111,10 +131,11 @@ def _table(archive: Archive, typecode: int) -> Table:
     return table
 
 
-def _rewrite(data: bytes, archive: Archive, edits: dict[int, list[_Edit]]) -> bytes:
-    """Apply edits inside tables, then set the tables' lengths and the end mark. Tables carry no checksum."""
+def _rewrite(data: bytes, archive: Archive, edits: dict[int, list[_Edit]], whole: Sequence[_Edit] = ()) -> bytes:
+    """Apply edits inside tables and of `whole` tables, then set the tables' lengths and the end mark. Tables carry no
+    checksum."""
     size = archive.length_size
-    every: list[_Edit] = []
+    every = list(whole)
     for typecode, inside in edits.items():
         table = _table(archive, typecode)
         grown = sum(len(e.new) - (e.end - e.start) for e in inside)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from uuid import UUID
@@ -39,7 +39,7 @@ from hookean.files.threedm_model import (
     expand,
     rhino,
 )
-from hookean.files.threedm_old import warnings
+from hookean.files.threedm_old import FIRST_WITH_TEXT, warnings
 from hookean.files.threedm_read import Loaded, load, parse
 
 __all__ = [
@@ -61,6 +61,9 @@ __all__ = [
 ]
 
 StrPath = str | os.PathLike[str]
+Told = Callable[[Sequence[str]], Mapping[str, str]]
+"""Document text to add, made of the warnings that come with writing."""
+OWN_TEXT = "hookean:"  # what keys of document text begin with that an earlier run added
 NEWEST_WRITTEN = 80  # Rhino 8, the newest archive version rhino3dm writes
 
 
@@ -83,18 +86,19 @@ def read(path: StrPath, *, oldest: int = 2) -> Model:
     return load(path, oldest).model
 
 
-def write(source: StrPath, target: StrPath, additions: Additions) -> Written:
+def write(source: StrPath, target: StrPath, additions: Additions, text: Told | None = None) -> Written:
     """Write a copy of the .3dm file `source` with new layers and objects to `target`, in the same version.
 
     From Rhino 5 on every object of the source stays byte for byte and in order; older files take a round
-    trip through rhino3dm, and a warning says so. Objects an earlier run added are left out, so results do
-    not pile up. `target` is replaced in one step or not at all; it may not be the source. Raises InputError.
+    trip through rhino3dm, and a warning says so. Objects and document text an earlier run added are left out, so
+    results do not pile up. `text` is the document text to add. `target` is replaced in one step or not at all; it may
+    not be the source. Raises InputError.
     """
     check_target(target, source)
     loaded = load(source)
     if loaded.archive.version >= OLDEST_SPLICED:
-        return _splice(loaded, target, additions)
-    return _round_trip(loaded, target, additions)
+        return _splice(loaded, target, additions, text)
+    return _round_trip(loaded, target, additions, text)
 
 
 def write_new(
@@ -105,11 +109,12 @@ def write_new(
     tolerance: float = 0.001,
     version: int = 8,
     own: bool = True,
-    text: Mapping[str, str] | None = None,
+    text: Mapping[str, str] | Told | None = None,
 ) -> Written:
     """Write a new .3dm file of Rhino version 5 to 8 with these layers and objects.
 
-    `unit` is a rhino3dm unit system name, `tolerance` in that unit, `text` the document's user text. With
+    `unit` is a rhino3dm unit system name, `tolerance` in that unit, `text` the document's user text, or what makes it
+    of the warnings. With
     `own=False` the layers stand at the top rather than below `hookean`, as in a file a person drew. The same
     arguments give the same bytes. Raises InputError.
     """
@@ -125,7 +130,7 @@ def write_new(
     file = rhino.File3dm()
     file.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, unit)
     file.Settings.ModelAbsoluteTolerance = tolerance
-    for key, value in (text or {}).items():
+    for key, value in (text(planned.notes) if callable(text) else text or {}).items():
         file.Strings[key] = value
     add_layers(file, planned, ())
     add_objects(file, planned)
@@ -142,7 +147,7 @@ class _Cut:
     layers: int
 
 
-def _splice(loaded: Loaded, target: StrPath, additions: Additions) -> Written:
+def _splice(loaded: Loaded, target: StrPath, additions: Additions, text: Told | None) -> Written:
     model, archive = loaded.model, loaded.archive
     if archive.version > NEWEST_WRITTEN:
         raise InputError(
@@ -151,17 +156,28 @@ def _splice(loaded: Loaded, target: StrPath, additions: Additions) -> Written:
     cut = _cut(loaded)
     kept = model.layers[: len(model.layers) - cut.layers]
     planned = plan(additions, kept, _taken(loaded, cut))
+    notes = (*model.warnings, *planned.notes)
+    strings = _merged(model, text, notes)
     data = splice(
         loaded.data,
-        carrier(planned, kept, archive.version),
+        carrier(planned, kept, archive.version, strings),
         layers=len(planned.layers),
         objects=len(planned.objects),
         drop_objects=cut.objects,
         drop_layers=cut.layers,
+        text=strings != model.text,
         name=model.name,
     )
-    put(target, data, lambda back: _check_spliced(back, loaded, cut, planned))
-    return Written(planned.ids, len(cut.objects), (*model.warnings, *planned.notes))
+    put(target, data, lambda back: _check_spliced(back, loaded, cut, planned, strings))
+    return Written(planned.ids, len(cut.objects), notes)
+
+
+def _merged(model: Model, text: Told | None, notes: Sequence[str]) -> dict[str, str]:
+    """The document text of the copy: that of the source, and what is added in place of what an earlier run added."""
+    if text is None:
+        return dict(model.text)
+    kept = {key: value for key, value in model.text.items() if not key.startswith(OWN_TEXT)}
+    return kept | {key: value for key, value in text(notes).items() if value}  # Rhino keeps no empty text
 
 
 def _cut(loaded: Loaded) -> _Cut:
@@ -199,7 +215,7 @@ def _taken(loaded: Loaded, cut: _Cut) -> set[UUID]:
     return {id for id in kept if id is not None}
 
 
-def _round_trip(loaded: Loaded, target: StrPath, additions: Additions) -> Written:
+def _round_trip(loaded: Loaded, target: StrPath, additions: Additions, text: Told | None) -> Written:
     model, file = loaded.model, loaded.file
     if model.lost:
         raise InputError(
@@ -207,7 +223,7 @@ def _round_trip(loaded: Loaded, target: StrPath, additions: Additions) -> Writte
             f"holds {sum(group.count for group in model.lost)} objects that would be lost in a copy of version "
             f"{model.version}; open it in Rhino and save it as Rhino 5 or later.",
         )
-    notes = warnings(model.version, additions)
+    notes = warnings(model.version, additions, text=text is not None)
     dropped = [item for item in model.objects if item.own and item.marked]
     for item in dropped:
         file.Objects.Delete(item.id)
@@ -215,32 +231,38 @@ def _round_trip(loaded: Loaded, target: StrPath, additions: Additions) -> Writte
     planned = plan(additions, model.layers, taken)
     add_layers(file, planned, [layer.id for layer in model.layers])
     add_objects(file, planned)
+    notes = (*model.warnings, *notes, *planned.notes)
+    strings = _merged(model, text if model.version >= FIRST_WITH_TEXT else None, notes)
+    for key in model.text.keys() - strings.keys():
+        file.Strings.Delete(key)
+    for key, value in strings.items():
+        file.Strings[key] = value
     # every writing adds a line on the program to the comments at the start of the file
     file.StartSectionComments = "".join(f"{line}\n" for line in dict.fromkeys(file.StartSectionComments.splitlines()))
     data = written(file, model.version)
-    put(target, data, lambda back: _check_counts(back, loaded, len(dropped), planned))
-    return Written(planned.ids, len(dropped), (*model.warnings, *notes, *planned.notes))
+    put(target, data, lambda back: _check_counts(back, loaded, len(dropped), planned, strings))
+    return Written(planned.ids, len(dropped), notes)
 
 
-def _check_spliced(back: bytes, loaded: Loaded, cut: _Cut, planned: Plan) -> None:
+def _check_spliced(back: bytes, loaded: Loaded, cut: _Cut, planned: Plan, strings: Mapping[str, str]) -> None:
     gone = set(cut.objects)
     old = loaded.archive.objects
     before = [loaded.data[r.start : r.end] for place, r in enumerate(old) if place not in gone]
     after = [back[r.start : r.end] for r in scan(back, loaded.model.name).objects[: len(before)]]
     if before != after:
         raise _unsafe(loaded.model.name, "objects of the source differ")
-    result = _check_counts(back, loaded, len(gone), planned)
+    result = _check_counts(back, loaded, len(gone), planned, strings)
     if result.layers[: len(loaded.model.layers) - cut.layers] != loaded.model.layers[: -cut.layers or None]:
         raise _unsafe(loaded.model.name, "layers of the source differ")
 
 
-def _check_counts(back: bytes, loaded: Loaded, dropped: int, planned: Plan) -> Model:
+def _check_counts(back: bytes, loaded: Loaded, dropped: int, planned: Plan, strings: Mapping[str, str]) -> Model:
     result, model = parse(back, loaded.model.name).model, loaded.model
     _check_ids(result, planned)
     expected = len(model.objects) - dropped + len(planned.objects)
     if len(result.objects) != expected or result.lost != model.lost or result.lights != model.lights:
         raise _unsafe(model.name, f"{len(result.objects)} objects in place of {expected}")
-    if (result.unit, result.text, len(result.blocks)) != (model.unit, model.text, len(model.blocks)):
+    if (result.unit, result.text, len(result.blocks)) != (model.unit, strings, len(model.blocks)):
         raise _unsafe(model.name, "units, user text or blocks differ")
     return result
 

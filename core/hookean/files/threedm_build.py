@@ -119,9 +119,12 @@ def add_objects(file: Any, planned: Plan) -> None:
         file.Objects.Add(geometry, attributes)
 
 
-def carrier(planned: Plan, kept: Sequence[Layer], version: int) -> bytes:
-    """A .3dm file of archive version 50-80 with the planned layers, numbered after those kept, and objects."""
+def carrier(planned: Plan, kept: Sequence[Layer], version: int, text: Mapping[str, str] | None = None) -> bytes:
+    """A .3dm file of archive version 50-80 with the planned layers, numbered after those kept, objects, and document
+    text."""
     file = rhino.File3dm()
+    for key, value in (text or {}).items():
+        file.Strings[key] = value
     for layer in kept:
         placeholder = rhino.Layer()
         placeholder.Name, placeholder.Id = f"{layer.index} {layer.id}", layer.id

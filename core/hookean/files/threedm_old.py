@@ -32,8 +32,9 @@ def clean_layer_names(file: Any) -> None:
             layer.Name = layer.Name[: -len(suffix)]
 
 
-def warnings(version: int, additions: Additions) -> tuple[str, ...]:
-    """What a person should know of writing these additions to an old archive; InputError if it cannot be."""
+def warnings(version: int, additions: Additions, *, text: bool = False) -> tuple[str, ...]:
+    """What a person should know of writing these additions, and document text, to an old archive; InputError if it
+    cannot be."""
     found = [
         f"a .3dm file of version {version} is written anew as a whole: details of old objects may change and mesh "
         "coordinates are rounded to single precision; save it as Rhino 5 or later to keep them as they are."
@@ -44,9 +45,10 @@ def warnings(version: int, additions: Additions) -> tuple[str, ...]:
                 f"/objects/{place}/geometry",
                 f"a .3dm file of version {version} holds no point sets; save it as Rhino 5 or later, or give points.",
             )
-    if version < FIRST_WITH_TEXT and any(item.user_text for item in additions.objects):
+    if version < FIRST_WITH_TEXT and (text or any(item.user_text for item in additions.objects)):
+        what = "new objects and of the document" if text else "new objects"
         found.append(
-            f"a .3dm file of version {version} holds no user text, so that of the new objects is left out; "
+            f"a .3dm file of version {version} holds no user text, so that of the {what} is left out; "
             "save it as Rhino 5 or later to keep it."
         )
     return tuple(found)

@@ -25,7 +25,7 @@ from hookean.files import compas_json
 from hookean.files.scene_json import parse
 from hookean.patch import Patch, apply
 from hookean.result import Result, Status, gather
-from hookean.run import relax_state
+from hookean.run import bounded, relax_state
 from hookean.scene import Scene, faults
 from hookean.solvers import Solver, solver
 from hookean.state import State
@@ -33,7 +33,6 @@ from hookean.sweep import Sweep, Table, columns, figures, parameters
 from hookean.system import System, compile
 from hookean_server import answers
 from hookean_server.problems import faulty
-from hookean_server.solve import bounded
 from hookean_server.tasks import Cancelled, Done
 
 log = logging.getLogger("hookean.worker")
