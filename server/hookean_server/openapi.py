@@ -45,6 +45,8 @@ def problems(
             continue
         titles = [f"{title} (`{slug}`)" for slug, (code, title, _) in CATALOGUE.items() if code == status]
         found[status] = {"description": "; ".join(titles), "content": content}
+        if status == 412:
+            found[status]["headers"] = {"etag": {"description": "The current revision", "schema": {"type": "string"}}}
     return found
 
 

@@ -110,7 +110,7 @@ class Pool:
             raise
         if "problem" in reply.head:
             errors = [(p, d) for p, d in reply.head["errors"]]
-            raise Problem(reply.head["problem"], reply.head["detail"], errors)
+            raise Problem(reply.head["problem"], reply.head["detail"], errors, reply.head["headers"])
         return reply
 
     def stop(self) -> None:

@@ -40,7 +40,7 @@ CATALOGUE: dict[str, tuple[int, str, str]] = {
     "stale-revision": (
         412,
         "Somebody else has edited it",
-        "The header ETag has the present revision: look at what it is now and send the edit with If-Match for that.",
+        "The header ETag has the current revision: read the session again and send the edit with If-Match for that.",
     ),
     "too-large": (413, "Too large", "Send less, for example arrays as buffers instead of lists, or a coarser model."),
     "unsupported-media": (

@@ -92,4 +92,4 @@ def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
 
 
 def _failed(problem: Problem) -> dict[str, Any]:
-    return {"problem": problem.slug, "detail": problem.detail, "errors": problem.errors}
+    return {"problem": problem.slug, "detail": problem.detail, "errors": problem.errors, "headers": problem.headers}

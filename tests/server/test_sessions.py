@@ -113,6 +113,24 @@ def test_two_editors_cannot_overwrite_each_other_unseen(client: httpx.Client) ->
     assert client.get("/v1/sessions/a").json()["revision"] == 1
 
 
+@pytest.mark.parametrize("given", ['"0"', '"7"', 'W/"1"', '"soon"', '"1", "2"', "", "-1"])
+def test_a_refused_edit_has_the_etag_to_try_again_with(client: httpx.Client, given: str) -> None:
+    """RFC 9110, section 13.1.1: 412 where If-Match does not match; its ETag is that of the session as it is."""
+    put(client)
+    client.patch("/v1/sessions/a", json={"release": [0]})
+    refused = client.patch("/v1/sessions/a", json={"release": [5]}, headers={"if-match": given})
+    assert refused.status_code == 412 and refused.json()["type"] == "/problems/stale-revision"
+    assert refused.headers["etag"] == client.get("/v1/sessions/a").headers["etag"] == '"1"'
+    again = client.patch("/v1/sessions/a", json={"release": [5]}, headers={"if-match": refused.headers["etag"]})
+    assert again.status_code == 200 and again.headers["etag"] == '"2"'
+
+
+def test_the_etag_of_refusals_is_described(client: httpx.Client) -> None:
+    paths = client.get("/v1/openapi.json").json()["paths"]
+    refusals = [op["responses"]["412"] for path in paths.values() for op in path.values() if "412" in op["responses"]]
+    assert refusals and all("etag" in refusal["headers"] for refusal in refusals)
+
+
 @pytest.mark.parametrize(
     ("edit", "pointer"),
     [

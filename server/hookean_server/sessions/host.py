@@ -165,10 +165,10 @@ class Host:
     def do_edit(self, head: dict[str, Any], body: bytes) -> Reply:
         """A patch, an undo, a redo or a reset; answers with what to store so that it can be made again exactly."""
         simulation = self._simulation()
-        wanted = head.get("revision")
-        if wanted is not None and wanted != simulation.state.revision:
-            said = f"The session is at revision {simulation.state.revision}, not {wanted}; look and edit again."
-            raise Problem("stale-revision", said, headers={"etag": f'"{simulation.state.revision}"'})
+        wanted, revision = head.get("revision"), simulation.state.revision
+        if wanted is not None and wanted != revision:
+            said = f"The session is at revision {revision}, not {wanted}; read it and edit again."
+            raise Problem("stale-revision", said, headers={"etag": f'"{revision}"'})
         self.before = parts.Before(simulation)
         resolved, sets = parts.make(simulation, body)
         self._mark()
@@ -320,4 +320,4 @@ class Host:
 
 
 def _failed(problem: Problem) -> dict[str, Any]:
-    return {"problem": problem.slug, "detail": problem.detail, "errors": problem.errors}
+    return {"problem": problem.slug, "detail": problem.detail, "errors": problem.errors, "headers": problem.headers}

@@ -71,7 +71,8 @@ class SessionProcess:
         if answer is GONE:
             raise Gone
         if "problem" in answer:
-            raise Problem(answer["problem"], answer["detail"], [(p, d) for p, d in answer["errors"]])
+            errors = [(p, d) for p, d in answer["errors"]]
+            raise Problem(answer["problem"], answer["detail"], errors, answer["headers"])
         return answer, data
 
     def credit(self) -> None:

@@ -41,7 +41,7 @@ async def _body(request: Request) -> tuple[bytes, list[str] | None]:
 
 
 def _answer(live: Live, status: int = 200) -> Response:
-    headers = {"etag": f'"{live.described["revision"]}"', "cache-control": "no-store"}
+    headers = {"etag": _tag(live), "cache-control": "no-store"}
     if status == 201:
         headers["location"] = f"/v1/sessions/{live.key}"
     return JSONResponse(summary(live), status, headers)
@@ -92,8 +92,9 @@ async def edit(request: Request, key: Key, if_match: IfMatch = None) -> Response
     """A patch: `pin`, `release`, `move`, `forces`, `settings`, all of it or nothing; those of one `gesture` are undone
     as one. It is stored when this is answered, and in every frame of this revision or a later one."""
     body = await read_json(request)
-    await manager(request).edit(key, body, _revision(if_match))
-    return _answer(manager(request).find(key))
+    live = manager(request).find(key)
+    await manager(request).edit(key, body, _revision(if_match, live))
+    return _answer(live)
 
 
 @router.post("/v1/sessions/{key}/branches", status_code=201, summary="Branch a session", **openapi.branched())
@@ -181,10 +182,18 @@ async def _exported(request: Request, key: str, form: str, arrays: str = "list")
     return Response(data, media_type=FORMATS.get(form, "application/json"), headers=headers)
 
 
-def _revision(if_match: str | None) -> int | None:
+def _revision(if_match: str | None, live: Live) -> int | None:
+    """The revision that an edit is for; None: whatever it is. What is no revision matches none."""
     if if_match is None or if_match.strip() == "*":
         return None
     found = re.fullmatch(r'"?(\d{1,18})"?', if_match.strip())
     if found is None:
-        raise Problem("stale-revision", 'If-Match takes a revision, such as "7", or *.')
+        tag = _tag(live)
+        said = f"If-Match accepts one revision, such as {tag}, or *; the session is at revision {tag}."
+        raise Problem("stale-revision", said, headers={"etag": tag})
     return int(found[1])
+
+
+def _tag(live: Live) -> str:
+    """The ETag of a session: its revision."""
+    return f'"{live.described["revision"]}"'
