@@ -36,9 +36,10 @@ def _options(
 
 @app.command()
 def relax(
-    files: Annotated[list[Path], typer.Argument(help=".3dm files, scenes or COMPAS documents in .json")],
+    files: Annotated[list[Path], typer.Argument(help=".3dm, .obj or .json files (a scene or COMPAS documents)")],
     output: Annotated[
-        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm or .json file to write, or a folder/")
+        str | None,
+        typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file to write, or a folder/"),
     ] = None,
     recipe: Annotated[
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
@@ -71,7 +72,7 @@ def relax(
 
 @app.command()
 def simulate(
-    file: Annotated[Path, typer.Argument(help=".3dm file, scene or COMPAS document in .json")],
+    file: Annotated[Path, typer.Argument(help=".3dm, .obj or .json file (a scene or COMPAS documents)")],
     recipe: Annotated[
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
     ] = None,
@@ -89,7 +90,7 @@ def simulate(
         str | None, typer.Option(metavar="PATH", help="A picture (PNG) of the frames over each other")
     ] = None,
     output: Annotated[
-        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm or .json file for the last shape")
+        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file for the last shape")
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say only what is wrong")] = False,
 ) -> None:

@@ -7,16 +7,13 @@ import importlib
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from hookean.errors import InputError
 from hookean_server import answers, claimed
 from hookean_server.problems import Problem
 from hookean_server.tasks import Cancelled, Clock, Done
 from hookean_server.workers import limited
-
-if TYPE_CHECKING:
-    from hookean.scene import Scene
 
 MODEL = "model/vnd.3dm"
 RECIPE_LIMIT = 2**20
@@ -57,37 +54,30 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
 
 
 def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
-    """The scene that an uploaded .3dm, .obj or .json file holds, as JSON, fit to move, warnings in a header; options
-    and faults as `relax_upload`."""
-    from hookean.files.opened import kind, scene_in
+    """The scene of an uploaded file, as JSON, fit to move, warnings in a header; options and faults as
+    `relax_upload`. Files are read as `hookean relax` reads them (see `hookean.files.readers`)."""
+    from hookean.files.readers import read
     from hookean.stability import in_motion
 
-    with _beside(options["path"]) as folder:
-        data, recipe, name = parts(Path(options["path"]), options["content_type"])
-        try:
-            drawing = kind(data, name) == "3dm"
-        except InputError as error:
-            raise InputError("/file", error.sentence) from None
-        if recipe is not None and not drawing:
-            raise InputError("/recipe", "recipes go with .3dm files; other files say everything themselves")
-        try:
-            with limited(options["read_seconds"]):
-                scene, warnings = _drawing(data, recipe, folder) if drawing else scene_in(data, name)
-                scene, said = in_motion(scene)
-        except InputError as error:
-            pointer = _place(error.pointer, recipe) if drawing else f"/file{error.pointer.rstrip('/')}"
-            raise InputError(pointer, error.sentence.replace(folder, "")) from None
-    return Done(scene.canonical.encode(), headers=claimed.warned([*warnings, *([said] if said else [])]))
+    data, recipe, name = parts(Path(options["path"]), options["content_type"])
+    try:
+        with _beside(options["path"]), limited(options["read_seconds"]):
+            found = read(data, name, None if recipe is None else (recipe, ""))
+            if found.nothing:
+                raise InputError("", found.nothing)
+            scene, said = in_motion(found.scene)
+    except InputError as error:
+        raise InputError(_pointer(error.pointer, recipe), error.sentence) from None
+    notes = [*found.warnings, found.unheld, said]
+    return Done(scene.canonical.encode(), headers=claimed.warned([note for note in notes if note]))
 
 
-def _drawing(data: bytes, recipe: str | None, folder: str) -> tuple[Scene, list[str]]:
-    """The scene of a .3dm file, and what a person should know of it."""
-    from hookean.files.relax_file import open_file
-
-    source = Path(folder) / "upload.3dm"
-    source.write_bytes(data)
-    read = open_file(source, recipe, "recipe" if recipe is not None else "")
-    return read.scene, list(read.warnings)
+def _pointer(pointer: str, recipe: str | None) -> str:
+    """Where a fault is in the form: those of a recipe lead into it, others into the file."""
+    if pointer in ("recipe", "/recipe"):
+        return "/recipe"
+    inside = pointer.rstrip("/") if pointer.startswith("/") else ""
+    return f"{'/file' if recipe is None else '/recipe'}{inside}" if inside else "/file"
 
 
 def geometry_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:

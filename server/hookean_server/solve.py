@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from hookean.files import compas_json
+from hookean.errors import InputError
+from hookean.files.documents import plain
 from hookean.files.scene_json import parse
 from hookean.run import bounded, relax
 from hookean.scene import Scene
@@ -20,13 +21,16 @@ def relax_scene(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> D
     """
     clock = Clock()
     value = parse(body)
-    plain, documents, _ = compas_json.plain_scene(value)
-    scene = bounded(Scene.model_validate(plain), options["seconds"])
+    read = plain(value)
+    scene = bounded(Scene.model_validate(read.scene), options["seconds"])
+    if read.unheld:
+        raise InputError("/", read.unheld)
     clock.lap("decode")
     result = relax(scene, cancelled=cancelled)
+    result.report.warnings[:0] = read.warnings
     clock.lap("solve")
     arrays = options.get("arrays") or ("buffer" if answers.has_buffers(value) else "list")
-    meshes = options.get("meshes") or ("compas" if documents else "plain")
-    text = answers.encode(result, scene, arrays, documents if meshes == "compas" else None)
+    meshes = options.get("meshes") or ("compas" if read.documents else "plain")
+    text = answers.encode(result, scene, arrays, read.documents if meshes == "compas" else None)
     clock.lap("encode")
     return Done(text, headers=claimed.headers(result, result.report.sentences()), timing=clock.parts)

@@ -14,6 +14,7 @@ from compas.geometry import Line, Point, Pointcloud, Polygon, Polyline, Vector
 
 from hookean.errors import InputError
 from hookean.files import compas_json
+from hookean.files.documents import plain
 from hookean.scene import Scene
 
 MESH = "compas.datastructures/Mesh"
@@ -244,13 +245,13 @@ def test_keys_of_a_graph_come_back() -> None:
 def test_a_document_alone_is_a_scene_with_its_boundary_held() -> None:
     mesh = Mesh.from_meshgrid(4.0, nx=4)
     mesh.vertex_attribute(12, "z", 1.0)
-    plain, documents, _ = compas_json.plain_scene(document(mesh))
-    scene = Scene.read(plain)
-    assert len(scene.anchors[0].particles) == 16 and list(documents) == [0]
-    with pytest.raises(InputError, match="a line alone cannot be relaxed"):
-        compas_json.plain_scene(document(Line([0, 0, 0], [1, 0, 0])))
-    with pytest.raises(InputError, match="a closed mesh has no naked vertices"):
-        compas_json.plain_scene(document(Mesh.from_polyhedron(6)))
+    found = plain(document(mesh))
+    scene = Scene.read(found.scene)
+    assert len(scene.anchors[0].particles) == 16 and list(found.documents) == [0] and not found.unheld
+    with pytest.raises(InputError, match="cannot be relaxed"):
+        plain(document(Pointcloud([[0, 0, 0]])))
+    closed = plain(document(Mesh.from_polyhedron(6)))
+    assert "a closed mesh has no naked vertices" in closed.unheld and not Scene.read(closed.scene).anchors
 
 
 def test_a_mesh_of_the_name_of_a_document_is_told() -> None:

@@ -16,9 +16,8 @@ from compas.datastructures import Graph, Mesh
 from compas.geometry import Frame, Line, Pointcloud, Polygon, Polyline, Vector
 
 from hookean import InputError, Scene, Simulation, relax
-from hookean.files import obj
+from hookean.files import obj, readers
 from hookean.files.obj_read import read
-from hookean.files.opened import kind, scene_in
 
 GRID = "".join(f"v {i} {j} 0\n" for i in range(3) for j in range(3))
 SHEET = GRID + "o sheet\nf 1 4 5 2\nf 2 5 6 3\nf 4 7 8 5\nf 5 8 9 6\n"
@@ -30,7 +29,9 @@ CABLE = "v 0 0 0\nv 1 0 0\nv 2 0 0\ng cable\nl 1 2 3\n"
 
 
 def opened(text: str | bytes, name: str = "a.obj") -> tuple[Scene, list[str]]:
-    return scene_in(text.encode() if isinstance(text, str) else text, name)
+    """The scene, and what is said of it: warnings, and that nothing is held."""
+    found = readers.read(text.encode() if isinstance(text, str) else text, name)
+    return found.scene, [*found.warnings, *([found.unheld] if found.unheld else [])]
 
 
 def anchors(scene: Scene) -> dict[str, list[tuple[float, ...]]]:
@@ -186,7 +187,7 @@ def test_what_hookean_writes_it_reads() -> None:
     )  # fmt: skip
     moved = Simulation(scene)
     moved.relax()
-    again, warnings = opened(obj.text(moved.system, moved.state))
+    again, warnings = opened(obj.text(moved.system, moved.state.x))
     found = Simulation(again).system
     assert not warnings and [f.name for f in again.forces] == ["net", "tie"] and again.units.length == "m"
     order = [np.lexsort(x.round(9).T) for x in (found.x, 1e-3 * moved.state.x)]
@@ -208,8 +209,10 @@ def test_documents_of_compas_are_taken_as_drawn() -> None:
     (said,) = warnings
     assert said.startswith("not taken of the file: 2 documents") and "Frame" in said and "Vector" in said
     sheet = Mesh.from_meshgrid(2, 2)
-    scene, warnings = opened(compas.data.json_dumps(sheet), "a.json")
+    scene, warnings = opened(compas.data.json_dumps([sheet]), "a.json")
     assert len(anchors(scene)["naked vertices"]) == 8 and not warnings
+    scene, warnings = opened(compas.data.json_dumps(sheet), "a.json")
+    assert len(scene.anchors[0].particles) == 8 and not warnings, "alone: its vertices in their order"
     cube = Mesh.from_polyhedron(6)
     scene, warnings = opened(compas.data.json_dumps(cube), "a.json")
     assert not scene.anchors and "closed" in warnings[0]
@@ -262,13 +265,13 @@ def test_faults_of_json_are_pointed_at(value: object, pointer: str, said: str) -
     ],
 )
 def test_kinds_are_told_apart(data: bytes, name: str, found: str) -> None:
-    assert kind(data, name) == found
+    assert readers.reader(data, name).suffix == f".{found}"
 
 
 @pytest.mark.parametrize(("data", "name"), [(b"solid ascii", "a.stl"), (b"\x89PNG", "a.png"), (b"", ""), (b"\0", "")])
 def test_other_kinds_are_refused(data: bytes, name: str) -> None:
     with pytest.raises(InputError, match=r"give a \.3dm, \.obj or \.json file"):
-        kind(data, name)
+        readers.reader(data, name)
 
 
 def _mutated(data: bytes, chance: random.Random) -> bytes:
@@ -300,7 +303,7 @@ def test_damaged_files_give_a_scene_or_a_sentence(seed: int) -> None:
     for name, data in texts.items():
         for _ in range(150):
             try:
-                scene, _ = scene_in(_mutated(data, chance), name)
+                scene, _ = opened(_mutated(data, chance), name)
                 Simulation(scene)
             except InputError as error:
                 faults += 1
@@ -311,4 +314,4 @@ def test_damaged_files_give_a_scene_or_a_sentence(seed: int) -> None:
 @pytest.mark.parametrize("name", ["", "a.obj", "a.json"])
 def test_a_git_lfs_pointer_is_named(name: str) -> None:
     with pytest.raises(InputError, match="is a Git LFS pointer, not the file itself"):
-        scene_in(b"version https://git-lfs.github.com/spec/v1\noid sha256:" + b"4d" * 32 + b"\nsize 1\n", name)
+        readers.read(b"version https://git-lfs.github.com/spec/v1\noid sha256:" + b"4d" * 32 + b"\nsize 1\n", name)

@@ -287,7 +287,7 @@ def test_a_shape_short_of_equilibrium_is_written_and_a_cancelled_one_is_not(cabl
 
 def test_the_source_is_never_the_target(cable: Path, tmp_path: Path) -> None:
     before = cable.read_bytes()
-    for target in (cable, tmp_path / "missing" / "out.3dm", tmp_path, tmp_path / "out.obj"):
+    for target in (cable, tmp_path / "missing" / "out.3dm", tmp_path, tmp_path / "out.stl"):
         with pytest.raises(InputError):
             relax_file(cable, target, CABLE)
     assert cable.read_bytes() == before
@@ -300,8 +300,10 @@ def test_faults_of_a_recipe_are_told_with_its_name(cable: Path) -> None:
     with pytest.raises(InputError) as bare:
         relax_file(cable, None, CABLE.replace("layer:cable", "layer:rope"))
     assert bare.value.pointer == "/forces/0/lines"
+    other = cable.with_name("scene.json")
+    other.write_text("{}")
     with pytest.raises(InputError, match="recipes go with"):
-        relax_file(Path("scene.json"), None, CABLE)
+        relax_file(other, None, CABLE)
 
 
 def test_the_report_is_json_and_says_how_the_file_was_read(cable: Path) -> None:

@@ -18,7 +18,8 @@ from hookean.commands import relax as command
 from hookean.errors import InputError
 
 if TYPE_CHECKING:
-    from hookean.files.relax_file import FileResult, Source
+    from hookean.files.readers import Source
+    from hookean.files.relax_file import FileResult
     from hookean.result import Result
     from hookean.simulation import Simulation
 
@@ -114,9 +115,10 @@ def _targets(options: Options) -> _Targets:
 
 
 def _ready(options: Options) -> tuple[Source, Simulation]:
+    from hookean.files.readers import about
     from hookean.files.recipe import parse_recipe
     from hookean.files.recipe_check import check_script
-    from hookean.files.relax_file import about, open_file
+    from hookean.files.relax_file import open_file
     from hookean.script import Script
     from hookean.simulation import Simulation
     from hookean.system import compile

@@ -148,12 +148,9 @@ def plain_scene(value: Any) -> tuple[Any, dict[str | int, Document], bool]:
 
     Meshes may be Mesh documents; `lines` Mesh, Graph, Line or Polyline documents or a list of them; coordinates Point,
     Pointcloud, Polyline, Mesh or Graph documents or a list of them; vectors Vector documents; a carried geometry any
-    document. A Mesh or a Graph alone is the scene that `alone` makes of it. What comes back are mesh documents by
-    their names and documents of geometry by their numbers. `value` stays as it is. Raises what `read` raises.
+    document. What comes back are mesh documents by their names and documents of geometry by their numbers. `value`
+    stays as it is; for documents that are no scene see `documents.plain`. Raises what `read` raises.
     """
-    if is_document(value):
-        document = read(value)
-        return alone(document, value), {0: document}, True
     if not isinstance(value, dict):
         return value, {}, False
     meshes: dict[str | int, Document] = {}
@@ -175,7 +172,7 @@ def plain_scene(value: Any) -> tuple[Any, dict[str | int, Document], bool]:
 def alone(document: Document, value: Any) -> dict[str, Any]:
     """The scene of a Mesh or Graph alone: its edges springs of rest factor 0, naked vertices or nodes of one edge held.
 
-    Raises InputError for a document of another kind and for a closed mesh.
+    Raises InputError for a document of another kind.
     """
     geometry: dict[str, Any] = {"kind": "lines", "name": document.name, "lines": document.lines}
     scene: dict[str, Any] = {"particles": document.points, "geometry": [geometry]}
@@ -185,8 +182,6 @@ def alone(document: Document, value: Any) -> dict[str, Any]:
         plain = plain_mesh(value)[1]
         drawn = as_mesh((document.points, plain["faces"]))
         pairs, held = edges(drawn), naked_vertices(drawn)
-        if not len(held):
-            raise InputError("/", "a closed mesh has no naked vertices to hold; give a scene with anchors")
         scene["meshes"] = {"document": plain}
         geometry.update(kind="mesh", mesh="document")
         del geometry["lines"]
@@ -196,7 +191,7 @@ def alone(document: Document, value: Any) -> dict[str, Any]:
     else:
         raise InputError("/dtype", f"a {document.kind} alone cannot be relaxed; give a Mesh, a Graph or a scene")
     scene["forces"] = [{"kind": "springs", "particles": pairs, "rest_factor": 0.0}]
-    return {**scene, "anchors": [{"particles": held, "name": "held"}]}
+    return {**scene, "anchors": [{"particles": held, "name": "held"}] if len(held) else []}
 
 
 def _carry_documents(scene: dict[str, Any], documents: dict[str | int, Document]) -> None:

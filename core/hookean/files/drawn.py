@@ -16,7 +16,6 @@ from hookean.discretize.duplicates import unique_points
 from hookean.discretize.meshes import edges, naked_vertices, tidy_faces
 from hookean.errors import InputError
 from hookean.mesh import Mesh
-from hookean.scene import Scene
 from hookean.units import METRES
 
 Floats = NDArray[np.float64]
@@ -38,10 +37,11 @@ class Drawn:
     warnings: list[str] = field(default_factory=list)
 
 
-def scene_of(drawn: Drawn) -> tuple[Scene, list[str]]:
-    """The scene in m, N and s, and what a person should know of it. InputError where there is nothing to relax."""
+def tables_of(drawn: Drawn) -> tuple[dict[str, Any], list[str], str]:
+    """The scene in m, N and s as plain values, warnings, and a sentence where nothing at all is held. InputError where
+    there is nothing to relax."""
     if not drawn.meshes and not drawn.lines:
-        raise InputError("", "holds neither lines nor faces, so there is nothing to relax")
+        raise InputError("", "holds neither lines nor faces, so it cannot be relaxed")
     warnings = list(drawn.warnings)
     factor = METRES[drawn.unit]
     every = [m.vertices for _, m in drawn.meshes] + [p.reshape(-1, 3) for _, p in (*drawn.lines, *drawn.points)]
@@ -51,9 +51,11 @@ def scene_of(drawn: Drawn) -> tuple[Scene, list[str]]:
     lines = [(name, ends * factor) for name, ends in _few(drawn.lines)]
     points = [(name, p * factor) for name, p in _few(drawn.points)]
     anchors = [_anchor(name or "points", p, weld) for name, p in points]
+    loose: list[str] = []
     if not anchors:
-        anchors = _held(meshes, lines, weld, warnings)
-    return Scene.read(_tables(meshes, lines, anchors, weld)), warnings
+        anchors = _held(meshes, lines, weld, loose)
+    tables = _tables(meshes, lines, anchors, weld)
+    return (tables, warnings + loose, "") if anchors else (tables, warnings, "; ".join(loose))
 
 
 def _tables(
@@ -110,9 +112,9 @@ def _together(parts: list[Mesh]) -> Ints:
 
 
 def _held(
-    meshes: list[tuple[str, Mesh]], lines: list[tuple[str, Floats]], weld: float, warnings: list[str]
+    meshes: list[tuple[str, Mesh]], lines: list[tuple[str, Floats]], weld: float, loose: list[str]
 ) -> list[dict[str, Any]]:
-    """Loose ends and naked vertices as anchors, told; what has none is told, too."""
+    """Loose ends and naked vertices as anchors; a sentence for what has none goes to `loose`."""
     anchors: list[dict[str, Any]] = []
     if lines:
         ends = np.concatenate([piece for _, piece in lines]).reshape(-1, 3)
@@ -121,13 +123,13 @@ def _held(
         if len(alone):
             anchors.append({"name": "loose ends", "points": alone})
         elif not meshes:
-            warnings.append("no line has a loose end, so nothing is held: pin something, or it falls together")
+            loose.append("no line has a loose end, so nothing is held: pin something, or it falls together")
     naked = []
     for name, mesh in meshes:
         rim = naked_vertices(mesh)
         naked.append(mesh.vertices[rim])
         if not len(rim):
-            warnings.append(f"{name or 'the mesh'} is closed, so nothing of it is held: pin some of it, or it shrinks")
+            loose.append(f"{name or 'the mesh'} is closed, so nothing of it is held: pin some of it, or it shrinks")
     if sum(map(len, naked)):
         anchors.append(_anchor("naked vertices", np.concatenate(naked), weld))
     return anchors

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.state import State
 from hookean.system import System
 
-Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
 
 
-def text(system: System, state: State) -> str:
-    """The shape as OBJ text, in the scene's length unit, with all digits. Springs along edges of faces are left out."""
+def text(system: System, particles: Floats, said: Mapping[str, str] | None = None) -> str:
+    """Particles (n, 3) [length] of a system as OBJ text, in the scene's length unit, with all digits; `said` stands in
+    comments. Springs along edges of faces are left out."""
     lines = [f"# hookean; lengths in {system.scene.units.length}"]
-    lines += ["v " + " ".join(map(repr, point)) for point in state.x.tolist()]
+    lines += [f"# {key} {line}" for key, value in (said or {}).items() for line in value.splitlines()]
+    lines += ["v " + " ".join(map(repr, point)) for point in particles.tolist()]
     sides: set[tuple[int, int]] = set()
     for name in system.scene.meshes:
         faces = [_corners(face) for face in system.places.faces(name).tolist()]

@@ -1,6 +1,7 @@
 """Relax a file into a file: what the command line and the service share.
 
-`.3dm` files by a recipe or by convention (see `hookean.files.recipe`), scenes in JSON, and COMPAS meshes and graphs.
+All files that `readers` reads: `.3dm` files by a recipe or by convention (see `hookean.files.recipe`), OBJ, scenes and
+COMPAS documents in JSON.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import contextlib
 import json
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,8 +19,9 @@ import numpy as np
 
 from hookean.claims import document_text
 from hookean.errors import InputError
-from hookean.files import tables
-from hookean.files.threedm_atomic import check_target, put, read_bytes
+from hookean.files import obj, tables
+from hookean.files.readers import Recipe, Source, about, read_path
+from hookean.files.threedm_atomic import check_target, put
 from hookean.scene import Scene
 
 if TYPE_CHECKING:
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     from hookean.result import Result
     from hookean.system import System
 
+WRITTEN = (".3dm", ".json", ".obj")
+"""Endings of files that results are written to."""
 TOO_LONG = 10.0  # times the rest length; rubber tears before
 Progress = Callable[[int, float], None]
 
@@ -76,27 +80,11 @@ class LimitsError(InputError):
         self.found = found
 
 
-@dataclass(eq=False)
-class Source:
-    """A file read: its scene, where that came from, lengths of the file in the scene's unit and the file's unit."""
-
-    scene: Scene
-    lines: list[str]
-    built: Built | None = None
-    factor: float = 1.0
-    unit: str = ""
-    warnings: tuple[str, ...] = ()
-    compas: Any = None
-    nothing: str = ""
-
-
 def read_scene(source: Path, recipe: Path | None = None) -> Scene:
-    """The scene a file holds: a .3dm by its recipe (or by convention), or JSON. Raises InputError as `relax_file`."""
+    """The scene a file holds (see `readers`): a .3dm by its recipe or by convention. Raises InputError as
+    `relax_file`."""
     text = None if recipe is None else recipe.read_text(encoding="utf-8")
-    read = _read(source, text, "" if recipe is None else recipe.name)
-    if read.nothing:
-        raise InputError(source.name, read.nothing)
-    return read.scene
+    return open_file(source, text, "" if recipe is None else recipe.name).scene
 
 
 def explain_file(source: Path, recipe_text: str | None = None, *, recipe_name: str = "") -> list[str]:
@@ -115,7 +103,7 @@ def explained(
     """How a file would be read, with what a person should know of its scene, and the error if that cannot be solved."""
     from hookean.system import compile
 
-    read = _read(source, recipe_text, recipe_name)
+    read = read_path(source, _recipe(recipe_text, recipe_name))
     if read.nothing:
         return read.lines, None
     try:
@@ -142,10 +130,10 @@ def relax_file(
     """Relax what `source` holds and write it to `target` (None: nowhere), replaced in one step or not at all.
 
     A .3dm target is a copy of a .3dm source with results below the layer `hookean`, or a new file; a .json target is
-    the result (of a COMPAS document the document with its new shape). A shape short of equilibrium is written too, a
-    cancelled one is not. `limits` as `tables.read_limits` gives them; pointers into the recipe are told behind
-    `recipe_name`. The source is never written. `reading` is entered while the source is read. A solve longer than
-    `seconds` ends with the status `time_limit`.
+    the result (of a COMPAS Mesh or Graph that document with its new shape), an .obj target the shape alone. A shape
+    short of equilibrium is written too, a cancelled one is not. `limits` as `tables.read_limits` gives them; pointers
+    into the recipe stand behind `recipe_name`. The source is never written. `reading` is entered while the source is
+    read. A solve longer than `seconds` ends with the status `time_limit`.
 
     Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written; LimitsError,
     with everything written, where limits name what the file does not have.
@@ -167,16 +155,20 @@ def check_output(target: Path | None, source: Path, *, folder: bool = True) -> N
     """InputError where a result cannot be written to `target`; its folder may be missing where `folder` is False."""
     if target is not None:
         check_target(target, source, folder=folder)
-        if target.suffix.lower() not in (".3dm", ".json"):
-            raise InputError(target.name, "ends neither in .3dm nor in .json; name the output so.")
+        if target.suffix.lower() not in WRITTEN:
+            raise InputError(target.name, f"must end in {', '.join(WRITTEN[:-1])} or {WRITTEN[-1]}; name the output so")
 
 
 def open_file(source: Path, recipe_text: str | None = None, recipe_name: str = "") -> Source:
-    """What a file holds; InputError where that is nothing to relax."""
-    read = _read(source, recipe_text, recipe_name)
-    if read.nothing:
-        raise InputError(source.name, read.nothing)
+    """What a file holds; InputError where that cannot be relaxed as it is."""
+    read = read_path(source, _recipe(recipe_text, recipe_name))
+    if read.nothing or read.unheld:
+        raise InputError(source.name, read.nothing or read.unheld)
     return read
+
+
+def _recipe(text: str | None, name: str) -> Recipe | None:
+    return None if text is None else (text, name)
 
 
 def conclude(
@@ -210,77 +202,6 @@ def conclude(
     if fault is not None:
         raise LimitsError(fault, found)
     return found
-
-
-def _read(source: Path, recipe_text: str | None, recipe_name: str) -> Source:
-    if source.suffix.lower() == ".json":
-        if recipe_text is not None:
-            raise InputError(source.name, "is a JSON file, which says everything itself; recipes go with .3dm files.")
-        return _read_json(source)
-    if source.suffix.lower() == ".toml":
-        raise InputError(source.name, "is a recipe; give it with -r, and a .3dm file to relax")
-    # loads rhino3dm, which scenes in JSON need not
-    from hookean.files import threedm
-    from hookean.files.recipe import parse_recipe, understand
-
-    recipe = None if recipe_text is None else parse_recipe(recipe_text, recipe_name or "recipe")
-    model = threedm.read(source)
-    with about(recipe_name if recipe is not None else source.name, source.name):
-        understood = understand(model, recipe)
-    seen = understood.built.drawing
-    return Source(
-        understood.built.scene,
-        understood.lines,
-        understood.built,
-        seen.factor,
-        seen.unit,
-        (*model.warnings, *understood.notes),
-        nothing=understood.nothing,
-    )
-
-
-@contextlib.contextmanager
-def about(name: str, source: str = "") -> Iterator[None]:
-    """Pointers into a recipe, told with its name; those to an object, with the file's."""
-    try:
-        yield
-    except InputError as error:
-        if source and error.pointer and not error.pointer.startswith(("/", source)):
-            raise InputError(f"{source}: {error.pointer}", error.sentence) from None
-        if not name or not error.pointer.startswith("/"):
-            raise
-        raise InputError(f"{name} {error.pointer}", error.sentence) from None
-
-
-def _read_json(source: Path) -> Source:
-    from hookean.files import compas_json
-    from hookean.files.scene_json import parse
-
-    try:
-        data = read_bytes(source, source.name)
-    except InputError as error:
-        raise InputError(error.pointer, error.sentence.replace(".3dm", ".json")) from None
-    value = parse(data, source.name)
-    if isinstance(value, dict) and ({"result", "rows"} <= value.keys() or {"status", "particles"} <= value.keys()):
-        raise InputError(source.name, "is a result, not a scene; give the file it came from")
-    document = None
-    with about(source.name):
-        if compas_json.is_document(value):
-            document = compas_json.read(value)
-            scene = Scene.read(compas_json.alone(document, value))
-        else:
-            scene = Scene.read(compas_json.plain_scene(value)[0])
-    forces = ", ".join(str(type(f).model_fields["kind"].default) for f in scene.forces) or "no force"
-    kind = "a scene" if document is None else f"a COMPAS {document.kind}"
-    units = scene.units
-    lines = [
-        f"{source.name}: {kind} with {forces}; {len(scene.anchors)} anchors, {len(scene.geometry)} carried geometries",
-        f"units: {units.length}, {units.force}, {units.time}",
-    ]
-    if document is not None:
-        what = "naked vertices" if document.kind == "mesh" else "nodes of one edge"
-        lines.append(f"a document without a scene: its edges are springs of rest factor 0, its {what} are held")
-    return Source(scene, lines, unit=units.length, compas=document)
 
 
 def _doubled(parts: list[tables.Section]) -> list[str]:
@@ -327,6 +248,10 @@ def _write(
 ) -> None:
     if target.suffix.lower() == ".json":
         put(target, _json(_finite(_answer(found, read))), lambda back: None)
+        return
+    if target.suffix.lower() == ".obj":
+        said = document_text(found.result, found.warnings)
+        put(target, obj.text(system, found.result.particles, said).encode(), lambda back: None)
         return
     from hookean.files import threedm
     from hookean.files.recipe_drawing import UNIT_NAMES

@@ -89,9 +89,9 @@ def read_bytes(path: str | os.PathLike[str], name: str) -> bytes:
     try:
         mode = os.stat(path).st_mode
         if stat.S_ISDIR(mode):
-            raise InputError(name, "is a folder; give the path of a .3dm file.")
+            raise InputError(name, "is a folder; give the path of a file.")
         if not stat.S_ISREG(mode):
-            raise InputError(name, "is not a regular file; give the path of a .3dm file.")
+            raise InputError(name, "is not a regular file; give the path of one.")
         return Path(path).read_bytes()
     except FileNotFoundError:
         raise InputError(name, "no such file; check the path.") from None

@@ -21,7 +21,7 @@ from pydantic import ValidationError
 
 from hookean.balance import balance
 from hookean.errors import InputError
-from hookean.files import compas_json
+from hookean.files.documents import plain
 from hookean.files.scene_json import parse
 from hookean.patch import Patch, apply
 from hookean.result import Result, Status, gather
@@ -73,13 +73,15 @@ def _scene(value: Any) -> tuple[System, Any]:
     """The system of a scene, and its JSON without documents; its faults are those of an invalid scene, under /scene."""
     found: list[InputError]
     try:
-        plain = compas_json.plain_scene(value)[0]
-        scene = Scene.model_validate(plain)
+        read = plain(value)
+        scene = Scene.model_validate(read.scene)
+        if read.unheld:
+            raise InputError("/", read.unheld)
         system = compile(scene)
         refusal = solver(scene.settings.solver).refuse(system)
         if refusal:
             raise InputError("/settings/solver", refusal)
-        return system, plain
+        return system, read.scene
     except InputError as error:
         found = list(error.faults)
     except ValidationError as error:

@@ -99,7 +99,8 @@ def _npz(simulation: Simulation, arrays: str) -> bytes:
 
 
 def _threedm(simulation: Simulation, arrays: str) -> bytes:
-    from hookean.files.relax_file import Source, conclude
+    from hookean.files.readers import Source
+    from hookean.files.relax_file import conclude
 
     read = Source(simulation.scene, [], unit=simulation.scene.units.length)
     with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
@@ -109,9 +110,12 @@ def _threedm(simulation: Simulation, arrays: str) -> bytes:
 
 
 def _obj(simulation: Simulation, arrays: str) -> bytes:
+    from hookean.claims import document_text
     from hookean.files import obj
 
-    return obj.text(simulation.system, simulation.state).encode()
+    result = simulation.result()
+    said = document_text(result, result.report.sentences())
+    return obj.text(simulation.system, result.particles, said).encode()
 
 
 def _csv(simulation: Simulation, arrays: str) -> bytes:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
-from hookean.files import compas_json
+from hookean.files.documents import plain
 from hookean.files.scene_json import parse
 from hookean.patch import Patch, Undo
 from hookean.result import Status, kinetic
@@ -27,7 +27,10 @@ EDITS = ("undo", "redo", "reset")
 
 def scene_of(body: bytes) -> Scene:
     """The scene in a JSON body; meshes may be COMPAS documents. InputError and ValidationError as `Scene` has them."""
-    return Scene.model_validate(compas_json.plain_scene(parse(body))[0])
+    read = plain(parse(body))
+    if read.unheld:
+        raise InputError("/", read.unheld)
+    return Scene.model_validate(read.scene)
 
 
 def split(body: bytes, sizes: list[int]) -> list[bytes]:
