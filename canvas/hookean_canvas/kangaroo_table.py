@@ -161,7 +161,7 @@ CLASSIC: dict[str, Swap] = {
     "bend": _force(
         "Bend",
         "b",
-        "the strength is EI here, moment x length per angle",
+        "the strength is EI here, moment x length per angle; a rest angle has a side, unless _sections_ is free",
         point1="point_1",
         point2="point_2",
         point3="point_3",
@@ -337,7 +337,8 @@ SECOND: dict[str, Swap] = {
             Piece("Bend", {"anglefactor": "angle_factor", "bendstrength": "stiffness"}, {"force": "r"}),
             Piece("*corners", {"polyline": "lines"}, feeds=_corners(1)),
         ),
-        "axial and bending stiffness are two forces here; EI is the same number",
+        "axial and bending stiffness are two forces here; EI is the same number; a drawn curve has a side, unless "
+        "_sections_ is free",
     ),
     "angle": Swap(
         (

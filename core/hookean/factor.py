@@ -20,10 +20,14 @@ Ints = NDArray[np.int32]
 
 
 class Factor:
-    """A matrix in factors, and how many of its eigenvalues are negative."""
+    """A matrix of `size` rows in factors, and how many of its eigenvalues are negative."""
 
-    def __init__(self, solve: Callable[[Floats], Floats], negatives: int) -> None:
-        self.solve, self.negatives = solve, negatives
+    def __init__(self, solve: Callable[[Floats], Floats], size: int, negatives: int) -> None:
+        self._solve, self._size, self.negatives = solve, size, negatives
+
+    def solve(self, b: Floats) -> Floats:
+        """x of A x = b. A shorter b stands for zeros at its end, and x is as long as b."""
+        return self._solve(np.append(b, np.zeros(self._size - len(b))))[: len(b)]
 
 
 class Factors:
@@ -46,7 +50,7 @@ class Factors:
             return None
 
     def solve(self, values: Floats, b: Floats) -> Floats | None:
-        """x of A x = b (n,); None unless A is positive definite."""
+        """x of A x = b (n, or fewer: see `Factor.solve`); None unless A is positive definite."""
         factor = self.factor(values)
         if factor is None or factor.negatives:
             return None
@@ -58,7 +62,7 @@ class Factors:
             self._order = supernodal().analyze(lower, path="ldlt", threads=1)
         factor = self._order.factor(lower.data)
         _, negatives, zeros = factor.inertia
-        return None if zeros else Factor(lambda b: np.asarray(factor.solve(b)), negatives)
+        return None if zeros else Factor(lambda b: np.asarray(factor.solve(b)), lower.shape[0], negatives)
 
 
 @cache
@@ -79,4 +83,6 @@ def _splu(lower: Any) -> Factor | None:
     # pivots have the signs of the eigenvalues as long as all are taken from the diagonal
     same = np.array_equal(factor.perm_r, factor.perm_c)
     pivots = factor.U.diagonal()
-    return Factor(lambda b: np.asarray(factor.solve(b)), int((pivots < 0).sum())) if same and pivots.all() else None
+    if not (same and pivots.all()):
+        return None
+    return Factor(lambda b: np.asarray(factor.solve(b)), len(pivots), int((pivots < 0).sum()))

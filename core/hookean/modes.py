@@ -25,7 +25,7 @@ from hookean.multigrid.kernels import multiply
 if TYPE_CHECKING:
     from hookean.multigrid.tangent import Tangent
     from hookean.state import State
-    from hookean.system import System
+    from hookean.system import Group, System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -92,18 +92,51 @@ class Scaled:
         """
         moved = np.stack([self.motion(mode) for mode in modes.T])
         total, noise = np.zeros((len(moved), len(moved))), 0.0
-        for group, memory in zip(self.system.groups, self.state.memory, strict=True):
-            if group.cls.constant or not len(group.block.indices):
-                continue
-            blocks = self.system.stiffness_blocks(group, self.state, memory)
+        elements = _stiff(self.system, self.state, sparse=True)
+        moved = _completed(elements, moved)
+        for group, blocks in elements:
             own = moved[:, group.block.indices]
             if group.cls.role == "internal":
-                own = own - own[:, :, :1]
+                own = own - own[:, :, :1] * (group.block.indices < len(self.state.x))[:, :, None]
             own = own.reshape(len(moved), len(blocks), -1)
             total += np.einsum("ame,mef,bmf->ab", own, blocks, own, optimize=True)
             sizes = np.abs(blocks).max(axis=(1, 2), initial=0.0)
             noise += float(np.finfo(float).eps * (sizes * (own**2).sum(axis=2)).sum(axis=1).max())
         return total, noise
+
+
+def _stiff(system: System, state: State, *, sparse: bool = False) -> list[tuple[Group, Floats]]:
+    """All elements that have a tangent, with it (see `System.elements`)."""
+    return [
+        (group, system.stiffness_blocks(group, state, memory))
+        for group, memory in system.elements(state.x, state.memory, sparse=sparse)
+        if not group.cls.constant and len(group.block.indices)
+    ]
+
+
+def _completed(elements: list[tuple[Group, Floats]], moved: Floats) -> Floats:
+    """Motions (k, n, 3) with those (k, more, 3) of the unknowns that elements have of their own: of least energy."""
+    import scipy.sparse as sparse
+    from scipy.sparse.linalg import splu
+
+    n = moved.shape[1]
+    own = max((int(group.block.indices.max()) + 1 for group, _ in elements), default=0) - n
+    if own <= 0:
+        return moved
+    left, entries = np.zeros((own, len(moved))), [(np.zeros(0), np.zeros((2, 0), np.int64))]
+    for group, blocks in elements:
+        index = group.block.indices
+        first = blocks.reshape(len(index), index.shape[1], 3, -1)[:, :, 0]  # such unknowns have one axis
+        element, place = np.nonzero(index >= n)
+        mine, known = index[element, place] - n, np.repeat(index < n, 3, axis=1)
+        along = moved[:, np.where(index < n, index, 0)].reshape(len(moved), len(index), -1) * known
+        np.subtract.at(left, mine, np.einsum("ej,aej->ea", first[element, place], along[:, element]))
+        entry, other = np.nonzero(index[element] >= n)
+        row, column = mine[entry], index[element[entry], other] - n
+        entries.append((first[element[entry], place[entry], 3 * other], np.array([row, column])))
+    values, places = (np.concatenate(part, axis=-1) for part in zip(*entries, strict=True))
+    found = splu(sparse.csc_matrix((values, places), shape=(own, own))).solve(left)
+    return np.concatenate([moved, found.T[:, :, None] * [1.0, 0.0, 0.0]], axis=1)
 
 
 def factored(system: System, state: State, found: Balance, dense: int) -> Modes:
@@ -136,14 +169,11 @@ def _matrix(scaled: Scaled) -> Floats:
     number = np.full(state.x.size, -1)
     number[scaled.dofs] = np.arange(size)
     matrix = np.zeros(size * size)
-    for group, memory in zip(system.groups, state.memory, strict=True):
-        if group.cls.constant or not len(group.block.indices):
-            continue
+    for group, blocks in _stiff(system, state):
         index = group.block.indices
         mine = number[(3 * index[:, :, None] + np.arange(3)).reshape(len(index), -1)]
         place = mine[:, :, None] * size + mine[:, None, :]
         kept = (mine[:, :, None] >= 0) & (mine[:, None, :] >= 0)
-        blocks = system.stiffness_blocks(group, state, memory)
         matrix += np.bincount(place[kept], blocks[kept], size * size)
     return np.asarray(matrix.reshape(size, size) * scaled.scale * scaled.scale[:, None])
 
@@ -152,8 +182,11 @@ def _sparse(scaled: Scaled) -> Modes:
     from hookean.solvers._pattern import Pattern
 
     pattern = Pattern(scaled.system, scaled.state.free)
-    column = np.repeat(np.arange(len(scaled.dofs)), np.diff(pattern.factors.starts))
-    values = pattern.tangent(scaled.system, scaled.state) * scaled.scale[pattern.factors.rows] * scaled.scale[column]
+    rows, starts = pattern.factors.rows, pattern.factors.starts
+    column = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    own = np.zeros(len(starts) - 1 - len(scaled.dofs))  # unknowns of elements, which nothing pushes
+    scale = np.append(scaled.scale, own + 1.0)
+    values = pattern.tangent(scaled.system, scaled.state) * scale[rows] * scale[column]
 
     def shifted(shift: float) -> Floats:
         moved = values.copy()
@@ -163,9 +196,10 @@ def _sparse(scaled: Scaled) -> Modes:
     low = pattern.factors.factor(shifted(-scaled.uncertain))
     if low is not None and not low.negatives:
         # the shift makes it a little softer: once more, by what is left
-        first = low.solve(scaled.left)
-        more = low.solve(scaled.left - _times(pattern.factors.rows, column, values, first))
-        return Modes(moved=scaled.motion(first + more))
+        left = np.append(scaled.left, own)
+        first = low.solve(left)
+        more = low.solve(left - _times(rows, column, values, first))
+        return Modes(moved=scaled.motion((first + more)[: len(scaled.dofs)]))
     high = pattern.factors.factor(shifted(scaled.uncertain))
     if low is None or high is None:
         return Modes(reason="the tangent has no factors at this shape")
@@ -175,7 +209,8 @@ def _sparse(scaled: Scaled) -> Modes:
         factor = pattern.factors.factor(values)
         return (factor or high).solve(scaled.left)
 
-    return _decided(scaled, below, low.negatives - below, partial(_softest, shifted, pattern.factors), solve)
+    softest = partial(_softest, shifted, pattern.factors, len(scaled.dofs))
+    return _decided(scaled, below, low.negatives - below, softest, solve)
 
 
 def _times(rows: NDArray[np.int32], column: Ints, values: Floats, x: Floats) -> Floats:
@@ -185,9 +220,9 @@ def _times(rows: NDArray[np.int32], column: Ints, values: Floats, x: Floats) -> 
     return np.asarray(lower + np.bincount(column[off], (values * x[rows])[off], size))
 
 
-def _softest(shifted: Callable[[float], Floats], factors: Factors, count: int) -> Floats:
-    """Motions (unknowns, `count`) that hold the softest modes, by inverse iteration from below them."""
-    size, shift = len(factors.starts) - 1, 1e-9
+def _softest(shifted: Callable[[float], Floats], factors: Factors, size: int, count: int) -> Floats:
+    """Motions (`size`, `count`) that hold the softest modes, by inverse iteration from below them."""
+    shift = 1e-9
     found = factors.factor(shifted(shift))
     while found is None or found.negatives:
         shift *= 10.0

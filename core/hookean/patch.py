@@ -92,9 +92,9 @@ def apply(system: System, state: State, patch: Patch) -> None:
 def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None:
     """Give a running system other parameters, settings and anchors; raises its revision. `scene` has the system's
     own places and elements; InputError where not, and then parts of it may have landed (see `Undo`)."""
+    system.held = held
     _put_forces(system, scene)
     system.drag = scene.settings.drag
-    system.held = held
     state.free[:] = 1.0
     for anchor in held:
         hold(state, anchor)
@@ -118,6 +118,7 @@ def _put_forces(system: System, scene: Scene) -> None:
             if part.number >= 0 and scene.forces[part.number] is not part.force:
                 part.force = scene.forces[part.number]
                 group.block.parameters[part.rows] = _rows(system, group, part)
+    system.brace()
     system.scene = scene
 
 

@@ -361,6 +361,7 @@ class Simulation:
             status = Status(str(arrays.pop("status")))
             count = sum(name.startswith("held_") for name in arrays)
             loaded.system.held = [_anchor(arrays, i, loaded.system) for i in range(count)]
+            loaded.system.brace()
             loaded.take_up(State.of(arrays), status)
         except InputError as error:
             if stream is not None or error.pointer == "/drives":

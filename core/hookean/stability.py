@@ -153,7 +153,7 @@ def _scaled_stiffness(system: System, state: State) -> tuple[Any, NDArray[np.int
     number = np.full(state.x.size, -1)
     number[free] = np.arange(len(free))
     rows, columns, values = [], [], []
-    for group, memory in zip(system.groups, state.memory, strict=True):
+    for group, memory in system.elements(state.x, state.memory):
         if group.cls.role == "load" or not len(group.block.indices):
             continue
         blocks = system.stiffness_blocks(group, state, memory)

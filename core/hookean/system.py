@@ -175,11 +175,39 @@ class System:
         kernel(private, np.zeros_like(private), index, b.parameters, memory, f, w)
         return f.reshape(count, arity, 3)
 
+    def elements(self, x: Floats, memory: list[Floats], *, sparse: bool = False) -> list[tuple[Group, Floats]]:
+        """All groups with what they remember, for their tangent at `x`: elements that feel one another are gathered to
+        larger ones, or if `sparse` joined by unknowns of their own (see `Force.gathered`)."""
+        found: list[tuple[Group, Floats]] = []
+        node = len(x)
+        for group, own in zip(self.groups, memory, strict=True):
+            gathered = group.cls.gathered(group.block, own, x, node if sparse else None)
+            if gathered is None:
+                found.append((group, own))
+                continue
+            found += [(Group(cls, block, []), block.memory) for cls, block in gathered]
+            node = max(node, *(int(block.indices.max(initial=-1)) + 1 for _, block in gathered))
+        return found
+
+    def brace(self) -> None:
+        """Let forces know which particles the scene's anchors hold on some axis."""
+        held = np.zeros(len(self.x), dtype=bool)
+        for anchor in self.held:
+            if anchor.number >= 0 and (anchor.free == 0).any():
+                held[anchor.particles] = True
+        for group in self.groups:
+            group.cls.brace(group.block, held)
+
     def stiffness_blocks(self, group: Group, state: State, memory: Floats) -> Floats:
-        """Hessian of the energy of each element `(m, 3 arity, 3 arity)`, exact or by differences of its forces."""
+        """Hessian of the energy of each element `(m, 3 arity, 3 arity)`, exact or by differences of its forces.
+
+        For a group of `elements`: what feels one another is not gathered here.
+        """
         b = group.block
         count, arity = b.indices.shape
         blocks = np.zeros((count, 3 * arity, 3 * arity))
+        if group.cls.tangent is not None:
+            return group.cls.tangent(b, state.x)
         if group.cls.hessian is not None:
             kernels.compiled(group.cls.hessian, "hessian")(state.x, b.indices, b.parameters, memory, blocks)
             return blocks
@@ -239,6 +267,7 @@ def compile(scene: Scene) -> System:
     carried = [_carried(welded, i) for i in range(len(scene.geometry))]
     system = System(scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded, load_count)
     system.drag = scene.settings.drag
+    system.brace()
     _warn(system)
     return system
 

@@ -11,6 +11,7 @@ import numpy as np
 from hookean import kernels
 from hookean.forces import KINDS, Force
 from hookean.forces.base import PLACES, Block
+from hookean.forces.bend import Bend
 from hookean.forces.springs import Springs
 from hookean.scene import Scene
 from hookean.system import System, compile
@@ -34,6 +35,8 @@ class Case:
     damped: bool
     remembers: bool
     plain: bool = False
+    reordered: Callable[[np.ndarray], Block] | None = None
+    """The block of the same elements given in another order, where they feel one another and cannot just be moved."""
 
     def run(self, function: Any, role: str) -> Any:
         """The function as compiled machine code, or as Python."""
@@ -91,13 +94,21 @@ def scene_of(force: Force, x: np.ndarray, **more: Any) -> Scene:
     return Scene(particles=x, forces=(force,), **more)
 
 
-def case_of(name: str, force: Force, x: np.ndarray) -> Case:
-    """A force compiled alone."""
-    cls, system = type(force), compile(scene_of(force, x))
+def case_of(name: str, force: Force, x: np.ndarray, held: tuple[int, ...] = ()) -> Case:
+    """A force compiled alone; with anchors at `held` particles, to which it may then hold on."""
+    cls, system = type(force), compile(scene_of(force, x, anchors=[{"particles": held}] if held else []))
     (group,) = system.groups or system.contacts
+
+    def reordered(order: np.ndarray) -> Block:
+        given = {n: getattr(force, n) for n in force.model_fields_set}
+        rows = {n: v[order] for n, v in given.items() if isinstance(v, np.ndarray) and len(v) == len(order)}
+        return case_of(name, cls(**{**given, **rows}), x, held).block
+
+    together = cls.gathered(group.block, group.block.memory, system.x, None) is not None
     return Case(
         name, group.block, system.x, cls.kernel, cls.hessian, cls.end_of_step,
-        cls.role, cls.conservative, cls.damped, cls.remembers,
+        "support" if held else cls.role, cls.conservative, cls.damped, cls.remembers,
+        reordered=reordered if together else None,
     )  # fmt: skip
 
 
@@ -117,13 +128,37 @@ def _variants() -> list[Case]:
     return [case_of(f"springs, {name}", force, x) for name, force in named.items()]
 
 
+def _rods() -> list[Case]:
+    """Rods drawn curved: closed, given in disorder, held at their ends, with free sections, branched."""
+    _, helix = Bend.example()
+    turn = np.arange(7) * 2.0 * np.pi / 7.0
+    ring = np.column_stack([np.cos(turn), np.sin(turn), 0.2 * np.sin(2.0 * turn)])
+    i = np.arange(7)
+    round_it = np.column_stack([i, (i + 1) % 7, (i + 2) % 7])
+    row = np.array([[0, 1, 2], [3, 2, 1], [2, 3, 4]])
+    stiffness = [5.0, 20.0, 1.0]
+    branched = [[0, 1, 2], [1, 2, 3], [2, 3, 4], [1, 2, 5], [6, 2, 1]]
+    limbs = np.vstack([helix, helix[2] + [0.3, 0.9, -0.2], helix[2] + [0.9, -0.1, -0.5]])
+    made = {
+        "closed": (Bend(particles=round_it[[3, 0, 6, 1, 2, 5, 4]], stiffness=[1, 2, 3, 1, 4, 2, 5]), ring, ()),
+        "half as curved": (Bend(particles=row[[2, 0, 1]], stiffness=stiffness, angle_factor=0.5), helix, ()),
+        "free sections": (Bend(particles=row, stiffness=stiffness, rest_angle=0.3, sections="free"), helix, ()),
+        "held at its start": (Bend(particles=row, stiffness=stiffness), helix, (0,)),
+        "held at its end": (Bend(particles=row, stiffness=stiffness), helix, (4,)),
+        "held at both ends": (Bend(particles=row, stiffness=stiffness), helix, (0, 4)),
+        "one corner, held": (Bend(particles=row[:1]), helix[:3], (0, 2)),
+        "branched": (Bend(particles=branched, stiffness=3.0), limbs, ()),
+    }
+    return [case_of(f"bend, {name}", *given) for name, given in made.items()]
+
+
 def _examples() -> list[Case]:
     """The example of every kind with a kernel; one that fails is left to the test that misses it, and is told."""
     found: list[Case] = []
     for kind, cls in KINDS.items():
         if cls.kernel is not None:
             found += _tried(kind, lambda kind=kind, cls=cls: [case_of(kind, *cls.example())])  # type: ignore[misc]
-    return found + _tried("springs", _variants)
+    return found + _tried("springs", _variants) + _tried("bend", _rods)
 
 
 def _tried(kind: str, made: Callable[[], list[Case]]) -> list[Case]:

@@ -17,7 +17,6 @@ from hookean.stability import stable_time_step
 from hookean.state import State
 from hookean.system import System, compile
 
-from .cases import example_system
 from .scenes import FAMILIES, Spec, random_scene
 
 LOOPS = ("relaxation", "momentum", "verlet")
@@ -34,6 +33,8 @@ def cache() -> dict[str, list[int]]:
         return found
 
     kernels.compiled = watched  # type: ignore[assignment]
+    from .cases import example_system  # compiles the examples of all forces
+
     for kind in KINDS:
         system = example_system(kind, settings={"floor": True})
         for name in LOOPS:
@@ -87,6 +88,8 @@ def hashes() -> dict[str, str]:
     """Shapes after relaxing and after 200 steps of Verlet, by family of random scenes, and of every example."""
     found = {}
     systems = {f: prepared(random_scene(i)) for i, f in enumerate(FAMILIES)}
+    from .cases import example_system
+
     systems.update({kind: example_system(kind, settings={"time_step": 1e-3}) for kind in KINDS})
     for name, system in systems.items():
         for method in ("auto", "momentum"):

@@ -106,6 +106,8 @@ class Force(Model):
     hessian: ClassVar[Callable[..., None] | None] = None
     # the same, quicker, of forces along the line between two particles: stiffness along, across, and x y z of the line
     central: ClassVar[Callable[..., None] | None] = None
+    # the same of `gathered` elements, from their block and the positions
+    tangent: ClassVar[Callable[[Block, Floats], Floats] | None] = None
     end_of_step: ClassVar[Callable[..., None] | None] = None
     impact: ClassVar[Callable[..., None] | None] = None
     support: ClassVar[Callable[..., None] | None] = None
@@ -145,6 +147,27 @@ class Force(Model):
         """Indices, parameters and memory with which the kernel gives forces, stiffness and energy of the whole block,
         where there is a quicker way than element by element."""
         return block.indices, block.parameters, memory
+
+    @classmethod
+    def gathered(
+        cls, block: Block, memory: Floats, x: Floats, node: int | None
+    ) -> list[tuple[type[Force], Block]] | None:
+        """Elements that each have a tangent of their own at `x`, by classes with the same number of particles, where
+        those of the block feel one another; None: they do not.
+
+        With a `node`, elements may have unknowns of their own, from that number on: nodes with one axis, the first,
+        that make the tangent sparse and change neither its solutions nor how many of its eigenvalues are negative.
+        """
+        return None
+
+    @classmethod
+    def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
+        """Elements of a block (sorted rows) as a block of their own, with those that they feel; and the rows of all."""
+        return rows, Block(block.indices[rows], block.parameters[rows], block.memory[rows], block.names)
+
+    @classmethod
+    def brace(cls, block: Block, held: NDArray[np.bool_]) -> None:
+        """Write into the parameters of a block, if it matters, which particles (n,) the scene's anchors hold."""
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """What a result tells of each element, by the names and units of `outputs`.

@@ -5,15 +5,41 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from hookean import kernels
 from hookean.columns import IndexRows, NonNegatives, PointRows
 from hookean.fields import Field, Maybe
-from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces import rod_links, rod_spins, rod_tangent
+from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
+from hookean.forces.rod_bound import ROOM, bound_chain
+from hookean.forces.rod_chain import (
+    ALONE,
+    HELD,
+    NEXT,
+    OPEN,
+    PLACE,
+    SHARE,
+    SIDE,
+    begins,
+    push_chain,
+    record,
+    single,
+)  # fmt: skip
+from hookean.forces.rod_frames import turn_angles, turn_vectors
+from hookean.kernels import device
+
+Sections = Literal["tied", "free"]
 
 
 def bend_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
+    chains = parameters.shape[1] > NEXT
+    if chains:
+        energy = push_chains(x, indices, parameters, f, w, memory.shape[1] == 0)
     for e in range(indices.shape[0]):
+        if chains and parameters[e, PLACE] != ALONE and not single(parameters, e):
+            continue
         a = indices[e, 0]
         b = indices[e, 1]
         c = indices[e, 2]
@@ -72,6 +98,20 @@ def bend_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-unt
     return energy
 
 
+@device
+def push_chains(x: Any, indices: Any, parameters: Any, f: Any, w: Any, bound: Any) -> Any:
+    """Add the forces of all chains, and if asked for a bound of their stiffness; returns their energy."""
+    energy = 0.0
+    room, found = np.zeros(ROOM), np.zeros((0, 5))
+    for e in range(indices.shape[0]):
+        if not begins(parameters, e):
+            continue
+        energy += push_chain(x, indices, parameters, e, room, f, w, found)
+        if bound:
+            bound_chain(x, indices, parameters, e, room, w)
+    return energy
+
+
 class Bend(Force):
     """Bending of rods and splines at corners a-b-c: moment M = EI / l (phi - phi0).
 
@@ -79,10 +119,22 @@ class Bend(Force):
     start length of the two segments, so (phi - phi0) / l is the change of curvature. Energy per corner
     EI (phi - phi0)^2 / (2 l), phi0 = rest angle x angle factor. This is Hencky's bar chain: a straight column of n
     equal segments between pins buckles at (4 n^2 EI / L^2) sin^2(pi / 2n) and converges with the square of the
-    segments to Euler's elastica. The angle has no sign in space: any plane of bending is as stiff, there is no
-    torsion, and a corner that is exactly straight but has a rest angle stays straight until something bends it.
-    Source: Hencky, "Ueber die angenaeherte Loesung von Stabilitaetsproblemen im Raum", 1920; Wang et al., "Hencky
-    bar-chain/net for structural analysis", 2020.
+    segments to Euler's elastica.
+
+    A rest angle has a side. Corners that share a segment make a rod, in whatever order they are given; where more than
+    two corners share one, rods end. With tied sections phi and phi0 are vectors along the axis of the turn, and those
+    at rest travel with the rod: carried along it without twist, as if its torsional stiffness GJ were infinite. A rod
+    bent against its curvature then costs (phi + phi0)^2, and it converges to Kirchhoff's rod without twist. What is
+    left is one spin of the whole rod about its axis. If it is free, the rod takes the spin of least energy: an arch on
+    loose ends that is turned inside out is the same arch turned over. An end that is one of the scene's anchors holds
+    its section (a fork bearing), so an arch between anchors snaps through at its cost. Closed rods, and rods between
+    two anchors, may need to twist; that costs nothing and is even along the rod, up to half a turn from its start.
+
+    With free sections every corner spins by itself (GJ = 0), as in Kangaroo's goals: (|phi| - phi0)^2, where both sides
+    are the same. The side of a rest angle is that of the start shape; a corner that starts straight takes that of the
+    one before it on the rod, or else after it. A rod that is straight all along has no side until something bends it.
+    Sources: Hencky, "Ueber die angenaeherte Loesung von Stabilitaetsproblemen im Raum", 1920; Wang et al., "Hencky
+    bar-chain/net for structural analysis", 2020; Bergou et al., "Discrete elastic rods", 2008.
     """
 
     kind: Literal["bend"] = "bend"
@@ -92,29 +144,97 @@ class Bend(Force):
     rest_angle: Maybe[NonNegatives] = Field(default=None, description="phi0 [rad], 0 straight; none: the start angle")
     angle_factor: NonNegatives = Field(default=1.0, description="Factor on the rest angle [-]; 0: straight")
 
-    formula: ClassVar[str] = "E = EI (φ - φ0)²/(2 l)"
+    sections: Sections = Field(
+        default="tied",
+        description="tied: sections do not spin against each other, so rest angles have a side; free: each spins alone",
+    )
+
+    formula: ClassVar[str] = "E = EI |φ - φ0|²/(2 l)"
     arity: ClassVar[int] = 3
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     kernel: ClassVar[Any] = staticmethod(bend_kernel)
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: EI / l, rest angle, factor. Corners without length have no stiffness."""
+        """Arrays for the kernel: EI / l, rest angle, factor, and the chains of `rod_chain`. Corners without length have
+        no stiffness."""
         index = places.elements(self)
         u = places.x[index[:, 1]] - places.x[index[:, 0]]
         v = places.x[index[:, 2]] - places.x[index[:, 1]]
         length = 0.5 * (np.linalg.norm(u, axis=1) + np.linalg.norm(v, axis=1))
-        return Block.of(
+        none = np.zeros((len(index), 1))
+        block = Block.of(
             index,
             stiffness=np.where(length > 0, self.stiffness / np.where(length > 0, length, 1.0), 0.0),
             rest_angle=turn_angles(places.x, index) if self.rest_angle is None else self.rest_angle,
             angle_factor=self.angle_factor,
+            side=np.tile([1.0, 0.0], (len(index), 1)),
+            next=none,
+            place=none,
+            share=length,
+            turn=none,
+            directions=np.repeat(none, 6, axis=1),
+            held=np.repeat(none, 2, axis=1),
         )
+        if self.sections == "tied":
+            rod_links.link(places.x, block.indices, block.parameters)
+        else:
+            block.parameters[:, SHARE] = 0.0
+        return block
+
+    @classmethod
+    def brace(cls, block: Block, held: NDArray[np.bool_]) -> None:
+        """An end of a rod at a held particle does not spin."""
+        kernels.compiled(rod_links.hold)(block.indices, block.parameters, held)
+
+    @classmethod
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats, Floats]:
+        """Without chains, the three columns that corners alone need; with them, a memory that asks for no bound."""
+        if (block.parameters[:, PLACE] != ALONE).any():
+            return block.indices, block.parameters, np.zeros((0, 1))
+        return block.indices, np.ascontiguousarray(block.parameters[:, :SIDE]), memory
+
+    @classmethod
+    def gathered(
+        cls, block: Block, memory: Floats, x: Floats, node: int | None
+    ) -> list[tuple[type[Force], Block]] | None:
+        """Chains in pieces, or with the spins of sections as nodes from `node` on; and the corners that are in none."""
+        place, p = block.parameters[:, PLACE], block.parameters
+        if not place.any():
+            return None
+        single = (np.abs(place) == OPEN) & (p[:, NEXT] == 0.0) & (p[:, HELD : HELD + 2] == 0.0).all(axis=1)
+        alone = np.flatnonzero((place == ALONE) | single)
+        some: list[tuple[type[Force], Block]] = []
+        if len(alone):
+            some.append((cls, Block(block.indices[alone], p[alone], memory[alone], block.names)))
+        if len(alone) == len(p):
+            return some
+        found = recorded(block, x)
+        if node is None:
+            return [*some, *rod_tangent.gather(block, found)]
+        return [*some, (rod_spins.Spins, rod_spins.gather(block, found, x, node))]
+
+    @classmethod
+    def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
+        """Whole chains: each corner of one feels all others."""
+        rows = rod_links.whole_chains(block.parameters, rows)
+        rows, part = super().taken(block, rows)
+        number = np.zeros(len(block.indices), np.int64)
+        number[rows] = np.arange(len(rows))
+        later = rows + part.parameters[:, NEXT].astype(np.int64)
+        part.parameters[:, NEXT] = number[later] - np.arange(len(rows))
+        return rows, part
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Turning angle [rad] and the moment towards the rest angle [force length]."""
+        """Turning angle [rad], and the size of the moment [force length]: negative where a corner is straighter than at
+        rest, or bent to the other side."""
         angle = turn_angles(x, block.indices)
-        rest = block.parameters[:, 1] * block.parameters[:, 2]
-        return {"angle": angle, "moment": block.parameters[:, 0] * (angle - rest)}
+        off = angle - block.parameters[:, 1] * block.parameters[:, 2]
+        found = recorded(block, x)
+        tied = np.flatnonzero(found[:, 4] > 0.0)
+        rest, way = found[tied, :3], np.sign(block.parameters[tied, PLACE])
+        beyond = way[:, None] * turn_vectors(x, block.indices[tied]) - rest
+        off[tied] = np.where((beyond * rest).sum(axis=1) < 0.0, -1.0, 1.0) * lengths(beyond)
+        return {"angle": angle, "moment": block.parameters[:, 0] * off}
 
     @classmethod
     def example(cls) -> tuple[Bend, Floats]:
@@ -125,9 +245,8 @@ class Bend(Force):
         ), x
 
 
-def turn_angles(x: Floats, corners: Ints) -> Floats:
-    """Angle [rad] by which b-c turns away from a-b, for rows a, b, c of `corners`."""
-    u = x[corners[:, 1]] - x[corners[:, 0]]
-    v = x[corners[:, 2]] - x[corners[:, 1]]
-    angle: Floats = np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), (u * v).sum(axis=1))
-    return angle
+def recorded(block: Block, x: Floats) -> Floats:
+    """What `rod_chain.record` finds of each corner (m, 5)."""
+    found, f = np.zeros((len(block.indices), 5)), np.zeros((len(x), 3))
+    kernels.compiled(record)(x, block.indices, block.parameters, np.zeros(ROOM), f, f[:, 0].copy(), found)
+    return found

@@ -125,6 +125,11 @@ def turn_sides(starts, columns, x, step, largest):  # type: ignore[no-untyped-de
                 largest[j] = max(largest[j], angle)
 
 
+def resisting(system: System, x: Floats, memory: list[Floats]) -> list[tuple[Group, Floats]]:
+    """Elements that have a tangent, with what they remember."""
+    return [(group, own) for group, own in system.elements(x, memory) if group.cls.role != "load"]
+
+
 class Blocks:
     """The pattern of a system's tangent, which is symmetric: of each particle's row of blocks the one on the diagonal,
     which comes first, and those after it; and its values.
@@ -137,10 +142,10 @@ class Blocks:
         import scipy.sparse as sparse
 
         n = len(system.x)
-        self.groups = [i for i, group in enumerate(system.groups) if group.cls.role != "load"]
+        groups = [group for group, _ in resisting(system, system.x, [g.block.memory for g in system.groups])]
         rows, columns = [np.arange(n, dtype=np.int32)], [np.arange(n, dtype=np.int32)]
-        for i in self.groups:
-            index = system.groups[i].block.indices.astype(np.int32)
+        for group in groups:
+            index = group.block.indices.astype(np.int32)
             for a in range(index.shape[1]):
                 for b in range(a):
                     rows.append(np.minimum(index[:, a], index[:, b]))
@@ -150,7 +155,7 @@ class Blocks:
         pattern.sort_indices()
         self.starts: Ints = pattern.indptr.astype(np.int32)
         self.columns: Ints = pattern.indices.astype(np.int32)
-        self.slots = [self._slots(system.groups[i]) for i in self.groups]
+        self.slots = [self._slots(group) for group in groups]
         self.values: Floats = np.zeros((len(self.columns), 9))
         self.sizes: Floats = np.zeros(len(self.columns))
 
@@ -164,8 +169,7 @@ class Blocks:
         """The values of the tangent of a shape, held axes not yet taken out. `pulling`: without what forces along lines
         that push take off across them, by which alone a tangent of such forces is not positive."""
         self.values[:] = 0.0
-        for i, slots in zip(self.groups, self.slots, strict=True):
-            group, memory = system.groups[i], state.memory[i]
+        for (group, memory), slots in zip(resisting(system, state.x, state.memory), self.slots, strict=True):
             b = group.block
             for first in range(0, len(slots), CHUNK):
                 part = slice(first, first + CHUNK)

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
-from hookean.forces import Block
 from hookean.state import State
 from hookean.system import Group, System
 
@@ -41,23 +40,22 @@ def widen(starts, columns, chosen, wider):  # type: ignore[no-untyped-def]
 
 
 def cut(system: System, state: State, moving: Chosen) -> tuple[System, State, NDArray[np.int64]]:
-    """The system and the state of the particles (n,) that move, of all elements that touch them and of the others that
-    these hang on, which hold still; and which particles of the whole they are."""
+    """The system and the state of the particles (n,) that move, of all elements that touch them or that these feel, and
+    of the others that all of them hang on, which hold still; and which particles of the whole they are."""
     touched = moving.copy()
-    rows = []
+    taken = []
     for group in system.groups:
-        some = np.flatnonzero(reduce(np.logical_or, (moving.take(end) for end in group.block.indices.T)))
-        rows.append(some)
-        touched[group.block.indices[some]] = True
+        touching = np.flatnonzero(reduce(np.logical_or, (moving.take(end) for end in group.block.indices.T)))
+        rows, block = group.cls.taken(group.block, touching)
+        taken.append((rows, block))
+        touched[block.indices] = True
     particles = np.flatnonzero(touched)
     number = np.zeros(len(moving), np.int64)
     number[particles] = np.arange(len(particles))
     groups, memory = [], []
-    for group, some, own in zip(system.groups, rows, state.memory, strict=True):
-        b = group.block
-        block = Block(number[b.indices[some]], b.parameters[some], b.memory[some], b.names)
-        groups.append(Group(group.cls, block, []))
-        memory.append(own[some])
+    for group, (rows, block), own in zip(system.groups, taken, state.memory, strict=True):
+        groups.append(Group(group.cls, replace(block, indices=number[block.indices]), []))
+        memory.append(own[rows])
     x, v, mass = system.x[particles], system.v[particles], system.mass[particles]
     part = replace(system, x=x, v=v, mass=mass, groups=groups, held=[], carried=[])
     free = state.free[particles] * moving[particles][:, None]

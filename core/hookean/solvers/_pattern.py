@@ -18,21 +18,30 @@ Ints = NDArray[np.int64]
 
 
 class Pattern:
-    """Where element blocks go in the lower triangle of the sparse tangent: worked out once, filled at every step."""
+    """Where element blocks go in the lower triangle of the sparse tangent: worked out once, filled at every step.
+
+    After the free axes `dofs` of the particles come the unknowns that elements have of their own (`System.elements`).
+    `diagonal` has the places of the former alone.
+    """
 
     def __init__(self, system: System, free: Floats) -> None:
-        n = len(free)
         self.free = free
         self.dofs = np.flatnonzero(free.ravel() > 0)
-        lower = [_lower(g.block.indices) if not g.cls.constant else np.zeros((0, 3), np.int64) for g in system.groups]
+        elements = system.elements(system.x, [g.block.memory for g in system.groups], sparse=True)
+        groups = [g for g, _ in elements]
+        nodes = max((int(g.block.indices.max(initial=-1)) + 1 for g in groups), default=0)
+        own_nodes = np.tile([1.0, 0.0, 0.0], (max(nodes - len(free), 0), 1))
+        free = np.concatenate([free, own_nodes])
+        n = len(free)
+        lower = [_lower(g.block.indices) if not g.cls.constant else np.zeros((0, 3), np.int64) for g in groups]
         own = np.arange(n, dtype=np.int64) * (n + 1)
         pairs, which = np.unique(
             np.concatenate([*(low[:, 1] * n + low[:, 0] for low in lower), own]), return_inverse=True
         )
-        place = self._arrange(pairs % n, pairs // n)
+        place = self._arrange(pairs % n, pairs // n, free > 0)
         ends = np.cumsum([len(low) for low in lower], dtype=np.int64)
         self.takes, places = [], [np.zeros(0, np.int64)]
-        for group, low, end in zip(system.groups, lower, ends, strict=True):
+        for group, low, end in zip(groups, lower, ends, strict=True):
             wide = 3 * group.block.indices.shape[1]
             corner = low[:, 2, None, None] + wide * np.arange(3)[:, None] + np.arange(3)
             mine = place[which[end - len(low) : end]]
@@ -40,12 +49,11 @@ class Pattern:
             places.append(mine[mine >= 0])
         self.places = np.concatenate(places)
 
-    def _arrange(self, row: Ints, column: Ints) -> Ints:
+    def _arrange(self, row: Ints, column: Ints, free: NDArray[np.bool_]) -> Ints:
         """Lay out the matrix for pairs of particles sorted by column and row, (i, i) first in each column.
 
         Returns the place (pairs, 3, 3) of each entry by the axes of its row and its column; -1 where it has none.
         """
-        free = self.free > 0
         n = len(free)
         rank = np.cumsum(free, axis=1) - 1  # of each free axis among its particle's
         axes = free.sum(axis=1)[row]
@@ -61,17 +69,17 @@ class Pattern:
         kept &= (row > column)[:, None, None] | np.tri(3, dtype=bool)
         place[~kept] = -1
         number = np.zeros(free.shape, np.int32)
-        number[free] = np.arange(len(self.dofs))
+        number[free] = np.arange(free.sum())
         rows = np.zeros(starts[-1], np.int32)
         rows[place[kept]] = np.broadcast_to(number[row][:, :, None], place.shape)[kept]
-        self.diagonal, self.count = starts[:-1], len(rows)
+        self.diagonal, self.count = starts[: len(self.dofs)], len(rows)
         self.factors = Factors(rows, starts.astype(np.int32))
         return place
 
     def tangent(self, system: System, state: State) -> Floats:
         """Values of the lower triangle of the sparse tangent stiffness."""
         values = [np.zeros(0)]
-        for group, memory, take in zip(system.groups, state.memory, self.takes, strict=True):
+        for (group, memory), take in zip(system.elements(state.x, state.memory, sparse=True), self.takes, strict=True):
             if len(take):
                 values.append(system.stiffness_blocks(group, state, memory).ravel()[take])
         summed: Floats = np.bincount(self.places, np.concatenate(values), self.count).astype(np.float64)
