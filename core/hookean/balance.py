@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,6 @@ COARSE = 1e-3  # a rounding floor above this leaves too little to call a shape k
 UNSTRAINED = 1e-6  # strain below which the forces of a component without loads count as none
 BALANCED = 1e-9  # part of the loads that may be left of their sum where they balance one another
 
-NOTHING: NDArray[np.int64] = np.zeros(0, np.int64)
 OUT, WORST, BEYOND, NOISE, LOAD, LOADED, ALONG = 0, 1, 2, 3, 4, 5, slice(6, 9)
 """Columns of what `judge` finds of each component."""
 
@@ -54,26 +53,21 @@ class Balance:
     energies: Floats  # of each group of elements [force length]
     stiffness: Floats  # (n,) that particles feel [force/length]
     extent: Floats  # (n,) largest of the elements at each particle [length]
+    part: int  # the component with the largest residual; -1 where nothing may move
+    residual: float  # the largest residual [-]
+    floor: float  # the largest rounding floor [-]
+    beyond: float  # the largest residual of a particle that is more than rounding leaves there [-]
+    falls: bool  # whether some component is adrift
 
-    @cached_property
+    @property
     def residuals(self) -> Floats:
         """Of each component (k,) [-]."""
         return np.asarray(self.found[:, OUT] / self.scales)
 
-    @cached_property
+    @property
     def floors(self) -> Floats:
         """Of each component (k,) [-]."""
         return np.asarray(self.found[:, NOISE] / self.scales)
-
-    @cached_property
-    def part(self) -> int:
-        """The component with the largest residual; -1 where nothing may move."""
-        return int(np.argmax(self.residuals)) if len(self.scales) else -1  # a nan is the largest
-
-    @cached_property
-    def residual(self) -> float:
-        """The largest residual [-]."""
-        return float(self.residuals[self.part]) if self.part >= 0 else 0.0
 
     @property
     def scale(self) -> float:
@@ -90,28 +84,16 @@ class Balance:
         """The particle with the largest residual."""
         return int(self.found[self.part, WORST]) if self.part >= 0 else 0
 
-    @cached_property
-    def floor(self) -> float:
-        """The largest rounding floor [-]."""
-        return float(self.floors.max(initial=0.0))
-
-    @cached_property
-    def beyond(self) -> float:
-        """The largest residual of a particle that is more than rounding leaves there [-]."""
-        return float((self.found[:, BEYOND] / self.scales).max(initial=0.0))
-
-    @cached_property
+    @property
     def adrift(self) -> NDArray[np.int64]:
         """Components that nothing supports although their loads have a resultant."""
-        if self.components.supported.all():
-            return NOTHING
         along = np.abs(self.found[:, ALONG]).max(axis=1, initial=0.0)
         return np.flatnonzero(~self.components.supported & (along > BALANCED * self.found[:, LOAD]))
 
-    @cached_property
+    @property
     def coarse(self) -> NDArray[np.int64]:
         """Components whose forces rounding hides."""
-        return np.flatnonzero(self.floors > COARSE) if self.floor > COARSE else NOTHING
+        return np.flatnonzero(self.floors > COARSE)
 
     def still(self, tolerance: float) -> bool:
         """Whether what is left at each particle is within the tolerance, or no more than rounding leaves there."""
@@ -119,7 +101,7 @@ class Balance:
 
     def met(self, tolerance: float) -> bool:
         """Converged: `still`, and that means something: no component is adrift, and rounding hides no forces."""
-        return self.still(tolerance) and not len(self.adrift) and not len(self.coarse)
+        return self.still(tolerance) and not self.falls and self.floor <= COARSE
 
     def goal(self, tolerance: float) -> float:
         """The out-of-balance force [force] that meets the tolerance in every component."""
@@ -144,16 +126,14 @@ def balance(system: System, state: State) -> Balance:
     for group in system.groups:
         if group.cls.role != "load" and len(group.block.indices):
             kernels.compiled(reach_of)(group.block.indices, state.x, reach, extent)
-    kernels.compiled(judge)(
-        state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found
-    )  # fmt: skip
-    scales = found[:, LOAD] / np.maximum(found[:, LOADED], 1.0)
-    unloaded = scales <= 0.0
-    if (unloaded & parts.joined).any():
-        scales = np.where(unloaded, _element_scales(system, state, parts, w * extent), scales)
-    # nothing pushes there: balanced if what is left is rounding
-    scales[scales <= 0.0] = 1.0
-    return Balance(left, reactions, contact, parts, found, scales, energies, w, extent)
+    scales = np.empty(len(parts.first))
+    loaded = kernels.compiled(judge)(
+        state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found, scales
+    )
+    if not loaded and ((scales <= 0.0) & parts.joined).any():
+        scales = np.where(scales <= 0.0, _element_scales(system, state, parts, w * extent), scales)
+    about = kernels.compiled(summary)(found, scales, parts.supported.view(np.int8), BALANCED)
+    return Balance(left, reactions, contact, parts, found, scales, energies, w, extent, *about)
 
 
 def reach_of(indices, x, reach, extent):  # type: ignore[no-untyped-def]
@@ -172,10 +152,12 @@ def reach_of(indices, x, reach, extent):  # type: ignore[no-untyped-def]
             reach[i], extent[i] = max(reach[i], far), max(extent[i], wide)
 
 
-def judge(x, f, w, free, loads, contact, reach, label, left, reactions, found):  # type: ignore[no-untyped-def]
+def judge(  # type: ignore[no-untyped-def]
+    x, f, w, free, loads, contact, reach, label, left, reactions, found, scales
+):
     """Write the reactions; and of each component the largest force left, the particle with it, the largest beyond
     rounding and the most that rounding leaves [force], the sizes of loads on what may move: their sum, how many there
-    are, and the loads added up along the axes."""
+    are, and the loads added up along the axes; `scales` their mean. Whether all components are loaded."""
     for i in range(x.shape[0]):
         largest, square, weight = 0.0, 0.0, 0.0
         for c in range(3):
@@ -200,6 +182,30 @@ def judge(x, f, w, free, loads, contact, reach, label, left, reactions, found): 
             part[5] += 1.0
             for c in range(3):
                 part[6 + c] += loads[i, c]
+    every = True
+    for k in range(found.shape[0]):
+        scales[k] = found[k, 4] / max(found[k, 5], 1.0)
+        every = every and scales[k] > 0.0
+    return every
+
+
+def summary(found, scales, supported, balanced):  # type: ignore[no-untyped-def]
+    """The component with the largest residual, that residual, the largest rounding floor and residual beyond it, and
+    whether a component that nothing supports has loads with a resultant."""
+    part, residual, floor, beyond, falls = -1, 0.0, 0.0, 0.0, False
+    for k in range(found.shape[0]):
+        if scales[k] <= 0.0:  # nothing pushes there: balanced if what is left is rounding
+            scales[k] = 1.0
+        own = found[k, 0] / scales[k]
+        if part < 0 or own > residual or (np.isnan(own) and not np.isnan(residual)):
+            part, residual = k, own
+        floor = max(floor, found[k, 3] / scales[k])
+        if not np.isnan(beyond):
+            more = found[k, 2] / scales[k]
+            beyond = more if np.isnan(more) else max(beyond, more)
+        along = max(abs(found[k, 6]), abs(found[k, 7]), abs(found[k, 8]))
+        falls = falls or (supported[k] == 0 and along > balanced * found[k, 4])
+    return part, residual, floor, beyond, falls
 
 
 def _element_scales(system: System, state: State, parts: Components, stiff: Floats) -> Floats:

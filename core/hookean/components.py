@@ -114,8 +114,9 @@ def sizes(parts: Components, groups: list[Group], x: Floats) -> Floats:
     for group in groups:
         if group.cls.role != "load" and len(group.block.indices):
             kernels.compiled(span)(group.block.indices, x, parts.label, low, high)
-    diagonal: Floats = np.sqrt(((high - low) ** 2).sum(axis=1))
-    return np.where(np.isfinite(diagonal) & (diagonal > 0.0), diagonal, np.abs(x[parts.first]).max(axis=1, initial=0.0))
+    found = np.empty(k)
+    kernels.compiled(diagonals)(low, high, x, parts.first, found)
+    return found
 
 
 def span(indices, x, label, low, high):  # type: ignore[no-untyped-def]
@@ -129,3 +130,14 @@ def span(indices, x, label, low, high):  # type: ignore[no-untyped-def]
                 for c in range(3):
                     low[part, c] = min(low[part, c], x[indices[e, j], c])
                     high[part, c] = max(high[part, c], x[indices[e, j], c])
+
+
+def diagonals(low, high, x, first, found):  # type: ignore[no-untyped-def]
+    """The diagonals of boxes; of those without extent, how far from the origin their particles are."""
+    for k in range(found.shape[0]):
+        square, far = 0.0, 0.0
+        for c in range(3):
+            square += (high[k, c] - low[k, c]) ** 2
+            far = max(far, abs(x[first[k], c]))
+        size = np.sqrt(square)
+        found[k] = size if size > 0.0 and np.isfinite(size) else far

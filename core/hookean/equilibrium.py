@@ -114,13 +114,13 @@ def movable(system: System, state: State, found: Balance) -> tuple[Floats, str]:
     What a floor holds is found by pushing: it is what carries a small force along an axis. Particles that nothing
     touches are left out: they are no part of the structure.
     """
-    free = state.free.copy()
-    label, joined = found.components.label, found.components.joined
+    free, (label, joined) = state.free, (found.components.label, found.components.joined)
     if not joined.all():
+        free = free.copy()
         free[(label >= 0) & ~joined[label]] = 0.0
-    touching = (found.contact != 0.0).any(axis=1)
-    if not touching.any():
+    if not (system.contacts and found.contact.any()):
         return free, ""
+    free, touching = free.copy(), (found.contact != 0.0).any(axis=1)
     carried = found.forces - found.contact  # what comes out of balance without the floor
     push = PUSH * lengths(found.contact)
     for axis in range(3):

@@ -109,7 +109,7 @@ class Entry:
         if hashlib.sha256(code).hexdigest() != told["digest"]:
             raise ValueError("damaged")
         self.kinds = tuple(np.ndarray if isinstance(one, tuple) else one for one in kind)
-        self.arrays = [one is np.ndarray for one in self.kinds]
+        self.numbers = [place for place, one in enumerate(self.kinds) if one is not np.ndarray]
         self.head = [id(np.ndarray), *(id(np.dtype(letter)) for letter in letters(kind))]
         self.end = len(self.head) + len(kind)
         self.returned = struct.Struct(f"={told['result']}")
@@ -132,7 +132,9 @@ class Entry:
         """What the code returns; UNFIT where it does not take these values."""
         if tuple(map(type, values)) != self.kinds and tuple(map(_plain, values)) != self.kinds:
             return UNFIT
-        numbers = [id(value) if array else value for value, array in zip(values, self.arrays, strict=True)]
+        numbers: list[Any] = list(map(id, values))
+        for place in self.numbers:
+            numbers[place] = values[place]
         try:
             row = self.row.pack(*self.head, *numbers)  # bytes of nobody else's: the code may write at their end
         except struct.error:  # an integer of more than 64 bits

@@ -290,13 +290,13 @@ def test_same_net_same_bits():
     assert shapes[0] == shapes[1] == shapes[2]
 
 
-def test_lowest_is_true_of_pulled_springs_and_false_of_pressed_ones():
+def test_pulled_springs_have_the_least_energy_and_pressed_ones_perhaps_not():
     """A chain under tension has the least energy; a straight one that is pressed could buckle."""
     for length, known in ((0.5, True), (2.0, False)):
         springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(4)], "rest_length": length}
         spec = {"particles": [[i, 0, 0] for i in range(5)], "forces": [springs], "anchors": [{"particles": [0, 4]}]}
         system = compile(Scene.read(spec))
-        assert multilevel.lowest(system, system.start()) is known
+        assert multilevel.pulled(system, system.start()) is multilevel.super_stable(system, system.start()) is known
 
 
 def test_bodies_that_hang_on_nothing_are_no_trouble():

@@ -7,14 +7,14 @@ error estimation in the conjugate gradient method", 2002, for what the steps tel
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
 from hookean.balance import Balance
-from hookean.kernels import forces
+from hookean.kernels import device, forces
 from hookean.lean import Desk, lean
 
 if TYPE_CHECKING:
@@ -36,55 +36,65 @@ def movement(system: System, state: State, free: Floats, found: Balance) -> Floa
     n = len(state.x)
     own = lean(system, state, damped=False)
     weights = np.divide(1.0, found.stiffness, out=np.zeros(n), where=found.stiffness > 0.0)
-    x, free, r, still, moved, p, y, f, base = Desk().lay(n, state.x, free, found.forces * free, *[None] * 6)
-    reach = FURTHER * float(found.extent.mean())
-    done = kernels.compiled(conjugate_loop)(
-        own.packed, x, free, r, still, moved, p, y, f, base, np.zeros(n), weights, np.zeros(MOST), reach
+    x, free, r, weights, *rest = Desk().lay(
+        n, state.x, free, found.forces * free, np.broadcast_to(weights[:, None], (n, 3)), *[None] * 7
     )
+    reach = FURTHER * float(found.extent.mean()) * n**0.5
+    done = kernels.compiled(conjugate_loop)(own.packed, x, free, r, weights, *rest, np.zeros(n), np.zeros(MOST), reach)
+    moved = rest[2]
     return np.ascontiguousarray(moved[:, :3]) if done > 0 else None
 
 
+@device
+def product(p: Any, q: Any) -> Any:
+    """The sum of products of two arrays (n, 4), column by column."""
+    s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
+    for i in range(p.shape[0]):
+        s0 += p[i, 0] * q[i, 0]
+        s1 += p[i, 1] * q[i, 1]
+        s2 += p[i, 2] * q[i, 2]
+        s3 += p[i, 3] * q[i, 3]
+    return (s0 + s1) + (s2 + s3)
+
+
 def conjugate_loop(  # type: ignore[no-untyped-def]
-    packed, x, free, r, still, moved, p, y, f, base, w, weights, energies, reach
+    packed, x, free, r, weights, still, z, moved, p, y, f, base, w, energies, reach
 ):
     """Steps until the solution has settled: how many; 0 where a direction bends down, or they are too many."""
-    n = x.shape[0]
+    size = x.size
+    flat_x, flat_free, flat_r, flat_z = x.reshape(size), free.reshape(size), r.reshape(size), z.reshape(size)
+    flat_moved, flat_p, flat_y = moved.reshape(size), p.reshape(size), y.reshape(size)
+    flat_f, flat_base, flat_weights = f.reshape(size), base.reshape(size), weights.reshape(size)
     forces(packed, x, still, base, w)
-    falls = 0.0
-    for i in range(n):
-        for c in range(4):
-            falls += r[i, c] * r[i, c] * weights[i]
+    for i in range(size):
+        flat_z[i] = flat_r[i] * flat_weights[i]
+    falls = product(r, z)
     turn, energy = 0.0, 0.0
     for k in range(energies.shape[0]):
-        largest = 0.0
-        for i in range(n):
-            for c in range(4):
-                p[i, c] = r[i, c] * weights[i] + turn * p[i, c]
-                largest = max(largest, abs(p[i, c]))
-        if largest == 0.0:
+        for i in range(size):
+            flat_p[i] = flat_z[i] + turn * flat_p[i]
+        along = product(p, p)
+        if along == 0.0:
             return k + 1
-        scale = reach / largest
-        for i in range(n):
-            for c in range(4):
-                y[i, c] = x[i, c] + scale * p[i, c]
-                f[i, c] = -base[i, c]
+        scale = reach / np.sqrt(along)
+        for i in range(size):
+            flat_y[i] = flat_x[i] + scale * flat_p[i]
+            flat_f[i] = -flat_base[i]
         forces(packed, y, still, f, w)
-        bends = 0.0
-        for i in range(n):
-            for c in range(4):
-                f[i, c] *= -free[i, c] / scale
-                bends += p[i, c] * f[i, c]
+        scale = -1.0 / scale
+        for i in range(size):
+            flat_f[i] *= flat_free[i] * scale
+        bends = product(p, f)
         if not bends > 0.0:
             return 0
         along, before = falls / bends, falls
         energy += along * falls
         energies[k] = energy
-        falls = 0.0
-        for i in range(n):
-            for c in range(4):
-                moved[i, c] += along * p[i, c]
-                r[i, c] -= along * f[i, c]
-                falls += r[i, c] * r[i, c] * weights[i]
+        for i in range(size):
+            flat_moved[i] += along * flat_p[i]
+            flat_r[i] -= along * flat_f[i]
+            flat_z[i] = flat_r[i] * flat_weights[i]
+        falls = product(r, z)
         turn = falls / before
         if k + 1 >= LEAST and energy - energies[2 * (k + 1) // 3 - 1] <= SETTLED * energy:
             return k + 1

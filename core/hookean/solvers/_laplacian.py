@@ -36,7 +36,7 @@ class Laplacian:
 def laplacian(system: System, free: Floats) -> tuple[Laplacian, Ints]:
     """The Laplacian of the particles with `free` (n,) above 0, and whose rows they are."""
     n = len(free)
-    stiffness, held = np.zeros(n), np.zeros(n, np.int8)
+    stiffness = np.zeros(n)
     index, parameters = np.zeros((0, 2), np.int64), np.zeros((0, 1))
     for group in system.groups:
         if group.cls is AnchorSpring:
@@ -44,13 +44,21 @@ def laplacian(system: System, free: Floats) -> tuple[Laplacian, Ints]:
             stiffness += np.bincount(spot, strength * (free[spot] > 0.0), n)
         elif group.cls is Springs:
             index, parameters = group.block.indices, group.block.parameters
-    held[stiffness > 0.0] = 1
-    room = 2 * len(index) + n
+    return form(index, parameters, free, stiffness)
+
+
+def form(pairs: NDArray[np.int64], densities: Floats, free: Floats, fixed: Floats) -> tuple[Laplacian, Ints]:
+    """The Laplacian of `pairs` (m, 2), a number for each in the first column of `densities`, on the particles with
+    `free` (n,) above 0, which resist by `fixed` (n,) themselves; and whose rows they are. Where
+    a diagonal is not above 0 its row is missing: then the form is not positive, and the net of no use."""
+    n = len(free)
+    room = 2 * len(pairs) + n
+    held, stiffness = (fixed > 0.0).astype(np.int8), fixed.copy()
     starts, diagonal, particles = np.empty(n + 1, np.int32), np.empty(n, np.int32), np.empty(n, np.int32)
     columns, values = np.empty(room, np.int32), np.empty(room)
-    notes = np.zeros(n, np.int32), np.zeros(n, np.int32), np.empty(n, np.int32)
+    notes = np.zeros(n, np.int32), np.zeros(n, np.int32), np.full(n, -1, np.int32)
     found = (starts, columns, values, diagonal, held, particles)
-    count, size = kernels.compiled(join)(index, parameters, free, stiffness, *found, *notes)
+    count, size = kernels.compiled(join)(pairs, densities, free, stiffness, *found, *notes)
     net = Laplacian(starts[: count + 1], columns[:size], values[:size], diagonal[:count], held[:count])
     return net, particles[:count]
 
@@ -61,7 +69,7 @@ def join(  # type: ignore[no-untyped-def]
     """Write the rows; how many there are, and how many entries."""
     for e in range(indices.shape[0]):
         a, b, k = np.uint64(indices[e, 0]), np.uint64(indices[e, 1]), parameters[e, 0]
-        if not k > 0.0 or a == b:
+        if k == 0.0 or np.isnan(k) or a == b:
             continue
         if free[a] > 0.0:
             stiffness[a] += k
@@ -87,7 +95,7 @@ def join(  # type: ignore[no-untyped-def]
     starts[count] = size
     for e in range(indices.shape[0]):
         a, b, k = np.uint64(indices[e, 0]), np.uint64(indices[e, 1]), parameters[e, 0]
-        if k > 0.0 and a != b and free[a] > 0.0 and free[b] > 0.0:
+        if k != 0.0 and not np.isnan(k) and place[a] >= 0 and place[b] >= 0 and a != b:
             first, second = min(a, b), max(a, b)
             s, t = np.uint64(after[first]), np.uint64(before[second])
             columns[s], values[s] = place[second], -k

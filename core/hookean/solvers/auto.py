@@ -130,9 +130,13 @@ class Method(Solver):
         done = self._multilevel.advance(system, state, min(count, self._multilevel.longest), goal)
         self.work += self._multilevel.work - work
         found = balance(system, state).met(system.scene.settings.tolerance)  # as the run is judged
+        pulled = found and multilevel.pulled(system, state)
+        self._multilevel.certain = (
+            found and not pulled and len(state.x) < MANY and multilevel.super_stable(system, state)
+        )
         if found and len(state.x) >= MANY:
-            self.remark = "" if multilevel.pulled(system, state) else CREASED
-        elif found and not multilevel.lowest(system, state):
+            self.remark = "" if pulled else CREASED
+        elif found and not pulled and not self._multilevel.certain:
             self._levels = False
             self.used.remove("multilevel")
             self.anew = state.iteration

@@ -27,7 +27,6 @@ from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
     from hookean.multigrid.tangent import Tangent
-    from hookean.solvers._laplacian import Laplacian
     from hookean.state import State
     from hookean.system import System
 
@@ -321,11 +320,6 @@ def pulled(system: System, state: State) -> bool:
     return bool((_densities(system, state)[1] < 0.0).mean() <= FEW)
 
 
-def lowest(system: System, state: State) -> bool:
-    """Whether a shape at rest of plain springs and constant loads is the one of least energy, as far as can be told."""
-    return pulled(system, state) or super_stable(system, state)
-
-
 def super_stable(system: System, state: State) -> bool:
     """Whether the force densities of a shape of plain springs are positive definite, where that is quick to find out:
     then it is the shape of least energy, and its tangent positive definite.
@@ -336,29 +330,14 @@ def super_stable(system: System, state: State) -> bool:
     Source: Connelly, Rigidity and energy, Inventiones mathematicae 66 (1982) 11.
     """
     from hookean.solvers import _front
+    from hookean.solvers._laplacian import form
 
-    net = _form(*_densities(system, state), state.moving)
+    pairs, density = _densities(system, state)
+    net, rows = form(pairs, density[:, None], state.moving.astype(np.float64), np.zeros(len(state.x)))
+    if len(rows) < np.count_nonzero(state.moving):
+        return False
     way = _front.front(net, CERTAIN)
     return way is not None and way.held and _front.Factor(net, way).sound
-
-
-def _form(pairs: NDArray[np.int64], density: Floats, free: NDArray[np.bool_]) -> Laplacian:
-    """The quadratic form of force densities on the free particles."""
-    import scipy.sparse as sparse
-
-    from hookean.solvers._laplacian import Laplacian
-
-    n = len(free)
-    both, held = free[pairs].all(axis=1), np.zeros(n, np.int8)
-    held[pairs[free[pairs].any(axis=1) & ~both]] = 1
-    diagonal = np.bincount(pairs.ravel(), np.repeat(density, 2), n)
-    a, b = pairs[both].T
-    rows, columns = np.concatenate([a, b, np.arange(n)]), np.concatenate([b, a, np.arange(n)])
-    values = np.concatenate([-density[both], -density[both], diagonal])
-    form = sparse.csr_matrix((values, (rows, columns)), shape=(n, n))[free][:, free]
-    form.sort_indices()
-    spot = np.flatnonzero(form.indices == np.repeat(np.arange(form.shape[0]), np.diff(form.indptr)))
-    return Laplacian(form.indptr, form.indices, form.data, spot.astype(np.int32), held[free])
 
 
 def _densities(system: System, state: State) -> tuple[NDArray[np.int64], Floats]:
