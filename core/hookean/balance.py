@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from hookean import kernels
 from hookean.components import Components
 from hookean.forces import Block
 from hookean.forces.base import lengths
+from hookean.kernels import device
 from hookean.state import State
 from hookean.system import Group, System
 
@@ -52,7 +54,6 @@ class Balance:
     scales: Floats  # (k,) [force]
     energies: Floats  # of each group of elements [force length]
     stiffness: Floats  # (n,) that particles feel [force/length]
-    extent: Floats  # (n,) largest of the elements at each particle [length]
     part: int  # the component with the largest residual; -1 where nothing may move
     residual: float  # the largest residual [-]
     floor: float  # the largest rounding floor [-]
@@ -116,48 +117,90 @@ class Balance:
 
 def balance(system: System, state: State) -> Balance:
     """Judge a shape at rest."""
-    f, w, energies = system.evaluate(state)
-    loads, _, _ = system.evaluate(state, only="load")
+    loads = np.zeros(state.x.shape)
+    f, w, energies = system.evaluate(state, loads=loads)
     left = f * state.free
     contact = system.support(state, left) if system.contacts else np.zeros(f.shape)
     parts = system.components(state)
-    reactions, found = np.empty(f.shape), np.zeros((len(parts.first), 9))
-    reach, extent = np.zeros(len(f)), np.zeros(len(f))
+    reactions, reach = np.empty(f.shape), np.zeros(len(f))
+    found, scales = np.zeros((len(parts.first), 9)), np.empty(len(parts.first))
     for group in system.groups:
         if group.cls.role != "load" and len(group.block.indices):
-            kernels.compiled(reach_of)(group.block.indices, state.x, reach, extent)
-    scales = np.empty(len(parts.first))
-    loaded = kernels.compiled(judge)(
-        state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found, scales
-    )
+            kernels.compiled(reach_of)(group.block.indices, state.x, reach)
+    supported = parts.supported.view(np.int8)
+    loaded, *summed = kernels.compiled(judge)(
+        state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found, scales, supported,
+    )  # fmt: skip
     if not loaded and ((scales <= 0.0) & parts.joined).any():
-        scales = np.where(scales <= 0.0, _element_scales(system, state, parts, w * extent), scales)
-    about = kernels.compiled(summary)(found, scales, parts.supported.view(np.int8), BALANCED)
-    return Balance(left, reactions, contact, parts, found, scales, energies, w, extent, *about)
+        scales = np.where(scales <= 0.0, _element_scales(system, state, parts, w), scales)
+    if not loaded:
+        summed = kernels.compiled(summary)(found, scales, supported)
+    return Balance(left, reactions, contact, parts, found, scales, energies, w, *summed)
 
 
-def reach_of(indices, x, reach, extent):  # type: ignore[no-untyped-def]
-    """The largest coordinate of the elements at each particle, and their largest extent along an axis."""
+def extents(system: System, state: State) -> Floats:
+    """The largest extent along an axis of the elements at each particle (n,) [length]."""
+    extent = np.zeros(len(state.x))
+    for group in system.groups:
+        if group.cls.role != "load" and len(group.block.indices):
+            kernels.compiled(extent_of)(group.block.indices, state.x, extent)
+    return extent
+
+
+def extent_of(indices, x, extent):  # type: ignore[no-untyped-def]
+    """The largest extent along an axis of the elements at each particle."""
     for e in range(indices.shape[0]):
-        far, wide = 0.0, 0.0
+        wide = 0.0
         for c in range(3):
             low = high = x[indices[e, 0], c]
             for j in range(1, indices.shape[1]):
                 low, high = min(low, x[indices[e, j], c]), max(high, x[indices[e, j], c])
-            far, wide = max(far, -low, high), max(wide, high - low)
-        if not np.isfinite(far):
-            continue
+            wide = max(wide, high - low)
+        if np.isfinite(wide):
+            for j in range(indices.shape[1]):
+                extent[indices[e, j]] = max(extent[indices[e, j]], wide)
+
+
+def reach_of(indices, x, reach):  # type: ignore[no-untyped-def]
+    """The largest coordinate of the elements at each particle."""
+    for e in range(indices.shape[0]):
+        far = 0.0
         for j in range(indices.shape[1]):
-            i = indices[e, j]
-            reach[i], extent[i] = max(reach[i], far), max(extent[i], wide)
+            i = np.uint64(indices[e, j])
+            far = max(far, abs(x[i, 0]), abs(x[i, 1]), abs(x[i, 2]))
+        if far < np.inf:
+            for j in range(indices.shape[1]):
+                i = np.uint64(indices[e, j])
+                reach[i] = max(reach[i], far)
+
+
+@device
+def summary(found: Any, scales: Any, supported: Any) -> Any:
+    """The component with the largest residual, that residual, the largest rounding floor and residual beyond it, and
+    whether a component that nothing supports has loads with a resultant."""
+    part, residual, floor, beyond, falls = -1, 0.0, 0.0, 0.0, False
+    for k in range(found.shape[0]):
+        if scales[k] <= 0.0:  # nothing pushes there: balanced if what is left is rounding
+            scales[k] = 1.0
+        own = found[k, 0] / scales[k]
+        if part < 0 or own > residual or (np.isnan(own) and not np.isnan(residual)):
+            part, residual = k, own
+        floor = max(floor, found[k, 3] / scales[k])
+        if not np.isnan(beyond):
+            more = found[k, 2] / scales[k]
+            beyond = more if np.isnan(more) else max(beyond, more)
+        along = max(abs(found[k, 6]), abs(found[k, 7]), abs(found[k, 8]))
+        falls = falls or (supported[k] == 0 and along > BALANCED * found[k, 4])
+    return part, residual, floor, beyond, falls
 
 
 def judge(  # type: ignore[no-untyped-def]
-    x, f, w, free, loads, contact, reach, label, left, reactions, found, scales
+    x, f, w, free, loads, contact, reach, label, left, reactions, found, scales, supported
 ):
     """Write the reactions; and of each component the largest force left, the particle with it, the largest beyond
     rounding and the most that rounding leaves [force], the sizes of loads on what may move: their sum, how many there
-    are, and the loads added up along the axes; `scales` their mean. Whether all components are loaded."""
+    are, and the loads added up along the axes; `scales` their mean. Whether all components are loaded, and then
+    the `summary`."""
     for i in range(x.shape[0]):
         largest, square, weight = 0.0, 0.0, 0.0
         for c in range(3):
@@ -186,31 +229,12 @@ def judge(  # type: ignore[no-untyped-def]
     for k in range(found.shape[0]):
         scales[k] = found[k, 4] / max(found[k, 5], 1.0)
         every = every and scales[k] > 0.0
-    return every
+    return (True, *summary(found, scales, supported)) if every else (False, -1, 0.0, 0.0, 0.0, False)
 
 
-def summary(found, scales, supported, balanced):  # type: ignore[no-untyped-def]
-    """The component with the largest residual, that residual, the largest rounding floor and residual beyond it, and
-    whether a component that nothing supports has loads with a resultant."""
-    part, residual, floor, beyond, falls = -1, 0.0, 0.0, 0.0, False
-    for k in range(found.shape[0]):
-        if scales[k] <= 0.0:  # nothing pushes there: balanced if what is left is rounding
-            scales[k] = 1.0
-        own = found[k, 0] / scales[k]
-        if part < 0 or own > residual or (np.isnan(own) and not np.isnan(residual)):
-            part, residual = k, own
-        floor = max(floor, found[k, 3] / scales[k])
-        if not np.isnan(beyond):
-            more = found[k, 2] / scales[k]
-            beyond = more if np.isnan(more) else max(beyond, more)
-        along = max(abs(found[k, 6]), abs(found[k, 7]), abs(found[k, 8]))
-        falls = falls or (supported[k] == 0 and along > balanced * found[k, 4])
-    return part, residual, floor, beyond, falls
-
-
-def _element_scales(system: System, state: State, parts: Components, stiff: Floats) -> Floats:
-    """The mean size of the internal element forces of each component (k,) [force]; `stiff` (n,) is what particles
-    resist to strains of 1 [force]."""
+def _element_scales(system: System, state: State, parts: Components, w: Floats) -> Floats:
+    """The mean size of the internal element forces of each component (k,) [force]; `w` (n,) is the stiffness that
+    particles feel [force/length]."""
     k = len(parts.first)
     sums = np.zeros((k, 2))
     for group, memory in zip(system.groups, state.memory, strict=True):
@@ -226,6 +250,7 @@ def _element_scales(system: System, state: State, parts: Components, stiff: Floa
         state.force_scale = np.zeros(k)
     state.force_scale = np.maximum(state.force_scale, now)
     scales = np.maximum(now, 1e-3 * state.force_scale)
+    stiff = w * extents(system, state)  # what particles resist to strains of 1 [force]
     if scales.min() < UNSTRAINED * stiff.max():
         own = np.zeros((k, 2))
         kernels.compiled(tally)(np.arange(len(stiff))[:, None], stiff, parts.label, own)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
-from hookean.balance import Balance
+from hookean.balance import Balance, extents
 from hookean.factor import Factors
 from hookean.multigrid.kernels import multiply
 
@@ -72,7 +72,7 @@ class Scaled:
         dofs = np.flatnonzero(state.free.ravel() > 0.0)
         w = found.stiffness
         w = np.maximum(w, 1e-9 * w.max()) if w.max() > 0.0 else np.ones_like(w)
-        apart = found.extent * w
+        apart = extents(system, state) * w
         turning = np.abs(found.forces).max(axis=1) / np.where(apart > 0.0, apart, np.inf)
         scale = 1.0 / np.sqrt(np.repeat(w, 3)[dofs])
         left = found.forces.ravel()[dofs] * scale

@@ -133,10 +133,13 @@ class System:
             hook = kernels.compiled(group.cls.impact, "impact")
             hook(state.x, state.v, state.v, state.x, state.v, state.free, 0.0, group.block.parameters)
 
-    def evaluate(self, state: State, *, only: str = "", still: bool = True) -> tuple[Floats, Floats, Floats]:
+    def evaluate(
+        self, state: State, *, only: str = "", still: bool = True, loads: Floats | None = None
+    ) -> tuple[Floats, Floats, Floats]:
         """Forces (n, 3) on the particles, lumped stiffness (n,) and the energy of each group.
 
-        `only` restricts to groups of one role; `still` leaves damping out.
+        `only` restricts to groups of one role; `still` leaves damping out; to `loads` (n, 3) the part of the forces
+        that is loads is added.
         """
         f, w = np.zeros(self.x.shape), np.zeros(len(self.x))
         v = np.zeros(self.x.shape) if still else state.v
@@ -145,8 +148,9 @@ class System:
             if only and group.cls.role != only:
                 continue
             kernel = kernels.compiled(group.cls.kernel, "force")
-            energies[i] = kernel(state.x, v, *group.cls.whole(group.block, memory), f, w)
-        return f, w, energies
+            target = f if loads is None or group.cls.role != "load" else loads
+            energies[i] = kernel(state.x, v, *group.cls.whole(group.block, memory), target, w)
+        return (f if loads is None else f + loads), w, energies
 
     def support(self, state: State, f: Floats) -> Floats:
         """Take from `f` what contacts carry at rest; returns their force on the particles (n, 3)."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
-from hookean.balance import Balance
+from hookean.balance import Balance, extents
 from hookean.kernels import device, forces
 from hookean.lean import Desk, lean
 
@@ -39,7 +39,7 @@ def movement(system: System, state: State, free: Floats, found: Balance) -> Floa
     x, free, r, weights, *rest = Desk().lay(
         n, state.x, free, found.forces * free, np.broadcast_to(weights[:, None], (n, 3)), *[None] * 7
     )
-    reach = FURTHER * float(found.extent.mean()) * n**0.5
+    reach = FURTHER * float(extents(system, state).mean()) * n**0.5
     done = kernels.compiled(conjugate_loop)(own.packed, x, free, r, weights, *rest, np.zeros(n), np.zeros(MOST), reach)
     moved = rest[2]
     return np.ascontiguousarray(moved[:, :3]) if done > 0 else None
