@@ -106,13 +106,7 @@ class Balance:
 
     def goal(self, tolerance: float) -> float:
         """The out-of-balance force [force] that meets the tolerance in every component."""
-        if not len(self.scales):
-            return tolerance
-        # where the stiffest rests, but for rounding, something softer may not
-        beyond = self.found[:, BEYOND] / self.scales
-        softer = (self.residuals <= self.floors) & (beyond > tolerance)
-        wanted = np.maximum(np.where(softer, 0.0, self.floors), tolerance) * self.scales
-        return float(wanted.min())
+        return float(kernels.compiled(least_goal)(self.found, self.scales, tolerance))
 
 
 def balance(system: System, state: State) -> Balance:
@@ -172,6 +166,17 @@ def reach_of(indices, x, reach):  # type: ignore[no-untyped-def]
             for j in range(indices.shape[1]):
                 i = np.uint64(indices[e, j])
                 reach[i] = max(reach[i], far)
+
+
+def least_goal(found, scales, tolerance):  # type: ignore[no-untyped-def]
+    """The least force that meets the tolerance in some component; in one that rests but for rounding, though a softer
+    particle does not, no force may be left; the tolerance where there are none."""
+    least = np.inf
+    for k in range(found.shape[0]):
+        floor = found[k, 3] / scales[k]
+        softer = found[k, 0] / scales[k] <= floor and found[k, 2] / scales[k] > tolerance
+        least = min(least, max(0.0 if softer else floor, tolerance) * scales[k])
+    return least if found.shape[0] > 0 else tolerance
 
 
 @device

@@ -109,12 +109,12 @@ def number(parent, free, floor, notes, label, first, flags):  # type: ignore[no-
 def sizes(parts: Components, groups: list[Group], x: Floats) -> Floats:
     """The diagonal (k,) [length] of the box around each component and what its elements hold on to; for a particle
     without any, its distance from the origin."""
-    k = len(parts.first)
-    low, high = np.full((k, 3), np.inf), np.full((k, 3), -np.inf)
+    low = x.take(parts.first, axis=0)
+    high = low.copy()
     for group in groups:
         if group.cls.role != "load" and len(group.block.indices):
             kernels.compiled(span)(group.block.indices, x, parts.label, low, high)
-    found = np.empty(k)
+    found = np.empty(len(low))
     kernels.compiled(diagonals)(low, high, x, parts.first, found)
     return found
 

@@ -180,10 +180,10 @@ class Welded:
         """Report the points, lines or vertices of a force that met no particle."""
         kinds: tuple[tuple[str, Literal["point", "line"]], ...] = (("points", "point"), ("lines", "line"))
         for name, what in kinds:
-            points = getattr(force, name, None)
+            points = vars(force).get(name)  # asking a model for what it has not takes long
             if points is not None and id(force) in self._rows:
                 self.check(f"{pointer}/{name}", force.name, points, self._rows[id(force)], what, force.role)
-        mesh = getattr(force, "mesh", None)
+        mesh = vars(force).get("mesh")
         if mesh is not None and (self.vertices(mesh) < 0).any():
             data, found = self.scene.meshes[mesh], self.vertices(mesh)
             used = np.arange(len(found)) if force.element_arity == 1 else np.unique(data.faces)
