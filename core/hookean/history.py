@@ -13,24 +13,27 @@ from hookean.patch import retune
 from hookean.scene import Scene
 from hookean.state import State
 from hookean.system import Held, System
+from hookean.wiring import Wiring
 
 LONGEST = 100  # edits that can be taken back
 
 
 @dataclass(frozen=True)
 class Setup:
-    """A scene with its forces and settings, and the anchors, at one moment."""
+    """A scene with its forces and settings, what the forces were compiled to, and the anchors, at one moment."""
 
     scene: Scene
     held: tuple[Held, ...]
+    wiring: Wiring
 
     @classmethod
     def of(cls, system: System) -> Setup:
         """The present setup of a system; patches replace anchors and never write into them."""
-        return cls(system.scene, tuple(system.held))
+        return cls(system.scene, tuple(system.held), Wiring.of(system))
 
     def put_back(self, system: System, state: State) -> None:
         """Make this the setup of the system again; raises its revision."""
+        self.wiring.put_into(system, state)
         retune(system, state, self.scene, list(self.held))
 
 

@@ -1,4 +1,5 @@
-"""Patches: what may change while a system runs. Anchors, loads, stiffness, rest lengths, settings; never geometry."""
+"""Patches: what may change while a system runs. Anchors, loads, stiffness, rest lengths, settings, which forces act on
+its particles; never the particles themselves."""
 
 from __future__ import annotations
 
@@ -13,9 +14,10 @@ from hookean.columns import Indices, Model, Points, Vector, fault
 from hookean.errors import InputError
 from hookean.fields import Field, Maybe, Parts
 from hookean.forces.base import PLACES
-from hookean.scene import Anchor, Scene, Settings, first_fault
+from hookean.scene import Anchor, AnyForce, Scene, Settings, first_fault
 from hookean.state import State
 from hookean.system import Floats, Group, Held, Part, System, hold
+from hookean.wiring import Wiring, rewire, with_forces
 
 Ints = NDArray[np.int64]
 
@@ -39,7 +41,8 @@ class Patch(Model):
 
     `pin` holds particles, where they are or at targets (one that an anchor holds on the same axes stays with it, unless
     the pin has a name); `release` frees them; `move` retargets anchors; `forces` maps a force's name or number to new
-    values of its columns; `settings` to new settings.
+    values of its columns; `settings` to new settings. `remove` takes forces away and `add` puts others behind the last
+    one, on particles that are there already; names and numbers of forces are those before the patch.
     """
 
     pin: Parts[Anchor] = Field(default=(), description="Particles to hold from now on")
@@ -47,6 +50,13 @@ class Patch(Model):
     move: Parts[Move] = Field(default=(), description="Anchors to move")
     forces: dict[str, dict[str, Any]] = Field(default={}, description="New values by force and column")
     settings: dict[str, Any] = Field(default={}, description="New values of settings")
+    add: Parts[AnyForce] = Field(default=(), description="Forces to add; their particles are those that run")
+    remove: tuple[StrictStr | StrictInt, ...] = Field(default=(), description="Names or numbers of forces to remove")
+
+    @property
+    def rewires(self) -> bool:
+        """Whether forces come or go."""
+        return bool(self.add or self.remove)
 
     @classmethod
     def read(cls, value: Any) -> Patch:
@@ -64,6 +74,7 @@ class Undo:
 
     def __init__(self, system: System, state: State) -> None:
         self.scene, self.drag, self.held = system.scene, system.drag, system.held
+        self._wiring = Wiring.of(system)
         self._state = state.copy()
         self._groups = [
             (group.block.parameters.copy(), [part.force for part in group.parts])
@@ -73,6 +84,7 @@ class Undo:
     def put_back(self, system: System, state: State) -> None:
         """Undo the patch."""
         system.scene, system.drag, system.held = self.scene, self.drag, self.held
+        self._wiring.put_into(system, state)
         for group, (parameters, forces) in zip(system.groups + system.contacts, self._groups, strict=True):
             group.block.parameters[:] = parameters
             for part, force in zip(group.parts, forces, strict=True):
@@ -85,8 +97,12 @@ def apply(system: System, state: State, patch: Patch) -> None:
     """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Undo`)."""
     held = _held(system, state, patch)
     forces = changed_forces(system.scene, patch.forces)
-    settings = _settings(system, patch)
-    retune(system, state, _with(system.scene, forces).replaced(settings=settings), held)
+    scene = _with(system.scene, forces).replaced(settings=_settings(system, patch))
+    if patch.rewires:
+        removed = [_numbered(system.scene, wanted, f"/remove/{i}") for i, wanted in enumerate(patch.remove)]
+        scene = with_forces(system, scene, patch.add, removed)
+        rewire(system, state, scene, added=len(patch.add))
+    retune(system, state, scene, held)
 
 
 def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None:
@@ -220,16 +236,7 @@ def changed_forces(scene: Scene, given_values: Mapping[str, Mapping[str, Any]]) 
     """Forces by number with new values of columns, validated as if they had been given so at first."""
     changed: dict[int, Any] = {}
     for key, values in given_values.items():
-        named = [i for i, f in enumerate(scene.forces) if f.name == key and key]
-        numbered = int(key) if key.isascii() and key.isdigit() else -1
-        if len(named) > 1:
-            raise InputError(f"/forces/{key}", f"{len(named)} forces have this name; say which by number")
-        number = named[0] if named else numbered
-        if not 0 <= number < len(scene.forces):
-            names = ", ".join(repr(f.name) for f in scene.forces if f.name) or "no names"
-            raise InputError(
-                f"/forces/{key}", f"no force of this name or number; there are {names} and {len(scene.forces)} forces"
-            )
+        number = _numbered(scene, key, f"/forces/{key}")
         fixed = [n for n in values if n in (*PLACES, "kind", "edges")]
         if fixed:
             raise InputError(f"/forces/{key}/{fixed[0]}", "cannot change while it runs; send the changed scene anew")
@@ -241,6 +248,19 @@ def changed_forces(scene: Scene, given_values: Mapping[str, Mapping[str, Any]]) 
             fault = first_fault(error)
             raise InputError(f"/forces/{key}{fault.pointer}", fault.sentence) from None
     return changed
+
+
+def _numbered(scene: Scene, wanted: str | int, pointer: str) -> int:
+    """The number of the one force of a name or number; a name that is a number counts as one where no force has it."""
+    key = str(wanted)
+    named = [i for i, f in enumerate(scene.forces) if f.name == wanted and key]
+    if len(named) > 1:
+        raise InputError(pointer, f"{len(named)} forces have this name; say which by number")
+    number = named[0] if named else int(key) if key.isascii() and key.isdigit() else -1
+    if not 0 <= number < len(scene.forces):
+        names = ", ".join(repr(f.name) for f in scene.forces if f.name) or "no names"
+        raise InputError(pointer, f"no force of this name or number; there are {names} and {len(scene.forces)} forces")
+    return number
 
 
 def _settings(system: System, patch: Patch) -> Settings:

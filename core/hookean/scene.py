@@ -215,7 +215,7 @@ def faults(error: ValidationError) -> list[InputError]:
         context = entry.get("ctx", {})
         # pydantic names the chosen class of a union in the location; a pointer has no such step
         place = entry["loc"]
-        steps = [str(s) for i, s in enumerate(place) if not (s in kinds and i == 2 and place[0] == "forces")]
+        steps = [str(s) for i, s in enumerate(place) if not (s in kinds and i == 2 and place[0] in ("forces", "add"))]
         pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
         pointer += str(context.get("at", ""))
         sentence = str(context.get("sentence") or _sentence(entry, root))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean import stability
+from hookean.addressed import edited_scene
 from hookean.balance import Balance, balance
 from hookean.errors import InputError
 from hookean.history import History, Setup
@@ -89,8 +90,13 @@ class Simulation:
 
     @property
     def scene(self) -> Scene:
-        """The scene as patches have left it."""
+        """The scene as patches have left it, with anchors as they were given; see `edited_scene`."""
         return self.system.scene
+
+    def edited_scene(self) -> Scene:
+        """The scene as patches have left it, anchors included: moved, released, and those pinned while it ran. Its
+        particles start where they did."""
+        return edited_scene(self.system)
 
     @property
     def over(self) -> bool:
@@ -266,15 +272,18 @@ class Simulation:
         return result
 
     def patch(self, edit: Patch | Mapping[str, Any], *, gesture: str = "") -> int:
-        """Change anchors, loads, stiffness, rest lengths or settings while it runs; returns the new revision.
+        """Change anchors, loads, stiffness, rest lengths, settings or which forces act while it runs; returns the new
+        revision.
 
         Edits of one `gesture`, such as the drag of an anchor, are taken back as one. InputError says what does not
         fit, and nothing has changed then.
         """
         edit = Patch.read(edit)
+        if edit.remove and self._playing is not None:
+            raise InputError("/remove", "a script leads forces by their numbers; forces are removed without one only")
         setup = Setup.of(self.system)
         # a moved anchor neither stiffens nor quickens anything by itself
-        warn = bool(edit.forces or edit.settings or len(edit.release))
+        warn = bool(edit.forces or edit.settings or len(edit.release) or edit.rewires)
         revision = self._changed(lambda: apply(self.system, self.state, edit), warn=warn)
         self.history.note(setup, gesture)
         return revision

@@ -122,7 +122,11 @@ def session_body(*codes: int) -> dict[str, Any]:
 
 def edit() -> dict[str, Any]:
     """What the route of edits says of itself."""
-    examples = {"a load": {"forces": {"1": {"vector": [0.0, 0.0, -5.0]}}}, "a pin": {"pin": [{"particles": [2]}]}}
+    examples = {
+        "a load": {"forces": {"1": {"vector": [0.0, 0.0, -5.0]}}},
+        "a pin": {"pin": [{"particles": [2]}]},
+        "another load": {"add": [{"kind": "unary", "name": "snow", "particles": [2], "vector": [0.0, 0.0, -9.0]}]},
+    }
     extra = _takes({"$ref": "#/components/schemas/Edit"}, examples)
     return {"responses": problems(SESSION, live=True), "openapi_extra": extra}
 

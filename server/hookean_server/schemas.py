@@ -193,6 +193,16 @@ SCHEMAS["Edit"] = {
         "move": {"type": "array", "items": {"type": "object"}, "description": "Anchors and their targets"},
         "forces": {"type": "object", "description": "By a force's name or number, values of its columns"},
         "settings": {"type": "object"},
+        "add": {
+            "type": "array",
+            "items": {"type": "object"},
+            "description": "Forces as a scene has them, on particles that are there",
+        },
+        "remove": {
+            "type": "array",
+            "items": {"type": ["string", "integer"]},
+            "description": "Forces by name or number",
+        },
         "gesture": {"type": "string", "maxLength": 80, "description": "Edits of one gesture are undone as one"},
     },
     "additionalProperties": False,

@@ -1,5 +1,5 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
-import type { Action, Anchor, Example, Kind, Result, Scene, Summary, Topology } from "./model";
+import type { Action, Anchor, Example, Kind, Patch, Result, Scene, Summary, Topology } from "./model";
 
 /** What the service refused, in its own words; status 0: it could not be reached. */
 export class Refused extends Error {
@@ -55,8 +55,8 @@ export const result = (key: string) => read<Result>(`${at(key)}/state`);
 export const act = (key: string, action: Action) => ask(`${at(key)}/${action}`, { method: "POST" });
 export const forget = (key: string) => ask(at(key), { method: "DELETE" });
 
-/** Give a session another scene; particles that start where one did before stay where they are. */
-export const replace = (key: string, scene: unknown) => send<Summary>("PUT", at(key), scene);
+/** An edit that is too long for a message over the socket. */
+export const edit = (key: string, patch: Patch) => send<Summary>("PATCH", at(key), patch);
 
 /** A new session of a scene. */
 export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1/sessions${labelled(label)}`, scene);

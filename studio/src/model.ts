@@ -85,13 +85,17 @@ export interface Result {
   units: Units;
 }
 
-/** An edit of a running session: pin, release, move, forces, settings; all of it lands or nothing. */
+/** An edit of a running session; all of it lands or nothing. */
 export interface Patch {
   pin?: { particles: number[]; targets?: Point[]; axes?: string }[];
   release?: number[];
   move?: { anchor: number | string; targets?: Point[]; shift?: Point }[];
   forces?: Record<string, Record<string, unknown>>;
   settings?: Record<string, unknown>;
+  /** Forces on particles of the session, by their numbers. */
+  add?: SceneForce[];
+  /** Forces to take away, by name or number. */
+  remove?: (string | number)[];
   /** Edits of one gesture are taken back as one. */
   gesture?: string;
 }

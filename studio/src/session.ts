@@ -12,6 +12,8 @@ export type Connection = "connecting" | "live" | "silent" | "lost" | "locked" | 
 const FIRST_WAIT = 250;
 const LONGEST_WAIT = 4000;
 const SILENCE = 2000;
+/** Characters of a message over the socket; longer edits go by HTTP. */
+const LONGEST_MESSAGE = 48_000;
 
 interface Waiting {
   resolve: (summary: Summary) => void;
@@ -205,8 +207,9 @@ export class Session {
   private show(frame: Frame): void {
     this.frame = frame;
     const topology = this.topology.value;
-    const fits = topology?.particles === frame.positions.length / 3 && this.topologyTag === this.tag;
-    if (!fits) return;
+    const fits =
+      topology?.particles === frame.positions.length / 3 && topology.springs.length === frame.springForces.length;
+    if (!fits || this.topologyTag !== this.tag) return;
     this.watchers.forEach((watcher) => watcher(frame));
     if (performance.now() - this.ticked > 100) this.tick();
   }
@@ -231,8 +234,13 @@ export class Session {
         return;
       }
       const id = ++this.orders;
+      const message = JSON.stringify({ id, ...order });
+      if ("edit" in order && message.length > LONGEST_MESSAGE) {
+        api.edit(this.key, order.edit).then((made) => resolve(this.acknowledge(made)), reject);
+        return;
+      }
       this.waiting.set(id, { resolve, reject });
-      this.socket.send(JSON.stringify({ id, ...order }));
+      this.socket.send(message);
     });
   }
 
@@ -244,12 +252,16 @@ export class Session {
       waiting?.reject(api.refusal(Number(problem["status"] ?? 400), problem));
       return;
     }
-    const summary = message["session"] as Summary;
+    waiting?.resolve(this.acknowledge(message["session"] as Summary));
+  }
+
+  /** How the session stands after an order of this page: what is older is not shown any more. */
+  private acknowledge(summary: Summary): Summary {
     this.acknowledged = Math.max(this.acknowledged, summary.revision);
     stats.revisionAcknowledged = this.acknowledged;
     if (this.frame && this.frame.revision < this.acknowledged) this.frame = null;
     this.summary.value = summary;
-    waiting?.resolve(summary);
+    return summary;
   }
 
   private async closing(socket: WebSocket, event: CloseEvent): Promise<void> {

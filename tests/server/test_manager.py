@@ -27,7 +27,7 @@ def test_a_new_topology_is_told_where_the_process_tells_its_revision_first() -> 
             return dict(AFTER), b""
 
     async def replaced() -> list[str]:
-        live = Live("a", "", dict(BEFORE), topology="first")
+        live = Live("a", "", dict(BEFORE), scene="first")
         live.process = cast(SessionProcess, Process())
 
         class Kept:

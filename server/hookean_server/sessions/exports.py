@@ -28,7 +28,7 @@ FORMATS = {
 def export(simulation: Simulation, form: str, arrays: str) -> tuple[str, bytes]:
     """Media type and bytes. `form` is one of FORMATS, or scene, topology or anchors."""
     if form == "scene":
-        return "application/json", simulation.scene.canonical.encode()
+        return "application/json", simulation.edited_scene().canonical.encode()
     if form == "topology":
         return "application/json", answers.dump(topology(simulation), arrays)
     if form == "anchors":

@@ -58,6 +58,7 @@ class Host:
         self.connection = connection
         self.simulation: Simulation | None = None
         self.before: parts.Before | None = None
+        self.wired = parts.Wired()
         self.playing = False
         self.fast = False
         self.left = 0  # iterations that a `step` still has to do
@@ -307,7 +308,8 @@ class Host:
             self._send({"event": "beat", **(self._described() if self.simulation else {})}, b"")
 
     def _described(self) -> dict[str, Any]:
-        return {**parts.describe(self._simulation()), "playing": self.playing}
+        simulation = self._simulation()
+        return {**parts.describe(simulation), "wiring": self.wired.tag(simulation), "playing": self.playing}
 
     def _simulation(self) -> Simulation:
         if self.simulation is None:

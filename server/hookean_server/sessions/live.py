@@ -27,11 +27,17 @@ class Live:
     frame: bytes = b""
     frame_number: int = 0
     asked: bool = False
-    topology: str = ""
+    scene: str = ""  # another one for each scene that it was given
+    wiring: str = ""  # and for the forces that act, as edits have left them
     news: asyncio.Event = field(default_factory=asyncio.Event)
     used: float = field(default_factory=time.monotonic)
     losses: list[float] = field(default_factory=list)
     edits: int = 0
+
+    @property
+    def topology(self) -> str:
+        """A tag of its topology."""
+        return f"{self.scene}{self.wiring}"
 
     @property
     def rests(self) -> bool:

@@ -91,7 +91,7 @@ class Manager:
                     self._end(live)
                     raise
             self._heard(live, described)
-            live.topology = secrets.token_hex(8)
+            live.scene = secrets.token_hex(8)
             return live, True
 
     async def edit(self, key: str, body: bytes, revision: int | None = None) -> dict[str, Any]:
@@ -213,7 +213,7 @@ class Manager:
         body = b"".join((base, state, *edits))
         described, _ = await process.call("restore", body, seconds=ANSWER, sizes=sizes, revisions=revisions)
         live.edits = len(edits)
-        live.topology = live.topology or secrets.token_hex(8)
+        live.scene = live.scene or secrets.token_hex(8)
         self._heard(live, described)
         return process
 
@@ -326,7 +326,7 @@ class Manager:
                         await self._revert(live, process)
                         raise
                 live.notes = notes
-                live.topology = secrets.token_hex(8)
+                live.scene, live.wiring = secrets.token_hex(8), described.get("wiring", "")
                 live.edits = 0
                 live.tell()  # its process may have told the new revision before the new topology was known
             live.label = label or live.label
@@ -354,6 +354,7 @@ class Manager:
             return
         said = {name: live.described.get(name) for name in ("status", "playing", "revision", "warnings")}
         live.described = {**live.described, **described}
+        live.wiring = head.get("wiring", live.wiring)
         if not live.described.get("playing") and live.described.get("status") != "running":
             live.playing = False  # it came to an end; one that was just brought back is about to play on
         if any(live.described.get(name) != value for name, value in said.items()):

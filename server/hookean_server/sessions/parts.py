@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import math
@@ -90,7 +91,7 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
     """
     value = parse(body)
     if not isinstance(value, dict):
-        raise InputError("/", "an edit is an object with pin, release, move, forces or settings")
+        raise InputError("/", "an edit is an object with pin, release, move, forces, settings, add or remove")
     gesture = str(value.pop("gesture", ""))[:80]
     for name in EDITS:
         if name in value:
@@ -111,7 +112,7 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
 
 
 def _sets(value: dict[str, Any], patch: Patch, gesture: str) -> str:
-    if len(patch.release):
+    if len(patch.release) or patch.rewires:
         return ""
     columns = sorted(f"{force}.{column}" for force, given in patch.forces.items() for column in given)
     pins = [[np.asarray(pin.particles).tolist(), pin.axes, pin.name] for pin in patch.pin]
@@ -140,6 +141,26 @@ def _check(particles: NDArray[np.int64], simulation: Simulation) -> None:
     count = len(simulation.state.x)
     if int(particles.max()) >= count:
         raise InputError("/pin", f"particle {int(particles.max())} does not exist; there are {count}, counted from 0")
+
+
+class Wired:
+    """Distinguishes the wirings of a simulation: which forces act on which particles."""
+
+    def __init__(self) -> None:
+        self._groups: Any = None
+        self._tag = ""
+
+    def tag(self, simulation: Simulation) -> str:
+        """The same text for the same forces on the same particles, whatever their parameters."""
+        groups = simulation.system.groups
+        if self._groups is not groups:
+            digest = hashlib.sha256()
+            for group in groups + simulation.system.contacts:
+                for part in group.parts:
+                    digest.update(f"{part.number} {part.force.name!r} {group.cls.__name__} ".encode())
+                    digest.update(group.block.indices[part.rows].tobytes())
+            self._groups, self._tag = groups, digest.hexdigest()[:16]
+        return self._tag
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:

@@ -89,8 +89,9 @@ async def delete(request: Request, key: Key) -> Response:
 
 @router.patch("/v1/sessions/{key}", summary="Edit a running session", **openapi.edit())
 async def edit(request: Request, key: Key, if_match: IfMatch = None) -> Response:
-    """A patch: `pin`, `release`, `move`, `forces`, `settings`, all of it or nothing; those of one `gesture` are undone
-    as one. It is stored when this is answered, and in every frame of this revision or a later one."""
+    """A patch: `pin`, `release`, `move`, `forces`, `settings`, `add`, `remove`, all of it or nothing; those of one
+    `gesture` are undone as one. It is stored when this is answered, and in every frame of this revision or a later
+    one."""
     body = await read_json(request)
     live = manager(request).find(key)
     await manager(request).edit(key, body, _revision(if_match, live))
@@ -128,13 +129,15 @@ async def act(
 
 @router.get("/v1/sessions/{key}/scene", summary="The scene as edits have left it", responses=openapi.exported(304))
 async def scene(request: Request, key: Key) -> Response:
-    """The whole scene as canonical JSON; anchors as they were given."""
+    """The whole scene as canonical JSON, with forces, anchors and settings as edits have left them and particles where
+    they started: the same model where it is PUT or opened as a file."""
     return await _exported(request, key, "scene")
 
 
 @router.get("/v1/sessions/{key}/topology", summary="What stays while it runs", responses=openapi.exported(304))
 async def topology(request: Request, key: Key, arrays: Arrays = "list") -> Response:
-    """Springs, meshes and geometry by particles, and the units. Its ETag changes with the scene, not with edits."""
+    """Springs, meshes and geometry by particles, and the units. Its ETag changes with the scene and with forces that
+    edits add or remove, not with other edits."""
     live = manager(request).find(key)
     tag = f'"{live.topology}"'
     if live.topology and request.headers.get("if-none-match") == tag:

@@ -5,7 +5,7 @@ import type { Session } from "../session";
 import { amount, amounts, isValue, isVector, led, type Value } from "./amounts";
 import { kinds, know } from "./catalogue";
 import { NumberField } from "./number";
-import { AddLoad } from "./loads";
+import { AddLoad, RemoveForce } from "./loads";
 import { Settings } from "./settings";
 import { Slider } from "./slider";
 import type { Studio } from "./studio";
@@ -50,6 +50,7 @@ function Force({ session, force, number, units }: Shown) {
     fields.filter((field) => !isSeldom(field, force)),
   ];
   const title = titleOf(force, kind, number);
+  const isLoad = session.topology.value?.forces[number]?.role === "load";
   const column = (field: Field) => (
     <Column
       key={field.name}
@@ -73,7 +74,8 @@ function Force({ session, force, number, units }: Shown) {
           {seldom.map(column)}
         </details>
       )}
-      {fields.length === 0 && <p class="faint">Nothing of it changes while it runs.</p>}
+      {fields.length === 0 && <p class="faint">It has no values that change while it runs.</p>}
+      {isLoad && <RemoveForce session={session} number={number} title={title} />}
     </fieldset>
   );
 }

@@ -1,58 +1,39 @@
-// A load for a scene that has none, and self weight: the scene is given anew, its particles stay where they are.
+// Loads and self weight, added to a running session and removed from it: edits, which undo takes back.
 import { useSignal } from "@preact/signals";
-import * as api from "../api";
-import type { Scene, SceneForce, Topology } from "../model";
+import type { Patch, Scene, SceneForce, Topology } from "../model";
 import type { Session } from "../session";
 import { amount, isValue } from "./amounts";
 import { refuse, tell } from "./notices";
 import { measured } from "./words";
 
 export function AddLoad({ session }: { session: Session }) {
-  const busy = useSignal(false);
+  const { busy, make } = useEdit(session);
   const scene = session.scene.value;
   const topology = session.topology.value;
   if (!scene || !topology) return null;
-  const has = (kind: string) => scene.forces.some((force) => force.kind === kind);
-  const add = async (force: SceneForce, done: string) => {
-    busy.value = true;
-    try {
-      await api.replace(session.key, { ...scene, anchors: heldNow(session), forces: [...scene.forces, force] });
-      tell(done);
-    } catch (error) {
-      refuse(error);
-    } finally {
-      busy.value = false;
-    }
-  };
   const size = fitting(scene, topology);
-  const disabled = busy.value || session.connection.value !== "live";
+  const unit = scene.units.force;
+  const add = (force: SceneForce, done: string) => void make({ add: [force] }, done);
   const load = () => {
     const held = new Set(session.anchors.value.flatMap((anchor) => anchor.particles));
     const particles = Array.from({ length: topology.particles }, (_, i) => i).filter((i) => !held.has(i));
     const force = { kind: "unary", name: freeName(scene, "load"), particles, vector: [0, 0, -size] };
-    if (!particles.length) refuse(new Error("Every particle is held: there is none that a load would move."));
-    else void add(force, `A load of ${measured(size, scene.units.force)} downwards is on every free particle.`);
+    if (!particles.length) refuse(new Error("All particles are held, so a load would move nothing."));
+    else add(force, `A load of ${measured(size, unit)} downwards acts on every free particle.`);
   };
-  const weight = {
-    kind: "self_weight",
-    name: freeName(scene, "self weight"),
-    total: Number((size * topology.particles).toPrecision(2)),
+  const weight = () => {
+    const total = Number((size * topology.particles).toPrecision(2));
+    const force = { kind: "self_weight", name: freeName(scene, "self weight"), total };
+    add(force, `Self weight of ${measured(total, unit)} in total acts on all particles.`);
   };
+  const disabled = busy || session.connection.value !== "live";
   return (
     <div class="row">
-      {!has("unary") && (
-        <button type="button" disabled={disabled} onClick={load}>
-          Add a load
-        </button>
-      )}
-      {!has("self_weight") && (
-        <button
-          type="button"
-          disabled={disabled}
-          onClick={() =>
-            void add(weight, `Self weight of ${measured(weight.total, scene.units.force)} in total is added.`)
-          }
-        >
+      <button type="button" disabled={disabled} onClick={load}>
+        Add a load
+      </button>
+      {!scene.forces.some((force) => force.kind === "self_weight") && (
+        <button type="button" disabled={disabled} onClick={weight}>
           Add self weight
         </button>
       )}
@@ -60,11 +41,38 @@ export function AddLoad({ session }: { session: Session }) {
   );
 }
 
-/** The anchors as edits have left them, for a scene. */
-const heldNow = (session: Session) =>
-  session.anchors.value
-    .filter((anchor) => anchor.particles.length > 0)
-    .map(({ name, particles, targets, axes }) => ({ name, particles, targets, axes }));
+/** Removes a force of the scene. */
+export function RemoveForce({ session, number, title }: { session: Session; number: number; title: string }) {
+  const { busy, make } = useEdit(session);
+  return (
+    <button
+      type="button"
+      class="small"
+      aria-label={`Remove ${title}`}
+      disabled={busy || session.connection.value !== "live"}
+      onClick={() => void make({ remove: [number] }, `${title} is removed; Undo brings it back.`)}
+    >
+      Remove
+    </button>
+  );
+}
+
+/** Make an edit with a notice on it; `busy` until the session has answered. */
+function useEdit(session: Session) {
+  const busy = useSignal(false);
+  const make = async (patch: Patch, done: string) => {
+    busy.value = true;
+    try {
+      await session.edit(patch);
+      tell(done);
+    } catch (error) {
+      refuse(error);
+    } finally {
+      busy.value = false;
+    }
+  };
+  return { busy: busy.value, make };
+}
 
 /** A load for each particle [force] that is seen and does not tear: a hundredth of what doubles a spring's length. */
 function fitting(scene: Scene, topology: Topology): number {
