@@ -267,9 +267,14 @@ class Simulation:
     def relax(self, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Result:
         """Go to equilibrium from here with the scene's solver (auto: relaxation and Newton)."""
         result = relax_state(self.system, self.state, solver(self.scene.settings.solver), progress, cancelled)
-        self._begin(start=True, warn=False)
-        self.status, self._said = result.status, result.message
+        self.arrive(self.state, result.status, result.message)
         return result
+
+    def arrive(self, state: State, status: Status = Status.RUNNING, message: str = "") -> None:
+        """Go on from `state`, a shape of this system that a relaxation reached, and how that run ended."""
+        self.state = state
+        self._begin(start=True, warn=False)
+        self.status, self._said = status, message
 
     def patch(self, edit: Patch | Mapping[str, Any], *, gesture: str = "") -> int:
         """Change anchors, loads, stiffness, rest lengths, settings or which forces act while it runs; returns the new

@@ -100,7 +100,7 @@ export interface Patch {
   gesture?: string;
 }
 
-export type Action = "play" | "pause" | "step" | "reset" | "undo" | "redo";
+export type Action = "play" | "relax" | "pause" | "step" | "reset" | "undo" | "redo";
 
 /** A kind of force in the catalogue. */
 export interface Kind {

@@ -20,7 +20,7 @@ interface Waiting {
   reject: (error: Error) => void;
 }
 
-type Order = { edit: Patch } | { do: Action; frames?: number; fast?: boolean };
+type Order = { edit: Patch } | { do: Action; frames?: number };
 
 export class Session {
   readonly connection = signal<Connection>("connecting");
@@ -73,8 +73,8 @@ export class Session {
     return this.change({ edit: patch });
   }
 
-  /** Play, pause, step, reset, undo or redo. Rejects with Refused. */
-  async act(action: Action, options: { frames?: number; fast?: boolean } = {}): Promise<Summary> {
+  /** Play, relax, pause, step, reset, undo or redo. Rejects with Refused. */
+  async act(action: Action, options: { frames?: number } = {}): Promise<Summary> {
     const order = { do: action, ...options };
     if (action === "undo" || action === "redo") return this.change(order);
     if (action !== "pause" && action !== "step") return this.order(order);
@@ -84,7 +84,7 @@ export class Session {
   }
 
   /** Edit or act for a control: what is refused is said instead of thrown. */
-  async tell(what: Patch | Action, options: { frames?: number; fast?: boolean } = {}): Promise<boolean> {
+  async tell(what: Patch | Action, options: { frames?: number } = {}): Promise<boolean> {
     try {
       await (typeof what === "string" ? this.act(what, options) : this.edit(what));
       this.said.value = "";

@@ -18,7 +18,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "service.md").read_text("utf-8")
 def test_the_routes_of_the_page_exist():
     routes = set(create_app(Settings()).openapi()["paths"])
     named = {route.partition("?")[0] for route in re.findall(r"(?:GET|POST|PUT|PATCH|DELETE) (/[\w/{}.]*)", PAGE)}
-    actions = {f"/v1/sessions/{{key}}/{name}" for name in ("play", "pause", "step", "reset", "undo", "redo")}
+    actions = {f"/v1/sessions/{{key}}/{name}" for name in ("play", "relax", "pause", "step", "reset", "undo", "redo")}
     missing = named - routes - actions - {"/v1/openapi.json"}
     assert len(named) > 6 and not missing, missing
     assert ", ".join(STATUSES) in PAGE

@@ -3,7 +3,7 @@
 The newest frame wins: at most two are on their way to a client, and one that is slow skips those in between; it holds
 up neither the session nor other clients. Text messages are JSON. Out: `hello` first, `state` when anything but the
 particles changed, and the answer to each message that has an `id`. In: `{"ack": n}` for each frame received,
-`{"id": 1, "edit": {...}}`, `{"id": 2, "do": "play" | "pause" | "step" | "reset" | "undo" | "redo", ...}`.
+`{"id": 1, "edit": {...}}`, `{"id": 2, "do": "play" | "relax" | "pause" | "step" | "reset" | "undo" | "redo", ...}`.
 """
 
 from __future__ import annotations
@@ -146,10 +146,11 @@ class _Client:
             await self.sessions.command(key, "step", frames=order.get("frames", 1))
         elif do == "play":
             await self.sessions.command(key, "play", fast=order.get("fast") is True)
-        elif do == "pause":
-            await self.sessions.command(key, "pause")
+        elif do in ("relax", "pause"):
+            await self.sessions.command(key, do)
         else:
-            raise Problem("invalid-input", "A message is an ack, an edit, or do: play, pause, step, reset, undo, redo.")
+            said = "A message is an ack, an edit, or do: play, relax, pause, step, reset, undo, redo."
+            raise Problem("invalid-input", said)
         return summary(self.live)
 
     async def _text(self, value: dict[str, Any]) -> None:

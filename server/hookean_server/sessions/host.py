@@ -26,6 +26,7 @@ from hookean.scene import faults
 from hookean.simulation import Simulation
 from hookean_server.problems import Problem, faulty
 from hookean_server.sessions import parts, wire
+from hookean_server.sessions.resting import Resting
 
 log = logging.getLogger("hookean.session")
 
@@ -34,6 +35,9 @@ FAST = 0.05  # and at full speed, where each frame costs iterations
 SLICE = 0.005  # seconds of solving between commands
 BEAT = 0.5
 CHECKPOINT = 0.8
+
+CHANGES = ("edit", "replace", "revert")  # after them a relaxation goes on from what is then
+MOVES = ("play", "pause", "step", "relax")
 
 Reply = tuple[dict[str, Any], bytes]
 
@@ -61,6 +65,9 @@ class Host:
         self.wired = parts.Wired()
         self.playing = False
         self.fast = False
+        self.resting: Resting | None = None  # while it goes to rest; it plays then
+        self.rested: Resting | None = None  # the last one, which may have a moment to go
+        self.follow_at = 0.0  # when its next shape is due
         self.left = 0  # iterations that a `step` still has to do
         self.stepping: Any = None  # its id
         self.credit = 0
@@ -82,17 +89,23 @@ class Host:
                 rest = 0.0
             if self.simulation is not None and self._due():
                 self._advance(self.simulation)
+            if self.simulation is not None and self.resting is not None:
+                self._follow(self.simulation, self.resting)
             self._show()
             self._keep()
 
     def _due(self) -> bool:
         """Whether iterations are due now."""
+        if self.resting is not None:
+            return False
         paced = self.playing and (self.owed > 0 or time.monotonic() >= self.due)
         return self.left > 0 or paced or (self.playing and self.fast)
 
     def _rest(self) -> float:
         """How long there is nothing to do."""
         now = time.monotonic()
+        if self.resting is not None:
+            return FRAME
         if self.left or (self.playing and self.fast):
             return 0.0
         wait = min(self.beat_at + BEAT, self.saved_at + CHECKPOINT if self.now != self.stored else np.inf) - now
@@ -111,7 +124,13 @@ class Host:
             return
         if self.simulation is not None:
             self._finite(self.simulation)
+        goes_on = self.resting is not None and head["do"] in CHANGES
+        if self.simulation is not None and self.resting is not None and head["do"] in (*CHANGES, *MOVES):
+            self.resting.leave(self.simulation)
+            self.resting = None
         answer = self._do(head, body)
+        if goes_on:
+            self._relax()
         if answer is not None:
             self._send({"id": head["id"], **answer[0]}, answer[1])
 
@@ -185,13 +204,20 @@ class Host:
     def do_play(self, head: dict[str, Any], body: bytes) -> Reply:
         """Step on by itself; `fast` as quickly as it can, else `sub_iterations` for each of 60 frames a second; a
         `step` under way ends."""
-        simulation = self._simulation()
+        simulation = self._moving()
         self.playing, self.fast, self.owed, self.left = True, bool(head.get("fast")), 0, 0
         self._stepped()
         if simulation.status is Status.DIVERGED:
             self.playing = False
         self.due = time.monotonic()
         self._mark()
+        return self._described(), b""
+
+    def do_relax(self, head: dict[str, Any], body: bytes) -> Reply:
+        """Go to rest by the scene's own solver; it plays until then. A `step` under way ends."""
+        self.owed = self.left = 0
+        self._stepped()
+        self._relax()
         return self._described(), b""
 
     def do_pause(self, head: dict[str, Any], body: bytes) -> Reply:
@@ -204,7 +230,7 @@ class Host:
 
     def do_step(self, head: dict[str, Any], body: bytes) -> Reply | None:
         """Step `frames` frames on and pause; answered when done."""
-        simulation = self._simulation()
+        simulation = self._moving()
         self._stepped()
         self.playing, self.owed = False, 0
         self.left = int(head["frames"]) * simulation.scene.settings.sub_iterations
@@ -251,6 +277,31 @@ class Host:
         self.each = max(1, min(2 * self.each, int(done * SLICE / max(took, 1e-6)), 100_000))
         self.left, self.owed = max(0, self.left - done), max(0, self.owed - done)
         self._note(simulation)
+
+    def _relax(self) -> None:
+        """Begin to go to rest from here."""
+        self.resting = self.rested = Resting(self._simulation(), self.rested)
+        self.resting.start()
+        self.playing = self.fast = True
+        self._mark()
+
+    def _follow(self, simulation: Simulation, resting: Resting) -> None:
+        """Take over where a relaxation is: shapes on the way as often as they are shown, and its end."""
+        if resting.finish(simulation):
+            self.resting = self.rested = None
+            self.playing = False
+            self._mark()
+        elif (began := time.monotonic()) >= self.follow_at and resting.show(simulation):
+            self._mark()
+            now = time.monotonic()
+            self.follow_at = now + max(FAST, 10.0 * (now - began))
+
+    def _moving(self) -> Simulation:
+        """The simulation, about to move; a relaxation that ended without rest does not end its motion."""
+        simulation = self._simulation()
+        if simulation.status not in (Status.RUNNING, Status.CONVERGED, Status.DIVERGED):
+            simulation.arrive(simulation.state)
+        return simulation
 
     def _note(self, simulation: Simulation) -> None:
         """Something has moved, and may have come to its end."""

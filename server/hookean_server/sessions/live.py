@@ -23,6 +23,7 @@ class Live:
     process: SessionProcess | None = None
     playing: bool = False
     fast: bool = False
+    going: str = "play"  # the command by which it plays
     watchers: int = 0
     frame: bytes = b""
     frame_number: int = 0

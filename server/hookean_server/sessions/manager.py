@@ -121,17 +121,17 @@ class Manager:
         return live.described
 
     async def command(self, key: str, do: str, **options: Any) -> dict[str, Any]:
-        """play, pause or step; how the session stands then."""
+        """play, relax, pause or step; how the session stands then."""
         live = self.find(key)
         if do == "pause":
             return await self._pause(live)
         async with live.lock:
             await self._awake(live)
-            live.playing, live.fast = do == "play", bool(options.get("fast"))
+            live.playing, live.going, live.fast = do in ("play", "relax"), do, bool(options.get("fast"))
         seconds = self.settings.solve_seconds if do == "step" else ANSWER
         _, described, _ = await self._ask(live, do, seconds=seconds, **options)
         self._heard(live, described)
-        if do == "play":
+        if live.playing:
             live.playing = live.playing and described["playing"]
         return live.described
 
@@ -276,7 +276,7 @@ class Manager:
             async with live.lock:
                 process = await self._awake(live)
             if live.playing:
-                described, _ = await process.call("play", seconds=ANSWER, fast=live.fast)
+                described, _ = await process.call(live.going, seconds=ANSWER, fast=live.fast)
                 self._heard(live, described)
         except Problem:
             live.tell()

@@ -109,15 +109,18 @@ async def branch(
     return _answer(await manager(request).branch(key, to, label), 201)
 
 
-@router.post("/v1/sessions/{key}/{action}", summary="Play, pause, step, reset, undo or redo", responses=openapi.acted())
+@router.post(
+    "/v1/sessions/{key}/{action}", summary="Play, relax, pause, step, reset, undo, redo", responses=openapi.acted()
+)
 async def act(
     request: Request,
     key: Key,
-    action: Literal["play", "pause", "step", "reset", "undo", "redo"],
+    action: Literal["play", "relax", "pause", "step", "reset", "undo", "redo"],
     frames: Annotated[int, Query(ge=1, le=100_000, description="Of `step`: how many frames")] = 1,
     fast: Annotated[bool, Query(description="Of `play`: as quickly as it can, not 60 frames a second")] = False,
 ) -> Response:
-    """`step` is answered when its frames are done; the others at once."""
+    """`relax` goes to rest with the scene's own solver, as `POST /v1/relax`; the session plays until then. `step` is
+    answered when its frames are done; the others at once."""
     sessions = manager(request)
     if action in ("reset", "undo", "redo"):
         await sessions.edit(key, json.dumps({action: True}).encode())

@@ -46,16 +46,15 @@ interface Control {
   name: string;
   mark: Mark;
   action: Action;
-  fast?: boolean;
   hint: string;
   keys?: string;
 }
 
 const CONTROLS: Control[] = [
-  { name: "Play", mark: "play", action: "play", hint: "On by itself, in time", keys: "Space" },
+  { name: "Play", mark: "play", action: "play", hint: "Play in real time", keys: "Space" },
   { name: "Pause", mark: "pause", action: "pause", hint: "Stop where it is", keys: "Space" },
   { name: "Step", mark: "step", action: "step", hint: "One frame on", keys: "." },
-  { name: "To rest", mark: "rest", action: "play", fast: true, hint: "As quickly as it can, until it is at rest" },
+  { name: "To rest", mark: "rest", action: "relax", hint: "To equilibrium with the scene's solver, at full speed" },
   { name: "Reset", mark: "reset", action: "reset", hint: "Back to the start; edits stay" },
   { name: "Undo", mark: "undo", action: "undo", hint: "Take the last edit back", keys: "Control+Z" },
   { name: "Redo", mark: "redo", action: "redo", hint: "Make it again", keys: "Control+Shift+Z" },
@@ -70,7 +69,7 @@ function Transport({ studio: { session } }: { studio: Studio }) {
     name === "Play" ? summary?.playing === true : name === "Pause" ? summary?.playing === false : undefined;
   return (
     <div class="transport" role="group" aria-label="Time">
-      {CONTROLS.map(({ name, mark, action, fast, hint, keys }) => (
+      {CONTROLS.map(({ name, mark, action, hint, keys }) => (
         <button
           key={name}
           type="button"
@@ -78,7 +77,7 @@ function Transport({ studio: { session } }: { studio: Studio }) {
           aria-pressed={pressed(name)}
           aria-keyshortcuts={keys}
           title={keys ? `${hint} (${keys})` : hint}
-          onClick={() => void session.tell(action, fast ? { fast } : {})}
+          onClick={() => void session.tell(action)}
         >
           <Icon mark={mark} />
           {name}
