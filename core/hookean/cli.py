@@ -36,7 +36,7 @@ def _options(
 
 @app.command()
 def relax(
-    files: Annotated[list[Path], typer.Argument(help=".3dm, .obj or .json files (a scene or COMPAS documents)")],
+    files: Annotated[list[Path], typer.Argument(help=".3dm, .obj, .json or .npz files")],
     output: Annotated[
         str | None,
         typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file to write, or a folder/"),
@@ -72,7 +72,7 @@ def relax(
 
 @app.command()
 def simulate(
-    file: Annotated[Path, typer.Argument(help=".3dm, .obj or .json file (a scene or COMPAS documents)")],
+    file: Annotated[Path, typer.Argument(help=".3dm, .obj, .json or .npz file")],
     recipe: Annotated[
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
     ] = None,
@@ -154,7 +154,9 @@ def serve(
 
 @app.command()
 def studio(
-    file: Annotated[Path | None, typer.Argument(help=".3dm, .obj or .json file to open; none: the start page")] = None,
+    file: Annotated[
+        Path | None, typer.Argument(help=".3dm, .obj, .json or .npz file to open; none: the start page")
+    ] = None,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only")] = False,
 ) -> None:
     """Look at simulations and play with them in a browser. Starts the service, or joins the one that runs.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import io
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -54,8 +55,8 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
 
 
 def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
-    """The scene of an uploaded file, as JSON, fit to move, warnings in a header; options and faults as
-    `relax_upload`. Files are read as `hookean relax` reads them (see `hookean.files.readers`)."""
+    """The scene of an uploaded file, as JSON, fit to move, or the simulation that it saved; warnings in a header.
+    Options and faults as `relax_upload`. Files are read as `hookean relax` reads them (see `hookean.files.readers`)."""
     from hookean.files.readers import read
     from hookean.stability import in_motion
 
@@ -65,6 +66,10 @@ def scene_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
             found = read(data, name, None if recipe is None else (recipe, ""))
             if found.nothing:
                 raise InputError("", found.nothing)
+            if found.simulation is not None:
+                stream = io.BytesIO()
+                found.simulation.save(stream)  # what was understood of the file, and nothing else of it
+                return Done(stream.getvalue(), "application/octet-stream")
             scene, said = in_motion(found.scene)
     except InputError as error:
         raise InputError(_pointer(error.pointer, recipe), error.sentence) from None

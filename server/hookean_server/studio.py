@@ -31,7 +31,9 @@ def run(file: Path | None, browser: bool) -> int:
     try:
         data = None if file is None else file.read_bytes()
     except OSError as error:
-        return _say_no(f"{file} cannot be read ({error.strerror}); give a .3dm, .obj or .json file.")
+        from hookean.files.readers import endings
+
+        return _say_no(f"{file} cannot be read ({error.strerror}); give a {endings()} file.")
     if (found := find(folder())) is not None:
         return _show(found, file, data, browser)
     return _served(file, data, browser)

@@ -61,7 +61,7 @@ export const edit = (key: string, patch: Patch) => send<Summary>("PATCH", at(key
 /** A new session of a scene. */
 export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1/sessions${labelled(label)}`, scene);
 
-/** A new session of a file: .3dm, .obj, COMPAS JSON or a scene. */
+/** A new session of a file: .3dm, .obj, COMPAS JSON, a scene or a saved simulation. */
 export async function open(file: File): Promise<Summary & { warnings?: string[] }> {
   const body = new FormData();
   body.append("file", file, file.name);
@@ -69,11 +69,14 @@ export async function open(file: File): Promise<Summary & { warnings?: string[] 
   return (await answer.json()) as Summary;
 }
 
-export const FORMATS = ["3dm", "obj", "compas", "csv", "npz", "json"] as const;
-export type Format = (typeof FORMATS)[number];
+export type Format = "scene" | "3dm" | "obj" | "compas" | "csv" | "npz";
 
-/** The session as a file of another program. */
-export const exported = async (key: string, format: Format) => (await ask(`${at(key)}/state?format=${format}`)).blob();
+/** The session as a file, and sentences on what that does not hold. */
+export async function exported(key: string, format: Format): Promise<{ blob: Blob; notes: string[] }> {
+  const answer = await ask(format === "scene" ? `${at(key)}/scene` : `${at(key)}/state?format=${format}`);
+  const notes = JSON.parse(answer.headers.get("hookean-warnings") ?? "[]") as string[];
+  return { blob: await answer.blob(), notes };
+}
 
 /** The catalogue of forces: fields, units, defaults, bounds. */
 export const catalogue = async () => (await read<{ forces: Kind[] }>("/v1/forces")).forces;

@@ -187,7 +187,7 @@ def test_what_hookean_writes_it_reads() -> None:
     )  # fmt: skip
     moved = Simulation(scene)
     moved.relax()
-    again, warnings = opened(obj.text(moved.system, moved.state.x))
+    again, warnings = opened(obj.text(moved.system, moved.state.x, moved.state.free))
     found = Simulation(again).system
     assert not warnings and [f.name for f in again.forces] == ["net", "tie"] and again.units.length == "m"
     order = [np.lexsort(x.round(9).T) for x in (found.x, 1e-3 * moved.state.x)]
@@ -270,7 +270,7 @@ def test_kinds_are_told_apart(data: bytes, name: str, found: str) -> None:
 
 @pytest.mark.parametrize(("data", "name"), [(b"solid ascii", "a.stl"), (b"\x89PNG", "a.png"), (b"", ""), (b"\0", "")])
 def test_other_kinds_are_refused(data: bytes, name: str) -> None:
-    with pytest.raises(InputError, match=r"give a \.3dm, \.obj or \.json file"):
+    with pytest.raises(InputError, match=r"give a \.3dm, \.obj, \.json or \.npz file"):
         readers.reader(data, name)
 
 

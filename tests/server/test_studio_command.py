@@ -96,7 +96,7 @@ def test_it_starts_the_service_and_opens_a_browser(home: Home, tmp_path: Path) -
     [
         ("bad.obj", "v 0 0\n", "bad.obj: line 1: a vertex has three coordinates"),
         ("none.obj", None, "none.obj cannot be read"),
-        ("a.stl", "solid", "give a .3dm, .obj or .json file"),
+        ("a.stl", "solid", "give a .3dm, .obj, .json or .npz file"),
     ],
 )
 def test_a_file_that_cannot_be_opened_is_told_in_a_sentence(

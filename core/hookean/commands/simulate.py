@@ -128,6 +128,8 @@ def _ready(options: Options) -> tuple[Source, Simulation]:
     read = open_file(options.source, recipe, name)
     with about(name or options.source.name):
         compile(read.scene)
+    if options.script is None and options.stream is None and read.simulation is not None:
+        return read, read.simulation
     if options.script is None:
         return read, Simulation(read.scene, None, options.stream)
     text = command.text_of(options.script)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from hookean.errors import InputError
-from hookean.files import compas_json
+from hookean.files import compas_json, compas_write
 from hookean.files.compas_json import Document
 
 if TYPE_CHECKING:
@@ -20,12 +20,13 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, eq=False)
 class Plain:
     """`scene` as `Scene.model_validate` takes it; `documents` that come back moved, by a mesh's name or a geometry's
-    number; `whole` the Mesh or Graph that is all there is. `warnings` on what was not taken, `unheld` a sentence where
-    nothing is held and all of it shrinks."""
+    number; `whole` the Mesh or Graph that is all there is; `stored` is true where the scene is the one that hookean
+    stored in it. `warnings` on what was left out, `unheld` a sentence where nothing is held and all of it shrinks."""
 
     scene: Any
     documents: dict[str | int, Document] = field(default_factory=dict)
     whole: Document | None = None
+    stored: bool = False
     warnings: tuple[str, ...] = ()
     unheld: str = ""
 
@@ -41,15 +42,18 @@ def plain(value: Any) -> Plain:
         scene, documents, _ = compas_json.plain_scene(value)
         return Plain(scene, documents)
     document = compas_json.read(value)
+    scene, why = compas_write.stored(value, document)
+    if scene is not None:
+        return Plain(scene, whole=document, stored=True)
     if document.kind == "mesh" and document.faces or document.kind == "graph" and len(document.edges):
         scene = compas_json.alone(document, value)
         where = "a closed mesh has no naked vertices" if document.kind == "mesh" else "no node has one edge only"
         unheld = "" if scene["anchors"] else f"{where}, so nothing is held: pin some of it, or it shrinks"
-        return Plain(scene, {0: document}, document, unheld=unheld)
-    return _drawn([value], alone=True)
+        return Plain(scene, {0: document}, document, warnings=why, unheld=unheld)
+    return _drawn([value], why, alone=True)
 
 
-def _drawn(entries: list[Any], *, alone: bool = False) -> Plain:
+def _drawn(entries: list[Any], why: tuple[str, ...] = (), *, alone: bool = False) -> Plain:
     """Documents as drawn."""
     # what draws loads rhino3dm, which scenes need not
     from hookean.files.drawn import Drawn, tables_of
@@ -66,7 +70,7 @@ def _drawn(entries: list[Any], *, alone: bool = False) -> Plain:
     if other:
         found.warnings.append(f"not taken of the file: {count(len(other), 'document')} of {listed(other)}")
     scene, warnings, unheld = tables_of(found)
-    return Plain(scene, warnings=tuple(warnings), unheld=unheld)
+    return Plain(scene, warnings=(*why, *warnings), unheld=unheld)
 
 
 def _add(drawn: Drawn, document: Document, entry: Any, pointer: str, other: list[str]) -> None:

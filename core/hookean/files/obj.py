@@ -1,4 +1,4 @@
-"""Wavefront OBJ: every particle a vertex, carried and acting meshes as faces, springs as lines."""
+"""Wavefront OBJ: every particle a vertex, carried and acting meshes as faces, springs as lines, anchors as points."""
 
 from __future__ import annotations
 
@@ -10,27 +10,53 @@ from numpy.typing import NDArray
 from hookean.system import System
 
 Floats = NDArray[np.float64]
+LACKS = (
+    "An OBJ file holds a shape and which particles are held, not forces, loads, stiffness, rest lengths and settings. "
+    "Opened again, lines are springs of 1000 N/m as long as drawn, faces are membranes."
+)
 
 
-def text(system: System, particles: Floats, said: Mapping[str, str] | None = None) -> str:
-    """Particles (n, 3) [length] of a system as OBJ text, in the scene's length unit, with all digits; `said` stands in
-    comments. Springs along edges of faces are left out."""
-    lines = [f"# hookean; lengths in {system.scene.units.length}"]
+def text(system: System, particles: Floats, free: Floats, said: Mapping[str, str] | None = None) -> str:
+    """Particles (n, 3) [length] of a system as OBJ text, in the scene's length unit, with all digits; `said` is in
+    comments.
+
+    Each face and each line is written once, whichever meshes and forces share it; springs along edges of faces are left
+    out. Particles that are held on all axes, where `free` (n, 3) is 0, are points.
+    """
+    lines = [f"# hookean; lengths in {system.scene.units.length}", f"# {LACKS}"]
     lines += [f"# {key} {line}" for key, value in (said or {}).items() for line in value.splitlines()]
     lines += ["v " + " ".join(map(repr, point)) for point in particles.tolist()]
-    sides: set[tuple[int, int]] = set()
+    drawn: set[frozenset[int]] = set()
+    sides: set[frozenset[int]] = set()
     for name in system.scene.meshes:
-        faces = [_corners(face) for face in system.places.faces(name).tolist()]
-        lines += [f"g {_word(name)}", *("f " + " ".join(str(v + 1) for v in face) for face in faces)]
-        sides |= {_side(a, b) for face in faces for a, b in zip(face, face[1:] + face[:1], strict=True)}
+        faces = [_corners(face) for face in system.places.faces(name).tolist() if min(face) >= 0]
+        lines += _group(name, "f", _fresh(faces, drawn))
+        sides |= {frozenset(side) for face in faces for side in zip(face, face[1:] + face[:1], strict=True)}
     for group in system.groups:
         if group.cls.role == "internal" and group.block.indices.shape[1] == 2:
             for part in group.parts:
                 pairs = group.block.indices[part.rows].tolist()
-                free = [(a, b) for a, b in pairs if _side(a, b) not in sides]
-                lines += [f"g {_word(part.force.name or 'springs')}"] if free else []
-                lines += [f"l {a + 1} {b + 1}" for a, b in free]
+                lines += _group(part.force.name or "springs", "l", _fresh(pairs, sides))
+    held = np.flatnonzero((free == 0).all(axis=1)).tolist()
+    lines += _group("anchors", "p", [held] if held else [])
     return "\n".join(lines) + "\n"
+
+
+def _fresh(elements: list[list[int]], known: set[frozenset[int]]) -> list[list[int]]:
+    """Elements on particles that no known or earlier element has; they are known from now on."""
+    found = []
+    for element in elements:
+        corners = frozenset(element)
+        if corners not in known:
+            known.add(corners)
+            found.append(element)
+    return found
+
+
+def _group(name: str, statement: str, elements: list[list[int]]) -> list[str]:
+    """A group of statements, if there are any."""
+    lines = [f"{statement} " + " ".join(str(v + 1) for v in element) for element in elements]
+    return [f"g {_word(name)}", *lines] if lines else []
 
 
 def _corners(face: list[int]) -> list[int]:
@@ -38,10 +64,6 @@ def _corners(face: list[int]) -> list[int]:
     return face[:3] if face[3] == face[2] else face
 
 
-def _side(a: int, b: int) -> tuple[int, int]:
-    return (a, b) if a < b else (b, a)
-
-
 def _word(name: str) -> str:
-    """A name as OBJ takes it: without blanks."""
+    """A name as OBJ accepts it: without blanks."""
     return "_".join(name.split()) or "unnamed"

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hookean.files.recipe_build import Built
+    from hookean.files.threedm_model import Model
     from hookean.scene import Scene
+    from hookean.simulation import Simulation
 
 MODEL = b"3D Geometry File Format"
 Recipe = tuple[str, str]
@@ -30,8 +32,9 @@ class Source:
     """A file read: its scene, lines for a person on how it was read, and warnings.
 
     Of a .3dm file, what its objects were built into; `factor` is a length of the file in the scene's unit, `unit` the
-    file's. `compas` is the Mesh or Graph that the file is. `nothing` and `unheld` are sentences on why it cannot be
-    relaxed as it is: it holds nothing to relax, or nothing of it is held.
+    file's. `compas` is the Mesh or Graph that the file is; `stored` is true where the scene is the one that hookean
+    stored in a file of another format. `simulation` is the saved one, in the shape to go on from. `nothing` and
+    `unheld` are sentences on why it cannot be relaxed as it is: it holds nothing to relax, or nothing of it is held.
     """
 
     scene: Scene
@@ -41,6 +44,8 @@ class Source:
     unit: str = ""
     warnings: tuple[str, ...] = ()
     compas: Any = None
+    stored: bool = False
+    simulation: Simulation | None = None
     nothing: str = ""
     unheld: str = ""
 
@@ -112,6 +117,7 @@ def about(name: str, source: str = "") -> Iterator[None]:
 
 def _threedm(data: bytes, called: str, recipe: Recipe | None) -> Source:
     # loads rhino3dm, which other files need not
+    from hookean.files import embedded
     from hookean.files.recipe import parse_recipe, understand
     from hookean.files.threedm_read import parse
 
@@ -119,6 +125,8 @@ def _threedm(data: bytes, called: str, recipe: Recipe | None) -> Source:
     model = parse(data, called or "the file").model
     with about(called if recipe is None else recipe[1], called):
         understood = understand(model, tables)
+    if understood.nothing and recipe is None and embedded.KEY in model.text:
+        return _stored(model, called)
     seen = understood.built.drawing
     return Source(
         understood.built.scene,
@@ -129,6 +137,21 @@ def _threedm(data: bytes, called: str, recipe: Recipe | None) -> Source:
         (*model.warnings, *understood.notes),
         nothing=understood.nothing,
     )
+
+
+def _stored(model: Model, called: str) -> Source:
+    """The scene that hookean stored in a .3dm file in which nothing is drawn but its results."""
+    from hookean.files import embedded
+    from hookean.scene import Scene
+    from hookean.units import METRES
+
+    with about(called):
+        scene = Scene.read(embedded.unpacked(model.text[embedded.KEY], ""))
+    source = _plain(scene, called, "the scene stored in this file, of which its objects are results,", (), "")
+    source.factor = (model.metres or METRES[scene.units.length]) / METRES[scene.units.length]
+    source.stored, source.warnings = True, tuple(model.warnings)
+    source.lines += model.warnings
+    return source
 
 
 def _obj(data: bytes, called: str, recipe: Recipe | None) -> Source:
@@ -154,11 +177,21 @@ def _json(data: bytes, called: str, recipe: Recipe | None) -> Source:
     drawn = isinstance(value, list) or "dtype" in value
     what = "COMPAS documents, taken as drawn," if drawn else "a scene"
     what = what if found.whole is None else f"a COMPAS {found.whole.kind}"
+    what = f"the scene stored in {what}" if found.stored else what
     source = _plain(scene, called, what, found.warnings, found.unheld)
-    if found.whole is not None:
-        source.compas = found.whole
+    source.compas, source.stored = found.whole, found.stored
+    if found.whole is not None and not found.stored:
         held = "naked vertices" if found.whole.kind == "mesh" else "nodes of one edge"
         source.lines.append(f"a document without a scene: its edges are springs of rest factor 0, its {held} are held")
+    return source
+
+
+def _saved(data: bytes, called: str, recipe: Recipe | None) -> Source:
+    from hookean.files import saved
+
+    simulation = saved.read(data, called)
+    source = _plain(simulation.edited_scene(), called, "a saved simulation", (), "")
+    source.simulation = simulation
     return source
 
 
@@ -183,5 +216,6 @@ READERS = (
         _obj,
     ),
     Reader("a JSON file", ".json", lambda begins: begins.startswith((b"{", b"[")), _json),
+    Reader("a saved simulation", ".npz", lambda begins: begins.startswith(b"PK\x03\x04"), _saved),
 )
 """Every kind of file that is read; of a file whose ending says nothing, the first that knows its bytes."""

@@ -1,7 +1,7 @@
 """Relax a file into a file: what the command line and the service share.
 
 All files that `readers` reads: `.3dm` files by a recipe or by convention (see `hookean.files.recipe`), OBJ, scenes and
-COMPAS documents in JSON.
+COMPAS documents in JSON, saved simulations. A .3dm file written for anything but a drawing holds the scene, too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 
 from hookean.claims import document_text
 from hookean.errors import InputError
-from hookean.files import obj, tables
+from hookean.files import embedded, obj, tables
 from hookean.files.readers import Recipe, Source, about, read_path
 from hookean.files.threedm_atomic import check_target, put
 from hookean.scene import Scene
@@ -39,8 +39,8 @@ Progress = Callable[[int, float], None]
 class FileResult:
     """A relaxed file. `result` in the scene's units; `understood` lines on how the file was read; `rows` one for each
     element and reaction (see `tables.rows`); `objects` sums for each object; `ids` of the objects written to a .3dm
-    file; `warnings` for a person; `exceeded` a sentence for each limit that does not hold; `moved` how far a particle
-    went from where it was drawn, at most."""
+    file; `warnings` for a person, `unwritten` those on results that could not be written; `exceeded` a sentence for
+    each limit that does not hold; `moved` how far a particle went from where it was drawn, at most."""
 
     result: Result
     scene: Scene
@@ -51,6 +51,7 @@ class FileResult:
     warnings: list[str] = field(default_factory=list)
     exceeded: list[str] = field(default_factory=list)
     moved: float = 0.0
+    unwritten: list[str] = field(default_factory=list)
 
     @property
     def csv(self) -> str:
@@ -129,11 +130,12 @@ def relax_file(
 ) -> FileResult:
     """Relax what `source` holds and write it to `target` (None: nowhere), replaced in one step or not at all.
 
-    A .3dm target is a copy of a .3dm source with results below the layer `hookean`, or a new file; a .json target is
-    the result (of a COMPAS Mesh or Graph that document with its new shape), an .obj target the shape alone. A shape
-    short of equilibrium is written too, a cancelled one is not. `limits` as `tables.read_limits` gives them; pointers
-    into the recipe stand behind `recipe_name`. The source is never written. `reading` is entered while the source is
-    read. A solve longer than `seconds` ends with the status `time_limit`.
+    A saved simulation goes on from the shape that it has. A .3dm target is a copy of a .3dm source with results below
+    the layer `hookean`, or a new file; a .json target is the result (of a COMPAS Mesh or Graph that document with its
+    new shape), an .obj target the shape alone. A shape short of equilibrium is written too, a cancelled one is not.
+    `limits` as `tables.read_limits` gives them; pointers into the recipe stand behind `recipe_name`. The source is
+    never written. `reading` is entered while the source is read. A solve longer than `seconds` ends with the status
+    `time_limit`.
 
     Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written; LimitsError,
     with everything written, where limits name what the file does not have.
@@ -147,7 +149,8 @@ def relax_file(
         read = open_file(Path(source), recipe_text, recipe_name)
     with about(recipe_name if recipe_text is not None else Path(source).name):
         system = compile(read.scene if seconds is None else bounded(read.scene, seconds))
-        result = relax_state(system, system.start(), solver(read.scene.settings.solver), progress, cancelled)
+        state = system.start() if read.simulation is None else read.simulation.state
+        result = relax_state(system, state, solver(read.scene.settings.solver), progress, cancelled)
     return conclude(read, Path(source), system, result, target, limits=limits, limits_name=limits_name)
 
 
@@ -247,30 +250,32 @@ def _write(
     found: FileResult, system: System, parts: list[tables.Section], read: Source, source: Path, target: Path
 ) -> None:
     if target.suffix.lower() == ".json":
-        put(target, _json(_finite(_answer(found, read))), lambda back: None)
+        put(target, _json(_finite(_answer(found, read, system))), lambda back: None)
         return
     if target.suffix.lower() == ".obj":
         said = document_text(found.result, found.warnings)
-        put(target, obj.text(system, found.result.particles, said).encode(), lambda back: None)
+        put(target, obj.text(system, found.result.particles, system.start().free, said).encode(), lambda back: None)
         return
     from hookean.files import threedm
     from hookean.files.recipe_drawing import UNIT_NAMES
     from hookean.files.recipe_output import additions
 
     added, refused = additions(system, found.result, parts, read.built, read.unit, read.factor)
+    found.unwritten = refused
     found.warnings += refused
     where = [f"{item.layer} {item.name}".strip() for item in added.objects]
 
     def text(notes: Sequence[str]) -> dict[str, str]:
         """What the document says of the result; what writing it adds to the warnings is among them."""
         told(notes)
-        return document_text(found.result, found.warnings)
+        stored = {embedded.KEY: embedded.packed(read.scene)} if read.built is None else {}
+        return document_text(found.result, found.warnings) | stored
 
     def told(notes: Sequence[str]) -> None:
         said = [re.sub(r"^/objects/(\d+): ", lambda m: f"result on layer {where[int(m[1])]}: ", n) for n in notes]
         found.warnings = list(dict.fromkeys([*found.warnings, *said]))
 
-    if read.built is not None:
+    if source.suffix.lower() == ".3dm":
         written = threedm.write(source, target, added, text)
     else:
         names = {short: name for name, short in UNIT_NAMES.items()}
@@ -279,13 +284,17 @@ def _write(
     found.ids = [str(id) for id in written.ids]
 
 
-def _answer(found: FileResult, read: Source) -> Any:
+def _answer(found: FileResult, read: Source, system: System) -> Any:
     """The result, or a COMPAS document with its points moved."""
     document = read.compas
     if document is None:
         return found.result.to_dict()
-    from hookean.files import compas_json
+    from hookean.files import compas_json, compas_write
 
+    if read.stored:
+        state = system.start()
+        state.x = found.result.particles
+        return compas_write.document(system, state, read.scene)
     if document.kind == "mesh":
         return compas_json.mesh(found.result.particles, document.faces, document.keys)
     return compas_json.graph(found.result.particles, document.edges)

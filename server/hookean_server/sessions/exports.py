@@ -7,12 +7,16 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from hookean.files import obj
 from hookean.simulation import Simulation
 from hookean_server import answers
-from hookean_server.problems import Problem
 from hookean_server.sessions import parts
+
+LACKS = {
+    "obj": obj.LACKS,
+    "csv": "A CSV file holds a table of forces and reactions, not the model, and cannot be opened; save the scene too.",
+}
+"""What a format does not hold of a model, in a sentence; other formats open again as the same model."""
 
 FORMATS = {
     "json": "application/json",
@@ -25,16 +29,19 @@ FORMATS = {
 """Formats of a session's state, with their media types."""
 
 
-def export(simulation: Simulation, form: str, arrays: str) -> tuple[str, bytes]:
-    """Media type and bytes. `form` is one of FORMATS, or scene, topology or anchors."""
+def export(simulation: Simulation, form: str, arrays: str) -> tuple[str, bytes, list[str]]:
+    """Media type, bytes, and sentences on what is not in them. `form` is one of FORMATS, or scene, topology or
+    anchors."""
     if form == "scene":
-        return "application/json", simulation.edited_scene().canonical.encode()
+        return "application/json", simulation.edited_scene().canonical.encode(), []
     if form == "topology":
-        return "application/json", answers.dump(topology(simulation), arrays)
+        return "application/json", answers.dump(topology(simulation), arrays), []
     if form == "anchors":
-        return "application/json", answers.dump({"anchors": anchors(simulation)}, arrays)
-    made: bytes = globals()[f"_{'threedm' if form == '3dm' else form}"](simulation, arrays)
-    return FORMATS[form], made
+        return "application/json", answers.dump({"anchors": anchors(simulation)}, arrays), []
+    if form == "3dm":
+        return FORMATS[form], *_threedm(simulation)
+    made: bytes = globals()[f"_{form}"](simulation, arrays)
+    return FORMATS[form], made, [LACKS[form]] if form in LACKS else []
 
 
 def topology(simulation: Simulation) -> dict[str, Any]:
@@ -98,24 +105,23 @@ def _npz(simulation: Simulation, arrays: str) -> bytes:
     return parts.saved(simulation)
 
 
-def _threedm(simulation: Simulation, arrays: str) -> bytes:
+def _threedm(simulation: Simulation) -> tuple[bytes, list[str]]:
     from hookean.files.readers import Source
     from hookean.files.relax_file import conclude
 
-    read = Source(simulation.scene, [], unit=simulation.scene.units.length)
+    read = Source(simulation.edited_scene(), [], unit=simulation.scene.units.length)
     with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
         target = Path(folder) / "session.3dm"
-        conclude(read, Path("session.json"), simulation.system, simulation.result(), target)
-        return target.read_bytes()
+        done = conclude(read, Path("session.json"), simulation.system, simulation.result(), target)
+        return target.read_bytes(), done.unwritten
 
 
 def _obj(simulation: Simulation, arrays: str) -> bytes:
     from hookean.claims import document_text
-    from hookean.files import obj
 
     result = simulation.result()
     said = document_text(result, result.report.sentences())
-    return obj.text(simulation.system, result.particles, said).encode()
+    return obj.text(simulation.system, result.particles, simulation.state.free, said).encode()
 
 
 def _csv(simulation: Simulation, arrays: str) -> bytes:
@@ -126,15 +132,8 @@ def _csv(simulation: Simulation, arrays: str) -> bytes:
 
 
 def _compas(simulation: Simulation, arrays: str) -> bytes:
-    """A COMPAS Mesh of the scene's first mesh, else a Graph of its springs."""
-    from hookean.files import compas_json
+    """A COMPAS Mesh of the scene's meshes, else a Graph of its springs, which holds the scene as well."""
+    from hookean.files import compas_write
 
-    system, x = simulation.system, simulation.state.x
-    for name in simulation.scene.meshes:
-        faces = system.places.faces(name)
-        used, renumbered = np.unique(faces, return_inverse=True)
-        return json.dumps(compas_json.mesh(x[used], renumbered.reshape(faces.shape), name=name)).encode()
-    pairs, _ = parts.spring_ends(simulation)
-    if not len(pairs):
-        raise Problem("invalid-input", "This session has neither meshes nor springs; take json, npz or obj.")
-    return json.dumps(compas_json.graph(x, pairs)).encode()
+    scene = simulation.edited_scene()
+    return json.dumps(compas_write.document(simulation.system, simulation.state, scene)).encode()

@@ -158,8 +158,8 @@ class Host:
     # commands
 
     def do_create(self, head: dict[str, Any], body: bytes) -> Reply:
-        """A new session from a scene; answers with what to store."""
-        self.simulation = Simulation(parts.scene_of(body))
+        """A new session from a scene or a saved simulation; answers with what to store."""
+        self.simulation = parts.opened(body)
         self._mark()
         return self._described(), parts.saved(self.simulation)
 
@@ -172,13 +172,13 @@ class Host:
         return self._described(), b""
 
     def do_replace(self, head: dict[str, Any], body: bytes) -> Reply:
-        """Another scene, in which particles keep where they are."""
+        """Another scene, in which particles keep where they are, or a saved simulation, in which they are as saved."""
         simulation = self._simulation()
-        scene = parts.scene_of(body)
-        if scene.canonical == simulation.scene.canonical:
+        following = parts.following(simulation, body)
+        if following is None:
             return {**self._described(), "same": True}, b""
         self.before = parts.Before(simulation)
-        self.simulation = simulation.succeed(scene)
+        self.simulation = following
         self._mark()
         return self._described(), parts.saved(self.simulation)
 
@@ -254,8 +254,8 @@ class Host:
         """The session as a file of some format, or its topology."""
         from hookean_server.sessions import exports
 
-        media_type, data = exports.export(self._simulation(), head["format"], head.get("arrays", "list"))
-        return {**self._described(), "type": media_type}, data
+        media_type, data, notes = exports.export(self._simulation(), head["format"], head.get("arrays", "list"))
+        return {**self._described(), "type": media_type, "notes": notes}, data
 
     # running
 

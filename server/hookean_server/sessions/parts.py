@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
+from hookean.files import saved as saved_file
 from hookean.files.documents import plain
 from hookean.files.scene_json import parse
 from hookean.patch import Patch, Undo
@@ -32,6 +33,26 @@ def scene_of(body: bytes) -> Scene:
     if read.unheld:
         raise InputError("/", read.unheld)
     return Scene.model_validate(read.scene)
+
+
+def opened(body: bytes) -> Simulation:
+    """The simulation of a scene as JSON, or one that was saved, as it was saved."""
+    if not body.startswith(saved_file.BEGINS):
+        return Simulation(scene_of(body))
+    simulation = saved_file.read(body)
+    simulation.state.revision = 0
+    return simulation
+
+
+def following(simulation: Simulation, body: bytes) -> Simulation | None:
+    """What replaces a simulation: that of a scene, in which particles keep where they are, or a saved one, in which
+    they are as saved; None where the scene is the one it has."""
+    if body.startswith(saved_file.BEGINS):
+        other = opened(body)
+        other.state.revision = simulation.state.revision + 1
+        return other
+    scene = scene_of(body)
+    return None if scene.canonical == simulation.scene.canonical else simulation.succeed(scene)
 
 
 def split(body: bytes, sizes: list[int]) -> list[bytes]:

@@ -10,7 +10,7 @@ from urllib.parse import quote
 from fastapi import APIRouter, Header, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from hookean_server import openapi
+from hookean_server import claimed, openapi
 from hookean_server.handling import read_json, uploaded_scene
 from hookean_server.limits import media_type
 from hookean_server.problems import Problem
@@ -49,9 +49,10 @@ def _answer(live: Live, status: int = 200) -> Response:
 
 @router.post("/v1/sessions", status_code=201, summary="A session of a scene or a file", **openapi.session_body(201))
 async def create(request: Request, label: Label = "") -> Response:
-    """A new session under a random key, paused. A form takes a .3dm file, an .obj file, or a .json file with a scene or
-    with COMPAS documents; what has no recipe and names no forces is taken as drawn: lines become springs with their
-    loose ends held, meshes membranes with their naked vertices held."""
+    """A new session under a random key, paused. A form takes a .3dm file, an .obj file, a .json file with a scene or
+    with COMPAS documents, or a saved simulation (.npz), which goes on as it was saved; what has no recipe and names no
+    forces is taken as drawn: lines become springs with their loose ends held, meshes membranes with their naked
+    vertices held."""
     body, notes = await _body(request)
     live, _ = await manager(request).put(None, body, label, notes)
     return _answer(live, 201)
@@ -164,7 +165,8 @@ async def state(
     arrays: Arrays = "list",
 ) -> Response:
     """A result as JSON; or a file: .npz of Simulation.save, .3dm, .obj, COMPAS Mesh or Graph, CSV with a row for each
-    element and each reaction, units in its first line."""
+    element and each reaction, units in its first line. Files of .npz, .3dm and COMPAS open again as the same model;
+    what a file does not hold is in the header `hookean-warnings`, a JSON list of sentences."""
     answer = await _exported(request, key, form, arrays)
     if form != "json":
         live = manager(request).find(key)
@@ -183,6 +185,7 @@ def _attached(name: str, ending: str) -> str:
 async def _exported(request: Request, key: str, form: str, arrays: str = "list") -> Response:
     head, data = await manager(request).export(key, form, arrays)
     headers = {"etag": f'"{head["revision"]}-{head["iteration"]}"', "cache-control": "no-cache"}
+    headers |= claimed.warned(head["notes"])
     if request.headers.get("if-none-match") == headers["etag"]:
         return Response(status_code=304, headers=headers)
     return Response(data, media_type=FORMATS.get(form, "application/json"), headers=headers)

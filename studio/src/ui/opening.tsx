@@ -9,7 +9,7 @@ const over = signal(false);
 /** What is being opened; "" for nothing. */
 export const opening = signal("");
 
-const KINDS = ".3dm,.obj,.json";
+const KINDS = ".3dm,.obj,.json,.npz";
 
 /** Open a file as a new session and go there. */
 async function openFile(file: File): Promise<void> {
@@ -33,7 +33,10 @@ export function FileButton() {
   const input = useRef<HTMLInputElement>(null);
   return (
     <div class="drop">
-      <p>Drop a file anywhere on this page: a Rhino model (.3dm), an OBJ mesh, a COMPAS document or a scene (.json).</p>
+      <p>
+        Drop a file anywhere on this page: a Rhino model (.3dm), an OBJ mesh, a COMPAS document or a scene (.json), or a
+        saved simulation (.npz).
+      </p>
       <button type="button" disabled={opening.value !== ""} onClick={() => input.current?.click()}>
         {opening.value ? `Opening ${opening.value} ...` : "Open a file ..."}
       </button>

@@ -1,4 +1,4 @@
-// The session as files of other programs, as a picture, and as a link.
+// The session as a file, as a picture, and as a link.
 import { useSignal } from "@preact/signals";
 import * as api from "../api";
 import { refuse } from "./notices";
@@ -7,15 +7,31 @@ import type { Studio } from "./studio";
 
 const FILES: { format: api.Format; seen: string; ending: string; hint: string }[] = [
   {
+    format: "scene",
+    seen: "Scene",
+    ending: ".json",
+    hint: "The model with all edits, from its start; opens here and in hookean relax",
+  },
+  {
+    format: "npz",
+    seen: "npz",
+    ending: ".npz",
+    hint: "The model as it is now, shape and speeds included; opens here and in Python: Simulation.load",
+  },
+  {
     format: "3dm",
     seen: "Rhino .3dm",
     ending: ".3dm",
-    hint: "Particles, lines and meshes with their forces, on layers",
+    hint: "The shape with its forces on layers, and the model: opens here again",
   },
-  { format: "obj", seen: "OBJ", ending: ".obj", hint: "Meshes, or the lines of springs" },
-  { format: "compas", seen: "COMPAS JSON", ending: "-compas.json", hint: "A Mesh, or a Graph of the springs" },
+  {
+    format: "compas",
+    seen: "COMPAS JSON",
+    ending: "-compas.json",
+    hint: "A Mesh, or a Graph of the springs, with supports, loads and the model: opens here again",
+  },
+  { format: "obj", seen: "OBJ", ending: ".obj", hint: "The shape alone: meshes, lines and held points" },
   { format: "csv", seen: "CSV", ending: ".csv", hint: "A table of forces and reactions" },
-  { format: "npz", seen: "npz", ending: ".npz", hint: "The whole simulation for Python: Simulation.load" },
 ];
 
 export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
@@ -28,12 +44,13 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
       .normalize("NFKD")
       .replace(/[^\w.-]+/g, "-")
       .replace(/^-+|-+$/g, "") || "session";
-  const take = async (seen: string, file: string, made: () => Promise<Blob>) => {
+  const take = async (seen: string, file: string, made: () => Promise<{ blob: Blob; notes: string[] }>) => {
     busy.value = seen;
     done.value = "";
     try {
-      keep(await made(), file);
-      done.value = `${file} is among your downloads.`;
+      const { blob, notes } = await made();
+      keep(blob, file);
+      done.value = [`${file} is among your downloads.`, ...notes].join(" ");
     } catch (error) {
       met(error);
       refuse(error, `${file} was not made. `);
@@ -73,7 +90,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
           title="What is seen now"
           disabled={!view.value || busy.value !== ""}
           aria-busy={busy.value === "PNG"}
-          onClick={() => void take("PNG", `${name}.png`, () => view.value!.png())}
+          onClick={() => void take("PNG", `${name}.png`, async () => ({ blob: await view.value!.png(), notes: [] }))}
         >
           PNG
         </button>
