@@ -1,7 +1,7 @@
-// The whole page: a start page, and one for each session; files can be dropped on both.
+// The whole page: a start page, and one for each session, with notices beside it; files can be dropped on both.
 import { Entry } from "./entry";
 import { Notices } from "./notices";
-import { Dropping } from "./opening";
+import { Dropping, Opening } from "./opening";
 import { entries, entry, place } from "./place";
 import { Start } from "./start";
 import { SessionPage } from "./studio";
@@ -12,8 +12,13 @@ export function App() {
       <a class="skip" href="#main" onClick={skip}>
         Skip to the content
       </a>
-      <Shown />
-      <Notices />
+      <div class="shown">
+        <Shown />
+      </div>
+      <div class="notices">
+        <Opening />
+        <Notices />
+      </div>
       <Dropping />
     </>
   );

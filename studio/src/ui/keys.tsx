@@ -12,7 +12,7 @@ const LIST: [string, string][] = [
   ["f", "Fit"],
   ["1 2 3 4", "Perspective, top, front, right"],
   ["p", "Pin or release what is picked"],
-  ["Esc", "Pick nothing"],
+  ["Esc", "Close the notice, else pick nothing"],
   ["?", "This list"],
 ];
 

@@ -1,5 +1,7 @@
-// What was refused or done, in sentences. What was refused stays until it is closed or the next one comes.
+// What was refused or done, in sentences, in a place of their own: they cover nothing. What was refused stays until it is
+// closed, by its button or Esc, or the next one comes.
 import { signal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import { Refused } from "../api";
 
 interface Notice {
@@ -31,12 +33,24 @@ export const quiet = () => (notice.value = null);
 
 export function Notices() {
   const now = notice.value;
+  useEffect(() => {
+    // before others that Esc has a meaning for: what is picked stays picked, an open dialog closes itself
+    window.addEventListener("keydown", closing, { capture: true });
+    return () => window.removeEventListener("keydown", closing, { capture: true });
+  }, []);
   return (
-    <div class="notices">
+    <>
       <div role="alert">{now?.kind === "refused" && <Said notice={now} />}</div>
       <div role="status">{now?.kind === "done" && <Said notice={now} />}</div>
-    </div>
+    </>
   );
+}
+
+function closing(event: KeyboardEvent): void {
+  if (event.key !== "Escape" || !notice.value || document.querySelector("dialog[open]")) return;
+  quiet();
+  event.preventDefault();
+  event.stopPropagation();
 }
 
 function Said({ notice }: { notice: Notice }) {
@@ -52,7 +66,7 @@ function Said({ notice }: { notice: Notice }) {
           </ul>
         )}
       </div>
-      <button type="button" class="plain" aria-label="Close the notice" onClick={quiet}>
+      <button type="button" class="plain" aria-label="Close the notice" aria-keyshortcuts="Escape" onClick={quiet}>
         ×
       </button>
     </div>

@@ -68,16 +68,20 @@ export function Dropping() {
     return () => end.abort();
   }, []);
   return (
-    <>
-      {over.value && (
-        <div class="dropping" aria-hidden="true">
-          <p>Drop it: it becomes a session</p>
-        </div>
-      )}
-      <p class={opening.value ? "opening" : "unseen"} role="status">
-        {opening.value && `Opening ${opening.value} ...`}
-      </p>
-    </>
+    over.value && (
+      <div class="dropping" aria-hidden="true">
+        <p>Drop it: it becomes a session</p>
+      </div>
+    )
+  );
+}
+
+/** Which file is being opened. */
+export function Opening() {
+  return (
+    <p class={opening.value ? "notice" : "unseen"} role="status">
+      {opening.value && `Opening ${opening.value} ...`}
+    </p>
   );
 }
 

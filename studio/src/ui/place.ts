@@ -25,7 +25,7 @@ let isFirst = true;
 /** To be called by a page when it is there: all but the first are read from their beginning. */
 export function arrive(): void {
   if (!isFirst) {
-    window.scrollTo(0, 0);
+    document.querySelector(".shown")?.scrollTo(0, 0);
     document.getElementById("main")?.focus({ preventScroll: true });
   }
   isFirst = false;
