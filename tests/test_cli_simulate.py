@@ -181,7 +181,7 @@ def test_what_diverges_ends_with_3_and_its_frames(folder: Path):
     done = run("wild.json", "--csv", "out.csv")
     assert done.exit_code == 3
     assert "Diverged" in done.stderr
-    assert "is too large for this stiffness" in done.stderr
+    assert "is too large for this mass and the stiffness of /forces/0" in done.stderr
     assert len(rows((folder / "out.csv").read_text("utf-8"))) >= 2
 
 

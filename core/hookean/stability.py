@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from copy import copy
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean.state import State
-from hookean.system import System
+from hookean.system import Group, Part, System
 
 if TYPE_CHECKING:
     from hookean.scene import Scene
@@ -76,14 +78,53 @@ def warning(system: System, state: State) -> str:
     given = system.scene.settings.time_step
     if given <= _step(*_bounds(system, state)):
         return ""
-    holds = stable_time_step(system, state)
+    stiffness, damping = highest_rates(system, state)
+    holds = _step(stiffness, damping)
     if given <= holds:
         return ""
     unit = system.scene.units.time
+    # by the larger part of the limit: overdamped motion is limited by its damping
+    what = "damping" if 0.5 * damping > np.sqrt(stiffness) else "stiffness"
+    where = _greatest(system, state, what)
+    what = "drag" if where == "/settings/drag" else what
     return (
-        f"/settings/time_step: {given:g} {unit} is too large for this stiffness, mass and damping; the motion will "
-        f"explode. Steps up to {_down(holds):.4g} {unit} hold: use one of those, more mass or less stiffness"
+        f"/settings/time_step: {given:g} {unit} is too large for this mass and the {what} of {where}; the motion will "
+        f"explode. Steps up to {_down(holds):.4g} {unit} hold: use one of those, more mass or less {what}"
     )
+
+
+def _greatest(system: System, state: State, what: str) -> str:
+    """What gives a particle the most `stiffness` or `damping` for its mass: /forces/1, springs "cable"."""
+    moving = state.moving
+    found, most = "this scene", 0.0
+    if what == "damping" and system.drag > 0.0 and moving.any():
+        found, most = "/settings/drag", float(system.drag / system.mass[moving].min())
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        for part in group.parts:
+            rows = _lumped(system, state, group, part, memory) if what == "stiffness" else _damping(system, group, part)
+            rate = float((rows / system.mass * moving).max(initial=0.0))
+            if rate > most and part.number >= 0:
+                kind, name = group.cls.model_fields["kind"].default, part.force.name
+                found, most = f"/forces/{part.number}, {kind}" + (f' "{name}"' if name else ""), rate
+    return found
+
+
+def _lumped(system: System, state: State, group: Group, part: Part, memory: Floats) -> Floats:
+    """Lumped stiffness (n,) of one force."""
+    alone = copy(system)
+    rows = slice(0, part.rows.stop - part.rows.start)
+    alone.groups = [Group(group.cls, group.of(part), [Part(part.number, part.force, rows, part.inputs)])]
+    return alone.evaluate(replace(state, memory=[memory[part.rows]]))[1]
+
+
+def _damping(system: System, group: Group, part: Part) -> Floats:
+    """A bound (n,) of the damping of one force: row sums."""
+    block = group.of(part)
+    if "damping" not in block.names:
+        return np.zeros(len(system.x))
+    c = block.parameters[:, block.names.index("damping")]
+    ends = block.indices.shape[1]
+    return np.asarray(np.bincount(block.indices.ravel(), np.repeat(ends * c, ends), len(system.x)), np.float64)
 
 
 def in_motion(scene: Scene) -> tuple[Scene, str]:

@@ -18,6 +18,7 @@ from hookean.system import System
 FIRST_LOOK = 25  # iterations before the first look at the balance; later looks come at growing distances
 LEAVES = 20  # unstable equilibria that a run leaves
 TRIES = 5  # tighter tolerances that a run takes without half the position error
+BEYOND = 100.0  # sizes of the model that a load may move its particle by, before it is called too large
 PATIENCE = 20_000  # iterations without a better residual before a run counts as stalled, on top of those spent
 
 
@@ -45,7 +46,7 @@ class Watch:
         self.found: Balance = balance(system, state)
         self.size = system.size
         self.top, self.top_found = self.good, self.found  # of the best residual
-        self.fault = ""
+        self.fault, self.lost = "", -1  # what is not sane, and the particle
         self.collapse = ""
 
     @property
@@ -146,7 +147,11 @@ class Watch:
         if not bad.any():
             bad = away.max(axis=1) > 1e5 * self.size
         particle = int(np.argmax(bad))
-        self.fault = f"particle {particle}{_owner(system, particle)}"
+        others = int(np.count_nonzero(bad)) - 1
+        # where many are lost at once, the forces of the first in number need not be the cause
+        also = f" and {others} other{'s' * (others > 1)}" if others else _owner(system, particle)
+        self.fault = f"particle {particle}{also}"
+        self.lost = particle
         return False
 
     def sentence(self, system: System, status: Status) -> str:
@@ -174,9 +179,17 @@ class Watch:
         """What to do about a run that diverged."""
         if self.method.physical and (said := stability.warning(system, self.good)):
             return said
-        if not any(len(anchor.particles) for anchor in system.held):
-            return "No particle is held: add anchors"
-        return _adrift(system, self.found) or "Check for loads that nothing holds"
+        if said := _adrift(system, self.found):
+            return said
+        part = self.found.components.label[self.lost] if self.lost >= 0 else -1
+        if part >= 0 and not self.found.components.supported[part]:
+            return f"Nothing supports {_called(system, self.found, part)}: add anchors"
+        if said := _overloaded(system, self.good, self.size):
+            return said
+        if self.method.physical:
+            given, unit = self.settings.time_step, system.scene.units.time
+            return f"/settings/time_step: {given:g} {unit} became too large on the way: use a smaller one, or more mass"
+        return f"The solver {self.method.name} found no equilibrium from here: use auto, or lower the loads"
 
     def _obstacle(self, system: System) -> str:
         """Why a run stalled."""
@@ -220,6 +233,21 @@ def _caveat(rest: Equilibrium | None) -> str:
     return f" {kind}: {rest.stability_reason}{most}."
 
 
+def _overloaded(system: System, state: State, size: float) -> str:
+    """Which load is too large for what holds it: one that would move its particle by many times the model's size."""
+    loads = np.sqrt((system.evaluate(state, only="load")[0] ** 2 * state.free).sum(axis=1))
+    reach = loads / np.maximum(system.evaluate(state)[1], 1e-300)
+    particle = int(np.argmax(reach))
+    if reach[particle] <= BEYOND * size:
+        return ""
+    force, units = _owner(system, particle, role="load"), system.scene.units
+    return (
+        f"The load of {loads[particle]:.3g} {units.force} on particle {particle}{force} is too large for the stiffness "
+        f"of what holds it, which would stretch by {reach[particle]:.2g} {units.length}: lower the load, or raise the "
+        "stiffness"
+    )
+
+
 def _adrift(system: System, found: Balance) -> str:
     """Which components carry loads that nothing supports; empty where there are none."""
     if not len(found.adrift):
@@ -228,7 +256,10 @@ def _adrift(system: System, found: Balance) -> str:
     more = f" (and {len(found.adrift) - 1} more such parts)" if len(found.adrift) > 1 else ""
     load = float(np.abs(found.found[part, ALONG]).max())
     called = _called(system, found, part)
-    return f"Nothing supports {called}{more}, which carry a load of {load:.3g} {system.scene.units.force}: anchor them"
+    count = int(np.count_nonzero(found.components.label == part))
+    carry, them = ("carries", "it") if count == 1 and not more else ("carry", "them")
+    unit = system.scene.units.force
+    return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
 
 
 def _called(system: System, found: Balance, part: int) -> str:
@@ -239,11 +270,11 @@ def _called(system: System, found: Balance, part: int) -> str:
     return called if count == 1 else f"the {count} particles connected with {called}"
 
 
-def _owner(system: System, particle: int) -> str:
-    """The first force, other than a load, with an element at a particle: " (of /forces/3, springs)"."""
+def _owner(system: System, particle: int, *, role: str = "") -> str:
+    """The first force of a role, or of all but loads, with an element at a particle: " (of /forces/3, springs)"."""
     for group in system.groups:
         hit = (group.block.indices == particle).any(axis=1)
         for part in group.parts:
-            if hit[part.rows].any() and group.cls.role != "load":
+            if hit[part.rows].any() and (group.cls.role == role if role else group.cls.role != "load"):
                 return f" (of /forces/{part.number}, {group.cls.model_fields['kind'].default})"
     return ""
