@@ -71,7 +71,7 @@ def test_the_page_of_the_scene_names_everything():
     for name, field in Settings.model_fields.items():
         told = re.search(rf"^\| `{name}` \| ([^ |]+)", SCENE, re.M)
         shown = f"{field.default}".replace("1e-06", "1e-6").removesuffix(".0")
-        assert told and told[1] == {"None": "none", "False": "false"}.get(shown, shown)
+        assert told and told[1] == {"None": "none", "False": "false", "True": "true"}.get(shown, shown)
     routes = set(create_app(ServerSettings()).openapi()["paths"])
     for route in re.findall(r"`(?:GET|POST) (/v1[^`]*)`", SCENE):
         assert route in routes | {"/v1/openapi.json", "/v1/discretize/{operation}"}, route

@@ -268,8 +268,9 @@ def _settings(system: System, patch: Patch) -> Settings:
     for name in patch.settings:
         if name == "floor":
             raise InputError("/settings/floor", "cannot change while it runs; send the changed scene anew")
+    kept = {n: getattr(old, n) for n in old.model_fields_set}
     try:
-        return Settings.model_validate({**{n: getattr(old, n) for n in old.model_fields_set}, **patch.settings})
+        return Settings.model_validate({**kept, **Settings.changes(patch.settings)})
     except ValidationError as error:
         fault = first_fault(error)
         raise InputError(f"/settings{fault.pointer}", fault.sentence) from None

@@ -42,7 +42,7 @@ def relax_state(
     refusal = method.refuse(system)
     if refusal:
         raise InputError("/settings/solver", refusal)
-    if method.physical and (said := stability.warning(system, state)) and said not in system.report.warnings:
+    if method.physical and (said := stability.warning(system, state, method)) and said not in system.report.warnings:
         system.report.warnings.append(said)
     method.start(system, state)
     state.force_scale = np.zeros(0)  # of this run alone

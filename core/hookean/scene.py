@@ -6,6 +6,7 @@ import difflib
 import hashlib
 import json
 import re
+from collections.abc import Mapping
 from types import UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, get_args, get_origin
 
@@ -120,9 +121,29 @@ class Settings(Model):
     max_iterations: int = Field(default=100_000, ge=0, le=10**9, description="Stop after so many iterations")
     time_limit: float | None = Field(default=None, ge=0, description="Stop after so many seconds of computing [s]")
     time_step: float = Field(default=0.01, gt=0, description="Step of physical time [time]")
+    divide_steps: bool = Field(
+        default=True,
+        description="Take steps that are too long in parts; false where time_step is given and this is not",
+    )
     sub_iterations: int = Field(default=20, ge=1, le=100_000, description="Time steps in a frame")
     drag: float = Field(default=1.0, ge=0, description="Viscous drag on every particle [force time/length]")
     floor: Switch[Floor] = Field(default=None, description="A floor: {} or true is the XY plane")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _who_chose(cls, value: Any) -> Any:
+        if not isinstance(value, Mapping) or "divide_steps" in value:
+            return value
+        return {**value, "divide_steps": "time_step" not in value}
+
+    @classmethod
+    def changes(cls, given: Mapping[str, Any]) -> dict[str, Any]:
+        """What changes with the given values: a step that is given is not divided, unless that is given too."""
+        return {"divide_steps": False, **given} if "time_step" in given else dict(given)
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """As of any part of a scene; see `changes`."""
+        return super().model_copy(update=self.changes(update or {}), deep=deep)
 
     @field_validator("floor", mode="before")
     @classmethod

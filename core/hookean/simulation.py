@@ -73,8 +73,8 @@ def simulate(
 class Simulation:
     """A running system: stepped frame by frame, patched while it runs, saved and resumed bit for bit.
 
-    A `script` leads anchors and columns of forces through time (see `hookean.script`), a `stream` (path, `-` for
-    standard input, or lines of CSV) gives the values of its drives. Both need a solver of physical time.
+    A `script` (see `hookean.script`) leads anchors and columns of forces through time, a `stream` (path, `-` for
+    standard input, lines of CSV) gives the values of its drives. Both need a solver of physical time.
     """
 
     def __init__(
@@ -135,7 +135,7 @@ class Simulation:
     def _warn(self) -> None:
         warnings = self.system.report.warnings
         warnings[:] = [w for w in warnings if not w.startswith("/settings/time_step")]
-        if self.solver.physical and (said := stability.warning(self.system, self.state)):
+        if self.solver.physical and (said := stability.warning(self.system, self.state, self.solver)):
             warnings.append(said)
 
     def step(self, frames: int = 1) -> Status:
@@ -148,14 +148,17 @@ class Simulation:
 
     def iterate(self, count: int) -> Status:
         """Advance by at most `count` iterations of the solver, and judge where that led."""
-        self.advance(count)
-        return self.look()
+        while True:
+            self.advance(count)
+            status, count = self.look(), self._watch.back
+            if not count:
+                return status
 
     def play(self, count: int) -> Status:
         """Advance by `count` iterations, or a few more, of a run that ends where it is at rest.
 
-        It is judged at iterations that follow from the system alone, and passes through the same states to the same
-        end however it is divided into calls of `play`, and whatever is read in between.
+        It is judged at iterations that follow from the system alone, and passes through the same states however it is
+        divided into calls, whatever is read in between.
         """
         until, together = self.state.iteration + count, self.solver.together
         every = together or min(seldom(self.system), OFTEN * self.scene.settings.sub_iterations)
@@ -181,6 +184,7 @@ class Simulation:
             step = self.scene.settings.time_step
             if playing.before(self.system, self.state, step):
                 self._warn()
+                self.state.scratch.pop("parts", None)
             several = min(count, playing.quiet(self.state.time, step))
             self.solver.advance(self.system, self.state, several, 0.0)
             playing.after(self.system, self.state)
@@ -190,11 +194,11 @@ class Simulation:
             self.solver.advance(self.system, self.state, count, goal)
 
     def look(self) -> Status:
-        """Judge the state as it is now; one that diverged goes back to the last good one. To see how it stands, read
-        `balance`, `message` or `frame()`, which change nothing."""
+        """Judge the state as it is now; one that diverged goes back to the last good one. `balance`,
+        `message` and `frame()` change nothing."""
         if self.status is Status.DIVERGED:
             return self.status
-        self.status = self._watch.look(self.system, self.state)
+        self.status = self._watch.look(self.system, self.state, driven=self.driven)
         self._said = ""
         if self.status is Status.CONVERGED and self.driven:
             self.status = Status.RUNNING  # at rest, but not for long
@@ -307,6 +311,9 @@ class Simulation:
         undo, before = Undo(self.system, self.state), self.solver
         try:
             change()
+            self.state.scratch.pop("energy", None)  # a change may add to it
+            if warn:
+                self.state.scratch.pop("parts", None)
             same = self.scene.settings.solver == undo.scene.settings.solver
             if not same or self.status is Status.DIVERGED:
                 self.state.v[:] = 0.0  # what one solver calls velocity means nothing to another, or it flew apart

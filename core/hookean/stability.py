@@ -1,14 +1,19 @@
-"""Stability: the largest time step an explicit scheme can take in a scene, told before it explodes."""
+"""Stability: the longest time step that an explicit scheme can take in a scene, before the motion explodes.
+
+The highest frequency depends on the shape. Where every force has a stiffness that no shape exceeds (`Force.steady`),
+one step holds in all motions; else a step holds in the shape that it was found for.
+"""
 
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.solvers.base import Limit, Solver
 from hookean.state import State
 from hookean.system import Group, Part, System
 
@@ -17,6 +22,11 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 MOST_STEPS = 200  # in a frame of a simulation, where that is chosen here
+VERLET = Limit()
+DAMPED, UNDAMPED = 0.9, 0.5  # parts of the step that is stable for small vibrations, for motions of any size
+LIGHT = 0.02  # part of the highest frequency below which a rate of damping counts as none
+MOST_PARTS = 10_000  # of a step
+CAUTION = 0.8  # of the step that held in a shape, for the shapes that may follow
 
 
 def critical_time_step(omega: float, damping_ratio: float = 0.0) -> float:
@@ -35,11 +45,17 @@ def highest_rates(system: System, state: State) -> tuple[float, float]:
     K is every force's tangent stiffness, hinges included, C the damping along springs and the drag. Held axes do not
     move.
     """
+    stiffness, damping, drag = _rates(system, state)
+    return stiffness, damping + drag
+
+
+def _rates(system: System, state: State) -> tuple[float, float, float]:
+    """The same, with the rates of damping along springs and of the drag by themselves."""
     matrix, free, scale = _scaled_stiffness(system, state)
     stiffness = 0.0 if matrix is None or matrix.nnz == 0 else max(_largest(matrix), 0.0)
     drag = system.drag * float(scale.max(initial=0.0)) ** 2
     if not system.damped or not len(free):
-        return stiffness, drag
+        return stiffness, 0.0, drag
 
     def damping(u: Floats) -> Floats:
         motion = np.zeros(state.x.size)
@@ -48,7 +64,8 @@ def highest_rates(system: System, state: State) -> tuple[float, float]:
 
     from scipy.sparse.linalg import LinearOperator
 
-    return stiffness, max(_largest(LinearOperator((len(free), len(free)), matvec=damping, dtype=np.float64)), drag)
+    operator = LinearOperator((len(free), len(free)), matvec=damping, dtype=np.float64)
+    return stiffness, max(_largest(operator), 0.0), drag
 
 
 def highest_mode(system: System, state: State) -> tuple[float, float]:
@@ -59,38 +76,66 @@ def highest_mode(system: System, state: State) -> tuple[float, float]:
     return omega, damping / (2.0 * omega) if omega > 0.0 else 0.0
 
 
-def stable_time_step(system: System, state: State) -> float:
-    """The step [time] up to which explicit time stepping of this state is stable; infinite without stiffness.
+def stable_time_step(system: System, state: State, limit: Limit = VERLET) -> float:
+    """The step [time] up to which explicit time steps are stable in the shape of a state; infinite without stiffness.
 
-    dt^2 k / 4 + dt c / 2 <= 1 with the highest rates k and c: `critical_time_step`, also where only damping limits.
+    `limit` is that of the scheme; verlet: dt^2 k / 4 + dt c / 2 <= 1 with the highest rates k of stiffness and c of
+    damping, drag included.
     """
-    return _step(*highest_rates(system, state))
+    return limit.step(*_rates(system, state))
 
 
-def _step(stiffness: float, damping: float) -> float:
-    half = 0.5 * damping
-    below = half + float(np.hypot(half, np.sqrt(stiffness)))
-    return 2.0 / below if below > 0.0 else np.inf
+def time_step_of_all_shapes(system: System, state: State, limit: Limit = VERLET) -> float:
+    """The step [time] up to which small vibrations about every shape of a system are stable; 0 where some force
+    stiffens without bound.
+
+    A spring's tangent is k along it and k (1 - L0 / l) across, so k at most in any direction. The highest rate of any
+    shape is at most that of springs of rest length 0, whose matrix no shape changes.
+    """
+    if not system.steady:
+        return 0.0
+    groups = [g for g in system.groups if not g.cls.constant]
+    moving = np.flatnonzero(state.moving)
+    scale = 1.0 / np.sqrt(system.mass[moving])
+    stiffness = _steady_rate(moving, scale, [(g, _column(g, g.cls.steady)) for g in groups])
+    damping = _steady_rate(moving, scale, [(g, _column(g, "damping")) for g in groups if g.damped])
+    return limit.step(stiffness, damping, system.drag * float(scale.max(initial=0.0)) ** 2)
 
 
-def warning(system: System, state: State) -> str:
-    """A sentence if the scene's time step is too large, with the step that would hold; else empty."""
-    given = system.scene.settings.time_step
-    if given <= _step(*_bounds(system, state)):
+def warning(system: System, state: State, method: Solver, *, moving: bool = False) -> str:
+    """A sentence if the time step that a scene gives is too long for a solver, with one that holds; else empty.
+
+    Too long for small vibrations about the shape of a state, or with `moving` for a motion that led there.
+    """
+    settings, unit, bounds = system.scene.settings, system.scene.units.time, Bounds.of(system, state)
+    given = settings.time_step / (MOST_PARTS if settings.divide_steps else 1)
+    if given <= (bounds.holds(state, method.limit) if moving else method.limit.step(*bounds.highest(state))):
         return ""
-    stiffness, damping = highest_rates(system, state)
-    holds = _step(stiffness, damping)
-    if given <= holds:
+    rates = _rates(system, state)
+    stable = method.limit.step(*rates)
+    if given <= stable and not moving:
         return ""
-    unit = system.scene.units.time
+    part = margin(bounds.highest(state)[0], bounds.least(state))
+    holds, where = part * time_step_of_all_shapes(system, state, method.limit), "in any motion"
+    if holds == 0.0:
+        holds, where = CAUTION * part * stable, "while it is no stiffer"
+    holds = min(holds, CAUTION * given)
+    parts = f", divided into {MOST_PARTS:,} parts," if settings.divide_steps else ""
+    small = f", {_down(stable):.4g} {unit} in small ones" if stable < np.inf else ""
+    cause, less = _cause(system, state, rates) if given > stable else ("this motion", "")
+    return (
+        f"/settings/time_step: {settings.time_step:g} {unit}{parts} is too large for {cause}. Steps up to "
+        f"{_down(holds):.4g} {unit} hold {where}{small}: use one, or leave time_step out{less}"
+    )
+
+
+def _cause(system: System, state: State, rates: tuple[float, float, float]) -> tuple[str, str]:
+    """What a time step is too large for, and what else to do about it."""
     # by the larger part of the limit: overdamped motion is limited by its damping
-    what = "damping" if 0.5 * damping > np.sqrt(stiffness) else "stiffness"
+    what = "damping" if 0.5 * (rates[1] + rates[2]) > np.sqrt(rates[0]) else "stiffness"
     where = _greatest(system, state, what)
     what = "drag" if where == "/settings/drag" else what
-    return (
-        f"/settings/time_step: {given:g} {unit} is too large for this mass and the {what} of {where}; the motion will "
-        f"explode. Steps up to {_down(holds):.4g} {unit} hold: use one of those, more mass or less {what}"
-    )
+    return f"this mass and the {what} of {where}; the motion will explode", f", or take more mass or less {what}"
 
 
 def _greatest(system: System, state: State, what: str) -> str:
@@ -127,42 +172,117 @@ def _damping(system: System, group: Group, part: Part) -> Floats:
     return np.asarray(np.bincount(block.indices.ravel(), np.repeat(ends * c, ends), len(system.x)), np.float64)
 
 
-def in_motion(scene: Scene) -> tuple[Scene, str]:
-    """A scene for a simulation: where nobody chose its time step and the usual one would explode, with one that holds,
-    and a sentence on it; else the scene as it is, and "".
+def longest(system: System, state: State, limit: Limit) -> float:
+    """The step [time] that hookean takes itself. Where every force is steady it holds in motions of any size, else
+    about the shape of a state and somewhat stiffer ones."""
+    holds = Bounds.of(system, state).holds(state, limit)
+    if system.steady or system.scene.settings.time_step <= holds:
+        return holds
+    return max(holds, CAUTION * stable_time_step(system, state, limit))
 
-    The step is four fifths of what holds at the start, as springs that are stretched are stiffer. Where nobody chose
-    how many make a frame, it is as long as usual, in at most MOST_STEPS.
+
+def parts(system: System, state: State, limit: Limit) -> int:
+    """In how many parts a time step is divided, where it may be, so that they hold."""
+    step = system.scene.settings.time_step
+    if not system.scene.settings.divide_steps or step <= (holds := longest(system, state, limit)):
+        return 1
+    return int(min(np.ceil(step / holds), MOST_PARTS))
+
+
+def in_motion(scene: Scene) -> tuple[Scene, str]:
+    """A scene for a simulation that is played: where nobody chose its time step and the usual one would be divided,
+    with a shorter one and a sentence on it; else the scene as it is, and "".
+
+    Where nobody chose how many steps make a frame, it is as long as usual, in at most MOST_STEPS.
     """
+    from hookean.solvers import solver
     from hookean.system import compile
 
     settings = scene.settings
-    if "time_step" in settings.model_fields_set or settings.solver not in ("auto", "verlet", "yoshida"):
+    if not settings.divide_steps or settings.solver not in ("auto", "verlet", "yoshida"):
         return scene, ""
     system = compile(scene)
-    state = system.start()
-    if not warning(system, state):
+    method = solver("verlet" if settings.solver == "auto" else settings.solver)
+    holds = longest(system, system.start(), method.limit)
+    if settings.time_step <= holds:
         return scene, ""
-    step = float(f"{_down(0.8 * stable_time_step(system, state)):.4g}")
+    step = float(f"{_down(holds):.4g}")
     changed: dict[str, float] = {"time_step": step}
     if "sub_iterations" not in settings.model_fields_set:
         changed["sub_iterations"] = min(round(settings.sub_iterations * settings.time_step / step), MOST_STEPS)
-    said = f"time goes on in steps of {step:g} {scene.units.time}; longer ones explode with this stiffness and mass"
+    said = f"time steps of {step:g} {scene.units.time} are used; longer ones explode with this stiffness and mass"
     return scene.replaced(settings=settings.replaced(**changed)), said
 
 
-def _bounds(system: System, state: State) -> tuple[float, float]:
-    """Bounds of the highest rates that cost one pass: row sums of stiffness and of damping over mass."""
-    _, w, _ = system.evaluate(state)
-    rows = np.full(len(w), system.drag)
-    for group in system.groups:
-        if not group.cls.damped:
-            continue
-        if group.cls.arity != 2 or "damping" not in group.block.names:
-            return np.inf, np.inf
-        c = group.block.parameters[:, group.block.names.index("damping")]
-        rows += np.bincount(group.block.indices.ravel(), np.repeat(2.0 * c, 2), len(w))
-    return float((w / system.mass).max()), float((rows / system.mass).max())
+def margin(stiffness: float, damping: float) -> float:
+    """The part of the stable step that holds for motions of any size, by the highest rate of stiffness [1/time^2] and
+    the least of damping [1/time].
+
+    Large motions meet nonlinear resonances below the limit of small vibrations: of order n at omega dt = 2 sin(pi / n),
+    which is 0.87, 0.71, 0.59 and 0.5 of it for n = 3 to 6. Light damping takes what they feed in. Source: Schlick et
+    al., "Nonlinear resonance artifacts in molecular dynamics simulations", 1998.
+    """
+    return DAMPED if damping >= LIGHT * np.sqrt(stiffness) else UNDAMPED
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Bounds of the rates of stiffness [1/time^2], damping along springs and drag [1/time] by particle (n,), in one
+    pass: no eigenvalue of M^-1 K exceeds the largest w / m (Gershgorin), and that of a spring's damping is 2 c."""
+
+    stiffness: Floats
+    damping: Floats
+    drag: Floats
+
+    @classmethod
+    def of(cls, system: System, state: State, w: Floats | None = None) -> Bounds:
+        """Those of a shape, and of every shape where all forces are steady; `w` is its lumped stiffness, if known."""
+        damping = np.zeros(len(system.mass))
+        for group in system.groups:
+            if group.damped:
+                index, c = group.block.indices, _column(group, "damping")
+                count = index.shape[1]
+                damping += np.bincount(index.ravel(), np.repeat(count * c, count), len(damping))
+        w = system.evaluate(state)[1] if w is None else w
+        return cls(w / system.mass, damping / system.mass, system.drag / system.mass)
+
+    def highest(self, state: State) -> tuple[float, float, float]:
+        """Of all that may move."""
+        moving = state.moving
+        stiffness, damping, drag = (r[moving].max(initial=0.0) for r in (self.stiffness, self.damping, self.drag))
+        return float(stiffness), float(damping), float(drag)
+
+    def least(self, state: State) -> float:
+        """The least rate of damping of all that may move [1/time]."""
+        return float((self.damping + self.drag)[state.moving].min(initial=np.inf))
+
+    def holds(self, state: State, limit: Limit) -> float:
+        """The step [time] that holds in motions of any size, in the shape that this was found for."""
+        highest = self.highest(state)
+        return margin(highest[0], self.least(state)) * limit.step(*highest)
+
+
+def _column(group: Group, name: str) -> Floats:
+    return group.block.parameters[:, group.block.names.index(name)]
+
+
+def _steady_rate(moving: NDArray[np.int64], scale: Floats, elements: list[tuple[Group, Floats]]) -> float:
+    """The highest rate of elements of one or two particles with a stiffness each, the same in all directions."""
+    import scipy.sparse as sparse
+
+    size = int(moving.max(initial=-1)) + 1
+    whole = sparse.csr_matrix((size, size))
+    for group, k in elements:
+        index = group.block.indices
+        ends = np.minimum(index, size)  # what is beyond does not move
+        signs = np.tile([1.0, -1.0][: index.shape[1]], len(index))
+        rows = np.repeat(np.arange(len(index)), index.shape[1])
+        spread = sparse.csr_matrix((signs, (rows, ends.ravel())), shape=(len(index), size + 1))[:, :size]
+        whole = whole + spread.T @ sparse.diags(k) @ spread
+    if not len(moving):
+        return 0.0
+    diagonal = sparse.diags(scale)
+    return max(_largest((diagonal @ whole[moving][:, moving] @ diagonal).tocsr()), 0.0)
 
 
 def _largest(operator: Any) -> float:
@@ -173,6 +293,8 @@ def _largest(operator: Any) -> float:
     if size <= 60:
         return float(np.linalg.eigvalsh(operator @ np.eye(size))[-1])
     start = 1.0 + 0.5 * np.sin(np.arange(size) * 12.9898)
+    if not (operator @ start).any():
+        return 0.0
     try:
         return float(eigsh(operator, k=1, which="LA", v0=start, tol=1e-6, return_eigenvectors=False)[0])
     except ArpackNoConvergence as error:
@@ -216,9 +338,9 @@ def _scaled_stiffness(system: System, state: State) -> tuple[Any, NDArray[np.int
 
 
 def _damping_force(system: System, state: State, motion: Floats) -> Floats:
-    """C u of a motion u (n, 3): damping forces are linear in the velocity."""
+    """C u of a motion u (n, 3), without drag: damping forces are linear in the velocity."""
     trial = state.copy()
     trial.v = motion
     moving, _, _ = system.evaluate(trial, still=False)
     resting, _, _ = system.evaluate(trial)
-    return resting - moving + system.drag * motion
+    return resting - moving

@@ -102,6 +102,11 @@ class System:
         return diagonal or float(np.abs(reach).max()) or 1.0
 
     @property
+    def steady(self) -> bool:
+        """Whether no shape stiffens any force beyond a bound that is known (`Force.steady`)."""
+        return all(g.cls.constant or g.cls.steady for g in self.groups)
+
+    @property
     def damped(self) -> bool:
         """Whether any force reads the velocities."""
         return any(g.damped for g in self.groups)

@@ -10,6 +10,7 @@ import numpy as np
 from hookean import kernels, stability
 from hookean.balance import ALONG, Balance, balance
 from hookean.equilibrium import Equilibrium, Stability, assess, excess, leave
+from hookean.heating import heated
 from hookean.result import Status
 from hookean.solvers import Solver
 from hookean.state import State
@@ -46,8 +47,10 @@ class Watch:
         self.found: Balance = balance(system, state)
         self.size = system.size
         self.top, self.top_found = self.good, self.found  # of the best residual
+        self.back = 0  # iterations that the last look took back
         self.fault, self.lost = "", -1  # what is not sane, and the particle
         self.collapse = ""
+        self._exploding(system, state, self.found, driven=False)  # notes the energy of the start
 
     @property
     def goal(self) -> float:
@@ -60,13 +63,20 @@ class Watch:
         due = min(max(seldom(system), spent // 25), self.method.longest, self.settings.max_iterations - spent)
         return max(1, due)
 
-    def look(self, system: System, state: State, *, idle: bool = False, known: bool = False) -> Status:
-        """Judge the state as it is now; `known` says that it is the one this began with."""
-        self.last, self.rest = state.iteration, None
-        if not self._sane(system, state) or self._collapsed(system, state):
+    def look(
+        self, system: System, state: State, *, idle: bool = False, known: bool = False, driven: bool = False
+    ) -> Status:
+        """Judge the state as it is now; `known` says that it is the one this began with, `driven` that a script moves
+        it."""
+        self.last, self.rest, self.back = state.iteration, None, 0
+        if not self._sane(system, state):
+            return self._burst(system, state, driven=driven)
+        if self._collapsed(system, state):
             return Status.DIVERGED
-        if not known:
-            self.found = balance(system, state)
+        found = self.found if known else balance(system, state)
+        if self._exploding(system, state, found, driven=driven):
+            return self._burst(system, state, driven=driven)
+        self.found = found
         if self.method.anew > self.best_at:  # what the other way had reached is no measure of this one
             self.best, self.best_at = np.inf, self.method.anew
         if not known:
@@ -118,6 +128,27 @@ class Watch:
         system.remember(state)
         if system.yields:
             self.found = replace(self.found, energies=system.evaluate(state)[2])
+
+    def _exploding(self, system: System, state: State, found: Balance, *, driven: bool) -> bool:
+        """Whether time steps are too long for the motion; else say which particle and force."""
+        particle = heated(system, state, self.method, found, driven=driven) if self.method.physical else None
+        if particle is not None:
+            self.fault = f"particle {particle}{_owner(system, particle)}"
+        return particle is not None
+
+    def _burst(self, system: System, state: State, *, driven: bool) -> Status:
+        """What follows where a motion has exploded: where its time steps are to be divided, back to the last good state
+        with twice as many parts; but what drives a motion does not go back."""
+        dividing = self.method.physical and self.settings.divide_steps and not system.steady
+        parts = 2 * self.method.parts(system, state)
+        if not dividing or driven or parts > stability.MOST_PARTS:
+            return Status.DIVERGED
+        good = self.good.copy()
+        self.back = state.iteration - good.iteration
+        state.x, state.v, state.memory = good.x, good.v, good.memory
+        state.time, state.iteration = good.time, good.iteration
+        state.scratch["parts"] = np.array([parts])
+        return Status.RUNNING
 
     def _collapsed(self, system: System, state: State) -> bool:
         """Whether some force says that its shape is none any more."""
@@ -177,7 +208,7 @@ class Watch:
 
     def _advice(self, system: System) -> str:
         """What to do about a run that diverged."""
-        if self.method.physical and (said := stability.warning(system, self.good)):
+        if self.method.physical and (said := stability.warning(system, self.good, self.method, moving=True)):
             return said
         if said := _adrift(system, self.found):
             return said

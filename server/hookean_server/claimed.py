@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 LONGEST = 1024  # characters of one header
 LONGEST_WARNINGS = 4096  # of all warnings
-LONGEST_WARNING = 200
+LONGEST_WARNING = 300
 
 
 def header(field: str) -> str:

@@ -112,7 +112,7 @@ def test_a_patch_that_changes_which_particles_a_force_has_is_refused():
 
 def test_the_step_warning_goes_when_its_reason_goes():
     """A shorter step, or a solver without steps, takes the warning back."""
-    simulation = Simulation(chain({"stiffness": 1e6}))
+    simulation = Simulation(chain({"stiffness": 1e6}, time_step=0.01))
     assert any("time_step" in w for w in simulation.system.report.warnings)
     told = simulation.result()
     simulation.patch({"settings": {"time_step": 1e-5}})
@@ -131,7 +131,7 @@ def test_damping_alone_can_limit_the_step():
         particles=[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]],
         forces=[mixed],
         anchors=[{"particles": [0, 2]}],
-        settings={"solver": "verlet", "max_iterations": 1},
+        settings={"solver": "verlet", "max_iterations": 1, "time_step": 0.01},
     )
     assert any("time_step" in w for w in relax(scene).report.warnings)
 
@@ -194,7 +194,9 @@ def test_damaged_saves_end_in_a_sentence(tmp_path):
 
 def test_a_diverged_run_takes_its_yielding_back():
     """The last good shape comes with the rest lengths it had: at the start, no force."""
-    result = relax(chain({"stiffness": 1e9, "plasticity": 0.1, "damping": 0}, solver="verlet", max_iterations=2000))
+    result = relax(
+        chain({"stiffness": 1e9, "plasticity": 0.1, "damping": 0}, solver="verlet", max_iterations=2000, time_step=0.01)
+    )
     assert result.status is Status.DIVERGED
     assert np.abs(result.force("springs")["force"]).max() < 1e9 * 0.1
     assert "hold" in result.message

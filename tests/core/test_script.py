@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hookean import InputError, Scene, Script, Simulation, relax, simulate
+from hookean import InputError, Scene, Script, Simulation, Status, relax, simulate
+from hookean.scene import Settings
 from hookean.script import between
 from hookean.solvers import verlet
 from samples import cable
@@ -195,12 +196,16 @@ def test_a_shift_counts_from_where_the_scene_holds_the_anchor():
 
 
 def test_a_script_that_stiffens_past_the_time_step_is_told_before():
-    """Stiffness led to 1e6 N/m with steps of 0.01 s: the warning names a step that holds."""
+    """Stiffness led to 1e6 N/m with steps of 0.01 s: the warning names a step that holds; left out, it is divided."""
     script = {"forces": [{"force": "cable", "column": "stiffness", "times": [0, 1], "values": [1000, 1e6]}]}
-    simulation = Simulation(cable(), script)
+    scene = cable()
+    given = scene.model_copy(update={"settings": Settings(**scene.settings.model_dump(exclude={"divide_steps"}))})
+    simulation = Simulation(given, script)
     assert not simulation.system.report.warnings
     simulation.step(2)
     assert any(w.startswith("/settings/time_step") for w in simulation.system.report.warnings)
+    divided = Simulation(scene, script)
+    assert divided.step(20) is Status.RUNNING and not divided.system.report.warnings
 
 
 @pytest.mark.parametrize(

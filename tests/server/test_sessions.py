@@ -261,7 +261,7 @@ def test_downloads_are_named_as_their_session(client: httpx.Client, label: str, 
 def test_a_summary_says_what_a_person_should_know(client: httpx.Client) -> None:
     """Energy and units, and in sentences what met no particle, what a step of time would do, what lay beside another:
     at once, after an edit that changes it, and from the start of the next server on, for those in the store."""
-    found = put(client, scene={**CABLE, "units": {"force": "kN"}})
+    found = put(client, scene={**CABLE, "units": {"force": "kN"}, "settings": {"time_step": 0.01}})
     assert found["units"] == {"length": "m", "force": "kN", "time": "s"} and found["warnings"] == []
     result = client.get("/v1/sessions/a/state").json()
     assert found["energy"] == pytest.approx(result["energy"]["total"])
@@ -289,7 +289,7 @@ def test_an_energy_that_is_not_known_is_none(client: httpx.Client) -> None:
 
 def test_watchers_hear_of_warnings_and_of_edits_by_others(served: Served, client: httpx.Client) -> None:
     """A revision that is not one's own says that the anchors may be others now."""
-    put(client)
+    put(client, scene={**CABLE, "settings": {"time_step": 0.01}})
     with watch(served) as socket:
         assert json.loads(socket.recv())["session"]["revision"] == 0
 
@@ -435,6 +435,7 @@ def test_a_message_that_is_none_is_told_so(served: Served, client: httpx.Client,
 def test_a_session_that_diverges_says_so_and_takes_the_next_edit(client: httpx.Client) -> None:
     explosive = json.loads(json.dumps(CABLE))
     explosive["forces"][0].update(stiffness=1e9, damping=0)
+    explosive["settings"] = {"time_step": 0.01}
     put(client, scene=explosive)
     client.post("/v1/sessions/a/play", params={"fast": True})
     wait_for(lambda: client.get("/v1/sessions/a").json()["status"] == "diverged", 60.0)

@@ -40,6 +40,7 @@ class AnchorSpring(Force):
     formula: ClassVar[str] = "E = S |T - x|²/2"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"
     creates: ClassVar[bool] = False
+    steady: ClassVar[str] = "strength"
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(anchor_spring_kernel)
 

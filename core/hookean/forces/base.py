@@ -92,7 +92,10 @@ class Force(Model):
     role: ClassVar[Literal["internal", "load", "support"]] = "internal"  # internal: forces and moments sum to zero
     conservative: ClassVar[bool] = True  # force = -gradient of the energy the kernel returns
     constant: ClassVar[bool] = False  # the force is the same wherever the particles are
-    damped: ClassVar[bool] = False  # the kernel reads the velocities
+    # the column that bounds an element's stiffness in every shape (K <= k times the identity, of two particles k times
+    # that of a spring); "" where stiffness has no such bound
+    steady: ClassVar[str] = ""
+    damped: ClassVar[bool] = False  # the kernel reads the velocities; its column `damping` bounds that likewise
     remembers: ClassVar[bool] = False  # memory changes at the end of a step
     arity: ClassVar[int] = 1
     everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles

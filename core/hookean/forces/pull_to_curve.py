@@ -35,6 +35,7 @@ class PullToCurve(Force):
     formula: ClassVar[str] = "E = S |C - x|²/2"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"
     creates: ClassVar[bool] = False
+    steady: ClassVar[str] = "strength"
     shared: ClassVar[tuple[str, ...]] = ("curve",)
     outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_kernel)

@@ -195,6 +195,7 @@ class PullToMesh(Force):
     formula: ClassVar[str] = "E = S |C - x|²/2"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"
     creates: ClassVar[bool] = False
+    steady: ClassVar[str] = "strength"
     shared: ClassVar[tuple[str, ...]] = ("vertices", "faces")
     outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_kernel)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -15,6 +16,27 @@ if TYPE_CHECKING:  # the scene lists the solvers' names, so this file must not i
     from hookean.system import System
 
 Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Limit:
+    """How long the steps of an explicit scheme may be, by the highest rates of a system.
+
+    It is stable while dt^2 k / (2 reach)^2 + dt (c / damping + drag / drag_part) / 2 <= 1, with the largest eigenvalues
+    k of M^-1 K [1/time^2] and c of M^-1 C along springs [1/time], and drag over the smallest mass [1/time]. `reach` is
+    the longest step without damping as a part of 2 / omega, `damping` and `drag` those of damping alone as parts of
+    2 / c.
+    """
+
+    reach: float = 1.0
+    damping: float = 1.0
+    drag: float = 1.0
+
+    def step(self, stiffness: float, damping: float, drag: float) -> float:
+        """The longest step [time] that is stable with these highest rates; infinite without any."""
+        half = 0.5 * (damping / self.damping + drag / self.drag)
+        below = half + float(np.hypot(half, np.sqrt(max(stiffness, 0.0)) / self.reach))
+        return 2.0 / below if below > 0.0 else np.inf
 
 
 class Solver(ABC):
@@ -31,6 +53,11 @@ class Solver(ABC):
     leaves: ClassVar[bool] = False  # a run goes on from an unstable equilibrium, along the mode in which energy falls
     refines: ClassVar[bool] = False  # and while the shape is not known to the scene's position tolerance
     physical: ClassVar[bool] = False  # advances physical time with the scene's masses, damping and drag
+    limit: ClassVar[Limit] = Limit()  # of its time steps, where it is physical
+
+    def parts(self, system: System, state: State) -> int:
+        """In how many parts a time step is taken."""
+        return 1
 
     def refuse(self, system: System) -> str:
         """Why this solver cannot take the system, as a sentence; empty if it can."""

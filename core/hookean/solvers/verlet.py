@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hookean import kernels
+from hookean import kernels, stability
 from hookean.kernels import device, forces, impacts, notes, supports
 from hookean.lean import Desk, Lean, Seen, contacts, lean
 from hookean.solvers.base import Solver
@@ -165,27 +165,42 @@ def verlet_loop(  # type: ignore[no-untyped-def]
 
 
 class Method(Solver):
-    """Velocity Verlet; what classic Kangaroo does, and what bounces."""
+    """Velocity Verlet; what classic Kangaroo does, and what bounces.
+
+    With `divide_steps` a step is divided into equal parts that hold (see `stability.parts`); how many is kept in
+    `state.scratch`. Where every force is `steady` they hold in all shapes, else a watched run takes more where needed.
+    """
 
     name: ClassVar[str] = "verlet"
     physical: ClassVar[bool] = True
-    weights: ClassVar[tuple[float, ...]] = (1.0,)
+    weights: ClassVar[tuple[float, ...]] = (1.0,)  # its parts of a time step, one after the other
 
     def __init__(self) -> None:
         self._desk, self._seen = Desk(), Seen()
         self._tables: tuple[Any, ...] = ()
         self._own: Lean | None = None
+        self._free = np.zeros((0, 3))  # of the state that forces were laid out for
+
+    def parts(self, system: System, state: State) -> int:
+        """In how many parts a time step is taken."""
+        if "parts" not in state.scratch:
+            state.scratch["parts"] = np.array([stability.parts(system, state, self.limit)])
+        return int(state.scratch["parts"][0])
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Exactly `count` time steps; physical time does not stop early."""
         if count < 1:
             return 0
-        n = len(state.x)
-        step = system.scene.settings.time_step
-        same = self._seen.same(system, state)
+        n, step = len(state.x), system.scene.settings.time_step
+        same = self._seen.same(system, state) and self._own is not None and kernels.same(self._free, state.free)
         if not same or self._own is None:
             self._own = lean(system, state, damped=True)
             self._tables = (self._own.quiet, self._own.lively, *contacts(system), _noted(system, state))
+            self._free = state.free.copy()
+            if system.steady:
+                state.scratch.pop("parts", None)  # found without the shape, they are soon found again
+        parts = self.parts(system, state)
+        steps = step / parts * np.tile(self.weights, parts)
         touching, lively = bool(system.contacts), len(self._own.lively) > 0
         rows, new = self._desk.keep(n, 6 + lively + 6 * touching)
         x, v, pull, load, base, seen, *rest = rows
@@ -197,7 +212,7 @@ class Method(Solver):
             load[:, :3] = self._own.load
         kernels.compiled(verlet_loop)(
             *self._tables, state.x, state.v, state.free, system.mass, x, v, free, pull, load, raw, base, np.zeros(n),
-            *others, seen, system.drag, step * np.array(self.weights), touching, same and not new, count,
+            *others, seen, system.drag, steps, touching, same and not new, count,
         )  # fmt: skip
         state.iteration += count
         for _ in range(count):

@@ -1,5 +1,5 @@
-// What was refused or done, in sentences, in a place of their own: they cover nothing. What was refused stays until it is
-// closed, by its button or Esc, or the next one comes.
+// What was refused or done, in sentences, in a place of their own: they cover nothing. What was refused stays until it
+// is closed, by its button or Esc, or the next one comes.
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { Refused } from "../api";
