@@ -74,7 +74,7 @@ class Simulation:
     """A running system: stepped frame by frame, patched while it runs, saved and resumed bit for bit.
 
     A `script` (see `hookean.script`) leads anchors and columns of forces through time, a `stream` (path, `-` for
-    standard input, lines of CSV) gives the values of its drives. Both need a solver of physical time.
+    standard input, lines of CSV) gives the values of its drives. They need a solver of physical time.
     """
 
     def __init__(
@@ -157,8 +157,8 @@ class Simulation:
     def play(self, count: int) -> Status:
         """Advance by `count` iterations, or a few more, of a run that ends where it is at rest.
 
-        It is judged at iterations that follow from the system alone, and passes through the same states however it is
-        divided into calls, whatever is read in between.
+        It is judged at iterations that follow from the system alone: the states are the same however it is divided
+        into calls, whatever is read between.
         """
         until, together = self.state.iteration + count, self.solver.together
         every = together or min(seldom(self.system), OFTEN * self.scene.settings.sub_iterations)
@@ -227,7 +227,7 @@ class Simulation:
         return self._seen
 
     def _balance(self) -> Balance:
-        """The balance of the present state, which stays as it is: judging one notes the scale of its forces."""
+        """The balance of the present state, which stays as it is: judging notes the scale of forces."""
         return balance(self.system, replace(self.state))
 
     @property
@@ -284,14 +284,14 @@ class Simulation:
         """Change anchors, loads, stiffness, rest lengths, settings or which forces act while it runs; returns the new
         revision.
 
-        Edits of one `gesture`, such as the drag of an anchor, are taken back as one. InputError says what does not
+        Edits of one `gesture`, such as the drag of an anchor, are taken back as one. InputError names what does not
         fit, and nothing has changed then.
         """
         edit = Patch.read(edit)
         if edit.remove and self._playing is not None:
             raise InputError("/remove", "a script leads forces by their numbers; forces are removed without one only")
         setup = Setup.of(self.system)
-        # a moved anchor neither stiffens nor quickens anything by itself
+        # a moved anchor stiffens or quickens nothing by itself
         warn = bool(edit.forces or edit.settings or len(edit.release) or edit.rewires)
         revision = self._changed(lambda: apply(self.system, self.state, edit), warn=warn)
         self.history.note(setup, gesture)
