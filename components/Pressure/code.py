@@ -6,7 +6,7 @@ Each corner of a triangle takes a third; a quad is the mean of its two cuts into
 p pushes along the normal: out of a closed mesh whose faces are oriented outwards. On a closed mesh,
 or where the rim is held, these forces have the energy -p V, V the volume between the mesh and its
 start centre, and that is the energy reported; with a free rim they have none (turning a flap in a
-loop can gain work). Newton steps do without this force's stiffness.
+loop can gain work), and Newton steps take the symmetric part of their stiffness.
 
 f = p A n / 3
 """

@@ -190,3 +190,27 @@ def test_pressure_makes_no_particles_and_is_patched() -> None:
     assert running.system.evaluate(running.state)[0][:, 2] == pytest.approx([1, 1, 1])
     running.patch({"forces": {"0": {"pressure": -12.0}}})
     assert running.system.evaluate(running.state)[0][:, 2] == pytest.approx([-2, -2, -2])
+
+
+@SEEDED
+@given(seeds)
+def test_the_tangent_of_a_closed_mesh_is_that_of_its_volume(seed: int) -> None:
+    """K = -p d2V/dx2 by differences of the forces, to 1e-6: on a closed mesh their sum has an energy."""
+    rng = np.random.default_rng(seed)
+    x = rng.normal(size=(6, 3))
+    hull = ConvexHull(x)
+    faces = [f if np.linalg.det(x[f] - x.mean(axis=0)) > 0 else f[::-1] for f in hull.simplices]
+    system = compile(Scene(particles=x, meshes={"m": {"vertices": x, "faces": faces}}, forces=[Pressure(mesh="m")]))
+    state, (group,) = system.start(), system.groups
+    whole = np.zeros((18, 18))
+    for index, block in zip(group.block.indices, system.stiffness_blocks(group, state, state.memory[0]), strict=True):
+        at = (3 * index[:, None] + np.arange(3)).ravel()
+        whole[np.ix_(at, at)] += block
+    for spot in ((0, 0), (3, 1), (5, 2)):
+        sides = []
+        for h in (1e-6, -1e-6):
+            y = x.copy()
+            y[spot] += h
+            sides.append(forces_at(x, faces, y, 1.0)[0])
+        slope = (sides[1] - sides[0]) / 2e-6
+        assert whole[3 * spot[0] + spot[1]] == pytest.approx(slope.ravel(), abs=1e-6 * np.abs(whole).max())

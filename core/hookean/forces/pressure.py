@@ -40,6 +40,27 @@ def pressure_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no
     return energy
 
 
+def pressure_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    # f = p n / 6 on each corner, dn = sum of (opposite edge) x dx; the symmetric part, of which the sum is that of -p V
+    g = np.zeros((3, 3))
+    for e in range(indices.shape[0]):
+        p = parameters[e, 0] * parameters[e, 1] / 12.0
+        for i in range(3):
+            a = indices[e, (i + 1) % 3]
+            b = indices[e, (i + 2) % 3]
+            for c in range(3):
+                g[i, c] = x[b, c] - x[a, c]
+        for i in range(3):
+            for j in range(3):
+                for c in range(3):
+                    u = (c + 1) % 3
+                    d = (c + 2) % 3
+                    blocks[e, 3 * i + c, 3 * j + c] = 0.0
+                    # minus [edge of the column] x, and the transpose of that of the row
+                    blocks[e, 3 * i + c, 3 * j + u] = p * (g[j, d] - g[i, d])
+                    blocks[e, 3 * i + c, 3 * j + d] = p * (g[i, u] - g[j, u])
+
+
 class Pressure(Force):
     """Pressure p normal to the faces of a mesh, on the side their corners run counter-clockwise: f = p A n / 3.
 
@@ -47,7 +68,8 @@ class Pressure(Force):
     triangle takes a third; a quad is the mean of its two cuts into triangles. Positive p pushes along the normal:
     out of a closed mesh whose faces are oriented outwards. On a closed mesh, or where the rim is held, these forces
     have the energy -p V, V the volume between the mesh and its start centre, and that is the energy reported; with a
-    free rim they have none (turning a flap in a loop can gain work). Newton steps do without this force's stiffness.
+    free rim they have none (turning a flap in a loop can gain work), and Newton steps take the symmetric part of their
+    stiffness.
     """
 
     kind: Literal["pressure"] = "pressure"
@@ -61,6 +83,7 @@ class Pressure(Force):
     arity: ClassVar[int] = 3
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(pressure_kernel)
+    hessian: ClassVar[Any] = staticmethod(pressure_hessian)
     example_faces: ClassVar[list[list[int]]] = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]
 
     def compile(self, places: Places) -> Block:
