@@ -115,6 +115,8 @@ def balance(system: System, state: State) -> Balance:
     f, w, energies = system.evaluate(state, loads=loads)
     left = f * state.free
     contact = system.support(state, left) if system.contacts else np.zeros(f.shape)
+    if system.films is not None:
+        system.films.across(state.x, state.free, left)
     parts = system.components(state)
     reactions, reach = np.empty(f.shape), np.zeros(len(f))
     found, scales = np.zeros((len(parts.first), 9)), np.empty(len(parts.first))

@@ -140,6 +140,12 @@ def _by_modes(system: System, state: State, found: Balance, method: Solver | Non
     from hookean.modes import factored, iterated
     from hookean.solvers import multilevel
 
+    if system.films is not None:  # multigrid has no axes across them
+        counts = system.films.frames(state.x, state.free)[1]
+        unknowns = int(np.count_nonzero(counts))
+        if unknowns > LARGEST_FACTOR:
+            return unknown(f"films of {unknowns} unknowns are too large to factor again")
+        return _concluded(factored(system, state, found, DENSE), found)
     unknowns = int(np.count_nonzero(state.free))
     entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if not g.cls.constant)
     plain = multilevel.suits(system)

@@ -146,7 +146,7 @@ def cache_folder(function: Callable[..., Any]) -> Path:
     home = Path(__file__).parent
     sources = {Path(__file__), Path(inspect.getfile(function))}
     sources.update(home / name for name in ("pointers.py", "machine.py", "emit.py"))
-    sources.update(*(home.glob(f"{folder}/*.py") for folder in ("forces", "solvers", "multigrid")))
+    sources.update(*(home.glob(f"{folder}/*.py") for folder in ("films", "forces", "solvers", "multigrid")))
     for source in sorted(sources):
         digest.update(source.read_bytes())
     return _writable_root() / digest.hexdigest()[:16]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean import kernels
+from hookean.films.evenness import keeper
 from hookean.state import State
 from hookean.system import Group, System
 
@@ -34,6 +35,7 @@ class Lean:
     lively: Any  # and those that change with their speeds, or at the end of a step
     load: Floats
     calls: tuple[list[Any], list[Any]]  # kernels with their arrays, in full and packed, as the tables have them
+    even: list[Any]  # and what keeps films even, last in all tables but the lively one
 
 
 def lean(system: System, state: State, *, damped: bool) -> Lean:
@@ -51,9 +53,12 @@ def lean(system: System, state: State, *, damped: bool) -> Lean:
             full.append((kernel, group.cls.whole(b, memory)))
             packed.append((kernel, _packed(group, memory, damped)))
             (lively if damped and (group.damped or group.yields) else quiet).append(packed[-1])
-    every = kernels.table("force", packed)
-    still = kernels.table("force", quiet) if lively else every
-    return Lean(kernels.table("force", full), every, still, kernels.table("force", lively), load, (full, packed))
+    even = keeper(system, state)
+    last = [] if even is None else [even]  # after all forces
+    every = kernels.table("force", packed + last)
+    still = kernels.table("force", quiet + last) if lively else every
+    tables = kernels.table("force", full + last), every, still, kernels.table("force", lively)
+    return Lean(*tables, load, (full, packed), last)
 
 
 def contacts(system: System) -> tuple[Any, Any]:
@@ -88,6 +93,8 @@ class Seen:
             a for g, memory in zip(system.groups, state.memory, strict=True) for a in (g.block.parameters, memory)
         ]
         arrays = [a for a in arrays + [g.block.parameters for g in system.contacts] if a.size]
+        if system.films is not None:
+            arrays.append(state.free)  # what keeps films even has it, too
         if (
             self._system is system
             and len(arrays) == len(self._arrays)

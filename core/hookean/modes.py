@@ -58,7 +58,8 @@ class Modes:
 @dataclass(frozen=True)
 class Scaled:
     """The scaled tangent of the free axes `dofs` of a shape: what turns scaled motions into motions, the uncertainty of
-    its eigenvalues [-], what is out of balance in its terms, and the elements themselves."""
+    its eigenvalues [-], what is out of balance in its terms, and the elements themselves. With soap films the axes of
+    particles are their own, `axes` (n, 3, 3) by rows."""
 
     system: System
     state: State
@@ -66,23 +67,27 @@ class Scaled:
     scale: Floats  # W^-1/2
     uncertain: float
     left: Floats
+    axes: Floats | None = None
 
     @classmethod
     def of(cls, system: System, state: State, found: Balance) -> Scaled:
-        dofs = np.flatnonzero(state.free.ravel() > 0.0)
+        axes, free = (None, state.free) if system.films is None else system.films.frames(state.x, state.free)
+        dofs = np.flatnonzero(free.ravel() > 0.0)
         w = found.stiffness
         w = np.maximum(w, 1e-9 * w.max()) if w.max() > 0.0 else np.ones_like(w)
         apart = extents(system, state) * w
         turning = np.abs(found.forces).max(axis=1) / np.where(apart > 0.0, apart, np.inf)
         scale = 1.0 / np.sqrt(np.repeat(w, 3)[dofs])
-        left = found.forces.ravel()[dofs] * scale
-        return cls(system, state, dofs, scale, ROUNDING + 4.0 * float(turning.max()), left)
+        left = found.forces if axes is None else np.einsum("nij,nj->ni", axes, found.forces)
+        uncertain = ROUNDING + 4.0 * float(turning.max())
+        return cls(system, state, dofs, scale, uncertain, left.ravel()[dofs] * scale, axes)
 
     def motion(self, scaled: Floats) -> Floats:
         """A scaled motion as one of all particles (n, 3)."""
         whole = np.zeros(self.state.x.size)
         whole[self.dofs] = scaled * self.scale
-        return whole.reshape(-1, 3)
+        parts = whole.reshape(-1, 3)
+        return parts if self.axes is None else np.einsum("nij,ni->nj", self.axes, parts)
 
     def energies(self, modes: Floats) -> tuple[Floats, float]:
         """U^T K U of scaled motions (unknowns, k), element by element, and what of it may be rounding.
@@ -165,6 +170,8 @@ def _dense(scaled: Scaled) -> Modes:
 
 def _matrix(scaled: Scaled) -> Floats:
     """The scaled tangent, dense."""
+    from hookean.solvers._across import turn_blocks
+
     system, state, size = scaled.system, scaled.state, len(scaled.dofs)
     number = np.full(state.x.size, -1)
     number[scaled.dofs] = np.arange(size)
@@ -174,14 +181,16 @@ def _matrix(scaled: Scaled) -> Floats:
         mine = number[(3 * index[:, :, None] + np.arange(3)).reshape(len(index), -1)]
         place = mine[:, :, None] * size + mine[:, None, :]
         kept = (mine[:, :, None] >= 0) & (mine[:, None, :] >= 0)
+        if scaled.axes is not None:
+            kernels.compiled(turn_blocks)(scaled.axes, index, blocks)
         matrix += np.bincount(place[kept], blocks[kept], size * size)
     return np.asarray(matrix.reshape(size, size) * scaled.scale * scaled.scale[:, None])
 
 
 def _sparse(scaled: Scaled) -> Modes:
-    from hookean.solvers._pattern import Pattern
+    from hookean.solvers._across import patterned
 
-    pattern = Pattern(scaled.system, scaled.state.free)
+    pattern = patterned(scaled.system, scaled.state, scaled.state.free)
     rows, starts = pattern.factors.rows, pattern.factors.starts
     column = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     own = np.zeros(len(starts) - 1 - len(scaled.dofs))  # unknowns of elements, which nothing pushes

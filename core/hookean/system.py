@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,9 @@ from hookean.report import Report
 from hookean.scene import Scene
 from hookean.state import State
 from hookean.weld import Welded, fits
+
+if TYPE_CHECKING:
+    from hookean.films import Films
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -87,6 +91,7 @@ class System:
     load_count: Floats
     drag: float = 0.0
     _components: Components | None = None
+    _films: Films | None = field(default=None, init=False, repr=False)
 
     @property
     def report(self) -> Report:
@@ -115,6 +120,17 @@ class System:
     def yields(self) -> bool:
         """Whether any force may change at the end of a step because of what it remembers."""
         return any(g.yields for g in self.groups)
+
+    @property
+    def films(self) -> Films | None:
+        """Its soap films, and what counts at their particles; None where there are none."""
+        if not any(g.cls.is_film and len(g.block.indices) for g in self.groups):
+            return None
+        from hookean.films import Films
+
+        if self._films is None or self._films.stale:
+            self._films = Films(self)
+        return self._films
 
     def start(self) -> State:
         """The state before the first iteration: anchors at their targets, memories empty."""

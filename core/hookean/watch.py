@@ -10,6 +10,7 @@ import numpy as np
 from hookean import kernels, stability
 from hookean.balance import ALONG, Balance, balance
 from hookean.equilibrium import Equilibrium, Stability, assess, excess, leave
+from hookean.films.endings import Endings
 from hookean.heating import heated
 from hookean.result import Status
 from hookean.solvers import Solver
@@ -26,7 +27,7 @@ PATIENCE = 20_000  # iterations without a better residual before a run counts as
 def seldom(system: System) -> int:
     """Iterations from look to look that cost little beside them: about 50 ms of springs."""
     cheap = 8_000_000 // (sum(g.block.indices.size for g in system.groups) + 4_000)
-    if any(g.cls.collapses for g in system.groups):
+    if system.films is not None:
         cheap = 0  # looked at often, so that the last good shape is a late one
     return max(FIRST_LOOK, cheap)
 
@@ -50,6 +51,7 @@ class Watch:
         self.back = 0  # iterations that the last look took back
         self.fault, self.lost = "", -1  # what is not sane, and the particle
         self.collapse = ""
+        self.films = Endings(physical=method.physical) if system.films is not None else None
         self._exploding(system, state, self.found, driven=False)  # notes the energy of the start
 
     @property
@@ -71,8 +73,8 @@ class Watch:
         self.last, self.rest, self.back = state.iteration, None, 0
         if not self._sane(system, state):
             return self._burst(system, state, driven=driven)
-        if self._collapsed(system, state):
-            return Status.DIVERGED
+        if self._collapsed(system, state, known=known):
+            return self._fallen(system)
         found = self.found if known else balance(system, state)
         if self._exploding(system, state, found, driven=driven):
             return self._burst(system, state, driven=driven)
@@ -142,7 +144,7 @@ class Watch:
         dividing = self.method.physical and self.settings.divide_steps and not system.steady
         parts = 2 * self.method.parts(system, state)
         if not dividing or driven or parts > stability.MOST_PARTS:
-            return Status.DIVERGED
+            return self._fallen(system)
         good = self.good.copy()
         self.back = state.iteration - good.iteration
         state.x, state.v, state.memory = good.x, good.v, good.memory
@@ -150,15 +152,17 @@ class Watch:
         state.scratch["parts"] = np.array([parts])
         return Status.RUNNING
 
-    def _collapsed(self, system: System, state: State) -> bool:
-        """Whether some force says that its shape is none any more."""
-        for group in system.groups:
-            for part in group.parts if group.cls.collapses else ():
-                said = part.force.collapsed(group.of(part), state.x)
-                if said:
-                    self.collapse = f"/forces/{part.number}: {said}"
-                    return True
-        return False
+    def _fallen(self, system: System) -> Status:
+        """The end of a run that diverged; the last good shape of films is one that can be a film."""
+        if self.films is not None and self.films.good is not None:
+            self.good, self.found = self.films.good, balance(system, self.films.good)
+        return Status.DIVERGED
+
+    def _collapsed(self, system: System, state: State, *, known: bool) -> bool:
+        """Whether films are no longer a valid shape, or have no equilibrium to begin with."""
+        if self.films is not None:
+            self.collapse = self.films.begin(system, state) if known else self.films.look(system, state)
+        return bool(self.collapse)
 
     def _resting(self, system: System, state: State) -> bool:
         """In physical time a shape may pass through balance at full speed: then it has not arrived."""

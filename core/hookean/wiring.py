@@ -42,7 +42,7 @@ class Wiring:
         state.memory = _carried(system.groups, state.memory, self.groups)
         system.groups, system.contacts = self.groups, self.contacts
         system.load_count, system.places = self.load_count, self.places
-        system._components = None
+        system._components = system._films = None
 
 
 def rewire(system: System, state: State, scene: Scene, *, added: int = 0) -> None:

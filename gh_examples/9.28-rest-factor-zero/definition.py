@@ -50,14 +50,14 @@ def height(rows, at):  # over (at, at): a natural cubic spline along the plane o
 
 """
 NUMBERS = """
-rows, fine, coarse = grid(net), grid(film), grid(half)
+rows, wide, fine = grid(net), grid(film), grid(half)
 saddle = max(abs(z - x * y) for row in rows for x, y, z in row)
 net_area = without_error(area(rows), area(every_second(rows)))
-film_area = without_error(area(fine), area(coarse))
+film_area = without_error(area(fine), area(wide))
 excess = 100.0 * (net_area / film_area - 1.0)
 net_height = height(rows, 0.5)
-film_height = without_error(height(fine, 0.5), height(coarse, 0.5))
-faces_area = area(fine)
+film_height = without_error(height(fine, 0.5), height(wide, 0.5))
+faces_area = area(wide)
 """
 
 
@@ -66,13 +66,13 @@ def definition() -> Definition:
         "9.28-rest-factor-zero",
         "Figure 9.28: a net of rest factor 0, and the soap film",
         "Springs of rest factor 0 make a force-density net, here the hypar z = x y between its edges. It is near the "
-        "minimal surface of the same frame, but not it. The film is taken twice, the second time half as fine, to tell "
-        "what the size of its faces adds to its area.",
+        "minimal surface of the same frame, but not it. The film is taken twice, the second time with faces half as "
+        "wide, from which follows what their size adds to its area.",
     )
     with d.group("Drawn in Rhino", "The frame's surface in model.3dm beside this file, divided twice."):
         file, layer = d.text("File", "model.3dm"), d.text("Surface", "membrane")
         meshes, frames = [], []
-        for name, count in (("Divisions [-]", 32), ("Divisions, coarse [-]", 16)):
+        for name, count in (("Divisions [-]", 32), ("Divisions, fine [-]", 64)):
             number = d.slider(name, count, 2, 64)
             meshes.append(d.component("RhinoFile", file=file, layer=layer, u=number, v=number)["meshes"])
             frames.append(d.component("NakedVertices", mesh=meshes[-1])["naked_points"])
@@ -88,11 +88,11 @@ def definition() -> Definition:
             "Settings", solver=d.text("Solver", "newton"), residual=d.text("Residual [-]", "1e-13"), fast=fast
         )
         relaxing = d.component(
-            "Settings", solver=d.text("Solver of films", "relaxation"),
+            "Settings", solver=d.text("Solver of films", "auto"),
             residual=d.text("Residual of films [-]", "1e-9"), fast=fast,
         )  # fmt: skip
         moved = []
-        cases = (("net", springs, 0, exact), ("film", films[0], 0, relaxing), ("coarse film", films[1], 1, relaxing))
+        cases = (("net", springs, 0, exact), ("film", films[0], 0, relaxing), ("fine film", films[1], 1, relaxing))
         for which, force, i, settings in cases:
             engine = d.component(
                 "Engine", f"Engine {which}", forces=force, anchors=flat(frames[i]), settings=settings,

@@ -15,23 +15,23 @@ from hookean.sheet import Graph, Panel
 def run(folder: Path) -> Outcome:
     scenes = {
         name: read_scene(folder / "model.3dm", folder / f"{recipe}.toml")
-        for name, recipe in (("net", "recipe"), ("film", "recipe-film"), ("coarse", "recipe-film-coarse"))
+        for name, recipe in (("net", "recipe"), ("film", "recipe-film"), ("fine", "recipe-film-fine"))
     }
-    net, film, coarse = (relax(scene) for scene in scenes.values())
+    net, film, fine = (relax(scene) for scene in scenes.values())
     x, y, z = net.particles.T
     net_area = without_error(area(net), area(net, every=2))
-    film_area = without_error(area(film), area(coarse))
+    film_area = without_error(area(fine), area(film))
     numbers = {
         "net: farthest from z = x y": np.abs(z - x * y).max(),
         "net: area": net_area,
         "film: area": film_area,
         "excess of the net's area": 100.0 * (net_area / film_area - 1.0),
         "net: height over (0.5, 0.5)": height(net, 0.5),
-        "film: height over (0.5, 0.5)": without_error(height(film, 0.5), height(coarse, 0.5)),
+        "film: height over (0.5, 0.5)": without_error(height(fine, 0.5), height(film, 0.5)),
         "film: area of its 32 x 32 faces": area(film),
     }
     along = np.linspace(-1.0, 1.0, 101)
-    below = 1000.0 * (height(net, along) - without_error(height(film, along), height(coarse, along)))
+    below = 1000.0 * (height(net, along) - without_error(height(fine, along), height(film, along)))
     graph = Graph(
         "Film below net, over x = y", "x = y [m]", "net - film [mm]", {"difference in height": (along, below)}
     )

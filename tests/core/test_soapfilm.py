@@ -1,61 +1,36 @@
-"""Soap films: minimal surfaces with known areas and heights, collapse, yarns, and what holds the vertices in place."""
+"""Soap films in held rims: minimal surfaces with known areas and heights, from any start; energy and yarns."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from itertools import pairwise
-from typing import Any
+import os
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import RectBivariateSpline
-from scipy.optimize import fsolve
+from scipy.optimize import brentq, fsolve
 
 from hookean import Scene, relax
 from hookean.forces import SoapFilm
-from hookean.forces.soapfilm import halves, shapes
 from hookean.result import Result, Status
 from hookean.system import compile
 
-Heights = Callable[[np.ndarray, np.ndarray], np.ndarray]
+from .film_meshes import Heights, area, disc, film, inside, patch, scene, slopes, square, thinnest, tube
+
 SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)
 EPS = float(np.finfo(float).eps)
+SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 
 
-def film(x: np.ndarray, faces: np.ndarray, rim: Any, tolerance: float = 1e-10, **more: Any) -> Result:
-    """A film relaxed by the default solver, its rim held."""
-    scene = Scene(
-        particles=x, meshes={"skin": {"vertices": x, "faces": faces}}, forces=[SoapFilm(mesh="skin", **more)],
-        anchors=[{"particles": rim}], settings={"tolerance": tolerance, "position_tolerance": None},
-    )  # fmt: skip
-    return relax(scene)
+def scherk(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Scherk's first surface, 1835."""
+    return np.asarray(np.log(np.cos(y) / np.cos(x)))
 
 
-def cut(quads: np.ndarray, kind: str) -> np.ndarray:
-    """Quads, or triangles along one diagonal."""
-    return quads if kind == "quads" else np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-
-
-def square(n: int, height: Heights, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """n x n faces over [-1, 1]^2, and the rim."""
-    t = np.linspace(-1, 1, n + 1)
-    u, v = np.meshgrid(t, t, indexing="ij")
-    x = np.stack([u, v, height(u, v)], axis=-1).reshape(-1, 3)
-    number = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-    quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
-    return x, cut(quads, kind), np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
-
-
-def tube(n: int, m: int, height: float, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A tube of radius 1 between two rings, n faces around and m high, and the rings."""
-    number = np.arange(n * (m + 1)).reshape(m + 1, n)
-    turn, level = np.meshgrid(2 * np.pi * np.arange(n) / n, height * (np.arange(m + 1) / m - 0.5))
-    x = np.stack([np.cos(turn), np.sin(turn), level], axis=-1).reshape(-1, 3)
-    after = np.roll(number, -1, axis=1)
-    quads = np.stack([number[:-1], after[:-1], after[1:], number[1:]], axis=-1).reshape(-1, 4)
-    return x, cut(quads, kind), np.concatenate([number[0], number[-1]])
+def off_scherk(x: np.ndarray) -> float:
+    """The largest height of particles over Scherk's surface."""
+    return float(np.abs(x[:, 2] - scherk(x[:, 0], x[:, 1])).max())
 
 
 def height_at(x: np.ndarray, n: int, spot: tuple[float, float]) -> float:
@@ -67,45 +42,107 @@ def height_at(x: np.ndarray, n: int, spot: tuple[float, float]) -> float:
     return float(splines[2].ev(*at))
 
 
-def slopes(errors: list[float]) -> np.ndarray:
-    """Orders of convergence of errors at h, h/2, h/4."""
-    return np.log2(np.abs(np.array(errors[:-1])) / np.abs(np.array(errors[1:])))
-
-
-def area(result: Result) -> float:
+def reported_area(result: Result) -> float:
     return float(result.force("soapfilm")["area"].sum())
 
 
+def neck(half: float) -> float:
+    """The radius a of the stable catenoid r = a cosh(z / a) between rings of radius 1 at heights +-half. Euler 1744."""
+    # cosh(u) / u is least at u = 1.1996786, where the stable and the unstable one meet
+    return float(half / brentq(lambda u: np.cosh(u) / u - 1.0 / half, 1e-3, 1.19967864))
+
+
+@pytest.mark.parametrize("kind", ["quads", "triangles"])
+def test_scherks_surface_from_a_flat_start(kind: str) -> None:
+    """The rim is drawn, all else flat below it: errors of all vertices fall with order 2 (+- 0.15 from n = 20 on).
+
+    Flat triangles of side h miss a surface of curvature k by k h^2 / 8 = 2e-3 for n = 20; the vertices are nearer.
+    """
+    errors = []
+    for n in (10, 20, 40, *([80, 160] if SOAK or kind == "triangles" else [])):
+        x, faces, rim = square(n, scherk, kind)
+        x[inside(x, rim), 2] = 0.0
+        result = film(x, faces, rim)
+        assert result.solver == "auto: film" and thinnest(result.particles, faces) > 0.15
+        assert reported_area(result) == pytest.approx(area(result.particles, faces), rel=1e-13)
+        errors.append(off_scherk(result.particles))
+    assert slopes(errors)[1:] == pytest.approx(np.full(len(errors) - 2, 2.0), abs=0.15)
+    assert slopes(errors)[0] > 1.7 and errors[1] <= 2.5e-4
+
+
+@pytest.mark.parametrize("start", ["flat", "waves", "noise", "a point"])
+@pytest.mark.parametrize("power", [1.0, 3.0])
+def test_any_start_and_any_grading(power: float, start: str) -> None:
+    """Faces of equal sides, or of 0.5 down to 0.001 for n = 20; vertices drawn anywhere: the same film, order 2.
+
+    A rate above 1.7 from n = 10 to 40, on which the mesh of so steep a grading is no family of similar ones.
+    """
+    rng, errors = np.random.default_rng(3), []
+    for n in (10, 40):
+        x, faces, rim = square(n, scherk, "triangles", power)
+        free = inside(x, rim)
+        if start == "waves":
+            x[free, 2] += 0.1 * np.cos(1.5 * np.pi * x[free, 0]) * np.cos(0.5 * np.pi * x[free, 1])
+        elif start == "noise":
+            x[free] += rng.uniform(-0.5, 0.5, (len(free), 3))
+        else:
+            x[free] *= [1.0, 1.0, 0.0] if start == "flat" else 1e-3
+        errors.append(off_scherk(film(x, faces, rim).particles))
+    assert slopes(errors)[0] / 2.0 > 1.7
+    assert errors[1] <= (1e-4 if power == 1.0 else 6e-4)
+
+
+@pytest.mark.parametrize("n", [16, 32, 64, 128])
+def test_a_flat_disc_on_a_polar_mesh_is_flat(n: int) -> None:
+    """Needles at the centre, 20 to 1 for n = 128: flat as drawn, and flat again from heights up to half the radius."""
+    x, faces, rim = disc(n, n // 2)
+    assert np.array_equal(film(x, faces, rim).particles, x)
+    x[inside(x, rim), 2] += np.random.default_rng(n).uniform(-0.5, 0.5, len(x) - n)
+    result = film(x, faces, rim)
+    assert np.abs(result.particles[:, 2]).max() <= 1e-12
+    # of a regular polygon of n sides
+    assert reported_area(result) == pytest.approx(0.5 * n * np.sin(2 * np.pi / n), rel=1e-12)
+
+
+def test_films_of_many_bays_are_as_good_as_one() -> None:
+    """A row of bays between straight arches: the same film in each, to rounding, whatever the area of all."""
+    areas, n = [], 8
+    for bays in (1, 40):
+        u, v = np.meshgrid(np.linspace(0, bays, bays * n + 1), np.linspace(0, 1, n + 1), indexing="ij")
+        fold = np.abs((u + 1) % 2 - 1)
+        x = np.stack([u, v, fold * v + (1 - fold) * (1 - v)], axis=-1).reshape(-1, 3)
+        number = np.arange(len(x)).reshape(u.shape)
+        rim = np.unique(np.concatenate([number[:, 0], number[:, -1], number[::n].ravel()]))
+        x[inside(x, rim), 2] = 0.5
+        areas.append(reported_area(film(x, patch(number), rim)) / bays)
+    assert areas[1] == pytest.approx(areas[0], rel=1e-12)
+
+
 SURFACES: dict[str, tuple[Heights, float, tuple[float, float], float]] = {
-    "Scherk": (lambda x, y: np.log(np.cos(y) / np.cos(x)), 5.697512212, (0.5, 0.0), 0.130584240),
-    "hypar frame": (lambda x, y: x * y, 5.117046, (0.5, 0.5), 0.223580),
+    "Scherk": (scherk, 5.697512212, (0.5, 0.0), 0.130584240),
+    "hypar frame": (lambda x, y: x * y, 5.117046285, (0.5, 0.5), 0.223580),
 }
 
 
 @pytest.mark.parametrize("kind", ["quads", "triangles"])
 @pytest.mark.parametrize("name", SURFACES)
 def test_minimal_surfaces_on_a_square(name: str, kind: str) -> None:
-    """Area and height of the film, order 2 (+- 0.15): Scherk 1835; the hypar frame by series (six digits).
+    """Area and height of the film, order 2: Scherk 1835; the hypar frame, a piece of Schwarz's D surface, 1865.
 
-    Started from a shape with waves in it. The default solver balances to 1e-10. On the hypar cut along one diagonal the
-    height over that diagonal converges faster than the area, to the last digit of the source.
+    Drawn with waves in it. Rates to 0.15, of the heights to 0.2, as vertices of a mesh are not those of a finer one.
     """
     surface, right_area, spot, right_height = SURFACES[name]
     areas, heights = [], []
     for n in (8, 16, 32):
-        x, faces, rim = square(
-            n, lambda u, v: surface(u, v) + 0.1 * np.cos(1.5 * np.pi * u) * np.cos(0.5 * np.pi * v), kind
-        )
-        x[rim, 2] = surface(x[rim, 0], x[rim, 1])
+        x, faces, rim = square(n, surface, kind)
+        free = inside(x, rim)
+        x[free, 2] += 0.1 * np.cos(1.5 * np.pi * x[free, 0]) * np.cos(0.5 * np.pi * x[free, 1])
         result = film(x, faces, rim)
-        assert result.converged and result.residual <= 1e-10
-        areas.append(area(result) - right_area)
+        assert result.residual <= 1e-10
+        areas.append(area(result.particles, faces) - right_area)
         heights.append(height_at(result.particles, n, spot) - right_height)
     assert slopes(areas) == pytest.approx([2, 2], abs=0.15)
-    if (name, kind) == ("hypar frame", "triangles"):
-        assert slopes(heights)[-1] > 2 and abs(heights[-1]) <= 2e-6
-    else:
-        assert slopes(heights)[-1] == pytest.approx(2, abs=0.15)
+    assert slopes(heights)[-1] == pytest.approx(2, abs=0.2)
     assert abs(areas[-1]) <= 2e-3 and abs(heights[-1]) <= 1e-3
 
 
@@ -114,87 +151,74 @@ def test_the_catenoid(kind: str) -> None:
     """R 1, h 1: waist 0.84833794, area 5.99179698, order 2 (+- 0.15). Source: Euler 1744."""
     areas, waists = [], []
     for n in (16, 32, 64):
-        result = film(*tube(n, n // 2, 1.0, kind))
-        assert result.converged and result.residual <= 1e-10
+        x, faces, rim = tube(n, n // 2, 0.5, kind)
+        result = film(x, faces, rim)
         ring = result.particles.reshape(-1, n, 3)[n // 4, :, :2]
-        areas.append(area(result) - 5.99179698)
+        areas.append(area(result.particles, faces) - 5.99179698)
         waists.append(np.linalg.norm(ring, axis=1).mean() - 0.84833794)
     assert slopes(areas) == pytest.approx([2, 2], abs=0.15) and slopes(waists) == pytest.approx([2, 2], abs=0.15)
     assert abs(areas[-1]) <= 3e-3 and abs(waists[-1]) <= 5e-4
 
 
-@pytest.mark.parametrize("kind", ["quads", "triangles"])
-@pytest.mark.parametrize("height", [1.4, 2.5])
-def test_rings_too_far_apart(height: float, kind: str) -> None:
-    """Beyond h/R = 1.3254868387 there is no catenoid (Goldschmidt 1831): that is told."""
-    result = film(*tube(32, 20, height, kind))
-    assert result.status is Status.DIVERGED and not result.converged
-    assert result.message.startswith("Collapsed after") and "/forces/0: the film has collapsed" in result.message
-    assert "bring the edges nearer" in result.message
-    assert np.isfinite(result.particles).all() and np.abs(result.particles).max() <= 1.5
-    assert film(*tube(32, 20, 1.29, kind), tolerance=1e-8).converged
+def ring_radius(n: int, half: float, start: str) -> float:
+    """The mean radius of the middle ring of a quarter of a catenoid of n faces around, between planes of symmetry."""
+    m = 2 * round(n * half / np.pi)
+    u, v = np.meshgrid(np.linspace(-1, 1, m + 1), 0.5 * np.pi * np.arange(n // 4 + 1) / (n // 4), indexing="ij")
+    r = 1.0 if start == "cylinder" else neck(half) * np.cosh(half * u / neck(half))
+    x = np.stack([r * np.cos(v), r * np.sin(v), half * u], axis=-1)
+    x[:, -1, 0] = 0.0
+    number = np.arange(u.size).reshape(u.shape)
+    sides = [{"particles": number[:, 0], "axes": "y"}, {"particles": number[:, -1], "axes": "x"}]
+    result = film(x.reshape(-1, 3), patch(number), np.concatenate([number[0], number[-1]]), anchors=sides)
+    return float(np.linalg.norm(result.particles[number[m // 2], :2], axis=1).mean())
 
 
-def test_without_evenness_vertices_slide() -> None:
-    """The area alone leaves vertices free to slide within the film: on the hypar they fold over, and none converges.
+@pytest.mark.parametrize(
+    ("half", "start"), [(0.60, "cylinder"), (0.65, "cylinder"), (0.66, "cylinder"), (0.6625, "catenoid")]
+)
+def test_catenoids_near_the_last_one(half: float, start: str) -> None:
+    """Rings up to 0.04 % nearer than where none spans them, h/R = 0.6627434: necks to order 2 (+- 0.3).
 
-    With evenness the same mesh stays as it is: no triangle loses more than a third of its proportions.
+    Only just below that the neck of a mesh is off by some C / n^2 / sqrt(0.66274 - h), so finer meshes are taken.
     """
-    x, faces, rim = square(16, lambda u, v: u * v, "triangles")
-    corners = halves(np.column_stack([faces, faces[:, 2]]))[0]
-    thin = {}
-    for evenness in (0.0, 4.0):
-        result = film(x, faces, rim, tolerance=1e-8, evenness=evenness)
-        thin[evenness] = (shapes(result.particles, corners)[1].sum(axis=1) / shapes(x, corners)[1].sum(axis=1)).max()
-        assert result.converged == (evenness > 0)
-    assert thin[4.0] < 1.5 and thin[0.0] > 10.0
+    sizes = (48, 96) if half <= 0.66 else (192, 384)
+    errors = [ring_radius(n, half, start) - neck(half) for n in sizes]
+    assert slopes(errors) == pytest.approx([2], abs=0.3) and abs(errors[-1]) <= 2e-3
+
+
+@pytest.mark.parametrize("solver", ["auto", "relaxation"])
+@pytest.mark.parametrize("half", [0.7, 1.25])
+def test_rings_too_far_apart(half: float, solver: str) -> None:
+    """Beyond h/R = 0.6627434 no catenoid is left (Goldschmidt 1831): reported, with the last good shape.
+
+    That has no more area than the tube it began with, stays within its rings, and no triangle is a needle of 200 to 1.
+    """
+    for n, m, kind in ((32, 20, "quads"), (64, 28, "triangles")):
+        x, faces, rim = tube(n, m, half, kind)
+        result = relax(scene(x, faces, rim, settings={"solver": solver}))
+        assert result.status is Status.DIVERGED and not result.converged
+        assert result.message.startswith("Collapsed after") and "/forces/0: the film has collapsed" in result.message
+        assert "bring the edges nearer" in result.message
+        y = result.particles
+        assert area(y, faces) <= area(x, faces) and thinnest(y, faces) > 0.005
+        assert np.linalg.norm(y[:, :2], axis=1).max() <= 1.0 + 1e-12 and np.abs(y[:, 2]).max() <= half
+    x, faces, rim = tube(32, 20, 0.645, "quads")
+    assert relax(scene(x, faces, rim, tolerance=1e-8, settings={"solver": solver})).converged
 
 
 @SEEDED
 @given(st.integers(0, 2**32 - 1))
 def test_the_energy_is_tension_times_area(seed: int) -> None:
-    """At the start, and whatever the shape with evenness 0: E = T A, quads as the mean of both cuts."""
+    """Whatever the shape and the evenness: E = T A, quads as the mean of both cuts."""
     rng = np.random.default_rng(seed)
-    x = rng.normal(size=(5, 3))
+    x, y = rng.normal(size=(2, 5, 3))
     faces = [[0, 1, 2, 3], [1, 2, 4, 4]]
-
-    def half(p: int, q: int, r: int, y: np.ndarray) -> float:
-        return 0.5 * float(np.linalg.norm(np.cross(y[q] - y[p], y[r] - y[p])))
-
-    def whole(y: np.ndarray) -> float:
-        cuts = (half(0, 1, 2, y), half(0, 2, 3, y), half(0, 1, 3, y), half(1, 2, 3, y))
-        return 0.5 * sum(cuts) + half(1, 2, 4, y)
-
-    for evenness, y in ((4.0, x), (0.0, rng.normal(size=(5, 3)))):
-        force = SoapFilm(mesh="m", tension=3.0, evenness=evenness)
-        system = compile(Scene(particles=x, meshes={"m": {"vertices": x, "faces": faces}}, forces=[force]))
-        state = system.start()
-        state.x = y
-        assert system.evaluate(state)[2].sum() == pytest.approx(3.0 * whole(y), rel=1e-12)
-
-
-def test_newton_ends_quadratically() -> None:
-    """From a shape near the film: each Newton step leaves at most 100 times the square of the last imbalance."""
-    from hookean.solvers import solver
-
-    x, faces, rim = square(8, SURFACES["hypar frame"][0], "quads")
-    near = film(x, faces, rim, tolerance=1e-4)
-    scene = Scene(
-        particles=x, meshes={"m": {"vertices": x, "faces": faces}}, forces=[SoapFilm(mesh="m")],
-        anchors=[{"particles": rim}], settings={"solver": "newton"},
-    )  # fmt: skip
-    system = compile(scene)
+    force = SoapFilm(mesh="m", tension=3.0, evenness=rng.uniform(0.0, 2.0))
+    system = compile(Scene(particles=x, meshes={"m": {"vertices": x, "faces": faces}}, forces=[force]))
     state = system.start()
-    state.x = near.particles.copy()
-    method = solver("newton")
-    method.start(system, state)
-    state.scratch["shift"][0] = 0.0
-    left = [np.abs(system.evaluate(state)[0] * state.free).max()]
-    while left[-1] > 1e-14 and len(left) < 8:
-        method.advance(system, state, 1, 0.0)
-        left.append(np.abs(system.evaluate(state)[0] * state.free).max())
-    assert left[0] > 1e-7 and left[-1] <= 1e-14
-    assert all(b <= 100.0 * a * a + 1e-14 for a, b in pairwise(left))
+    for shape in (x, y):
+        state.x = shape
+        assert system.evaluate(state)[2].sum() == pytest.approx(3.0 * area(shape, faces), rel=1e-12)
 
 
 def test_yarns_pull_with_a_constant_force_per_start_width() -> None:
@@ -212,18 +236,42 @@ def test_yarns_pull_with_a_constant_force_per_start_width() -> None:
             assert f[[2, 3], 1].sum() == pytest.approx(-21.0, rel=1e-14)
 
 
-def test_unequal_yarns_make_a_hypar_of_the_force_density_kind() -> None:
-    """Yarns alone over a square, heights free: E = integral of warp |x_u| + weft |x_v|; a plane rim stays plane."""
-    x, faces, rim = square(6, lambda u, v: 0.3 * np.cos(0.5 * np.pi * u) * np.cos(0.5 * np.pi * v), "quads")
-    result = film(x, faces, rim, tension=0.0, warp=2.0, weft=1.0)
-    assert result.converged and np.abs(result.particles[:, 2]).max() <= 1e-8
+@pytest.mark.parametrize(("warp", "weft"), [(2.0, 1.0), (1.0, 7.0)])
+def test_yarns_alone_make_a_hypar(warp: float, weft: float) -> None:
+    """Drawn flat, its rim raised to z = x y, where all yarns are straight: at rest, whatever they pull."""
+    x, faces, rim = square(9, lambda u, v: 0.0 * u, "quads")
+    raised = np.column_stack([x[rim, :2], x[rim, 0] * x[rim, 1]])
+    result = film(x, faces, [], anchors=[{"particles": rim, "targets": raised}], tension=0.0, warp=warp, weft=weft)
+    assert np.abs(result.particles[:, 2] - x[:, 0] * x[:, 1]).max() <= 1e-12
 
 
-def test_faces_without_area_are_left_out() -> None:
-    """A doubled corner and three points in a row add nothing; the rest is as without them."""
+def test_yarns_along_a_tube_of_film() -> None:
+    """Film T, yarns along W per angle: (T + W / r) r'' / (1 + r'^2) = T / r x (r + W / T) / (r + W / T), a catenoid.
+
+    With s = r + W / T that is s'' s = 1 + s'^2, so s = a cosh(z / a), a from s = 1 + W / T at the rings. Order 2.
+    """
+    tension, pull, half, errors = 2.0, 3.0, 0.5, []
+    shift = pull / tension
+    right = brentq(lambda a: a * np.cosh(half / a) - 1.0 - shift, 1.0, 1.0 + shift) - shift
+    for n in (16, 32, 64):
+        x, faces, rim = tube(n, n // 4 * 2, half, "quads")
+        # the first edge of each face runs around, so the weft runs along; of flat faces W is 2 sin(pi / n) wide
+        result = film(x, faces, rim, tension=tension, weft=pull)
+        errors.append(np.linalg.norm(result.particles.reshape(-1, n, 3)[n // 4, :, :2], axis=1).mean() - right)
+    assert slopes(errors) == pytest.approx([2, 2], abs=0.15) and abs(errors[-1]) <= 1e-3
+
+
+def test_repeated_corners_are_left_out_and_faces_without_area_are_film() -> None:
+    """A face of two corners is none; three points in a row are one that pulls as soon as it has area."""
     x = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0.0]])
-    force = SoapFilm(mesh="m")
-    meshes = {"m": {"vertices": x, "faces": [[0, 1, 2], [0, 0, 3], [0, 2, 3]]}}
+    force = SoapFilm(mesh="m", warp=1.0)
+    meshes = {"m": {"vertices": x, "faces": [[0, 1, 2], [0, 0, 3], [0, 0, 2, 3]]}}
     system = compile(Scene(particles=x, meshes=meshes, forces=[force]))
-    assert len(system.groups[0].block.indices) == 1
-    assert system.evaluate(system.start())[2].sum() == pytest.approx(1.0, rel=4 * EPS)
+    assert system.groups[0].block.indices.tolist() == [[0, 1, 2], [2, 3, 0]]
+    state = system.start()
+    f, w, energies = system.evaluate(state)
+    assert np.isfinite(f).all() and np.isfinite(w).all() and not f[1].any()
+    # T + warp, 1 each: area 1 of the second face, along whose first edge the warp runs
+    assert energies.sum() == pytest.approx(2.0, rel=4 * EPS)
+    state.x[1, 2] = 0.5
+    assert system.evaluate(state)[0][1, 2] == pytest.approx(-1.0, rel=1e-12)

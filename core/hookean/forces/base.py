@@ -17,6 +17,12 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+OnFilm = Literal["whole", "across", "spread", "curve"]
+"""Which part of a force counts at a particle of a soap film (see `hookean.films`): all of it; what is across the film;
+the same if it acts on whole faces of the film, what is across a line of particles, or all of it at single ones (loads,
+pulls to surfaces); and what is across a line of particles that are pulled to a curve and slide along it."""
+
+
 def lengths(vectors: Floats) -> Floats:
     """Length of each row (n, 3); ten times as fast as the norm along an axis."""
     x, y, z = vectors.T
@@ -101,7 +107,8 @@ class Force(Model):
     everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
     shared: ClassVar[tuple[str, ...]] = ()  # columns of the force as a whole, not one row for each element
-    collapses: ClassVar[bool] = False  # `collapsed` is asked at every look at a run
+    is_film: ClassVar[bool] = False  # has no stiffness along itself
+    on_film: ClassVar[OnFilm] = "whole"
     # columns of a result with their unit: length, force, moment, angle or none
     outputs: ClassVar[dict[str, str]] = {}
 
@@ -178,13 +185,6 @@ class Force(Model):
         `element_forces` (m, arity, 3): the force each element puts on each of its particles.
         """
         return {}
-
-    def collapsed(self, block: Block, x: Floats) -> str:
-        """What has happened to a shape that is none any more (a film pinched off), as a sentence; empty if it is one.
-
-        Asked where the class declares `collapses`; the run then ends as diverged with this sentence.
-        """
-        return ""
 
     @classmethod
     def example(cls) -> tuple[Force, Floats]:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.fields import Field
-from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places
 from hookean.forces.soapfilm import halves
 
 
@@ -81,6 +81,7 @@ class Pressure(Force):
     conservative: ClassVar[bool] = False
     creates: ClassVar[bool] = False
     arity: ClassVar[int] = 3
+    on_film: ClassVar[OnFilm] = "across"
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(pressure_kernel)
     hessian: ClassVar[Any] = staticmethod(pressure_hessian)

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from hookean.columns import IndexRows, NonNegatives, Points, fault
 from hookean.fields import Field, Maybe
-from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places
 from hookean.forces.pull_to_mesh import away, pull_hessian, pull_kernel, pulls, tree
 
 
@@ -37,6 +37,7 @@ class PullToCurve(Force):
     creates: ClassVar[bool] = False
     steady: ClassVar[str] = "strength"
     shared: ClassVar[tuple[str, ...]] = ("curve",)
+    on_film: ClassVar[OnFilm] = "curve"
     outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_hessian)

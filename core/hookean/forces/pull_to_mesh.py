@@ -10,7 +10,7 @@ from pydantic import model_validator
 from hookean.columns import Faces, IndexRows, NonNegatives, Points, fault
 from hookean.errors import InputError
 from hookean.fields import Field, Maybe
-from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places
 from hookean.kernels import device, keep, rows
 
 WIDTH = 10  # columns of a tree's table
@@ -197,6 +197,7 @@ class PullToMesh(Force):
     creates: ClassVar[bool] = False
     steady: ClassVar[str] = "strength"
     shared: ClassVar[tuple[str, ...]] = ("vertices", "faces")
+    on_film: ClassVar[OnFilm] = "spread"
     outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_hessian)

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from hookean.columns import IndexRows, Lines, Points, Reals, Vector, fault
 from hookean.fields import Field, Maybe
-from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places
 from hookean.forces.unary import unary_kernel
 
 
@@ -38,6 +38,7 @@ class SelfWeight(Force):
     creates: ClassVar[bool] = False
     constant: ClassVar[bool] = True
     everywhere: ClassVar[bool] = True
+    on_film: ClassVar[OnFilm] = "spread"
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(unary_kernel)
 

@@ -6,14 +6,14 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from hookean import kernels
 from hookean.fields import Field
-from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places
 from hookean.kernels import device
 
 SLIVER = 1e-8
 """Triangles lower than this part of their size have no plane to speak of, and no film force."""
-NEEDLE = 1e-4  # a film whose triangles become so much thinner than they were has collapsed
-TENSION, YARNS, SHARE, THREADS, EVEN, START = 0, 1, 3, 4, 10, 11  # columns of the parameters
+TENSION, YARNS, SHARE, THREADS, EVEN = 0, 1, 3, 4, 10  # columns of the parameters
 
 
 @device
@@ -76,8 +76,6 @@ def soapfilm_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no
     for e in range(indices.shape[0]):
         double = plane(x, indices, e, g, n)
         tension = parameters[e, TENSION] * parameters[e, SHARE]
-        even = tension * parameters[e, EVEN]
-        tension -= even
         energy += 0.5 * tension * double
         flat = n[0] != 0.0 or n[1] != 0.0 or n[2] != 0.0
         for i in range(3):
@@ -86,20 +84,10 @@ def soapfilm_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no
             f[a, 0] -= 0.5 * tension * (n[1] * g[i, 2] - n[2] * g[i, 1])
             f[a, 1] -= 0.5 * tension * (n[2] * g[i, 0] - n[0] * g[i, 2])
             f[a, 2] -= 0.5 * tension * (n[0] * g[i, 1] - n[1] * g[i, 0])
-            # the opposite edge as a spring of rest length 0
-            k = 0.5 * even * parameters[e, START + i]
-            p = indices[e, (i + 1) % 3]
-            q = indices[e, (i + 2) % 3]
-            dots = 0.0
-            for c in range(3):
-                energy += 0.5 * k * g[i, c] * g[i, c]
-                f[p, c] += k * g[i, c]
-                f[q, c] -= k * g[i, c]
-            for j in range(3):
-                dots += np.abs(g[i, 0] * g[j, 0] + g[i, 1] * g[j, 1] + g[i, 2] * g[j, 2])
-            w[p] += 2.0 * np.abs(k)
-            w[q] += 2.0 * np.abs(k)
             if flat:
+                dots = 0.0
+                for j in range(3):
+                    dots += np.abs(g[i, 0] * g[j, 0] + g[i, 1] * g[j, 1] + g[i, 2] * g[j, 2])
                 # across the film cotangents, within it the constant second derivatives of an area
                 w[a] += tension * max(0.5 * dots / double, 0.8660254037844387)
         energy += pull_yarns(x, indices, parameters, e, f, w, d)
@@ -107,17 +95,8 @@ def soapfilm_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no
 
 
 @device
-def film_block(block, tension, even, start, e, g, n, double) -> Any:  # type: ignore[no-untyped-def]
-    # second derivatives of tension A + even D, as 3 x 3 blocks by corners
-    for i in range(3):
-        k = 0.5 * even * start[e, START + i]
-        p = 3 * ((i + 1) % 3)
-        q = 3 * ((i + 2) % 3)
-        for c in range(3):
-            block[p + c, p + c] += k
-            block[q + c, q + c] += k
-            block[p + c, q + c] -= k
-            block[q + c, p + c] -= k
+def film_block(block, tension, g, n, double) -> Any:  # type: ignore[no-untyped-def]
+    # second derivatives of tension A, as 3 x 3 blocks by corners
     if n[0] == 0.0 and n[1] == 0.0 and n[2] == 0.0:
         return
     for i in range(3):
@@ -145,9 +124,7 @@ def soapfilm_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no
         block = blocks[e]
         block[:] = 0.0
         double = plane(x, indices, e, g, n)
-        tension = parameters[e, TENSION] * parameters[e, SHARE]
-        even = tension * parameters[e, EVEN]
-        film_block(block, tension - even, even, parameters, e, g, n, double)
+        film_block(block, parameters[e, TENSION] * parameters[e, SHARE], g, n, double)
         for family in range(2):
             pull = parameters[e, YARNS + family] * parameters[e, SHARE]
             length = thread(x, indices, parameters, e, family, d)
@@ -168,48 +145,55 @@ class SoapFilm(Force):
     """A film of constant tension T on a mesh: E = T A, whose equilibria are minimal surfaces.
 
     A is the sum of the triangles' areas; a quad is the mean of its two cuts into triangles, so neither diagonal is
-    special. The area does not tell where within the film a vertex lies, and the vertices of an area alone slide until
-    triangles fold over. So every triangle has the small part s of its energy from D instead of A,
-    E = T ((1 - s) A + s D), where D = sum(cot(a0) l^2) / 4 >= A, with equality where the triangle is similar to its
-    start shape (angles a0, opposite edges l). s = evenness x start area / start area of the whole film, at most 1/2:
-    it vanishes like h^2 as the mesh gets finer, like the error of flat triangles. Evenness 0 is the area alone.
+    special. The area does not depend on where in the film a vertex lies, so a film has no stiffness along itself, and
+    its equilibrium is that across it. The part along the film does not count at vertices on which films act alone, with
+    pressure, or with loads on whole faces; nor, at the edge of a film that is pulled to a curve, the part along the
+    edge, for sliding there does not change the film. At vertices of springs and other forces, all of it counts. An edge
+    that nothing holds draws back: such a film has no equilibrium. Nor has one between rings too far apart, or under too
+    large a load on a single vertex; the run then ends as diverged, with its last good shape.
+
+    Vertices stay evenly spread, whatever they were when drawn: the solver `auto` fills a rim by one linear solve, and
+    steps in time and of relaxation pull them along the film, with `evenness` as part of T. The film's shape does not
+    depend on it but for the error of flat triangles, of the order h^2.
 
     Warp and weft are yarns that run with the material, warp along each face's first edge at the start, weft across:
     they pull with a constant force per start width, E = A0 (warp |du| + weft |dv|), |du| their stretch. (A constant
-    force per present width in two directions has no energy.) A film that has no equilibrium, such as between rings
-    too far apart, collapses, and the run says so. The mesh's faces without area at the start are left out.
+    force per present width in two directions has no energy.) Yarns of constant force cannot balance each other along
+    the film unless both run straight in it, so of them, too, only what is across the film counts; the cloth bears the
+    rest.
 
-    Sources: Pinkall and Polthier, "Computing discrete minimal surfaces and their conjugates", 1993 (A, D and their
-    gradients); Bletzinger and Ramm, "A general finite element approach to the form finding of tensile structures by
-    the updated reference strategy", 1999 (the mixture).
+    Sources: Pinkall and Polthier, "Computing discrete minimal surfaces and their conjugates", 1993 (the gradient);
+    Dziuk and Hutchinson, "The discrete Plateau problem", 1999 (the order of the error).
     """
 
     kind: Literal["soapfilm"] = "soapfilm"
     mesh: str = Field(description="Name of the mesh that is the film")
     tension: float = Field(default=1.0, ge=0, le=1e12, description="T, the same in every direction [force/length]")
     evenness: float = Field(
-        default=4.0, ge=0, le=1e12, description="How strongly triangles keep their start proportions [-]; 0: not at all"
+        default=1.0,
+        ge=0,
+        le=1e12,
+        description="How strongly vertices spread along a film, of T; at most 1 counts [-]",
     )
     warp: float = Field(default=0.0, ge=0, le=1e12, description="Pull of the warp yarns per start width [force/length]")
     weft: float = Field(default=0.0, ge=0, le=1e12, description="Pull of the weft yarns per start width [force/length]")
 
     formula: ClassVar[str] = "E = T A"
     arity: ClassVar[int] = 3
-    collapses: ClassVar[bool] = True
+    is_film: ClassVar[bool] = True
+    on_film: ClassVar[OnFilm] = "across"
     outputs: ClassVar[dict[str, str]] = {"area": "length^2"}
     kernel: ClassVar[Any] = staticmethod(soapfilm_kernel)
     hessian: ClassVar[Any] = staticmethod(soapfilm_hessian)
     example_faces: ClassVar[list[list[int]]] = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: T, warp, weft, share, yarns by corners, s, start cotangents."""
-        faces = places.faces(self.mesh)
+        """Arrays for the kernel: T, warp, weft, share, yarns by corners, evenness."""
+        from hookean.discretize.meshes import tidy_faces
+
+        faces = tidy_faces(places.faces(self.mesh))
         corners, share, face = halves(faces)
-        area, cotangents = shapes(places.x, corners)
-        fine = area > 0
-        corners, face, share, area, cotangents = corners[fine], face[fine], share[fine], area[fine], cotangents[fine]
         first = places.x[faces[face, 1]] - places.x[faces[face, 0]]
-        whole = float((share * area).sum())
         return Block.of(
             corners,
             tension=self.tension,
@@ -217,28 +201,12 @@ class SoapFilm(Force):
             weft=self.weft,
             share=share,
             threads=yarns(places.x, corners, first),
-            evenness=np.minimum(0.5, self.evenness * (area / (whole or 1.0))),
-            start=cotangents,
+            evenness=self.evenness,
         )
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Area of the film by triangles [length^2], halved where a quad is cut in two ways: the sum is A."""
         return {"area": block.parameters[:, SHARE] * shapes(x, block.indices)[0]}
-
-    def collapsed(self, block: Block, x: Floats) -> str:
-        """A sentence once triangles have become needles: nothing spans the rims any more."""
-        start = block.parameters[:, START : START + 3].sum(axis=1)
-        now = shapes(x, block.indices)[1].sum(axis=1)
-        # the sum of cotangents is edges squared over 4 areas: how thin a triangle is
-        thin = ~(now * NEEDLE < start)
-        if not thin.any():
-            return ""
-        a, b, c = block.indices[int(np.argmax(thin))]
-        return (
-            f"the film has collapsed: {int(thin.sum())} of {len(thin)} triangles have shrunk to needles, the first at "
-            f"particles {a}, {b} and {c}. No film spans these edges from this start; bring the edges nearer to each "
-            "other, or hold the film in between"
-        )
 
     @classmethod
     def example(cls) -> tuple[SoapFilm, Floats]:
@@ -259,21 +227,34 @@ def halves(faces: Ints) -> tuple[Ints, Floats, Ints]:
 
 
 def shapes(x: Floats, corners: Ints) -> tuple[Floats, Floats]:
-    """Areas (m,) and cotangents of the angles (m, 3) of triangles; slivers have area 0 and infinite cotangents."""
-    sides = [x[corners[:, (i + 2) % 3]] - x[corners[:, (i + 1) % 3]] for i in range(3)]
-    double = np.linalg.norm(np.cross(sides[0], sides[1]), axis=1)
-    size = sum((s**2).sum(axis=1) for s in sides)
-    fine = (double > SLIVER * size) & (size > 1e-140)
-    dots = np.stack([-(sides[(i + 1) % 3] * sides[(i + 2) % 3]).sum(axis=1) for i in range(3)], axis=1)
-    cotangents = np.where(fine[:, None], dots / np.where(fine, double, 1.0)[:, None], np.inf)
-    return np.where(fine, 0.5 * double, 0.0), cotangents
+    """Areas (m,) [length^2] and quality (m,) of triangles: 4 sqrt(3) area / sum of squared edges, 1 where edges are
+    equal, and 0 without area."""
+    area, quality = np.empty(len(corners)), np.empty(len(corners))
+    kernels.compiled(measure)(x, corners, area, quality)
+    return area, quality
+
+
+def measure(x, corners, area, quality):  # type: ignore[no-untyped-def]
+    """Write areas and qualities of triangles."""
+    g = np.zeros((3, 3))
+    n = np.zeros(3)
+    for t in range(corners.shape[0]):
+        double = plane(x, corners, t, g, n)
+        size = 0.0
+        for i in range(3):
+            for c in range(3):
+                size += g[i, c] * g[i, c]
+        flat = n[0] != 0.0 or n[1] != 0.0 or n[2] != 0.0
+        area[t] = 0.5 * double if flat else 0.0
+        quality[t] = 2.0 * np.sqrt(3.0) * double / size if flat else 0.0
 
 
 def yarns(x: Floats, corners: Ints, direction: Floats) -> Floats:
     """Start area x derivative along and across `direction` (m, 3), by the triangles' corners (m, 6)."""
     a, b, c = (x[corners[:, i]] for i in range(3))
     normal = np.cross(b - a, c - a)
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    size = np.linalg.norm(normal, axis=1)
+    normal /= np.where(size > 0.0, size, 1.0)[:, None]
     u = direction - (direction * normal).sum(axis=1)[:, None] * normal
     reach = np.linalg.norm(u, axis=1)
     u /= np.where(reach > 0, reach, 1.0)[:, None]

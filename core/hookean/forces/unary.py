@@ -8,7 +8,7 @@ import numpy as np
 
 from hookean.columns import IndexRows, Points, Vectors
 from hookean.fields import Field, Maybe
-from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places
 
 
 def unary_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -35,6 +35,7 @@ class Unary(Force):
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     creates: ClassVar[bool] = False
     constant: ClassVar[bool] = True
+    on_film: ClassVar[OnFilm] = "spread"
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(unary_kernel)
 

@@ -49,6 +49,16 @@ class Pattern:
             places.append(mine[mine >= 0])
         self.places = np.concatenate(places)
 
+    def gather(self, vectors: Floats) -> Floats:
+        """Vectors (n, 3) as unknowns, those of held axes left out."""
+        return np.asarray(vectors.ravel()[self.dofs])
+
+    def spread(self, unknowns: Floats) -> Floats:
+        """Unknowns as vectors (n, 3), 0 on held axes."""
+        whole = np.zeros(self.free.size)
+        whole[self.dofs] = unknowns
+        return whole.reshape(self.free.shape)
+
     def _arrange(self, row: Ints, column: Ints, free: NDArray[np.bool_]) -> Ints:
         """Lay out the matrix for pairs of particles sorted by column and row, (i, i) first in each column.
 

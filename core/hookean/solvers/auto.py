@@ -1,9 +1,9 @@
 """Auto: picks by the scene, and says what it picked.
 
-Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities, large nets
-of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose shape by those steps may not be the
-lowest, unless they are too large to wait for relaxation; where relaxation is slow or the tolerance tight, Newton
-steps finish, and where those do not help, relaxation goes on.
+Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities, soap films
+Newton steps across them, large nets of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose
+shape by those steps may not be the lowest, unless they are too large to wait for relaxation; where relaxation is slow
+or the tolerance tight, Newton steps finish, and where those do not help, relaxation goes on.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hookean.balance import Balance, balance
-from hookean.solvers import _complementary, force_density, multilevel, newton, relaxation
+from hookean.solvers import _complementary, _film, force_density, multilevel, newton, relaxation
 from hookean.solvers.base import Floats, Solver
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 # a tangent larger than this costs more to factor than the relaxation it saves
 LARGEST_NEWTON = 60_000  # unknowns
+LARGEST_FILM = 1_000_000  # particles, of some five gigabytes
 LARGEST_BLOCKS = 3_000_000  # entries of all element blocks; a shell's have 36 x 36 each
 LEAST_MULTILEVEL = 4_000  # particles from which on multigrid is quicker than relaxation
 MANY = 30_000  # particles from which on relaxation takes minutes, and creases as well
@@ -46,6 +47,8 @@ class Method(Solver):
         self._complementary = _complementary.Method()
         self._relaxation = relaxation.Method()
         self._newton = newton.Method()
+        self._film = _film.Method()
+        self._films = False
         self._multilevel = multilevel.Method()
         self._levels = False
         self._last: Solver | None = None
@@ -72,9 +75,12 @@ class Method(Solver):
         entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if not g.cls.constant)
         self._small = 3 * len(state.x) <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS
         self._levels = len(state.x) >= LEAST_MULTILEVEL and multilevel.suits(system)
+        self._films = len(state.x) <= LARGEST_FILM and not self._film.refuse(system)
         if self._levels:
             self._start = state.copy()
             self._multilevel.start(system, state)
+        elif self._films:
+            self._film.start(system, state)
         else:
             self._relax_from_here(system, state)
 
@@ -106,6 +112,14 @@ class Method(Solver):
                 self.sharpen(state)
         if self._levels:
             return self._by_levels(system, state, count, goal)
+        if self._films:
+            done = self._film.advance(system, state, min(count, self._film.longest), goal)
+            self.work += done
+            if done:
+                self._use(self._film)
+                return done
+            self._films = False
+            self._relax_from_here(system, state)
         if self._steps > 0:
             return self._finish(system, state, count, goal)
         due, pause, steps = state.scratch["next_newton"]

@@ -68,7 +68,9 @@ class Method(Solver):
         self.work = 0.0  # passes over all springs; coarser levels count by their size
 
     def refuse(self, system: System) -> str:
-        """A sentence where a particle meets a floor: what slides or sticks has no tangent."""
+        """A sentence where there are films, or where a particle meets a floor: what slides or sticks has no tangent."""
+        if system.films is not None:
+            return "multilevel has no steps across soap films; use auto, which has"
         return "multilevel has no tangent for a floor; use auto or relaxation" if system.contacts else ""
 
     def start(self, system: System, state: State) -> None:

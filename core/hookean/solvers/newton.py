@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.solvers._across import patterned
 from hookean.solvers._pattern import Pattern
 from hookean.solvers.base import Solver
 
@@ -50,10 +51,9 @@ class Method(Solver):
         free = _movable(system, state)
         if not free.any():
             return 0
-        if self._pattern is None or not np.array_equal(self._pattern.free, free):
-            self._pattern = Pattern(system, free)
         now, done, helped = Judged.of(system, state), 0, False
         while done < count and now.largest > goal:
+            self._pattern = patterned(system, state, free, self._pattern)
             step, shift = _step(self._pattern, system, state, now.left, shift)
             if step is None:
                 break
@@ -89,21 +89,21 @@ class Judged:
         f, _, energies = system.evaluate(state)
         left = f * state.free
         system.support(state, left)
+        if system.films is not None:
+            system.films.across(state.x, state.free, left)
         return cls(float(energies.sum()), ROUNDING * float(np.abs(energies).sum()), left)
 
 
 def _step(pattern: Pattern, system: System, state: State, left: Floats, shift: float) -> tuple[Floats | None, float]:
     """The step of the smallest shift, from this one on, that makes the tangent positive definite."""
     values = pattern.tangent(system, state)
-    rhs, unit = left.ravel()[pattern.dofs], state.scratch["unit"][pattern.dofs // 3]
+    rhs, unit = pattern.gather(left), state.scratch["unit"][pattern.dofs // 3]
     while shift <= 1e4:
         shifted = values.copy()
         shifted[pattern.diagonal] += shift * unit
         solution = pattern.factors.solve(shifted, rhs)
         if solution is not None:
-            step = np.zeros(left.size)
-            step[pattern.dofs] = solution
-            return step.reshape(left.shape), shift
+            return pattern.spread(solution), shift
         shift = max(shift * 10.0, NO_SHIFT)
     return None, shift
 
