@@ -215,6 +215,27 @@ def test_position_errors_are_those_of_one_exact_step(n: int, factor: float, solv
     assert exact / 3.0 - rounding <= found.position_error <= 3.0 * exact + rounding
 
 
+@pytest.mark.parametrize("seed", range(24))
+def test_position_errors_of_strips_and_nets_of_soft_and_stiff_springs(seed: int) -> None:
+    """Long strips and nets whose stiffness differs by up to a thousand: the softest motions are slow to be found."""
+    rng = np.random.default_rng(seed)
+    n, m = (int(rng.integers(50, 140)), 2) if seed % 3 else (int(rng.integers(5, 25)), int(rng.integers(5, 25)))
+    number = np.arange(n * m).reshape(n, m)
+    ends = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
+    pairs = np.concatenate([np.column_stack([a.ravel(), b.ravel()]) for a, b in ends])
+    place = np.stack(np.meshgrid(np.arange(n), np.arange(m), indexing="ij"), -1).reshape(-1, 2)
+    x = np.column_stack([place, 0.1 * rng.standard_normal(n * m)])
+    held = np.concatenate([number[0], number[-1]])
+    loads = np.column_stack([np.zeros((n * m, 2)), -(rng.random(n * m) ** 4)])
+    rest = rng.uniform(0.0, 0.9) * np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1)
+    structure = Springs(x, pairs, 10.0 ** rng.uniform(0.0, float(rng.choice([1, 3])), len(pairs)), rest, loads, held)
+    tolerance = float(10.0 ** rng.uniform(-6.0, -3.0))
+    found = structure.solve(solver="relaxation", tolerance=tolerance, position_tolerance=None)
+    assert found.converged and found.stability == "stable"
+    exact = exact_step(structure, found.particles)
+    assert exact / 3.0 <= found.position_error <= 3.0 * exact
+
+
 def test_auto_goes_on_until_the_position_is_known() -> None:
     """A loose tolerance leaves a position error of 4e-5 of the size; the position tolerance does not."""
     structure = sheet(12, 1.0, 10.0)
