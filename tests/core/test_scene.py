@@ -30,6 +30,7 @@ from hookean import (
 from hookean.columns import Model
 from hookean.scene import faults
 from hookean.sweep import Sweep
+from hookean.units import METRES, NEWTONS, SECONDS
 
 EXAMPLE = {
     "units": {"length": "m", "force": "N", "time": "s"},
@@ -198,6 +199,49 @@ def test_units_are_one_consistent_system():
     metres, millimetres = Units(), Units(length="mm", force="kN")
     assert metres.factor("stiffness", millimetres) == pytest.approx(1e-6)
     assert millimetres.factor("force length^2", metres) == pytest.approx(1e-3)
+
+
+def test_units_are_what_they_are_by_definition():
+    """NIST SP 811: an inch is 25.4 mm, a pound 0.45359237 kg and its weight that times 9.80665 m/s^2."""
+    assert METRES == pytest.approx(
+        {"km": 1000, "m": 1, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 12 * 0.0254, "yd": 36 * 0.0254},
+        rel=1e-15,
+    )
+    pound = 0.45359237 * 9.80665
+    assert NEWTONS == pytest.approx(
+        {"MN": 1e6, "kN": 1000, "N": 1, "mN": 0.001, "lbf": pound, "kip": 1000 * pound}, rel=1e-15
+    )
+    assert SECONDS == pytest.approx({"ms": 0.001, "s": 1, "min": 60}, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("dimension", "force", "length", "time"),
+    [
+        ("", 0, 0, 0), ("angle", 0, 0, 0), ("length", 0, 1, 0), ("force", 1, 0, 0), ("time", 0, 0, 1),
+        ("mass", 1, -1, 2), ("moment", 1, 1, 0), ("energy", 1, 1, 0), ("stiffness", 1, -1, 0),
+        ("force/length", 1, -1, 0), ("force length", 1, 1, 0), ("force length^2", 1, 2, 0),
+        ("force time/length", 1, -1, 1), ("length/time", 0, 1, -1), ("length^2", 0, 2, 0), ("force/length^2", 1, -2, 0),
+    ],
+)  # fmt: skip
+def test_a_number_changes_its_units_by_the_powers_of_its_dimension(dimension: str, force: int, length: int, time: int):
+    """A force is mass x length / time^2, so a mass is force x time^2 / length; exact powers of ten and of two.
+
+    From kN, ft, min to N, in, s, where a number of force^a length^b time^c grows by 1000^a 12^b 60^c.
+    """
+    ours, theirs = Units(force="kN", length="ft", time="min"), Units(force="N", length="in", time="s")
+    assert ours.factor(dimension, theirs) == pytest.approx(1000.0**force * 12.0**length * 60.0**time, rel=1e-14)
+    assert theirs.factor(dimension, ours) == pytest.approx(1000.0**-force * 12.0**-length * 60.0**-time, rel=1e-14)
+
+
+def test_a_unit_is_named_by_what_it_is_made_of():
+    """kN, cm, min: a moment in kN cm; the mass unit is 1000 N (60 s)^2 / 0.01 m = 3.6e8 kg."""
+    units = Units(force="kN", length="cm", time="min")
+    named = {
+        "": "", "angle": "rad", "length": "cm", "force": "kN", "time": "min", "mass": "360000000 kg",
+        "moment": "kN cm", "energy": "kN cm", "stiffness": "kN/cm", "force length^2": "kN cm^2",
+        "force time/length": "kN min/cm", "length/time": "cm/min", "force/length^2": "kN/cm^2",
+    }  # fmt: skip
+    assert {dimension: units.of(dimension) for dimension in named} == named
 
 
 def test_one_vector_is_one_value_whatever_its_name():

@@ -175,6 +175,37 @@ def test_many_anchors_that_miss_are_a_few_sentences():
         compile(Scene.read(scene))
 
 
+def test_a_vertex_that_no_face_uses_counts_where_vertices_are_loaded_only():
+    """A square and a loose vertex beside the net: a weight on vertices is on it too; weights of edges, pressure not."""
+    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    scene = {
+        "particles": square,
+        "meshes": {"net": {"vertices": [*square, [0, 0, 7]], "faces": [[0, 1, 2, 3]]}},
+        "forces": [
+            {"kind": "springs", "particles": [[0, 1], [1, 2], [2, 3]]},
+            {"kind": "self_weight", "mesh": "net", "total": 5.0},
+            {"kind": "self_weight", "mesh": "net", "per_length": 1.0},
+            {"kind": "pressure", "mesh": "net"},
+        ],
+        "strict": False,
+    }
+    [missed] = compile(Scene.read(scene)).report.missed
+    assert (missed.pointer, missed.count, missed.total, missed.distance) == ("/forces/1/mesh", 1, 5, 7.0)
+
+
+@pytest.mark.parametrize(
+    ("force", "sentence"),
+    [
+        ({"kind": "springs", "particles": [[0, 1, 2]]}, "shape [1, 3] given; each element needs 2 particles"),
+        ({"kind": "unary", "particles": [[0, 1]], "vector": [0, 0, 1]}, "[1, 2] given; each element needs 1 particle"),
+    ],
+)
+def test_an_element_has_as_many_particles_as_its_force_needs(force: dict[str, object], sentence: str):
+    with pytest.raises(InputError) as caught:
+        compile(Scene.read({"particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0]], "forces": [force]}))
+    assert caught.value.pointer == "/forces/0/particles" and str(caught.value).endswith(sentence)
+
+
 def test_columns_must_fit_their_elements():
     """Every number of a force is one value or one for each element."""
     scene = Scene.read({"forces": [{"kind": "springs", "lines": lines((0, 1), (1, 2)), "stiffness": [1, 2, 3]}]})
@@ -202,3 +233,35 @@ def test_a_spring_without_length_is_told():
     """Both ends weld to one particle: it does nothing, and the report says so."""
     system = compile(Scene(forces=[{"kind": "springs", "lines": lines((0, 1), (1, 1.0001))}]))
     assert any("start and end at one particle" in w for w in system.report.warnings)
+
+
+few = st.sets(st.integers(0, 5))
+
+
+@settings(derandomize=True, deadline=None, max_examples=200, database=None)
+@given(loads=few, sprung=few, pulled=few, held=few, sliding=few, floor=st.booleans())
+def test_a_load_on_what_nothing_touches_is_a_warning(
+    loads: set[int], sprung: set[int], pulled: set[int], held: set[int], sliding: set[int], floor: bool
+):
+    """Springs, another force or an anchor on all axes take a load, an anchor on some axes does not, and a floor any.
+
+    What carries a load and none of these, counted by sets; particles without a load never.
+    """
+    kinds = {
+        "unary": {"particles": sorted(loads), "vector": [0, 0, -1]},
+        "springs": {"particles": [[p, 6] for p in sorted(sprung)], "rest_length": 0.0},
+        "anchor_spring": {"particles": sorted(pulled)},
+    }
+    spec = {
+        "particles": [[p, p % 2, 0.1 * p * p] for p in range(7)],
+        "forces": [{"kind": kind, **given} for kind, given in kinds.items() if given["particles"]],
+        "anchors": [
+            {"particles": sorted(ps), "axes": axes} for ps, axes in ((held, "xyz"), (sliding - held, "xy")) if ps
+        ],
+        "settings": {"floor": {"point": [0, 0, -1]}} if floor else {},
+    }
+    said = [w for w in compile(Scene.read(spec)).report.warnings if "carries a load" in w]
+    alone = sorted(set() if floor else loads - sprung - pulled - held)
+    more = f" (and {len(alone) - 1} more)" if len(alone) > 1 else ""
+    first = f"particle {alone[0]} carries a load but no spring, other force or anchor holds it" if alone else ""
+    assert said == ([first + more] if alone else [])
