@@ -4,7 +4,7 @@ PORT ?= 8765
 BIN = .venv/bin
 EXAMPLE = gh_examples/9.24-membrane
 
-.PHONY: run test soak bench bench-service figures screenshots docs page studio lint clean
+.PHONY: run test soak mutants bench bench-service figures screenshots docs page studio lint clean
 STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
 run: .venv/run
@@ -19,6 +19,10 @@ test: .venv/test lint
 
 soak: .venv/test
 	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+	$(MAKE) mutants
+
+mutants: .venv/mutants # of all modules, or of some: make mutants MODULES="units.py forces/springs.py"
+	$(BIN)/python tests/mutation/run.py $(MODULES)
 
 bench: .venv/test
 	$(BIN)/python benchmarks/run.py $(if $(wildcard ../shared/bench),--shared ../shared/bench) \
@@ -59,6 +63,10 @@ lint: .venv/test
 .venv/test: .venv/run
 	@echo "Installing what the tests need ..."
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@touch $@
+
+.venv/mutants: .venv/test
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[mutants]'
 	@touch $@
 
 clean:

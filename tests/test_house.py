@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -80,3 +81,15 @@ def test_the_project_carries_what_it_needs():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert "make run" in readme
     assert "make test" in readme
+
+
+def test_every_force_is_among_the_mutants():
+    """`make mutants` has tests for every file of the forces, and the tests and modules of its table exist."""
+    table = tomllib.loads((ROOT / "tests" / "mutation" / "table.toml").read_text(encoding="utf-8"))
+    core = ROOT / "core" / "hookean"
+    assert {f"forces/{path.name}" for path in (core / "forces").glob("*.py")} <= set(table["modules"])
+    for module, chosen in table["modules"].items():
+        files = [ROOT / argument for argument in chosen["tests"] if argument.endswith(".py")]
+        assert files and all(path.is_file() for path in [core / module, *files]), module
+    for survivor in table["survivors"]:
+        assert survivor["place"].split()[0] in table["modules"] and len(survivor["reason"]) > 20, survivor

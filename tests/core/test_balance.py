@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from hookean import Scene, Simulation, relax
-from hookean.balance import ROUNDING, Balance, balance
+from hookean.balance import BEYOND, NOISE, OUT, ROUNDING, Balance, balance
 from hookean.state import State
 from hookean.system import System, compile
 
@@ -58,14 +60,46 @@ def test_the_residual_is_what_its_definition_says(seed: int, loads: bool, floor:
     np.testing.assert_allclose(found.beyond * found.scale, sizes[sizes > noise].max(initial=0.0), rtol=1e-14)
 
 
+@pytest.mark.parametrize("axes", [[0], [1], [2], [0, 1, 2]])
 @pytest.mark.parametrize("particle", [0, 5])
-def test_a_number_that_is_none_is_told(particle: int) -> None:
-    """A position that is not a number leaves a residual that is none: nothing calls that balanced."""
+def test_a_number_that_is_none_is_told(particle: int, axes: list[int]) -> None:
+    """A coordinate that is not a number leaves a residual that is none: nothing calls that balanced."""
     system, state, _ = judged(1, loads=True, floor=False)
     state.free[:] = 1.0
-    state.x[particle] = np.nan
+    state.x[particle, axes] = np.nan
     found = balance(system, state)
     assert np.isnan(found.residual) and not found.met(1e9)
+
+
+def test_where_nothing_may_move_nothing_is_out_of_balance() -> None:
+    """All is held: no component, no force left, measured by a force of 1."""
+    spec = {"particles": [[0, 0, 0], [1, 0, 0]], "forces": [{"kind": "springs", "particles": [[0, 1]]}]}
+    system = compile(Scene.read({**spec, "anchors": [{"particles": [0, 1]}]}))
+    found = balance(system, system.start())
+    assert (found.part, found.residual, found.out_of_balance, found.scale, found.worst) == (-1, 0.0, 0.0, 1.0, 0)
+    assert found.met(1e-9) and found.goal(1e-9) == 1e-9
+    assert relax(system.scene).converged
+
+
+some_parts = some.lists(some.tuples(*[some.sampled_from([0.0, 0.5, 1.0, 2.0, 3.0])] * 3), min_size=1, max_size=4)
+
+
+@settings(max_examples=200, derandomize=True, deadline=None)
+@given(parts=some_parts, scale=some.sampled_from([0.5, 1.0, 4.0]), tolerance=some.sampled_from([0.1, 1.0, 2.5]))
+def test_the_goal_is_the_least_force_that_meets_the_tolerance(
+    parts: list[tuple[float, float, float]], scale: float, tolerance: float
+) -> None:
+    """The larger of tolerance and rounding floor, of the component where that is least; but the tolerance alone in one
+    that rests within its floor while one of its particles has more left than the tolerance and its own rounding."""
+    _, _, found = judged(1, loads=True, floor=False)
+    columns = np.zeros((len(parts), 9))
+    columns[:, [OUT, BEYOND, NOISE]] = np.array(parts) * scale
+    goals = []
+    for residual, beyond, noise in parts:
+        hidden = residual <= noise and beyond > tolerance
+        goals.append(tolerance if hidden else max(tolerance, noise))
+    found = replace(found, found=columns, scales=np.full(len(parts), scale))
+    assert found.goal(tolerance) == min(goals) * scale
 
 
 def link(stiff: float, solver: str) -> Scene:

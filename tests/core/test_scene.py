@@ -202,16 +202,13 @@ def test_units_are_one_consistent_system():
 
 
 def test_units_are_what_they_are_by_definition():
-    """NIST SP 811: an inch is 25.4 mm, a pound 0.45359237 kg and its weight that times 9.80665 m/s^2."""
-    assert METRES == pytest.approx(
-        {"km": 1000, "m": 1, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 12 * 0.0254, "yd": 36 * 0.0254},
-        rel=1e-15,
-    )
+    """NIST SP 811: an inch is 25.4 mm, twelve a foot, 36 a yard; a pound weighs 0.45359237 kg x 9.80665 m/s^2."""
     pound = 0.45359237 * 9.80665
-    assert NEWTONS == pytest.approx(
-        {"MN": 1e6, "kN": 1000, "N": 1, "mN": 0.001, "lbf": pound, "kip": 1000 * pound}, rel=1e-15
-    )
-    assert SECONDS == pytest.approx({"ms": 0.001, "s": 1, "min": 60}, rel=1e-15)
+    metres = {"km": 1000, "m": 1, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048, "yd": 0.9144}
+    newtons = {"MN": 1e6, "kN": 1000, "N": 1, "mN": 0.001, "lbf": pound, "kip": 1000 * pound}
+    seconds = {"ms": 0.001, "s": 1, "min": 60}
+    for table, defined in ((METRES, metres), (NEWTONS, newtons), (SECONDS, seconds)):
+        assert table == pytest.approx(defined, rel=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -194,7 +194,7 @@ def main(modules: list[str]) -> int:
             print(f"# {module}: {dict(outcomes)} in {time.monotonic() - begun:.0f} s", flush=True)
     print(f"# {total.total()} mutants: {dict(total)}")
     if new:
-        print(f"# {new} survivors are new: write a test that fails with them, or into table.toml the reason why none can")
+        print(f"# {new} survived: write a test that fails with each, or put into table.toml the reason why none can")
     return new
 
 
