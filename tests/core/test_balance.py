@@ -81,6 +81,23 @@ def test_where_nothing_may_move_nothing_is_out_of_balance() -> None:
     assert relax(system.scene).converged
 
 
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_what_nothing_strains_is_measured_by_a_millionth_of_what_it_resists(count: int) -> None:
+    """A row of springs at their rest lengths without loads: the scale is the mean over the particles that may move of
+    1e-6 x stiffness x extent of the elements there, as a force that strains by 1e-6 leaves."""
+    rng = np.random.default_rng(count)
+    apart, stiffness = rng.uniform(1.0, 2.0, count + 1), rng.uniform(1.0, 1e3, count + 1)
+    x = np.zeros((count + 2, 3))
+    x[1:, 0] = np.cumsum(apart)
+    springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(count + 1)], "stiffness": stiffness}
+    spec = {"particles": x, "forces": [springs], "anchors": [{"particles": [0, count + 1]}]}
+    system = compile(Scene.read(spec))
+    found = balance(system, system.start())
+    bound = 2.0 * (stiffness[1:] + stiffness[:-1])  # 2 k at each end, above any tangent of a spring
+    extent = np.maximum(apart[1:], apart[:-1])
+    assert found.scale == pytest.approx(1e-6 * (bound * extent).mean(), rel=1e-9)
+
+
 some_parts = some.lists(some.tuples(*[some.sampled_from([0.0, 0.5, 1.0, 2.0, 3.0])] * 3), min_size=1, max_size=4)
 
 

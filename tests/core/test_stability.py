@@ -90,6 +90,53 @@ def test_critical_step_of_one_spring():
     assert critical_time_step(0.0) == np.inf
 
 
+@pytest.mark.parametrize("omega", [1e-3, 2.0, 5e4])
+@pytest.mark.parametrize("ratio", [0.0, 0.1, 1.0, 20.0])
+def test_critical_step_of_a_frequency(omega: float, ratio: float):
+    """dt^2 omega^2 / 4 + dt zeta omega = 1: what the two sides of the scheme's limit meet at."""
+    step = critical_time_step(omega, ratio)
+    assert step**2 * omega**2 / 4.0 + step * ratio * omega == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(("drag", "step"), [(0.0, np.inf), (3.0, 4.0 / 3.0)])
+def test_without_stiffness_the_drag_alone_limits_the_step(drag: float, step: float):
+    """Two masses of 2 kg that fall: dt c / m <= 2, and any step where there is no drag either."""
+    weight = {"kind": "unary", "particles": [0, 1], "vector": [0, 0, -1]}
+    scene = Scene(particles=[[0, 0, 0], [1, 0, 0]], masses=2.0, forces=[weight], settings={"drag": drag})
+    system = compile(scene)
+    assert stable_time_step(system, system.start()) == pytest.approx(step, rel=1e-12)
+
+
+def test_a_drag_that_does_not_limit_the_step_is_not_blamed():
+    """Two masses of 1 kg: sqrt(2 k / m) = 0.63 / s of the spring is more than drag / 2 m = 0.5 / s."""
+    springs = {"kind": "springs", "particles": [[0, 1]], "stiffness": 0.2, "damping": 0}
+    settings = {"drag": 1.0, "time_step": 5.0, "solver": "verlet"}
+    (warning,) = Simulation(
+        Scene(particles=[[0, 0, 0], [1, 0, 0]], forces=[springs], settings=settings)
+    ).system.report.warnings
+    assert "the stiffness of /forces/0, springs;" in warning
+
+
+@pytest.mark.parametrize("loose", [0, 1, 3])
+def test_particles_beside_a_damped_spring_change_no_step(loose: int):
+    """Two masses of 2 kg, 100 N/m, 10 N s/m: k = 100 / s^2, c = 10 / s, so dt = 2 / (c/2 + sqrt(c^2/4 + k)).
+
+    What is told is that, rounded down to four digits. Particles without a spring have no limit.
+    """
+    scene = Scene(
+        particles=[[float(i), 0, 0] for i in range(2 + loose)],
+        masses=2.0,
+        forces=[{"kind": "springs", "particles": [[0, 1]], "stiffness": 100, "damping": 10}],
+        settings={"drag": 0, "solver": "verlet", "time_step": 1.0},
+    )
+    limit = 2.0 / (5.0 + np.sqrt(25.0 + 100.0))
+    system = compile(scene)
+    assert stable_time_step(system, system.start()) == pytest.approx(limit, rel=1e-9)
+    (warning,) = Simulation(scene).system.report.warnings
+    assert f", {np.floor(limit * 1e4) / 1e4:.4g} s in small ones" in warning
+    assert not Simulation(scene.replaced(settings=scene.settings.replaced(time_step=0.12))).system.report.warnings
+
+
 def test_a_step_that_holds_at_the_start_only_ends_the_run_where_it_is_too_long():
     """A spring with a lower cutoff has no stiffness until it is that long: then 2/omega = 2 sqrt(m/k) falls below dt.
     The step that is named is half of it, as nothing damps the motion (see `margin`)."""
