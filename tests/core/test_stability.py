@@ -7,7 +7,7 @@ import pytest
 
 from hookean import Scene, Simulation, simulate
 from hookean.result import Status
-from hookean.stability import MOST_STEPS, critical_time_step, in_motion, stable_time_step
+from hookean.stability import MOST_STEPS, critical_time_step, highest_mode, in_motion, stable_time_step
 from hookean.system import compile
 
 
@@ -96,6 +96,15 @@ def test_critical_step_of_a_frequency(omega: float, ratio: float):
     """dt^2 omega^2 / 4 + dt zeta omega = 1: what the two sides of the scheme's limit meet at."""
     step = critical_time_step(omega, ratio)
     assert step**2 * omega**2 / 4.0 + step * ratio * omega == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("stiffness", [0.01, 100.0])
+def test_the_highest_mode_of_two_masses_is_the_one_against_each_other(stiffness: float):
+    """m u'' = -2 c u' - 2 k u: omega = sqrt(2 k / m), damping ratio c / (m omega); m = 2 kg, c = 0.1 N s/m."""
+    springs = {"kind": "springs", "particles": [[0, 1]], "stiffness": stiffness, "damping": 0.1}
+    system = compile(Scene(particles=[[0, 0, 0], [1, 0, 0]], masses=2.0, forces=[springs], settings={"drag": 0}))
+    omega = np.sqrt(2.0 * stiffness / 2.0)
+    assert highest_mode(system, system.start()) == pytest.approx((omega, 0.1 / (2.0 * omega)), rel=1e-9)
 
 
 @pytest.mark.parametrize(("drag", "step"), [(0.0, np.inf), (3.0, 4.0 / 3.0)])
