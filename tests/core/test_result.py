@@ -81,3 +81,25 @@ def test_a_point_that_met_nothing_has_a_nearest_particle_only_where_there_is_one
         ("/forces/1/points/0", 0, 0.25),
         ("/forces/2/points/0", None, None),
     ]
+
+
+def test_each_component_is_listed_with_its_particles_and_loads() -> None:
+    """Two ropes of two and of three particles that may move, and a loose pair that carries no load.
+
+    The scale is the mean load: (1 + 3) / 2 N and 8 N. What may not move belongs to none.
+    """
+    x = [[0, 0, -z] for z in range(3)] + [[5, 0, -z] for z in range(4)] + [[9, 0, 0], [9, 0, -1]]
+    forces = [
+        {"kind": "springs", "particles": [[0, 1], [1, 2], [3, 4], [4, 5], [5, 6], [7, 8]]},
+        {"kind": "unary", "particles": [1, 2, 6], "vector": [[0, 0, -1], [0, 0, -3], [0, 0, -8]]},
+    ]
+    result = relax(Scene(particles=x, forces=forces, anchors=[{"particles": [0, 3]}]))
+    found = result.components
+    assert found["first_particle"].tolist() == [1, 4, 7]
+    assert found["particles"].tolist() == [2, 3, 2]
+    assert found["supported"].tolist() == [True, True, False]
+    assert found["loaded"].tolist() == [True, True, False]
+    assert found["force_scale"][:2] == pytest.approx([2.0, 8.0])
+    assert found["residual"] == pytest.approx(found["out_of_balance"] / found["force_scale"])
+    errors = json.loads(json.dumps(result.to_dict(), allow_nan=False))["components"]["position_error"]
+    assert np.isnan(found["position_error"]).all() and errors == [None] * 3  # the pair may lie anywhere
