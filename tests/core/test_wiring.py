@@ -164,6 +164,7 @@ def test_elements_remember_what_they_did_before_an_edit() -> None:
         ({"add": [{"kind": "sprngs"}]}, "/add/0", "did you mean"),
         ({"remove": ["nobody"]}, "/remove/0", "no force of this name"),
         ({"remove": [4]}, "/remove/0", "1 forces"),
+        ({"remove": [1]}, "/remove/0", "1 forces"),
         ({"remove": [0]}, "", "no particles"),
     ],
 )
