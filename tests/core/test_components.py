@@ -11,6 +11,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from hookean import Result, Scene, relax
+from hookean.components import sizes
+from hookean.system import compile
 
 Spec = dict[str, Any]
 SEEDS = range(500 if os.environ.get("HOOKEAN_SOAK") == "1" else 120)
@@ -289,3 +291,28 @@ def test_an_independent_evaluator_agrees_with_the_status(seed: int) -> None:
         exact = np.linalg.norm(step.reshape(-1, 3), axis=1).max(initial=0.0)
         rounding = 1e-15 * np.abs(found.particles).max() * structure.k.max() / np.abs(values[0])
         assert exact / 3.0 - rounding <= found.position_error <= 3.0 * exact + rounding
+
+
+@pytest.mark.parametrize("floor", [False, True])
+def test_what_slides_or_may_fall_on_a_floor_is_supported_but_not_joined(floor: bool) -> None:
+    """Two particles on a spring, one that an anchor holds on x alone, one that nothing touches."""
+    springs = {"kind": "springs", "particles": [[0, 1]]}
+    settings = {"floor": {"point": [0, 0, -5]}} if floor else {}
+    spec = {"particles": [[i, 0, 0] for i in range(4)], "forces": [springs], "settings": settings}
+    system = compile(Scene.read({**spec, "anchors": [{"particles": [2], "axes": "x"}]}))
+    parts = system.components(system.start())
+    assert parts.first.tolist() == [0, 2, 3] and parts.label.tolist() == [0, 0, 1, 2]
+    assert parts.joined.tolist() == [True, False, False]
+    assert parts.supported.tolist() == [floor, True, floor]
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e200])
+def test_the_size_of_a_component_is_the_diagonal_of_its_box(scale: float) -> None:
+    """3 x 4 x 12, with the held particle that its springs hold on to; of a particle alone the largest coordinate, and of
+    the first particle where squares are too large for a number."""
+    x = np.array([[1, 2, 3], [4, -2, 3], [2, 2, 15], [-7, 3, 2]]) * scale
+    springs = {"kind": "springs", "particles": [[0, 1], [1, 2]]}
+    system = compile(Scene.read({"particles": x, "forces": [springs], "anchors": [{"particles": [2]}]}))
+    state = system.start()
+    found = sizes(system.components(state), system.groups, state.x) / scale
+    assert found == pytest.approx([13.0 if scale < 1e100 else 3.0, 7.0], rel=1e-14)
