@@ -308,11 +308,10 @@ def test_what_slides_or_may_fall_on_a_floor_is_supported_but_not_joined(floor: b
 
 @pytest.mark.parametrize("scale", [1e-12, 1.0, 1e200])
 def test_the_size_of_a_component_is_the_diagonal_of_its_box(scale: float) -> None:
-    """3 x 4 x 12, with the held particle that its springs hold on to; of a particle alone the largest coordinate, and of
-    the first particle where squares are too large for a number."""
-    x = np.array([[1, 2, 3], [4, -2, 3], [2, 2, 15], [-7, 3, 2]]) * scale
+    """3 x 4 x 12, with the held particle that its springs hold on to; of a particle alone its largest coordinate, and
+    that of the first particle where squares are too large for a number."""
+    x = np.array([[1.0, 2.0, 3.0], [4.0, -2.0, 3.0], [2.0, 2.0, 15.0], [-7.0, 3.0, 2.0]])
     springs = {"kind": "springs", "particles": [[0, 1], [1, 2]]}
     system = compile(Scene.read({"particles": x, "forces": [springs], "anchors": [{"particles": [2]}]}))
-    state = system.start()
-    found = sizes(system.components(state), system.groups, state.x) / scale
-    assert found == pytest.approx([13.0 if scale < 1e100 else 3.0, 7.0], rel=1e-14)
+    found = sizes(system.components(system.start()), system.groups, x * scale)
+    assert found / scale == pytest.approx([13.0 if scale < 1e100 else 3.0, 7.0], rel=1e-14)
