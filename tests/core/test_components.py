@@ -295,13 +295,13 @@ def test_an_independent_evaluator_agrees_with_the_status(seed: int) -> None:
 
 @pytest.mark.parametrize("floor", [False, True])
 def test_what_slides_or_may_fall_on_a_floor_is_supported_but_not_joined(floor: bool) -> None:
-    """Two particles on a spring, one that an anchor holds on x alone, one that nothing touches."""
+    """Two particles on a spring, one that an anchor holds on x alone, one that nothing touches, one held."""
     springs = {"kind": "springs", "particles": [[0, 1]]}
     settings = {"floor": {"point": [0, 0, -5]}} if floor else {}
-    spec = {"particles": [[i, 0, 0] for i in range(4)], "forces": [springs], "settings": settings}
-    system = compile(Scene.read({**spec, "anchors": [{"particles": [2], "axes": "x"}]}))
+    spec = {"particles": [[i, 0, 0] for i in range(5)], "forces": [springs], "settings": settings}
+    system = compile(Scene.read({**spec, "anchors": [{"particles": [2], "axes": "x"}, {"particles": [4]}]}))
     parts = system.components(system.start())
-    assert parts.first.tolist() == [0, 2, 3] and parts.label.tolist() == [0, 0, 1, 2]
+    assert parts.first.tolist() == [0, 2, 3] and parts.label.tolist() == [0, 0, 1, 2, -1]
     assert parts.joined.tolist() == [True, False, False]
     assert parts.supported.tolist() == [floor, True, floor]
 
