@@ -189,7 +189,7 @@ class Lane(threading.Thread):
         self._begin()
 
     def _serve(self, job: Job) -> None:
-        if self.process is None or not self.process.is_alive():
+        if self._ended():
             self._replace()
         try:
             reply = self._exchange(job)
@@ -203,6 +203,16 @@ class Lane(threading.Thread):
             if job.once:
                 self.kill()
             job.future.set_result(reply)
+
+    def _ended(self) -> bool:
+        """Whether there is no worker, or it has ended while it was idle. Its end of the pipe is closed at that moment;
+        the fork server reports the end of a process later."""
+        if self.process is None or self.connection is None or not self.process.is_alive():
+            return True
+        try:
+            return self.connection.poll()
+        except OSError:
+            return True
 
     def _lost(self, job: Job) -> Problem:
         """Why the worker ended: foreign geometry that it could not digest, or something of ours."""

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import secrets
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import httpx
 import psutil
 import pytest
 
-from serving import wait_for
+from serving import HANG, wait_for
 
 
 def endless(seconds: float = 60.0) -> dict[str, Any]:
@@ -36,15 +37,19 @@ def endless(seconds: float = 60.0) -> dict[str, Any]:
     }
 
 
-class Served:
-    """One running server."""
+PATIENT = f"from hookean_server import ending; ending.LONGEST = {2 * HANG};"
+"""For a server whose end is never cut short: it ends by itself, or hangs for the test to see."""
 
-    def __init__(self, **settings: Any) -> None:
+
+class Served:
+    """One running server; `first` is code that its process runs before anything else."""
+
+    def __init__(self, first: str = "", **settings: Any) -> None:
         settings.setdefault("token", secrets.token_urlsafe(32))
         self.token: str = settings["token"]
         self.known = {"authorization": f"Bearer {self.token}"}
         self.head = f"Authorization: Bearer {self.token}\r\n"  # for requests written by hand
-        code = (
+        code = first + (
             "import sys; from hookean_server.main import serve; from hookean_server.settings import Settings;"
             f"sys.exit(serve(port=0, settings=Settings(**{settings!r})))"
         )
@@ -56,9 +61,9 @@ class Served:
         assert self.process.stdout is not None
         self.said = self.process.stdout.readline()
         found = re.search(r"http://127\.0\.0\.1:(\d+)", self.said)
-        assert found, (self.process.wait(10), self.log())
+        assert found, (self.process.wait(HANG), self.log())
         self.url, self.port = found.group(0), int(found.group(1))
-        self.client = httpx.Client(base_url=self.url, timeout=60.0, headers=self.known)
+        self.client = httpx.Client(base_url=self.url, timeout=HANG, headers=self.known)
 
     def log(self) -> str:
         """What was written to stderr so far."""
@@ -67,7 +72,7 @@ class Served:
 
     def ready(self) -> Served:
         """Wait until a worker is idle."""
-        wait_for(lambda: self.health()["workers"]["idle"] > 0, 240.0)  # kernels may have to be compiled first
+        wait_for(lambda: self.health()["workers"]["idle"] > 0)  # kernels may have to be compiled first
         return self
 
     def health(self) -> dict[str, Any]:
@@ -90,19 +95,35 @@ class Served:
     def family(self) -> list[psutil.Process]:
         return psutil.Process(self.process.pid).children(recursive=True)
 
-    def end(self, number: int = signal.SIGTERM) -> tuple[int, float, str]:
-        """Exit code, seconds it took and what was written to stderr."""
-        started = time.monotonic()
+    def end(self, number: int = signal.SIGTERM) -> tuple[int, str]:
+        """Exit code and what was written to stderr."""
         if self.process.poll() is None:
             self.process.send_signal(number)
         try:
-            self.process.communicate(timeout=20)
+            self.process.communicate(timeout=HANG)
         finally:
             self.process.kill()
             self.client.close()
-        took, said = time.monotonic() - started, self.log()
+        said = self.log()
         self._log.close()
-        return self.process.returncode, took, said
+        return self.process.returncode, said
+
+
+def computing(process: psutil.Process) -> None:
+    """Wait until a process has computed for some while, longer than it takes to be idle for a minute."""
+    begun = sum(process.cpu_times()[:2])
+    wait_for(lambda: sum(process.cpu_times()[:2]) > begun + 0.3)
+
+
+@contextmanager
+def asked(served: Served, scene: dict[str, Any], path: str = "/v1/relax") -> Iterator[None]:
+    """A client that has asked for a solve, and leaves at the end of the block."""
+    body = json.dumps(scene).encode()
+    head = f"POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\n{served.head}"
+    head += f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    with socket.create_connection(("127.0.0.1", served.port), timeout=HANG) as sock:
+        sock.sendall(head.encode() + body)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 import httpx
@@ -31,6 +32,8 @@ ENDLESS: dict[str, Any] = {
     "anchors": [{"particles": [0, COUNT - 1]}],
     "settings": {"solver": "verlet", "drag": 0, "time_step": 0.001, "max_iterations": 10**9, "tolerance": 0},
 }
+LONG = (600, 100)
+"""The sizes of a sweep that no test sees the end of: minutes of work."""
 FINAL = ("done", "failed", "cancelled")
 
 
@@ -65,11 +68,20 @@ def post(client: httpx.Client, request: dict[str, Any], **headers: str) -> str:
     return str(answer.headers["location"])
 
 
-def ended(client: httpx.Client, address: str, seconds: float = 60.0) -> dict[str, Any]:
+def ended(client: httpx.Client, address: str) -> dict[str, Any]:
     """The job when it has ended."""
-    wait_for(lambda: client.get(address).json()["status"] in FINAL, seconds)
+    wait_for(lambda: client.get(address).json()["status"] in FINAL)
     found: dict[str, Any] = client.get(address).json()
     return found
+
+
+def end_all(client: httpx.Client) -> None:
+    """Cancel what a test has left, so that the next one has all workers."""
+    left = [f"/v1/jobs/{job['id']}" for job in client.get("/v1/jobs").json()["jobs"] if job["status"] not in FINAL]
+    for address in left:
+        client.delete(address)
+    for address in left:
+        ended(client, address)
 
 
 def table(client: httpx.Client, address: str) -> list[dict[str, Any]]:
@@ -94,6 +106,12 @@ def events(client: httpx.Client, address: str, after: int | None = None) -> list
     answer = client.get(f"{address}/events", headers=headers)
     assert answer.status_code == (200 if answer.content else 204)
     return parsed(answer.text)
+
+
+def states(client: httpx.Client) -> dict[str, int]:
+    """How many workers, of requests and of jobs, are starting, idle and busy."""
+    samples = re.findall(r'^workers\{state="(\w+)"\} (\d+)', client.get("/metrics").text, re.MULTILINE)
+    return {state: int(count) for state, count in samples}
 
 
 def job_workers(served: Served) -> list[psutil.Process]:

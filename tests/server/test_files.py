@@ -13,7 +13,7 @@ import rhino3dm
 
 from hookean.files.recipe import relax_file
 from hookean_server.claimed import NAMES, warned
-from serving import CABLE
+from serving import CABLE, wait_for
 
 from .conftest import Served, problem
 
@@ -117,18 +117,17 @@ def test_damaged_files(client: httpx.Client, drawing: bytes, part: float) -> Non
     assert found["errors"][0]["pointer"] == "/file"
 
 
-def test_nothing_is_left_behind(client: httpx.Client, drawing: bytes) -> None:
-    import tempfile
-    import time
-
-    before = set(Path(tempfile.gettempdir()).glob("hookean-*"))
-    post(client, drawing)
-    post(client, drawing[:1000])
-    left = set(Path(tempfile.gettempdir()).glob("hookean-*")) - before
-    until = time.monotonic() + 20.0  # tests beside this one have folders of their own, which go, too
-    while any(path.exists() for path in left) and time.monotonic() < until:
-        time.sleep(0.1)
-    assert not [path for path in left if path.exists()]
+def test_nothing_is_left_behind(drawing: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a server that has a folder for temporary files to itself."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    served = Served(workers=1)
+    try:
+        served.ready()
+        assert post(served.client, drawing).status_code == 200
+        assert post(served.client, drawing[:1000]).status_code == 422
+        wait_for(lambda: not list(tmp_path.glob("hookean-*")))
+    finally:
+        served.end()
 
 
 ENDS: dict[str, dict[str, Any]] = {

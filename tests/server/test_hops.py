@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from hookean import Scene, relax
 from hookean_server.hops import FUNCTIONS
-from serving import CABLE
+from serving import CABLE, HANG
 
 from .conftest import Served
 
@@ -28,7 +28,7 @@ GOO = {"System.Boolean", "System.Double", "System.String", "System.Int32", "Rhin
 @pytest.fixture(scope="module")
 def hops(served: Served) -> Iterator[httpx.Client]:
     """Hops sends no token and no Accept."""
-    with httpx.Client(base_url=served.url, timeout=60.0) as client:
+    with httpx.Client(base_url=served.url, timeout=HANG) as client:
         del client.headers["accept"]
         yield client
 

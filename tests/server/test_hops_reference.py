@@ -15,6 +15,8 @@ import httpx
 import pytest
 import rhino3dm
 
+from serving import HANG
+
 from .hops_canvas import PARAMETERS, Component, Solved, Unusable
 from .hops_inside import Service, functions
 from .hops_recording import OURS, reference
@@ -50,7 +52,7 @@ def theirs() -> Iterator[httpx.Client]:
     server = ThreadingHTTPServer(("127.0.0.1", 0), _HopsHTTPHandler)
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
     thread.start()
-    with httpx.Client(base_url=f"http://127.0.0.1:{server.server_address[1]}") as client:
+    with httpx.Client(base_url=f"http://127.0.0.1:{server.server_address[1]}", timeout=HANG) as client:
         yield client
     server.shutdown()
     thread.join()

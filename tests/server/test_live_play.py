@@ -18,7 +18,7 @@ import httpx
 import pytest
 from websockets.sync.client import connect
 
-from serving import wait_for
+from serving import HANG, wait_for
 
 from .conftest import Served
 
@@ -41,7 +41,7 @@ Disturb = Callable[[Served, str, threading.Event], None]
 
 def polled(served: Served, key: str, over: threading.Event) -> None:
     """How it stands is asked all the time, and everything of it taken out."""
-    with httpx.Client(base_url=served.url, timeout=60.0, headers=served.known) as client:
+    with httpx.Client(base_url=served.url, timeout=HANG, headers=served.known) as client:
         while not over.is_set():
             for form in ("json", "npz", "csv"):
                 assert client.get(f"/v1/sessions/{key}/state", params={"format": form}).status_code == 200
@@ -91,7 +91,7 @@ def to_rest(served: Served, key: str, disturb: Disturb, *, fast: bool, halts: in
         wait_for(lambda: not client.get(address).json()["playing"])
     finally:
         over.set()
-        beside.join(60.0)
+        beside.join(HANG)
     found: dict[str, Any] = client.get(address).json()
     return found
 

@@ -17,6 +17,7 @@ from hookean_server import tokens
 from hookean_server.problems import Problem
 from hookean_server.store import Store
 from hookean_server.tokens import LOGINS, UNUSED, Tokens
+from serving import HANG
 
 from .conftest import Served, problem
 
@@ -58,11 +59,11 @@ def test_a_page_goes_on_after_the_server_was_killed(tmp_path: Path) -> None:
     first = Served(state=state, workers=1)
     try:
         cookies = [first.client.post("/v1/login").headers["set-cookie"].split(";")[0] for _ in range(2)]
-        with httpx.Client(base_url=first.url) as page:
+        with httpx.Client(base_url=first.url, timeout=HANG) as page:
             assert page.get("/v1/sessions", headers={"cookie": cookies[0]}).status_code == 200
             assert page.delete("/v1/login", headers={"cookie": cookies[1]}).status_code == 204
         os.kill(first.process.pid, signal.SIGKILL)
-        first.process.wait(20)
+        first.process.wait(HANG)
     finally:
         first.end()
     second = Served(state=state, workers=1)
@@ -70,7 +71,7 @@ def test_a_page_goes_on_after_the_server_was_killed(tmp_path: Path) -> None:
         assert second.token != first.token
         # the name says which port of this machine the cookie is of, and this one is another
         named = [cookie.replace(str(first.port), str(second.port)) for cookie in cookies]
-        with httpx.Client(base_url=second.url) as page:
+        with httpx.Client(base_url=second.url, timeout=HANG) as page:
             assert page.get("/v1/sessions", headers={"cookie": named[0]}).status_code == 200
             assert page.post("/v1/sessions/none/pause", headers={"cookie": named[0]}).status_code == 404
             problem(page.get("/v1/sessions", headers={"cookie": named[1]}), 401, "unauthorized")

@@ -14,9 +14,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from hookean_server.logs import JsonLines, short_hash
-from serving import CABLE, wait_for
+from serving import CABLE, HANG, wait_for
 
-from .conftest import Served
+from .conftest import PATIENT, Served
 
 MARK = 91827.36451827  # a coordinate that is found again wherever it is written
 MARKED: dict[str, Any] = {**CABLE, "particles": [*CABLE["particles"][:-1], [10.0, MARK, -MARK]]}
@@ -34,7 +34,7 @@ def busy_run(served: Served) -> str:
     client.post("/solve", json={"pointer": f"secret{MARK}", "values": []})
     cookie = str(client.post("/v1/login").headers["set-cookie"]).split(";")[0].split("=")[1]
     client.get("/v1/sessions", headers={"cookie": f"hookean-{served.port}={cookie}", "authorization": ""})
-    with httpx.Client(base_url=served.url, timeout=60.0) as nobody:
+    with httpx.Client(base_url=served.url, timeout=HANG) as nobody:
         nobody.get("/v1/sessions", headers={"authorization": f"Bearer {served.token}x"})
         nobody.get(f"/v1/sessions?token={served.token}&at={MARK}")
         nobody.get("/v1/health", headers={"host": f"secret{MARK}"})
@@ -47,7 +47,7 @@ def busy_run(served: Served) -> str:
     with connect(url, additional_headers=served.known) as socket:
         socket.send(json.dumps({"id": 1, "do": "step"}))
         socket.send(json.dumps({"id": 2, "edit": {"secret": MARK}}))
-        wait_for(lambda: '"id": 2' in str(socket.recv(timeout=30)))
+        wait_for(lambda: '"id": 2' in str(socket.recv(timeout=HANG)))
     with pytest.raises(InvalidStatus):
         connect(url, additional_headers={"authorization": f"Bearer {served.token}x"}).close()
     client.get(f"/secret{MARK}")
@@ -56,10 +56,10 @@ def busy_run(served: Served) -> str:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_a_busy_run_in_json() -> None:
-    served = Served(workers=1, log="json").ready()
+    served = Served(PATIENT, workers=1, log="json").ready()
     ids = {served.client.get("/v1/health").headers["x-request-id"] for _ in range(5)}
     cookie = busy_run(served)
-    code, _, said = served.end()
+    code, said = served.end()
     assert code == 0
     lines = [json.loads(line) for line in said.splitlines()]
     for private in (served.token, cookie, f"{MARK}", "36451827", "secret", "token="):
@@ -80,18 +80,18 @@ def test_a_busy_run_in_json() -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_a_busy_run_is_quiet_by_default() -> None:
-    served = Served(workers=1).ready()
+    served = Served(PATIENT, workers=1).ready()
     busy_run(served)
-    code, _, said = served.end()
+    code, said = served.end()
     assert (code, said) == (0, "")
 
 
 def test_a_log_that_nobody_reads_holds_nothing_up() -> None:
     """Several times what a pipe holds: every request is answered, and what was waiting is written at the end."""
-    served = Served(workers=1, log="json").ready()
+    served = Served(PATIENT, workers=1, log="json").ready()
     for _ in range(1500):
         assert served.client.get("/v1/health").status_code == 200
-    code, _, said = served.end()
+    code, said = served.end()
     assert code == 0 and len(said) > 200_000
     assert all(json.loads(line) for line in said.splitlines())
 

@@ -11,6 +11,7 @@ from hookean_server.sessions.manager import Manager
 from hookean_server.sessions.process import SessionProcess
 from hookean_server.settings import Settings
 from hookean_server.store import Store
+from serving import HANG
 
 BEFORE = {"revision": 0, "status": "running", "playing": False}
 AFTER = {**BEFORE, "revision": 1}
@@ -148,7 +149,7 @@ def test_a_session_that_is_played_while_it_steps_plays() -> None:
         stepping = asyncio.create_task(manager.command("a", "step", frames=100_000))
         await asyncio.sleep(0.3)
         await manager.command("a", "play")
-        await asyncio.wait_for(stepping, 30)
+        await asyncio.wait_for(stepping, HANG)
         playing = manager.find("a").playing
         await manager.close()
         store.close()

@@ -9,6 +9,7 @@ import httpx
 import pytest
 
 from hookean_server.routes_page import KINDS
+from serving import HANG
 
 from .conftest import Served, problem
 
@@ -48,7 +49,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 @pytest.fixture
 def browser(served: Served) -> Iterator[httpx.Client]:
     """Without a token."""
-    with httpx.Client(base_url=served.url) as found:
+    with httpx.Client(base_url=served.url, timeout=HANG) as found:
         yield found
 
 
@@ -125,7 +126,7 @@ def test_nothing_else_is_served(served: Served, path: str) -> None:
     """Sent as it stands, for clients tidy addresses up."""
     import http.client
 
-    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=20)
+    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=HANG)
     try:
         connection.request("GET", f"/page/{path}")
         answer = connection.getresponse()
@@ -144,7 +145,7 @@ def test_a_page_that_was_not_built_says_how(tmp_path: Path) -> None:
     """As in a checkout that was never installed, where the folder is not even there."""
     served = Served(page=str(tmp_path / "none"), workers=1)
     try:
-        with httpx.Client(base_url=served.url) as browser:
+        with httpx.Client(base_url=served.url, timeout=HANG) as browser:
             page = browser.get("/", headers=HTML)
             assert page.status_code == 200 and page.headers["content-type"].startswith("text/html")
             assert "python hatch_build.py" in page.text and "install" in page.text and "<script" not in page.text

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import socket
-import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,7 +15,7 @@ from hookean_server.app import create_app
 from hookean_server.operations import OPERATIONS
 from hookean_server.problems import CATALOGUE
 from hookean_server.settings import Settings
-from serving import CABLE
+from serving import CABLE, HANG
 
 from .conftest import Served, problem
 
@@ -137,17 +136,17 @@ def test_sockets_are_guarded_too(served: Served) -> None:
 
 def raw(served: Served, data: bytes) -> bytes:
     """What the server answers to raw bytes."""
-    with socket.create_connection(("127.0.0.1", served.port), timeout=10) as sock:
+    with socket.create_connection(("127.0.0.1", served.port), timeout=HANG) as sock:
         sock.sendall(data)
         return sock.recv(65536)
 
 
 def test_large_bodies_are_refused_by_their_stated_length_alone(served: Served) -> None:
+    """Nothing of the body is sent: a server that waited for it would answer 408."""
     head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{served.port}\r\n{served.head}"
     head += "Content-Type: application/json\r\n"
-    started = time.monotonic()
     found = raw(served, f"{head}Content-Length: 99999999999\r\n\r\n".encode())
-    assert found.startswith(b"HTTP/1.1 413") and time.monotonic() - started < 1.0
+    assert found.startswith(b"HTTP/1.1 413")
     assert b"application/problem+json" in found and b"connection: close" in found.lower()
 
 

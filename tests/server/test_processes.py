@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import Future
+from contextlib import ExitStack
 from typing import Any
 
 import httpx
@@ -19,33 +20,33 @@ import psutil
 import pytest
 
 from hookean_server.ports import owner
-from serving import CABLE, wait_for
+from serving import CABLE, HANG, wait_for
 
-from .conftest import Served, endless, problem
+from .conftest import PATIENT, Served, asked, computing, endless, problem
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 JSON = {"content-type": "application/json"}
+NEVER = 10 * HANG
 
 
 @pytest.fixture(scope="module")
 def broken() -> Iterator[Served]:
-    found = Served(workers=1, queue=2)
+    found = Served(workers=1, queue=2, solve_seconds=NEVER, cancel_seconds=NEVER)
     yield found.ready()
     found.end()
 
 
 @pytest.fixture
 def alone(broken: Served) -> Served:
-    """A server of one worker for tests that break it; whole again before each."""
+    """A server of one worker, which stops nothing by force, for tests that break it; whole again before each."""
     wait_for(lambda: broken.health()["requests"]["taken"] == 0)
     return broken.ready()
 
 
 @pytest.fixture(scope="module")
 def strict() -> Iterator[Served]:
-    """A server of one worker and small limits."""
-    limits = {"solve_seconds": 1.0, "grace_seconds": 3.0, "body_seconds": 0.5}
-    found = Served(workers=1, **limits)
+    """A server of one worker and small limits; a worker has all the time it wants to keep them by itself."""
+    found = Served(workers=1, solve_seconds=1.0, grace_seconds=NEVER, body_seconds=0.5)
     yield found.ready()
     found.end()
 
@@ -55,7 +56,7 @@ def post_later(served: Served, scene: dict[str, Any], path: str = "/v1/relax") -
 
     def post() -> None:
         try:
-            future.set_result(httpx.post(served.url + path, json=scene, timeout=60, headers=served.known))
+            future.set_result(httpx.post(served.url + path, json=scene, timeout=HANG, headers=served.known))
         except Exception as error:
             future.set_exception(error)
 
@@ -68,16 +69,13 @@ def busy(served: Served, count: int = 1) -> None:
 
 
 def test_health_answers_while_all_workers_solve(served: Served) -> None:
+    wait_for(lambda: served.health()["workers"]["starting"] == 0)
     count = served.health()["workers"]["idle"]
-    running = [post_later(served, endless(3.0)) for _ in range(count)]
-    busy(served, count)
-    answers = 0
-    while not running[0].done():
-        assert served.health()["service"] == "hookean"
-        answers += 1
-        time.sleep(0.01)
-    assert [r.result().json()["status"] for r in running] == ["time_limit"] * count
-    assert answers > 20
+    with ExitStack() as clients:
+        for _ in range(count):
+            clients.enter_context(asked(served, endless(NEVER)))
+        busy(served, count)
+        assert [served.health()["workers"]["busy"] for _ in range(20)] == [count] * 20
 
 
 def test_the_servers_own_limit_ends_a_solve_with_an_answer(strict: Served) -> None:
@@ -90,60 +88,65 @@ def test_the_servers_own_limit_ends_a_solve_with_an_answer(strict: Served) -> No
 
 
 def test_a_client_that_leaves_frees_the_worker(alone: Served) -> None:
+    """The solve has no end of its own and nothing stops it by force: the worker stops because the client has left."""
     worker = alone.workers()
-    with pytest.raises(httpx.ReadTimeout):
-        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.5, headers=alone.known)
-    wait_for(lambda: alone.health()["workers"]["idle"] == 1, 4.0)
+    with asked(alone, endless(NEVER)):
+        computing(worker[0])
+    wait_for(lambda: alone.health()["workers"]["idle"] == 1)
     assert alone.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
     assert alone.health()["requests"]["taken"] == 0
-    assert [p.pid for p in alone.workers()] == [p.pid for p in worker]  # it stopped by itself
+    assert [p.pid for p in alone.workers()] == [p.pid for p in worker]
 
 
 def test_a_client_that_leaves_the_queue_is_forgotten(alone: Served) -> None:
-    running = post_later(alone, endless(2.0))
-    busy(alone)
-    with pytest.raises(httpx.ReadTimeout):
-        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3, headers=alone.known)
-    wait_for(lambda: alone.health()["requests"]["taken"] == 1)
-    assert running.result().json()["status"] == "time_limit"
+    with asked(alone, endless(NEVER)):
+        busy(alone)
+        with asked(alone, endless(NEVER)):
+            wait_for(lambda: alone.health()["requests"]["taken"] == 2)
+        wait_for(lambda: alone.health()["requests"]["taken"] == 1)
+        assert alone.health()["workers"]["busy"] == 1
     assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
 
 
-def test_a_worker_that_hangs_is_stopped(strict: Served) -> None:
+def test_a_worker_that_hangs_is_stopped() -> None:
+    """Checking a job has a second here, after which whoever does it is stopped; a solve has all the time it wants."""
+    served = Served(workers=1, file_seconds=1.0).ready()
+    try:
+        worker = served.workers()[0]
+        worker.suspend()
+        problem(served.client.post("/v1/jobs", json={"scene": CABLE}), 504, "out-of-time")
+        assert not alive(worker)
+        assert served.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
+    finally:
+        served.end()
+
+
+def test_a_suspended_worker_whose_client_leaves_is_killed(strict: Served) -> None:
+    """By the time that a worker has to stop, `cancel_seconds`: those of a solve do not end within this test."""
     worker = strict.ready().workers()[0]
+    before = strict.health()["workers"]["restarts"]
     worker.suspend()
-    started = time.monotonic()
-    problem(strict.client.post("/v1/relax", json=CABLE), 504, "out-of-time")
-    assert time.monotonic() - started < 6.0
-    assert strict.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
+    with asked(strict, endless()):
+        busy(strict)
+    wait_for(lambda: strict.health()["workers"]["restarts"] > before)
     assert not alive(worker)
-
-
-def test_a_suspended_worker_whose_client_leaves_is_killed_after_two_seconds(alone: Served) -> None:
-    worker = alone.workers()[0]
-    before = alone.health()["workers"]["restarts"]
-    worker.suspend()
-    started = time.monotonic()
-    with pytest.raises(httpx.ReadTimeout):
-        httpx.post(f"{alone.url}/v1/relax", json=endless(), timeout=0.3, headers=alone.known)
-    wait_for(lambda: alone.health()["workers"]["restarts"] > before, 5.0)
-    assert 1.5 < time.monotonic() - started < 5.0
-    assert alone.client.post("/v1/relax", json=CABLE).status_code == 200
+    assert strict.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
 
 
 def test_killing_a_worker_in_the_middle_of_a_solve(alone: Served) -> None:
     for _ in range(3):
+        worker = alone.ready().workers()[0]
         running = post_later(alone, endless())
-        busy(alone)
-        time.sleep(0.1)
-        alone.workers()[0].kill()
-        problem(running.result(timeout=5), 500, "worker-lost")
+        computing(worker)
+        worker.kill()
+        problem(running.result(timeout=HANG), 500, "worker-lost")
         assert alone.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
 
 
 def test_a_worker_that_dies_idle_is_not_noticed_by_the_next_request(alone: Served) -> None:
-    alone.workers()[0].kill()
-    time.sleep(0.1)
+    worker = alone.workers()[0]
+    worker.kill()
+    wait_for(lambda: not alive(worker))
     assert alone.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
 
 
@@ -153,29 +156,30 @@ def test_a_solve_that_needs_too_much_memory() -> None:
     try:
         small.ready()
         body = b'{"particles": [' + b"[0,0,0]," * 1_800_000 + b"[0,0,0]]}"
-        problem(small.client.post("/v1/relax", content=body, headers=JSON, timeout=120), 413, "too-large")
-        assert small.client.post("/v1/relax", json=CABLE, timeout=60).status_code == 200
+        problem(small.client.post("/v1/relax", content=body, headers=JSON, timeout=HANG), 413, "too-large")
+        assert small.client.post("/v1/relax", json=CABLE, timeout=HANG).status_code == 200
     finally:
         small.end()
 
 
 def test_a_full_service_says_so_before_it_reads(alone: Served) -> None:
-    running = [post_later(alone, endless(2.5)) for _ in range(3)]
-    wait_for(lambda: alone.health()["requests"]["taken"] == 3)
-    assert alone.health()["status"] == "full"
-    refused = alone.client.post("/v1/relax", json=CABLE)
-    problem(refused, 503, "busy")
-    assert int(refused.headers["retry-after"]) >= 1
-    problem(alone.client.post("/v1/relax/3dm", files={"file": b"x" * 10**7}), 503, "busy")
-    assert alone.health()["status"] == "full"
-    running[0].result()
-    wait_for(lambda: alone.health()["requests"]["taken"] < 3)
+    with ExitStack() as clients:
+        for _ in range(3):
+            clients.enter_context(asked(alone, endless(NEVER)))
+        wait_for(lambda: alone.health()["requests"]["taken"] == 3)
+        assert alone.health()["status"] == "full"
+        refused = alone.client.post("/v1/relax", json=CABLE)
+        problem(refused, 503, "busy")
+        assert int(refused.headers["retry-after"]) >= 1
+        problem(alone.client.post("/v1/relax/3dm", files={"file": b"x" * 10**7}), 503, "busy")
+        assert alone.health()["status"] == "full"
+    wait_for(lambda: alone.health()["status"] == "ok")
 
 
 def test_a_body_that_does_not_come(strict: Served) -> None:
     head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{strict.port}\r\n{strict.head}"
     head += "Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
-    with socket.create_connection(("127.0.0.1", strict.port), timeout=10) as sock:
+    with socket.create_connection(("127.0.0.1", strict.port), timeout=HANG) as sock:
         sock.sendall(head.encode())
         assert sock.recv(65536).startswith(b"HTTP/1.1 408")
     wait_for(lambda: strict.health()["requests"]["taken"] == 0)
@@ -184,7 +188,7 @@ def test_a_body_that_does_not_come(strict: Served) -> None:
 def test_a_client_that_leaves_in_the_middle_of_its_body(alone: Served) -> None:
     head = f"POST /v1/relax HTTP/1.1\r\nHost: 127.0.0.1:{alone.port}\r\n{alone.head}"
     head += "Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{"
-    with socket.create_connection(("127.0.0.1", alone.port), timeout=10) as sock:
+    with socket.create_connection(("127.0.0.1", alone.port), timeout=HANG) as sock:
         sock.sendall(head.encode())
         wait_for(lambda: alone.health()["requests"]["taken"] == 1)
     wait_for(lambda: alone.health()["requests"]["taken"] == 0)
@@ -194,7 +198,7 @@ def test_a_client_that_leaves_in_the_middle_of_its_body(alone: Served) -> None:
 def test_a_connection_is_kept_longer_than_clients_keep_it(served: Served) -> None:
     """httpx gives one up after 5 s without a request. A server that did so at the same moment would end connections
     just as requests go down them, which then come to nothing."""
-    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=20)
+    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=HANG)
     for pause in (6.0, 0.0):
         connection.request("GET", "/v1/health", headers={"Connection": "keep-alive"})
         assert connection.getresponse().read()
@@ -213,7 +217,8 @@ def test_a_connection_is_kept_longer_than_clients_keep_it(served: Served) -> Non
     ],
 )
 def test_a_clean_end(what: str, number: int) -> None:
-    served = Served(workers=2)
+    """It ends by itself: nothing cuts it short here."""
+    served = Served(PATIENT, workers=2)
     running = None
     if what != "starting":
         served.ready()
@@ -227,14 +232,14 @@ def test_a_clean_end(what: str, number: int) -> None:
         sock.sendall(b"Content-Type: application/json\r\nContent-Length: 100\r\n\r\n{")
         wait_for(lambda: served.health()["requests"]["taken"] == 1)
     family = served.family()
-    code, seconds, said = served.end(number)
+    code, said = served.end(number)
     if what == "reading":
         sock.close()
-    assert code == 0 and seconds < 3.0, (code, seconds, said)
+    assert code == 0, (code, said)
     assert "Traceback" not in said and "rror" not in said, said
-    wait_for(lambda: not any(alive(p) for p in family), 2.0)
+    wait_for(lambda: not any(alive(p) for p in family))
     if running is not None:
-        problem(running.result(timeout=5), 503, "shutting-down")
+        problem(running.result(timeout=HANG), 503, "shutting-down")
 
 
 def alive(process: psutil.Process) -> bool:
@@ -244,6 +249,20 @@ def alive(process: psutil.Process) -> bool:
         return False
 
 
+def started() -> tuple[subprocess.Popen[str], str]:
+    """`python -m hookean_server 0` in a group of its own, whose end nothing cuts short; and where it serves."""
+    code = f"{PATIENT} import runpy, sys; sys.argv = ['', '0']; runpy.run_module('hookean_server', run_name='__main__')"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    return process, process.stdout.readline().split()[3]
+
+
 def test_no_worker_outlives_a_server_that_is_killed() -> None:
     served = Served(workers=2).ready()
     running = post_later(served, endless())
@@ -251,46 +270,30 @@ def test_no_worker_outlives_a_server_that_is_killed() -> None:
     family = served.family()
     assert family
     served.end(signal.SIGKILL)
-    wait_for(lambda: not any(alive(p) for p in family), 5.0)
+    wait_for(lambda: not any(alive(p) for p in family))
     with pytest.raises(httpx.HTTPError):
-        running.result(timeout=5)
+        running.result(timeout=HANG)
 
 
 def test_ctrl_c_reaches_the_whole_group() -> None:
     """In a terminal every process of the group gets the signal; workers leave the decision to the server."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "hookean_server", "0"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    assert process.stdout is not None
-    url = process.stdout.readline().split()[3]
-    wait_for(lambda: httpx.get(f"{url}/v1/health").json()["workers"]["idle"] > 0, 60)
+    process, url = started()
+    wait_for(lambda: httpx.get(f"{url}/v1/health", timeout=HANG).json()["workers"]["idle"] > 0)
     os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=10)
+    _, said = process.communicate(timeout=HANG)
     assert process.returncode == 0 and said == ""
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.15, 0.3, 1.0])
 def test_ctrl_c_soon_after_the_start(seconds: float) -> None:
     """While the fork server starts and warms up too: nothing said, exit code 0, no process left."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "hookean_server", "0"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    assert process.stdout is not None
-    process.stdout.readline()
-    time.sleep(seconds)
+    process, _ = started()
+    time.sleep(seconds)  # whatever it does by then
     family = psutil.Process(process.pid).children(recursive=True)
     os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=10)
+    _, said = process.communicate(timeout=HANG)
     assert process.returncode == 0 and said == ""
-    wait_for(lambda: not any(alive(p) for p in family), 2.0)
+    wait_for(lambda: not any(alive(p) for p in family))
 
 
 def test_it_says_where_it_is_and_what_to_try(served: Served) -> None:
@@ -298,7 +301,7 @@ def test_it_says_where_it_is_and_what_to_try(served: Served) -> None:
     line = served.process.stdout.readline()  # type: ignore[union-attr]
     assert served.token not in line
     known = {**os.environ, "HOOKEAN_TOKEN": served.token}
-    done = subprocess.run(line, shell=True, capture_output=True, text=True, timeout=60, env=known)
+    done = subprocess.run(line, shell=True, capture_output=True, text=True, timeout=HANG, env=known)
     assert '"status": "converged"' in done.stdout, (line, done.stderr)
 
 
@@ -322,5 +325,7 @@ def test_the_owner_of_a_port_without_psutil(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_port_that_is_none() -> None:
-    done = subprocess.run([sys.executable, "-m", "hookean_server", "99999"], capture_output=True, text=True, timeout=30)
+    done = subprocess.run(
+        [sys.executable, "-m", "hookean_server", "99999"], capture_output=True, text=True, timeout=HANG
+    )
     assert done.returncode == 2 and "Traceback" not in done.stderr

@@ -15,7 +15,7 @@ from hookean_server.sessions import parts, rows
 from hookean_server.sessions import process as module
 from hookean_server.sessions.process import Gone, SessionProcess
 from hookean_server.store import Store
-from serving import CABLE
+from serving import CABLE, HANG
 
 MEMORY = 4 << 30
 
@@ -42,7 +42,7 @@ def test_the_end_is_told_by_two_threads_at_once(monkeypatch: pytest.MonkeyPatch)
     for _ in range(2):  # while it ends, and after
         with pytest.raises(Gone):
             asyncio.run(_asked_until_gone(process))
-    assert lost.wait(60.0)
+    assert lost.wait(HANG)
 
 
 def test_drags_by_pins_are_few_rows_and_come_back_whole() -> None:

@@ -19,9 +19,9 @@ import pytest
 import websockets
 
 from hookean_server.ending import LONGEST
-from serving import CABLE, SWING, Home, living, wait_for
+from serving import CABLE, HANG, SWING, Home, hears, living, wait_for
 
-from .conftest import endless, problem
+from .conftest import PATIENT, endless, problem
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
@@ -35,7 +35,7 @@ def home(tmp_path: Path) -> Iterator[Home]:
 
 def client(home: Home) -> httpx.Client:
     known = {"authorization": f"Bearer {home.told['token']}"}
-    return httpx.Client(base_url=home.told["url"], headers=known, timeout=60.0)
+    return httpx.Client(base_url=home.told["url"], headers=known, timeout=HANG)
 
 
 def family(pid: int) -> list[int]:
@@ -104,10 +104,10 @@ def test_told_to_stop_with_sockets_open_and_work_running(home: Home) -> None:
         pids = family(process.pid)
         done = home.command("serve", "--stop")
     assert (done.returncode, done.stderr) == (0, "") and url in done.stdout and "are kept" in done.stdout
-    _, said = process.communicate(timeout=30)
+    _, said = process.communicate(timeout=HANG)
     assert process.returncode == 0 and "Traceback" not in said, said
-    solving.join(30)
-    watcher.join(30)
+    solving.join(HANG)
+    watcher.join(HANG)
     problem(answers[0], 503, "shutting-down")
     assert watcher.code == 1012
     wait_for(lambda: not any(living(pid) for pid in pids))
@@ -121,13 +121,13 @@ def test_told_to_stop_with_sockets_open_and_work_running(home: Home) -> None:
 def test_a_stop_needs_the_token(home: Home) -> None:
     process = home.serve()
     url = f"{home.told['url']}/v1/shutdown"
-    problem(httpx.post(url), 401, "unauthorized")
-    problem(httpx.post(url, headers={"authorization": "Bearer " + "x" * 43}), 401, "unauthorized")
+    problem(httpx.post(url, timeout=HANG), 401, "unauthorized")
+    problem(httpx.post(url, headers={"authorization": "Bearer " + "x" * 43}, timeout=HANG), 401, "unauthorized")
     assert process.poll() is None
     with client(home) as asks:
         told = asks.post("/v1/shutdown")
     assert told.status_code == 202 and told.json() == {"status": "stopping"}
-    assert process.wait(30) == 0
+    assert process.wait(HANG) == 0
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
@@ -136,42 +136,49 @@ def test_a_session_that_hangs_holds_up_nothing(home: Home, number: int) -> None:
     process = home.serve()
     pids = suspended(home, process.pid)
     process.send_signal(number)
-    process.communicate(timeout=30)
+    process.communicate(timeout=HANG)
     assert process.returncode == 0
     wait_for(lambda: not any(living(pid) for pid in pids))
     assert not home.told
 
 
-def test_an_end_that_hangs_is_cut_short(home: Home) -> None:
-    """Something that never ends, such as a disk that does not answer: no more than LONGEST, with exit code 0."""
-    assert LONGEST < 3.0
+def hanging(home: Home, first: str = "") -> subprocess.Popen[str]:
+    """A server whose end hangs, as on a disk that does not answer; `first` is code that it runs before."""
     code = (
+        f"{first}\n"
         "import asyncio, sys\n"
         "from hookean_server import command\n"
         "from hookean_server.sessions.manager import Manager\n"
-        "async def hangs(self): await asyncio.sleep(600)\n"
+        "async def hangs(self): await asyncio.sleep(3600)\n"
         "Manager.close = hangs\n"
         "sys.exit(command.run(command.Options(port=0)))\n"
     )
     pipes: Any = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    process = subprocess.Popen([sys.executable, "-c", code], env=home.environment, **pipes)
+    process = subprocess.Popen([sys.executable, "-c", code], env=home.environment, preexec_fn=hears, **pipes)
     home.started.append(process)
     wait_for(lambda: home.told)
+    return process
+
+
+def test_an_end_that_hangs_is_cut_short(home: Home) -> None:
+    """No more than LONGEST, with exit code 0."""
+    assert LONGEST < 3.0
+    process = hanging(home)
     pids = family(process.pid)
     process.terminate()
-    _, said = process.communicate(timeout=30)
+    _, said = process.communicate(timeout=HANG)
     assert process.returncode == 0 and "cut short" in said
     wait_for(lambda: not any(living(pid) for pid in pids))
     assert not home.told
 
 
 def test_the_second_signal_ends_it_now(home: Home) -> None:
-    process = home.serve()
-    pids = suspended(home, process.pid)  # so the end takes a second or more
+    process = hanging(home, PATIENT)  # so nothing else ends it
+    pids = family(process.pid)
     process.send_signal(signal.SIGINT)
     wait_for(lambda: not httpx_answers(home))
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=30)
+    process.communicate(timeout=HANG)
     assert process.returncode == 130
     wait_for(lambda: not any(living(pid) for pid in pids))
     assert not home.told
@@ -179,7 +186,7 @@ def test_the_second_signal_ends_it_now(home: Home) -> None:
 
 def httpx_answers(home: Home) -> bool:
     try:
-        return httpx.get(f"{home.told['url']}/v1/health", timeout=5).status_code == 200
+        return httpx.get(f"{home.told['url']}/v1/health", timeout=HANG).status_code == 200
     except (httpx.HTTPError, KeyError):
         return False
 
@@ -191,4 +198,4 @@ def test_one_that_hangs_is_not_said_to_have_ended(home: Home) -> None:
     assert done.returncode == 1 and done.stdout == "" and "does not answer" in done.stderr
     process.send_signal(signal.SIGCONT)
     assert home.command("serve", "--stop").returncode == 0
-    assert process.wait(30) == 0
+    assert process.wait(HANG) == 0

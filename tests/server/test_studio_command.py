@@ -15,7 +15,7 @@ from urllib.parse import parse_qs, urlsplit
 import httpx
 import pytest
 
-from serving import CABLE, Home, wait_for
+from serving import CABLE, HANG, Home, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
@@ -46,7 +46,7 @@ def lets_in(address: str) -> Iterator[httpx.Client]:
     """Somebody who opens the address: the token behind the # is that of the service."""
     [token] = parse_qs(urlsplit(address).fragment)["t"]
     base = f"http://{urlsplit(address).netloc}"
-    with httpx.Client(base_url=base, headers={"authorization": f"Bearer {token}"}, timeout=60.0) as client:
+    with httpx.Client(base_url=base, headers={"authorization": f"Bearer {token}"}, timeout=HANG) as client:
         assert client.post("/v1/login").status_code == 204
         yield client
 
@@ -80,13 +80,13 @@ def test_it_starts_the_service_and_opens_a_browser(home: Home, tmp_path: Path) -
     file.write_text(json.dumps(CABLE))
     process = begun(home, str(file))
     seen = tmp_path / "seen"
-    wait_for(lambda: seen.exists() and seen.read_text(), 120.0)
+    wait_for(lambda: seen.exists() and seen.read_text())
     with lets_in(seen.read_text()) as client:
         [session] = client.get("/v1/sessions").json()["sessions"]
         assert session["label"] == "scene.json" and f"s={session['key']}" in seen.read_text()
         token = client.headers["authorization"].split()[1]
     process.send_signal(signal.SIGINT)
-    said, wrong = process.communicate(timeout=60)
+    said, wrong = process.communicate(timeout=HANG)
     assert process.returncode == 0 and "hookean serves at" in said and "open in a browser" in said, (said, wrong)
     assert token not in said + wrong and not home.told
 
@@ -107,6 +107,6 @@ def test_a_file_that_cannot_be_opened_is_told_in_a_sentence(
     if content is not None:
         file.write_text(content)
     process = begun(home, str(file))
-    _, wrong = process.communicate(timeout=120)
+    _, wrong = process.communicate(timeout=HANG)
     assert process.returncode == 2 and said in wrong and "Traceback" not in wrong, wrong
     assert not (tmp_path / "seen").exists() and not home.serving()
