@@ -9,7 +9,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,7 @@ from hookean import Scene, Simulation, cli
 from hookean.files import threedm
 from hookean.files.scene_json import write
 from samples import cable
-from serving import hears
+from serving import HANG, hears, wait_for
 
 LIFT = '[[anchors]]\nanchor = "ends"\ntimes = [0, 1]\nshifts = [[0, 0, 0], [0, 0, 1]]\n'
 WIND = '[[drives]]\nforce = "1"\ncolumn = "vector"\nsource = "speed [m/s]"\nscale = [0, 0.5, -20]\npower = 2\n'
@@ -198,12 +197,9 @@ def test_ctrl_c_writes_what_was_seen(folder: Path):
     process.stdin.write(ROWS)
     process.stdin.flush()
     table = folder / "out.csv"
-    for _ in range(600):
-        if table.exists() and table.read_text("utf-8").count("\n") == 7:
-            break
-        time.sleep(0.1)
+    wait_for(lambda: table.exists() and table.read_text("utf-8").count("\n") == 7)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    _, said = process.communicate(timeout=HANG)
     assert process.returncode == 130
     assert "stopped after 5 frames, 1 s." in said
     assert rows(table.read_text("utf-8"))[-1]["time [s]"] == "1"

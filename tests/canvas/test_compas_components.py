@@ -14,7 +14,7 @@ import pytest
 from hookean import Scene, relax
 from hookean_canvas import bundles, inline, stand_in
 from pythons import interpreter
-from serving import Home
+from serving import HANG, Home
 
 NAMES = ("CompasStructure", "CompasSprings", "CompasLoad", "CompasAnchors", "CompasRelax")
 RUN = Path(__file__).with_name("compas_canvas_run.py")
@@ -54,7 +54,7 @@ def told(request: pytest.FixtureRequest, home: Home, tmp_path_factory: pytest.Te
     (folder / "codes.json").write_text(json.dumps(codes))
     words = [python, "-I", str(RUN), str(stand_in.__file__), str(folder / "codes.json")]
     done = subprocess.run(
-        words, cwd=folder, env=home.environment, capture_output=True, text=True, timeout=200, check=False
+        words, cwd=folder, env=home.environment, capture_output=True, text=True, timeout=HANG, check=False
     )
     assert done.returncode == 0, done.stderr
     found: dict[str, Any] = json.loads(done.stdout)
@@ -128,5 +128,5 @@ def test_every_python_of_rhino_imports_the_converters_without_compas(version: st
         "print(compas.__name__)"
     )
     words = [found, "-c", code, str(bundles.folder())]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=HANG, check=False)
     assert (done.stdout.strip(), done.returncode) == ("hookean_client.compas", 0), done.stderr

@@ -17,7 +17,7 @@ import pytest
 
 import pythons
 from hookean_canvas import archive, bundles, isolated, userobject
-from serving import Home
+from serving import HANG, Home
 
 PYTHONS = ("2.7", "3.9", "3.13")
 """Of Rhino 7 as far as it goes, Rhino 8 and Rhino 9."""
@@ -106,7 +106,7 @@ def ask(version: str, request: dict[str, Any], folder: Path, home: Home | None) 
         environment.pop(name, None)
     done = subprocess.run(
         [*command, str(Path(isolated.__file__))], input=json.dumps(request), capture_output=True, text=True,
-        cwd=folder, env=environment, timeout=240, check=False,
+        cwd=folder, env=environment, timeout=HANG, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr[-3000:]
     found: list[dict[str, Any]] = json.loads(done.stdout)

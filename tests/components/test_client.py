@@ -17,7 +17,7 @@ import pytest
 
 import hookean_client
 from hookean_client import Problem, buffer, connect
-from serving import CABLE, SOAK, SWING, Home, living, wait_for
+from serving import CABLE, HANG, SOAK, SWING, Home, living, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
@@ -36,7 +36,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
     CLIENTS.clear()
     found.end()
     for child in hookean_client._children.values():
-        child.wait(30)
+        child.wait(HANG)
     hookean_client._children.clear()
 
 
@@ -52,7 +52,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[hookean_client.
 
 
 def started(home: Home) -> hookean_client.Client:
-    CLIENTS.append(connect(folder=str(home.folder), python=sys.executable, timeout=120.0))
+    CLIENTS.append(connect(folder=str(home.folder), python=sys.executable, timeout=HANG))
     return CLIENTS[-1]
 
 
@@ -130,18 +130,18 @@ def test_frames_show_each_edit(client: hookean_client.Client) -> None:
     frames = session.frames()
     try:
         session.play()
-        first = frames.wait(lambda frame: frame["playing"])
+        first = frames.wait(lambda frame: frame["playing"], timeout=HANG)
         assert first is not None and len(first["particles"]) == 18 and len(first["scalars"]) == 5
         assert first["status"] == "running"
         for i in range(10):
             revision = session.edit({"forces": {"1": {"vector": [0, 0, -20.0 - i]}}})["revision"]
-            shown = frames.wait(lambda frame, revision=revision: frame["revision"] >= revision)
+            shown = frames.wait(lambda frame, revision=revision: frame["revision"] >= revision, timeout=HANG)
             assert shown is not None
         assert frames.latest()["number"] >= shown["number"] > first["number"]
         session.pause()
         wait_for(lambda: frames.session.get("playing") is False)
         state = session.state()
-        last = frames.wait(lambda frame: not frame["playing"])
+        last = frames.wait(lambda frame: not frame["playing"], timeout=HANG)
         assert last["particles"] == pytest.approx([x for row in state["particles"] for x in row], abs=1e-5)
         assert frames.topology and frames.lost == [] and frames.message == ""
         before = frames.topology
@@ -163,7 +163,7 @@ def test_frames_end_when_the_session_is_forgotten(client: hookean_client.Client)
     session = client.session("forgotten")
     session.put(CABLE)
     frames = session.frames()
-    assert frames.wait() is not None
+    assert frames.wait(timeout=HANG) is not None
     session.delete()
     wait_for(lambda: frames.ended)
 
@@ -203,7 +203,7 @@ def test_eight_that_race_get_one_server(home: Home, times: int) -> None:
             subprocess.Popen([sys.executable, "-S", "-c", RACER, *words], stdout=subprocess.PIPE, text=True)
             for _ in range(8)
         ]
-        said = [racer.communicate(timeout=300)[0].strip() for racer in racers]
+        said = [racer.communicate(timeout=HANG)[0].strip() for racer in racers]
         assert [racer.returncode for racer in racers] == [0] * 8
         assert set(said) == {home.told["instance"]}
         assert home.serving() == [home.told["pid"]]
@@ -222,11 +222,12 @@ def test_threads_that_race_get_one_server(home: Home) -> None:
     assert home.serving() == [home.told["pid"]]
 
 
-def test_a_start_goes_on_where_nobody_waits_for_it(home: Home) -> None:
+def test_a_start_goes_on_where_nobody_waits_for_it(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(Problem) as found:
         connect(folder=str(home.folder), python=sys.executable, timeout=0.0)
     assert found.value.slug == "starting"
     wait_for(lambda: home.told)
+    monkeypatch.setattr(hookean_client, "ANSWER", HANG)  # it has just started, and may be slow
     client = connect(folder=str(home.folder), start=False)
     assert client.instance == home.told["instance"]
     assert not (home.folder / "starting").exists()
@@ -286,8 +287,8 @@ def test_which_python_starts_it(home: Home, monkeypatch: pytest.MonkeyPatch) -> 
 def test_the_first_serve_tells_the_client_which_python(home: Home) -> None:
     process = home.serve()
     process.terminate()
-    process.communicate(timeout=30)
-    CLIENTS.append(connect(folder=str(home.folder), timeout=120.0))
+    process.communicate(timeout=HANG)
+    CLIENTS.append(connect(folder=str(home.folder), timeout=HANG))
     assert CLIENTS[-1].instance == home.told["instance"]
 
 
@@ -376,7 +377,7 @@ def test_a_server_killed_under_a_client_is_started_again(home: Home) -> None:
     revision = session.edit({"pin": [{"particles": [2]}]})["revision"]
     frames = session.frames()
     session.play()
-    assert frames.wait(lambda frame: frame["revision"] == revision) is not None
+    assert frames.wait(lambda frame: frame["revision"] == revision, timeout=HANG) is not None
     before = client.instance
     home.kill()
     wait_for(lambda: frames.message)
@@ -396,7 +397,7 @@ def test_frames_start_no_server(home: Home) -> None:
     client = started(home)
     client.session("a").put(CABLE)
     frames = client.session("a").frames()
-    assert frames.wait() is not None
+    assert frames.wait(timeout=HANG) is not None
     client.post("/v1/shutdown")
     wait_for(lambda: not home.told)
     wait_for(lambda: "No hookean server runs" in frames.message)

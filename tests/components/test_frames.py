@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 import hookean_client
 from hookean_client import Link, Problem, buffer, decode
 from hookean_server.sessions import wire
+from serving import HANG
 
 FLOATS = st.floats(-(2.0**100), 2.0**100, width=32)
 
@@ -243,7 +244,7 @@ def test_the_answer_to_the_handshake_is_checked(accept: str) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
         thread = threading.Thread(target=answer, args=(listening,))
         thread.start()
-        connection = http.client.HTTPConnection("127.0.0.1", listening.getsockname()[1], timeout=5)
+        connection = http.client.HTTPConnection("127.0.0.1", listening.getsockname()[1], timeout=HANG)
         connection.connect()
         if accept == "right":
             assert Link(connection, "/v1/sessions/a/frames", "token").receive() == (1, b"{}")

@@ -13,7 +13,7 @@ import pytest
 
 import hookean_client
 from pythons import interpreter
-from serving import CABLE, Home
+from serving import CABLE, HANG, Home
 
 SOURCE = Path(hookean_client.__file__)
 VERSIONS = ["2.7", *(f"3.{minor}" for minor in range(6, 15))]
@@ -30,6 +30,7 @@ import json, sys, time
 sys.dont_write_bytecode = True
 sys.path.insert(0, sys.argv[1])
 import hookean_client
+hookean_client.ANSWER = 120.0
 scene = json.loads(sys.argv[3])
 client = hookean_client.connect(start=False, folder=sys.argv[2])
 scene["particles"] = hookean_client.buffer(scene["particles"])
@@ -37,10 +38,10 @@ assert client.relax(scene)["status"] == "converged"
 session = client.session("v%d%d" % sys.version_info[:2])
 session.put(scene)
 frames = session.frames()
-assert frames.wait() is not None, frames.message
+assert frames.wait(timeout=120.0) is not None, frames.message
 session.play()
 revision = session.edit({"forces": {"1": {"vector": [0, 0, -30]}}})["revision"]
-frame = frames.wait(lambda frame: frame["revision"] >= revision)
+frame = frames.wait(lambda frame: frame["revision"] >= revision, timeout=120.0)
 assert frame is not None and len(frame["particles"]) == 18, frames.message
 session.pause()
 assert session.undo()["redo"] == 1
@@ -71,7 +72,7 @@ def test_every_python_speaks_with_the_server(home: Home, python: str) -> None:
     import json
 
     words = [str(SOURCE.parents[1]), str(home.folder), json.dumps(CABLE)]
-    done = subprocess.run([python, "-c", SMOKE, *words], capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run([python, "-c", SMOKE, *words], capture_output=True, text=True, timeout=HANG, check=False)
     assert (done.stdout.strip(), done.returncode) == ("done", 0), done.stderr
 
 
@@ -85,7 +86,7 @@ def test_the_oldest_python_starts_a_server(tmp_path: Path, python: str) -> None:
     )
     words = [str(SOURCE.parents[1]), str(home.folder), sys.executable]
     try:
-        done = subprocess.run([python, "-c", code, *words], capture_output=True, text=True, timeout=150, check=False)
+        done = subprocess.run([python, "-c", code, *words], capture_output=True, text=True, timeout=HANG, check=False)
         assert done.stdout.strip() == home.told["instance"], done.stderr
     finally:
         home.end()

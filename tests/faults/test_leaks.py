@@ -18,7 +18,7 @@ import websockets
 
 from hookean_server.sessions.wire import decode
 from server.conftest import Served
-from serving import CABLE, wait_for
+from serving import CABLE, HANG, wait_for
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 CYCLES, WARM = 50 if SOAK else 10, 10
@@ -30,7 +30,12 @@ MIB = 2**20
 @pytest.fixture(scope="module")
 def running() -> Iterator[Served]:
     found = Served(workers=1, header_seconds=3.0, body_seconds=3.0)
-    yield found.ready()
+    found.ready()
+    # at once, so that the server's pool of threads, which is bounded and never shrinks, has all it will have
+    with ThreadPoolExecutor(WARM) as together:
+        for done in [together.submit(_cycle, found, 1000 + number) for number in range(2 * WARM)]:
+            done.result()
+    yield found
     assert found.end()[0] == 0
 
 
@@ -66,29 +71,25 @@ def _cycle(served: Served, number: int) -> None:
     key = f"cycle-{number}"
     scene = {**CABLE, "settings": {"drag": 0.0, "tolerance": 0.0}}
     assert served.client.put(f"/v1/sessions/{key}", json=scene).status_code == 201
-    assert asyncio.run(asyncio.wait_for(_watched(served, key, 3), 60.0)) == 3
+    assert asyncio.run(asyncio.wait_for(_watched(served, key, 3), HANG)) == 3
     assert served.client.patch(f"/v1/sessions/{key}", json={"pin": [{"particles": [2]}]}).status_code == 200
     assert served.client.get(f"/v1/sessions/{key}/state", params={"format": "npz"}).status_code == 200
     assert served.client.delete(f"/v1/sessions/{key}").status_code == 204
 
 
 def test_sessions_made_watched_and_deleted_leave_nothing(running: Served) -> None:
-    # at once, so that the server's pool of threads, which is bounded and never shrinks, has all it will have
-    with ThreadPoolExecutor(WARM) as together:
-        for done in [together.submit(_cycle, running, 1000 + number) for number in range(2 * WARM)]:
-            done.result()
     family = len(running.family())
     before = figures(running)
     for number in range(CYCLES):
         _cycle(running, number)
-    wait_for(lambda: settled(running, before), 30.0)
-    wait_for(lambda: len(running.family()) <= family, 30.0)
+    wait_for(lambda: settled(running, before))
+    wait_for(lambda: len(running.family()) <= family)
     assert figures(running)[2] - before[2] <= 5 * MIB
     assert running.client.get("/v1/sessions").json() == {"sessions": []}
 
 
 def _opened(served: Served, said: bytes) -> socket.socket:
-    found = socket.create_connection(("127.0.0.1", served.port), timeout=30.0)
+    found = socket.create_connection(("127.0.0.1", served.port), timeout=HANG)
     found.sendall(said)
     return found
 
@@ -133,8 +134,8 @@ def test_clients_that_vanish_leave_nothing(running: Served) -> None:
             _reset(found)
         else:
             found.close()
-    wait_for(lambda: settled(running, before), 30.0)
-    wait_for(lambda: running.health()["requests"].get("running", 0) == 0, 30.0)
+    wait_for(lambda: settled(running, before))
+    wait_for(lambda: running.health()["requests"].get("running", 0) == 0)
     assert running.health()["status"] == "ok"
     client.delete("/v1/sessions/seen")
 
@@ -144,7 +145,7 @@ def test_a_half_open_watcher_holds_up_nobody(running: Served) -> None:
     scene = {**CABLE, "settings": {"drag": 0.0, "tolerance": 0.0}}
     assert running.client.put("/v1/sessions/half", json=scene).status_code == 201
     with closing(_opened(running, _upgrade(running, "half"))):
-        assert asyncio.run(asyncio.wait_for(_watched(running, "half", 20), 60.0)) == 20
+        assert asyncio.run(asyncio.wait_for(_watched(running, "half", 20), HANG)) == 20
     assert running.client.delete("/v1/sessions/half").status_code == 204
 
 
@@ -173,7 +174,7 @@ def test_sockets_that_drip_are_closed_and_others_are_served(running: Served) -> 
         served += running.client.get("/v1/forces").status_code == 200
         return not left
 
-    wait_for(drip, 60.0)
+    wait_for(drip)
     assert served
-    wait_for(lambda: settled(running, before), 30.0)
+    wait_for(lambda: settled(running, before))
     assert running.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"

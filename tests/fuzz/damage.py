@@ -241,7 +241,7 @@ class Reader:
             found: dict[str, Any] = json.loads(self.connection.recv_bytes())
             return found
         except EOFError:
-            self.process.join(10.0)
+            self.process.join()
             code = self.process.exitcode
             self.replaced += 1
             self._begin()
@@ -250,7 +250,7 @@ class Reader:
     def close(self) -> None:
         """End the process."""
         self.process.kill()
-        self.process.join(10.0)
+        self.process.join()
         self.connection.close()
 
 

@@ -18,7 +18,7 @@ import pytest
 
 from hookean_server.workers import ended, limited
 from server.conftest import Served
-from serving import wait_for
+from serving import HANG, wait_for
 
 from . import damage
 
@@ -95,15 +95,15 @@ def test_the_service_answers_every_damaged_file(files: dict[str, bytes], served:
     half = sizes[len(sizes) // 2]
     assert sizes[-1][0] - half[0] <= 8 * 2**20
     # a worker that has read a file is replaced, and opens what it needs meanwhile: what stays is counted
-    wait_for(lambda: not half[1] or process.num_fds() - half[1] <= 2, 30.0)
-    wait_for(lambda: served.health()["status"] == "ok", 60.0)
+    wait_for(lambda: not half[1] or process.num_fds() - half[1] <= 2)
+    wait_for(lambda: served.health()["status"] == "ok")
 
 
 def test_a_library_that_never_returns_is_ended() -> None:
     """Also one that holds the interpreter, so that nothing in its process can interrupt it."""
     process = multiprocessing.get_context("spawn").Process(target=_never_ends, daemon=True)
     process.start()
-    process.join(60.0)
+    process.join(HANG)
     assert ended(process.exitcode).startswith("reading it does not end")
 
 
@@ -120,7 +120,7 @@ def test_a_file_that_takes_too_long_is_a_problem_of_the_file() -> None:
         assert answer.status_code == 422, answer.text
         assert answer.json()["errors"][0]["pointer"] == "/file"
         assert "does not end" in answer.json()["errors"][0]["detail"]
-        wait_for(lambda: impatient.health()["workers"]["idle"] == 1, 60.0)
+        wait_for(lambda: impatient.health()["workers"]["idle"] == 1)
     finally:
         impatient.end()
 

@@ -20,7 +20,7 @@ from schemathesis.specs.openapi import checks
 from hookean_server.app import create_app
 from hookean_server.problems import CATALOGUE
 from server.conftest import Served
-from serving import CABLE
+from serving import CABLE, HANG
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 CASES = 300 if SOAK else 30
@@ -65,7 +65,7 @@ def test_every_answer_is_described(label: str, running: Served) -> None:
                     _made(running, value)
         # whoever is let in ends the service
         headers = {} if operation.path == "/v1/shutdown" else dict(running.known)
-        answer = case.call(base_url=running.url, headers=headers, timeout=60)
+        answer = case.call(base_url=running.url, headers=headers, timeout=HANG)
         failed = answer.status_code >= 500 and answer.status_code not in (503, 504, 507)
         assert not failed, (answer.content[:500], running.log()[-5000:])
         case.validate_response(answer, checks=CHECKS)

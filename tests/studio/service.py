@@ -17,7 +17,7 @@ import psutil
 from numpy.typing import NDArray
 
 from hookean import Scene, Simulation
-from serving import living, wait_for
+from serving import HANG, living, wait_for
 
 
 class Service:
@@ -31,7 +31,7 @@ class Service:
             self.port: int = free.getsockname()[1]
         self.url = f"http://127.0.0.1:{self.port}"
         known = {"authorization": f"Bearer {self.token}"}
-        self.client = httpx.Client(base_url=self.url, timeout=240.0, headers=known)
+        self.client = httpx.Client(base_url=self.url, timeout=HANG, headers=known)
         self.start()
 
     def start(self) -> None:
@@ -41,7 +41,7 @@ class Service:
         # a pipe that nobody reads would hold the service up once it is full
         with open(self.folder / "service.log", "a") as log:
             self.process = subprocess.Popen(command, env=environment, stdout=log, stderr=log)
-        wait_for(self._ready, 240.0)  # kernels may have to be compiled first
+        wait_for(self._ready)  # kernels may have to be compiled first
 
     def _ready(self) -> bool:
         assert self.process.poll() is None, (self.folder / "service.log").read_text()
@@ -54,13 +54,13 @@ class Service:
         """kill -9, as a machine that loses power."""
         family = [psutil.Process(self.process.pid), *psutil.Process(self.process.pid).children(recursive=True)]
         os.kill(self.process.pid, signal.SIGKILL)
-        self.process.wait(30)
+        self.process.wait(HANG)
         wait_for(lambda: not any(living(process.pid) for process in family))
 
     def end(self) -> None:
         self.process.terminate()
         try:
-            self.process.wait(30)
+            self.process.wait(HANG)
         finally:
             self.process.kill()
             self.client.close()
