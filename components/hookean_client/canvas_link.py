@@ -59,7 +59,8 @@ class Service(object):
         try:
             self._client.get(path, timeout=1.0)
         except Problem:
-            self._client = None
+            client, self._client = self._client, None
+            client.close()
             raise
 
     def uses(self, client):

@@ -7,7 +7,7 @@ those of a session that was left come back from its scene. For Python 2.7 to 3.1
 import threading
 import time
 
-from . import Problem
+from . import Problem, connect
 from . import canvas_draw as drawing
 from . import canvas_fall as fall
 from . import canvas_link as link
@@ -15,6 +15,13 @@ from . import canvas_scene as compose
 
 LEFT = 30.0  # seconds without a solution after which nobody watches any more
 NEAR = 1e-9
+
+
+class Parting(link.Task):
+    """A last word to a server that runs; none is started for it."""
+
+    def _find(self):
+        return connect(start=False, timeout=0.0)
 
 
 class Player(object):
@@ -84,7 +91,7 @@ class Player(object):
         frames, self.frames, self.kept = self.frames, None, None
         if frames is not None:
             frames.close()
-            link.Task(lambda client: client.session(self.key).pause(timeout=5.0))
+            Parting(lambda client: client.session(self.key).pause(timeout=5.0))
 
     def end(self):
         """It is not needed any more."""

@@ -8,8 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hookean_canvas import stand_in
-
-DEADLINE = 60.0
+from serving import HANG
 
 
 class Bench:
@@ -29,7 +28,7 @@ class Bench:
 
     def run(self, ghenv: Any, work: Callable[[], Any], until: Callable[[Any], Any] | None = None) -> Any:
         """Solutions until `until(what work gave)`, or until none is scheduled."""
-        end = time.monotonic() + DEADLINE
+        end = time.monotonic() + HANG
         while True:
             found = self.solve(ghenv, work)
             if until(found) if until is not None else not self.document.scheduled:
@@ -38,6 +37,25 @@ class Bench:
             assert self.document.scheduled, f"nothing is scheduled: {said}"
             assert time.monotonic() < end, f"waited too long: {said}"
             time.sleep(self.document.scheduled[0][0] / 1000.0)
+
+
+def let_go() -> None:
+    """As after Rhino was closed: no thread and no connection is left of any client in this process, neither of the
+    installed one nor of those that definitions carry."""
+    clients = {name: module for name, module in sys.modules.items() if name.startswith("hookean_client")}
+    for name, module in clients.items():
+        if name.endswith(".canvas_engine"):
+            for player in module._players.values():
+                player.ended = True
+                player.wait(HANG)
+                if player.frames is not None:
+                    player.frames.close()
+                player.frames = None
+            module._players.clear()
+            module._keys.clear()
+    for name, module in clients.items():
+        if name.endswith(".canvas_link"):
+            module.service.forget()
 
 
 def sentences(ghenv: Any, level: str = "") -> list[str]:

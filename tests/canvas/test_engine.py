@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import hookean_client
-from canvas.canvasing import Bench, line, point, sentences, xyz
+from canvas.canvasing import Bench, let_go, line, point, sentences, xyz
 from hookean_canvas import stand_in
 from hookean_client import canvas, canvas_draw, canvas_engine, canvas_link
 from hookean_client.canvas_player import Player
@@ -40,8 +40,7 @@ def home(served: Home, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
     monkeypatch.setenv("HOOKEAN_STATE", str(served.folder))
     canvas_link.service.forget()
     yield served
-    reopen()
-    canvas_link.service.forget()
+    let_go()
 
 
 def reopen() -> None:

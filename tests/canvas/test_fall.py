@@ -11,8 +11,8 @@ from compas.datastructures import Mesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from canvas.canvasing import Bench, sentences
-from canvas.test_engine import Cable, reopen
+from canvas.canvasing import Bench, let_go, sentences
+from canvas.test_engine import Cable
 from canvas.test_tools import Placed
 from canvas.test_tools_sweep import cable, tree
 from hookean import Scene, relax
@@ -133,8 +133,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     patch.setenv("HOOKEAN_STATE", str(found.folder))
     canvas_link.service.forget()
     yield found
-    reopen()
-    canvas_link.service.forget()
+    let_go()
     patch.undo()
     found.end()
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from canvas.canvasing import let_go
 from hookean.example import examples
 from hookean_canvas import archive, graph, inline, lint
 from hookean_canvas.checking import check
@@ -37,6 +38,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     before = {name: os.environ.get(name) for name in ("HOOKEAN_STATE", "HOOKEAN_PYTHON")}
     os.environ.update(HOOKEAN_STATE=str(found.folder), HOOKEAN_PYTHON=sys.executable)
     yield found
+    let_go()
     for name, value in before.items():
         os.environ.pop(name) if value is None else os.environ.update({name: value})
     found.end()

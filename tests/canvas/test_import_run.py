@@ -11,6 +11,7 @@ from uuid import UUID
 import numpy as np
 import pytest
 
+from canvas.canvasing import let_go
 from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, cable, star, tent
 from hookean import Scene, relax
 from hookean_canvas import graph, kangaroo
@@ -29,6 +30,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("HOOKEAN_STATE", str(found.folder))
         yield found
+        let_go()
     found.end()
 
 

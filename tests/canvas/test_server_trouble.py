@@ -17,7 +17,7 @@ import psutil
 import pytest
 
 import hookean_client
-from canvas.canvasing import Bench, line, point, sentences
+from canvas.canvasing import Bench, let_go, line, point, sentences
 from hookean_canvas import bundles, stand_in
 from hookean_client import canvas, canvas_engine, canvas_geometry, canvas_link, canvas_server
 from serving import HANG, SOAK, Home
@@ -43,16 +43,11 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
     found = Home(tmp_path / "state")
     found.folder.mkdir()
     yield found
-    for player in canvas_engine._players.values():
-        if player.frames is not None:
-            player.frames.close()
-        player.wait(HANG)
-    canvas_engine._players.clear()
-    canvas_engine._keys.clear()
+    let_go()
     canvas_server._looks.clear()
-    canvas_link.service.forget()
     found.end()
-    for child in hookean_client._children.values():  # started by components
+    for child in hookean_client._children.values():  # started by components, perhaps just now
+        child.kill()
         child.wait(HANG)
     hookean_client._children.clear()
 
@@ -268,6 +263,38 @@ def test_one_trouble_after_the_other(home: Home) -> None:
     canvas.inputs["Engine"]["settings_"] = [settings(drag=5.0)]
     canvas.until(canvas.works)
     assert len(canvas.outputs["Divide"]["points"]) == 7
+
+
+def test_a_session_is_left_without_starting_a_server(home: Home) -> None:
+    """Nobody looks at it any more, and its server is gone: none is started for a pause."""
+    home.serve()
+    canvas = Canvas(["Engine"])
+    moving(canvas)
+    [player] = canvas_engine._players.values()
+    assert player.wait(HANG)
+    home.kill()
+    canvas_link.service.lose()  # as whoever asked it in vain does
+    player.leave()
+    for thread in threading.enumerate():
+        if thread.name == "hookean-task":
+            thread.join(HANG)
+    assert not hookean_client._children and not home.serving()
+
+
+def test_a_client_whose_server_is_gone_is_closed(home: Home) -> None:
+    """All of its connections, also those that were not tried."""
+    home.serve()
+    service = canvas_link.Service()
+    client = service.client()
+    until = time.monotonic() + HANG
+    for connection in [client._connection(until) for _ in range(3)]:
+        client._idle.append((client.instance, time.monotonic(), connection))
+    home.kill()
+    service.doubt()
+    client._start = False
+    with pytest.raises(hookean_client.Problem):
+        service.client()
+    assert client._idle == []
 
 
 def test_nothing_holds_the_canvas_up(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from canvas.canvasing import Bench, line, point, sentences, xyz
+from canvas.canvasing import Bench, let_go, line, point, sentences, xyz
 from canvas.test_tools import Placed, branches
 from hookean import Scene, simulate
 from hookean_canvas import stand_in
@@ -29,7 +29,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     patch.setenv("HOOKEAN_STATE", str(found.folder))
     canvas_link.service.forget()
     yield found
-    canvas_link.service.forget()
+    let_go()
     patch.undo()
     found.end()
 

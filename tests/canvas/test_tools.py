@@ -15,13 +15,13 @@ import rhino3dm
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from canvas.canvasing import Bench, line, point, sentences, xyz
+from canvas.canvasing import Bench, let_go, line, point, sentences, xyz
 from hookean.catenary import catenary
 from hookean.discretize import curves, interpolate, meshes, nurbs_surface, surfaces, unique_lines, warp_weft
 from hookean.files import threedm
 from hookean.mesh import Mesh
 from hookean_canvas import bundles, stand_in
-from hookean_client import canvas_engine, canvas_file, canvas_geometry, canvas_link
+from hookean_client import canvas_engine, canvas_file, canvas_geometry
 from serving import Home
 
 OURS = ("Divide", "Shatter", "Catenary", "MeshSurface", "MeshEdges", "MeshVertices", "MeshCorners", "NakedVertices",
@@ -43,7 +43,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     found.serve()
     patch.setenv("HOOKEAN_STATE", str(found.folder))
     yield found
-    canvas_link.service.forget()
+    let_go()
     patch.undo()
     found.end()
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from canvas.canvasing import Bench, line, point, sentences
+from canvas.canvasing import Bench, let_go, line, point, sentences
 from canvas.test_tools import Placed, branches
 from hookean import Scene
 from hookean.sweep import solve
@@ -31,7 +31,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     patch.setenv("HOOKEAN_STATE", str(found.folder))
     canvas_link.service.forget()
     yield found
-    canvas_link.service.forget()
+    let_go()
     patch.undo()
     found.end()
 

@@ -15,13 +15,15 @@ import pytest
 import hookean
 
 ROOT = Path(__file__).parents[2]
+LONGEST = 3600.0
+"""Seconds after which a process hangs: compiling every kernel takes a minute of a processor that does nothing else."""
 
 
 def probe(mode: str, **environment: str) -> Any:
     """What `tests.laws.probe` prints in a fresh process."""
     done = subprocess.run(
         [sys.executable, "-W", "error", "-m", "tests.laws.probe", mode],
-        cwd=ROOT, env={**os.environ, **environment}, capture_output=True, text=True, timeout=300,
+        cwd=ROOT, env={**os.environ, **environment}, capture_output=True, text=True, timeout=LONGEST,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr[-3000:]
     return json.loads(done.stdout)

@@ -1,0 +1,20 @@
+"""What all tests have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+# how long an example takes is the machine's affair, and no test is about it
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_state(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Whatever looks for a server finds none of the person who runs the tests, and starts none beside theirs."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("HOOKEAN_STATE", str(tmp_path_factory.mktemp("state")))
+        yield
