@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from serving import HANG
+
 from .service import Service
 
 if TYPE_CHECKING:
@@ -158,7 +160,7 @@ class Studio:
         drawn = self.particles
         self.until(lambda: (now := drawn()).shape == truth.shape and np.abs(now - truth).max() < within)
 
-    def until(self, true: Callable[[], Any], seconds: float = 60.0, what: str = "") -> Any:
+    def until(self, true: Callable[[], Any], seconds: float = HANG, what: str = "") -> Any:
         """What `true()` is, once it is; the page goes on meanwhile."""
         over = time.monotonic() + seconds
         while time.monotonic() < over:
@@ -171,7 +173,7 @@ class Studio:
 def context(browser: Any, **options: Any) -> BrowserContext:
     """A browser of somebody: own cookies, nothing from before."""
     made: BrowserContext = browser.new_context(**{"viewport": LAPTOP, "accept_downloads": True, **options})
-    made.set_default_timeout(60_000)  # ms
+    made.set_default_timeout(1000 * HANG)  # ms
     return made
 
 

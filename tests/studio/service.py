@@ -100,7 +100,7 @@ class Service:
     def particles(self, key: str) -> NDArray[np.float64]:
         return np.array(self.state(key)["particles"], float)
 
-    def at_rest(self, key: str, seconds: float = 60.0) -> None:
+    def at_rest(self, key: str, seconds: float = HANG) -> None:
         """Wait until it is in equilibrium and nothing is on its way."""
         wait_for(lambda: self.summary(key)["status"] == "converged", seconds)
 

@@ -45,7 +45,7 @@ def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, morta
     studio.page.get_by_text("Reconnecting").wait_for()
     assert not studio.page.get_by_text("Live", exact=True).is_visible()
     mortal.start()
-    studio.page.get_by_text("Live", exact=True).wait_for(timeout=30_000)
+    studio.page.get_by_text("Live", exact=True).wait_for()
     assert mortal.summary("cable")["revision"] == edited["revision"]
     assert mortal.anchors("cable") == ends
     studio.rests_at(mortal.particles("cable"))
