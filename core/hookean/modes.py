@@ -66,6 +66,7 @@ class Scaled:
     dofs: Ints
     scale: Floats  # W^-1/2
     uncertain: float
+    turning: float  # what of this comes from forces that are out of balance
     left: Floats
     axes: Floats | None = None
 
@@ -79,8 +80,9 @@ class Scaled:
         turning = np.abs(found.forces).max(axis=1) / np.where(apart > 0.0, apart, np.inf)
         scale = 1.0 / np.sqrt(np.repeat(w, 3)[dofs])
         left = found.forces if axes is None else np.einsum("nij,nj->ni", axes, found.forces)
-        uncertain = ROUNDING + 4.0 * float(turning.max())
-        return cls(system, state, dofs, scale, uncertain, left.ravel()[dofs] * scale, axes)
+        turns = 4.0 * float(turning.max())
+        uncertain = max(ROUNDING, _blurred(system, state, w)) + turns
+        return cls(system, state, dofs, scale, uncertain, turns, left.ravel()[dofs] * scale, axes)
 
     def motion(self, scaled: Floats) -> Floats:
         """A scaled motion as one of all particles (n, 3)."""
@@ -106,8 +108,21 @@ class Scaled:
             own = own.reshape(len(moved), len(blocks), -1)
             total += np.einsum("ame,mef,bmf->ab", own, blocks, own, optimize=True)
             sizes = np.abs(blocks).max(axis=(1, 2), initial=0.0)
-            noise += float(np.finfo(float).eps * (sizes * (own**2).sum(axis=2)).sum(axis=1).max())
+            known = np.finfo(float).eps if group.cls.hessian is not None else group.cls.blur
+            noise += float(known * (sizes * (own**2).sum(axis=2)).sum(axis=1).max())
         return total, noise
+
+
+def _blurred(system: System, state: State, w: Floats) -> float:
+    """The largest part of the stiffness `w` (n,) of a particle by which forces without a hessian may be wrong."""
+    most, still = 0.0, np.zeros_like(state.x)
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        if group.cls.constant or group.cls.hessian is not None or not len(group.block.indices):
+            continue
+        f, own = np.zeros_like(state.x), np.zeros(len(w))
+        kernels.compiled(group.cls.kernel, "force")(state.x, still, *group.cls.whole(group.block, memory), f, own)
+        most = max(most, group.cls.blur * float((own / w).max()))
+    return most
 
 
 def _stiff(system: System, state: State, *, sparse: bool = False) -> list[tuple[Group, Floats]]:
@@ -253,7 +268,7 @@ def _decided(
     mode = scaled.motion(modes @ turned[:, 0])
     mode /= np.abs(mode).max()
     # of motions whose sizes are measured by W, as eigenvalues are
-    limit = noise + (scaled.uncertain - ROUNDING)
+    limit = noise + scaled.turning
     if several:
         below, near = int((values < -limit).sum()), int((np.abs(values) <= limit).sum())
     found = solve()
@@ -333,7 +348,7 @@ def _lowest(system: System, state: State, found: Balance, tangent: Tangent) -> M
     own = vectors[scaled.dofs, 0] / scaled.scale
     own /= np.linalg.norm(own)
     energies, noise = scaled.energies(own[:, None])
-    limit = noise + (scaled.uncertain - ROUNDING)
+    limit = noise + scaled.turning
     mode = scaled.motion(own)
     mode /= np.abs(mode).max()
     if energies[0, 0] > limit:

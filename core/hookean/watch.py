@@ -208,7 +208,8 @@ class Watch:
             return f"Cancelled after {spent} iterations: {left}."
         if status is Status.TIME_LIMIT:
             return f"Out of time ({self.settings.time_limit:g} s) after {spent} iterations: {left}. Raise time_limit."
-        return f"Not in equilibrium after {spent} iterations: {left}. Raise max_iterations."
+        advice = _adrift(system, found) or "Raise max_iterations"
+        return f"Not in equilibrium after {spent} iterations: {left}. {advice}."
 
     def _advice(self, system: System) -> str:
         """What to do about a run that diverged."""
@@ -224,7 +225,11 @@ class Watch:
         if self.method.physical:
             given, unit = self.settings.time_step, system.scene.units.time
             return f"/settings/time_step: {given:g} {unit} became too large on the way: use a smaller one, or more mass"
-        return f"The solver {self.method.name} found no equilibrium from here: use auto, or lower the loads"
+        other = "" if self.method.name == "auto" else "use auto, "
+        return (
+            f"The solver {self.method.name} found no equilibrium from here: {other}see that every part is held along "
+            "all axes on which it is loaded, or lower the loads"
+        )
 
     def _obstacle(self, system: System) -> str:
         """Why a run stalled."""

@@ -315,3 +315,14 @@ def test_the_size_of_a_component_is_the_diagonal_of_its_box(scale: float) -> Non
     system = compile(Scene.read({"particles": x, "forces": [springs], "anchors": [{"particles": [2]}]}))
     found = sizes(system.components(system.start()), system.groups, x * scale)
     assert found / scale == pytest.approx([13.0 if scale < 1e100 else 3.0, 7.0], rel=1e-14)
+
+
+def test_a_part_that_nothing_supports_is_named_when_iterations_run_out() -> None:
+    """More iterations are no help: a chain that is held beside one that falls."""
+    chains = [[[float(i), 0.0, z] for i in range(5)] for z in (0.0, 30.0)]
+    springs = {"kind": "springs", "particles": [[i, i + 1] for i in (0, 1, 2, 3, 5, 6, 7, 8)], "stiffness": 1000.0}
+    load = {"kind": "unary", "particles": [1, 2, 3], "vector": [0.0, 0.0, -1e-4]}
+    scene = {"particles": [*chains[0], *chains[1]], "forces": [springs, load], "anchors": [{"particles": [5, 9]}]}
+    found = relax(Scene.read({**scene, "settings": {"solver": "relaxation", "max_iterations": 50}}))
+    assert found.status == "max_iterations" and "Raise max_iterations" not in found.message
+    assert "Nothing supports the 5 particles connected with particle 0" in found.message

@@ -166,6 +166,40 @@ def test_what_lies_on_a_floor() -> None:
         assert found.converged and (found.stability, found.soft_modes) == (kind, modes)
 
 
+RIGID = [([], 6), ([0], 3), ([0, 3], 1)]
+"""Particles of a plate that are held, and how many rigid motions that leaves."""
+
+
+@pytest.mark.parametrize(("held", "left"), RIGID)
+@pytest.mark.parametrize("kind", ["hinge", "shell"])
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_plates_that_are_free_to_turn_are_mechanisms(kind: str, held: list[int], left: int, turn: float) -> None:
+    """A flat plate of four triangles, whose tangent is known by differences of forces: rigid motions cost nothing."""
+    flat = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], float)
+    x = flat @ np.array([[1, 0, 0], [0, np.cos(turn), np.sin(turn)], [0, -np.sin(turn), np.cos(turn)]])
+    faces = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]]
+    sides = sorted({tuple(sorted((f[i], f[i - 1]))) for f in faces for i in range(3)})
+    spec: Spec = {"particles": x, "forces": [{"kind": "springs", "particles": sides, "stiffness": 1000.0}]}
+    if kind == "hinge":
+        spec["forces"].append({"kind": "hinge", "particles": [[0, 4, 1, 3], [1, 5, 2, 4], [1, 4, 0, 5]]})
+    else:
+        spec["meshes"] = {"plate": {"vertices": x, "faces": faces}}
+        spec["forces"].append({"kind": "shell", "mesh": "plate"})
+    found = relax(Scene.read({**spec, "anchors": [{"particles": held}] if held else []}))
+    assert found.converged and (found.stability, found.soft_modes) == ("mechanism", left)
+
+
+@pytest.mark.parametrize(("anchors", "left"), [([], 5), ([{"particles": [0]}], 2)])
+@pytest.mark.parametrize(("n", "stiffness"), [(3, 1e2), (30, 1e4)])
+def test_rods_that_are_free_to_turn_are_mechanisms(n: int, stiffness: float, anchors: list[Spec], left: int) -> None:
+    """A straight rod moves three ways and turns two; one whose end is held turns two ways."""
+    x = np.column_stack([np.linspace(0.0, 1.0, n + 1), *np.zeros((2, n + 1))])
+    springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(n)], "stiffness": stiffness}
+    bend = {"kind": "bend", "particles": [[i - 1, i, i + 1] for i in range(1, n)], "stiffness": 1.0}
+    found = relax(Scene.read({"particles": x, "forces": [springs, bend], "anchors": anchors}))
+    assert found.converged and (found.stability, found.soft_modes) == ("mechanism", left)
+
+
 def sheet(n: int, factor: float, total: float, **settings: Any) -> Springs:
     """A square of n x n faces with both diagonals, its rim held, a total load."""
     number = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)

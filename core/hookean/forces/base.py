@@ -114,6 +114,7 @@ class Force(Model):
 
     kernel: ClassVar[Callable[..., float] | None] = None
     hessian: ClassVar[Callable[..., None] | None] = None
+    blur: ClassVar[float] = 1e-9  # part of its tangent that may be wrong, where that has no `hessian`
     # the same, quicker, of forces along the line between two particles: stiffness along, across, and x y z of the line
     central: ClassVar[Callable[..., None] | None] = None
     # the same of `gathered` elements, from their block and the positions

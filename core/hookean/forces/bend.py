@@ -152,6 +152,7 @@ class Bend(Force):
     formula: ClassVar[str] = "E = EI |φ - φ0|²/(2 l)"
     arity: ClassVar[int] = 3
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
+    blur: ClassVar[float] = 5e-13
     kernel: ClassVar[Any] = staticmethod(bend_kernel)
 
     def compile(self, places: Places) -> Block:

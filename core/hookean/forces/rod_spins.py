@@ -29,6 +29,7 @@ PENALTY, UNIT, OPENED, STEP, ONWARD, TIED, EVEN, LONE, COLUMNS = range(HEAD + WI
 class Spins(Force):
     """Corners of rods with the spins of their sections: for their tangents alone, see `Bend.gathered`."""
 
+    blur: ClassVar[float] = 5e-13
     tangent: ClassVar[Any] = staticmethod(lambda block, x: tangent(block.indices, block.parameters, x))
 
 

@@ -44,6 +44,7 @@ RIGID, REST, TWIST, KNOWN, PART, WIDTH = 0, 1, 4, 5, 6, 7
 class Rods(Force):
     """Pieces of rods as elements of any number of particles: for their tangents alone, see `Bend.gathered`."""
 
+    blur: ClassVar[float] = 5e-13
     tangent: ClassVar[Any] = staticmethod(lambda block, x: tangent(block.indices, block.parameters, x))
 
 
