@@ -30,7 +30,7 @@ SWING: dict[str, Any] = {
 }
 """The same without damping: it never comes to rest."""
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
-HANG = 300.0
+HANG = 900.0
 """Seconds after which a test takes what it waits for to hang. Workers of jobs give way to everything else (nice 10),
 kernels may have to be compiled first: on a loaded machine a second of work takes a minute."""
 

@@ -187,7 +187,7 @@ def test_a_cancelled_sweep_keeps_its_rows(jobs: httpx.Client) -> None:
 
 
 def test_killed_workers_lose_nothing(sweeper: Served, jobs: httpx.Client) -> None:
-    request = sweep(100, 100) if SOAK else sweep(50, 20)
+    request = sweep(100, 100) if SOAK else sweep(25, 20)
     count = product(request)
     address = post(jobs, request)
     for reached in range(count // 10, count, count // 5):
