@@ -151,7 +151,7 @@ def test_a_worker_that_dies_idle_is_not_noticed_by_the_next_request(alone: Serve
     parent.suspend()
     try:
         worker.kill()
-        wait_for(lambda: not alive(worker))
+        wait_for(lambda: ended(worker))
         answer = post_later(alone, CABLE)
         wait_for(lambda: answer.done() or alone.health()["workers"]["starting"])
     finally:
@@ -256,6 +256,14 @@ def alive(process: psutil.Process) -> bool:
         return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
     except psutil.NoSuchProcess:
         return False
+
+
+def ended(process: psutil.Process) -> bool:
+    """Whether a process has ended with all of its threads, which share its pipes."""
+    try:
+        return not alive(process) and process.num_threads() <= 1
+    except psutil.NoSuchProcess:
+        return True
 
 
 def started() -> tuple[subprocess.Popen[str], str]:
