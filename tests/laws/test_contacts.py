@@ -147,6 +147,33 @@ def test_nothing_passes_a_floor_and_a_bounce_gains_no_speed(seed: int, dt: float
     assert (after <= before + 1e-12 * (1.0 + np.abs(before))).all()
 
 
+@SEEDED
+@given(seed=seeds, dt=st.sampled_from([0.001, 0.01, 0.1]))
+def test_a_bounce_is_that_of_a_body_thrown_at_the_plane(seed: int, dt: float) -> None:
+    """height h + u t + a t^2 / 2 = 0 at the smallest t > 0, found by numpy; from there up at e times the speed for the
+    rest of the step, or on the plane where it comes down again within it. Without friction nothing changes along it."""
+    rng = np.random.default_rng(seed)
+    parameters = plane(rng)
+    parameters[:, 7:9] = 0.0  # friction
+    point, normal, restitution = parameters[0, :3], parameters[0, 3:6], parameters[0, 6]
+    told = dropped(parameters, rng, dt)
+    hits = 0
+    for i in np.flatnonzero((told["missed"] - point) @ normal < 0):
+        height = (told["x_before"][i] - point) @ normal
+        speed, pull = told["v_before"][i] @ normal, told["a"][i] @ normal
+        roots = np.roots([0.5 * pull, speed, height])
+        time = min(t.real for t in roots if abs(t.imag) < 1e-12 and t.real > 0)
+        rebound, rest = -restitution * (speed + pull * time), dt - time
+        above = rebound * rest + 0.5 * pull * rest**2
+        assert (told["x"][i] - point) @ normal == pytest.approx(max(above, 0.0), abs=1e-12)
+        if above > 1e-12:
+            hits += 1
+            assert (told["v"][i] + 0.5 * dt * told["a"][i]) @ normal == pytest.approx(rebound + pull * rest, abs=1e-10)
+        along = (told["x"][i] - told["missed"][i]) - (told["x"][i] - told["missed"][i]) @ normal * normal
+        assert along == pytest.approx(np.zeros(3), abs=1e-12)
+    assert hits or dt < 0.1
+
+
 def degenerate() -> dict[str, np.ndarray]:
     """Positions and speeds at which a contact might divide by zero."""
     rng = np.random.default_rng(0)
