@@ -188,3 +188,21 @@ def test_a_fold_onto_itself_pushes_back_with_half_a_turn() -> None:
     f, _, energy = evaluate(_shapes()["folded onto itself"], hinge(strength=1.0, rest_angle=0.0))
     assert energy == pytest.approx(0.5 * np.pi**2, rel=1e-14)
     assert abs(f[2, 2]) == pytest.approx(np.pi / 1.5, rel=1e-14)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_hinge_is_the_same_whichever_end_of_it_is_named_first(seed: int) -> None:
+    """Edge and wings turned around name the same fold: energy, forces and lumped stiffness stay at their particles.
+
+    The feet of the wings lie anywhere on the line of the edge, and the moment is large.
+    """
+    rng = np.random.default_rng(seed)
+    (left, right), (y, z) = rng.uniform(-3.0, 4.0, 2), rng.uniform(0.3, 2.0, 2)
+    x = [[0, 0, 0], [1, 0, 0], [left, y, 0], [right, -y, z]]
+    hinge = {"kind": "hinge", "strength": 7.0, "rest_angle": rng.choice([-2.5, 2.5])}
+    found = []
+    for corners in ([0, 1, 2, 3], [1, 0, 3, 2]):
+        system = compile(Scene.read({"particles": x, "forces": [{**hinge, "particles": [corners]}]}))
+        found.append(system.evaluate(system.start()))
+    for one, other in zip(*found, strict=True):
+        assert one == pytest.approx(other, rel=1e-12, abs=1e-12)

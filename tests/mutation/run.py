@@ -52,6 +52,8 @@ class Found(cst.CSTVisitor):
     def on_visit(self, node: cst.CSTNode) -> bool:
         if isinstance(node, cst.FunctionDef | cst.ClassDef):
             self.scopes.append(node.name.value)
+            if node.name.value == "example":  # any numbers will do there
+                return False
         for kind, made in OPERATORS:
             if isinstance(node, kind):
                 changed = [one for one in made(node) if made is not operator_arg_removal or _leaves_out(node, one)]
