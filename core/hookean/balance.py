@@ -6,7 +6,6 @@ heavy, stiff or far away excuses nothing elsewhere.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -16,7 +15,6 @@ from numpy.typing import NDArray
 
 from hookean import kernels
 from hookean.components import Components
-from hookean.forces import Block
 from hookean.forces.base import lengths
 from hookean.kernels import device
 from hookean.state import State
@@ -24,7 +22,7 @@ from hookean.system import Group, System
 
 Floats = NDArray[np.float64]
 
-CHUNK = 8192  # elements
+CHUNK = 2048  # elements
 ROUNDING = float(np.finfo(np.float64).eps) / 2.0
 COARSE = 1e-3  # a rounding floor above this leaves too little to call a shape known
 UNSTRAINED = 1e-6  # strain below which the forces of a component without loads count as none
@@ -128,7 +126,7 @@ def balance(system: System, state: State) -> Balance:
         state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found, scales, supported,
     )  # fmt: skip
     if not loaded and ((scales <= 0.0) & parts.joined).any():
-        scales = np.where(scales <= 0.0, _element_scales(system, state, parts, w), scales)
+        scales = np.where(scales <= 0.0, _element_scales(system, state, parts, w, reach), scales)
     if not loaded:
         summed = kernels.compiled(summary)(found, scales, supported)
     return Balance(left, reactions, contact, parts, found, scales, energies, w, *summed)
@@ -239,30 +237,54 @@ def judge(  # type: ignore[no-untyped-def]
     return (True, *summary(found, scales, supported)) if every else (False, -1, 0.0, 0.0, 0.0, False)
 
 
-def _element_scales(system: System, state: State, parts: Components, w: Floats) -> Floats:
+def _element_scales(system: System, state: State, parts: Components, w: Floats, reach: Floats) -> Floats:
     """The mean size of the internal element forces of each component (k,) [force]; `w` (n,) is the stiffness that
-    particles feel [force/length]."""
+    particles feel [force/length], `reach` (n,) the largest coordinate of the elements at them."""
     k = len(parts.first)
     sums = np.zeros((k, 2))
     for group, memory in zip(system.groups, state.memory, strict=True):
         if group.cls.role != "load" and len(group.block.indices):
-            first = 0
-            for sizes in _element_sizes(system, group, state, memory):
-                index = group.block.indices[first : first + len(sizes)]
-                first += len(sizes)
-                kernels.compiled(tally)(index, sizes, parts.label, sums)
+            if group.cls.central is None:
+                sizes = _element_sizes(system, group, state, memory)
+                kernels.compiled(tally)(group.block.indices, sizes, parts.label, sums)
+            else:
+                _tally_central(group, state, memory, parts, sums)
     now = sums[:, 0] / np.maximum(sums[:, 1], 1.0)
     # where stress dies out at equilibrium, the scale must not die with it
     if len(state.force_scale) != k:
         state.force_scale = np.zeros(k)
     state.force_scale = np.maximum(state.force_scale, now)
     scales = np.maximum(now, 1e-3 * state.force_scale)
+    if scales.min() >= UNSTRAINED * 2.0 * (w * reach).max():  # no element is larger than twice that
+        return np.asarray(scales)
     stiff = w * extents(system, state)  # what particles resist to strains of 1 [force]
     if scales.min() < UNSTRAINED * stiff.max():
         own = np.zeros((k, 2))
         kernels.compiled(tally)(np.arange(len(stiff))[:, None], stiff, parts.label, own)
         scales = np.maximum(scales, UNSTRAINED * own[:, 0] / np.maximum(own[:, 1], 1.0))
     return np.asarray(scales)
+
+
+def _tally_central(group: Group, state: State, memory: Floats, parts: Components, sums: Floats) -> None:
+    """Add the forces of elements between two particles, which act along them, to those of their components."""
+    b, central = group.block, kernels.compiled(group.cls.central, "central")
+    for first in range(0, len(b.indices), CHUNK):  # few enough to stay in the nearest cache
+        part = slice(first, first + CHUNK)
+        stiffness = np.empty((len(b.indices[part]), 5))
+        central(state.x, b.indices[part], b.parameters[part], memory[part], stiffness)
+        kernels.compiled(tally_central)(b.indices[part], state.x, stiffness, parts.label, sums)
+
+
+def tally_central(indices, x, stiffness, label, sums):  # type: ignore[no-untyped-def]
+    """Add the sizes of forces along elements, their stiffness across times their length, to those of their
+    components, and how many there are."""
+    for e in range(indices.shape[0]):
+        a, b = np.uint64(indices[e, 0]), np.uint64(indices[e, 1])
+        part = max(label[a], label[b])
+        if part >= 0:
+            dx, dy, dz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+            sums[part, 0] += abs(stiffness[e, 1]) * np.sqrt(dx * dx + dy * dy + dz * dz)
+            sums[part, 1] += 1.0
 
 
 def tally(indices, sizes, label, sums):  # type: ignore[no-untyped-def]
@@ -276,15 +298,8 @@ def tally(indices, sizes, label, sums):  # type: ignore[no-untyped-def]
             sums[part, 1] += 1.0
 
 
-def _element_sizes(system: System, group: Group, state: State, memory: Floats) -> Iterator[Floats]:
+def _element_sizes(system: System, group: Group, state: State, memory: Floats) -> Floats:
     """The largest force that each element puts on one of its particles."""
-    if group.cls.arity != 2:
-        forces = system.element_forces(group, state, memory)
-        # column by column: reducing an axis of two or three is slow
-        yield reduce(np.maximum, (lengths(forces[:, i]) for i in range(forces.shape[1])))
-        return
-    b = group.block
-    for first in range(0, len(b.indices), CHUNK):  # few enough to stay in the nearest cache
-        part = slice(first, first + CHUNK)
-        some = Group(group.cls, Block(b.indices[part], b.parameters[part], b.memory[part]), [])
-        yield lengths(system.element_forces(some, state, memory[part])[:, 0])  # the other end bears the same
+    forces = system.element_forces(group, state, memory)
+    # column by column: reducing an axis of two or three is slow
+    return reduce(np.maximum, (lengths(forces[:, i]) for i in range(forces.shape[1])))

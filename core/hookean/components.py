@@ -127,9 +127,12 @@ def span(indices, x, label, low, high):  # type: ignore[no-untyped-def]
             part = max(part, label[indices[e, j]])
         if part >= 0:
             for j in range(indices.shape[1]):
+                i = np.uint64(indices[e, j])
                 for c in range(3):
-                    low[part, c] = min(low[part, c], x[indices[e, j], c])
-                    high[part, c] = max(high[part, c], x[indices[e, j], c])
+                    if x[i, c] < low[part, c]:
+                        low[part, c] = x[i, c]
+                    elif x[i, c] > high[part, c]:
+                        high[part, c] = x[i, c]
 
 
 def diagonals(low, high, x, first, found):  # type: ignore[no-untyped-def]

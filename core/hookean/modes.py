@@ -287,6 +287,7 @@ def iterated(system: System, state: State, found: Balance, tangent: Tangent | No
     Conjugate gradients meet any motion that gains energy, as soon as the preconditioned tangent's lowest Ritz value is
     near its lowest eigenvalue; noise beside what is out of balance leaves no motion out.
     """
+    from hookean.multigrid.gradients import Steps
     from hookean.multigrid.tangent import Tangent
 
     tangent = tangent or Tangent(system, state)
@@ -294,7 +295,7 @@ def iterated(system: System, state: State, found: Balance, tangent: Tangent | No
         return Modes(reason=f"{len(state.x)} particles are too many to factor, and their net does not gather")
     positive = tangent.take_up(system, state, 0.0)
     if positive:
-        moved, steps, positive = tangent.settle(_stirred(found.forces * state.free, state.free), STEPS)
+        moved, steps, positive = tangent.settle(_stirred(found.forces * state.free, state.free), STEPS, Steps())
     if not positive:
         return _lowest(system, state, found, tangent)
     if not steps.settled:

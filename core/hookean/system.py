@@ -361,46 +361,54 @@ def _carried(welded: Welded, number: int) -> Ints:
     return found
 
 
-def _closed(system: System, group: Group, part: Part) -> NDArray[np.bool_]:
-    """Which elements between two particles have a rest length, and no length at the start."""
-    block = group.of(part)
+def coincide(x, indices, rest, touched, same, closed):  # type: ignore[no-untyped-def]
+    """Note which particles elements touch, which of those between two begin and end at one, and which of the others
+    have a rest length and no length at the start; how many of each."""
+    alike, short = 0, 0
+    for e in range(indices.shape[0]):
+        for j in range(indices.shape[1]):
+            touched[indices[e, j]] = 1
+        if indices.shape[1] == 2:
+            a, b = np.uint64(indices[e, 0]), np.uint64(indices[e, 1])
+            here = x[a, 0] == x[b, 0] and x[a, 1] == x[b, 1] and x[a, 2] == x[b, 2]
+            same[e] = a == b
+            closed[e] = here and a != b and rest[e] > 0.0
+            alike += same[e]
+            short += closed[e]
+    return alike, short
+
+
+def _rests(block: Block) -> Floats:
+    """Rest lengths (m,) [length] of elements that have one, else zeros."""
     rest = [block.parameters[:, i] for i, name in enumerate(block.names) if name in ("rest_length", "rest_factor")]
-    if len(rest) < 2:
-        return np.zeros(len(block.indices), dtype=bool)
-    one, other = system.x.take(block.indices[:, 0], axis=0).T, system.x.take(block.indices[:, 1], axis=0).T
-    here = (one[0] == other[0]) & (one[1] == other[1]) & (one[2] == other[2])
-    return np.asarray(here & (rest[0] * rest[1] > 0.0))
+    return np.asarray(rest[0] * rest[1]) if len(rest) == 2 else np.zeros(len(block.indices))
 
 
 def _warn(system: System) -> None:
     """Say what will surprise: springs without length, loads on particles nothing holds."""
     warnings = system.report.warnings
-    touched = np.zeros(len(system.x), dtype=bool)
+    touched = np.zeros(len(system.x), dtype=np.int8)
     for group in system.groups:
         if group.cls.role == "load":
             continue
-        index = group.block.indices
-        touched[index.ravel()] = True
-        if group.cls.arity == 2:
-            for part in group.parts:
-                same = index[part.rows, 0] == index[part.rows, 1]
-                if same.any():
-                    warnings.append(
-                        f"/forces/{part.number}: {int(same.sum())} of {len(same)} elements start and end at one "
-                        f"particle (first: element {int(np.argmax(same))}) and do nothing; lengthen them or lower "
-                        "weld_tolerance"
-                    )
-                closed = _closed(system, group, part) & ~same
-                if closed.any():
-                    warnings.append(
-                        f"/forces/{part.number}: {int(closed.sum())} of {len(closed)} elements begin without length "
-                        f"(first: element {int(np.argmax(closed))}), so that they push in no direction; move their "
-                        "ends apart"
-                    )
+        for part in group.parts:
+            block = group.of(part)
+            same, closed = np.zeros((2, len(block.indices)), dtype=np.int8)
+            alike, short = kernels.compiled(coincide)(system.x, block.indices, _rests(block), touched, same, closed)
+            if alike:
+                warnings.append(
+                    f"/forces/{part.number}: {alike} of {len(same)} elements start and end at one particle (first: "
+                    f"element {int(np.argmax(same))}) and do nothing; lengthen them or lower weld_tolerance"
+                )
+            if short:
+                warnings.append(
+                    f"/forces/{part.number}: {short} of {len(closed)} elements begin without length (first: element "
+                    f"{int(np.argmax(closed))}), so that they push in no direction; move their ends apart"
+                )
     for anchor in system.held:
         if (anchor.free == 0).all():
-            touched[anchor.particles] = True
-    alone = np.flatnonzero((system.load_count > 0) & ~touched)
+            touched[anchor.particles] = 1
+    alone = np.flatnonzero((system.load_count > 0) & (touched == 0))
     if len(alone) and not system.contacts:
         warnings.append(
             f"particle {alone[0]} carries a load but no spring, other force or anchor holds it"

@@ -129,6 +129,45 @@ def test_conjugate_gradients_solve_what_a_direct_solver_solves(axes):
     assert np.abs(x.ravel() - exact).max() <= 1e-6 * np.abs(exact).max()
 
 
+@pytest.mark.parametrize("shift", [0.0, 3e-4])
+def test_what_is_left_to_go_is_known_by_the_tangent_of_the_last_step(shift):
+    """After two Newton steps, by the tangent of the second: K^-1 of what is out of balance is that of SciPy's factor of
+    the tangent there, within a factor of 3; and nothing is said without a step, or where the shift holds the net."""
+    system, state, blocks, _ = bent(net(30))
+    relax_some(system, state)
+    tangent = Tangent(system, state)
+    for _ in range(2):
+        assert tangent.take_up(system, state, shift)
+        step, positive = tangent.solve(out_of_balance(system, state), 1e-6, 200)
+        assert positive
+        state.x += step
+    left = out_of_balance(system, state)
+    found = tangent.correction(left, state.x, 50)
+    blocks.fill(system, state)
+    free = np.flatnonzero(state.free.ravel())
+    exact = np.zeros(left.size)
+    exact[free] = spsolve(sparse_of(blocks, free).tocsc(), left.ravel()[free])
+    size, known = (np.linalg.norm(x.reshape(-1, 3), axis=1).max() for x in (exact, found))
+    assert size / 3.0 <= known <= 3.0 * size
+    assert tangent.take_up(system, state, shift) and tangent.correction(left, state.x, 50) is None
+    state.x -= step
+    assert tangent.take_up(system, state, 10.0)
+    state.x += step
+    assert tangent.correction(left, state.x, 50) is None
+
+
+def relax_some(system, state):
+    """Some iterations of relaxation, to where Newton steps go on."""
+    method = solver("relaxation")
+    method.start(system, state)
+    method.advance(system, state, 150, 0.0)
+    state.v[:] = 0.0
+
+
+def out_of_balance(system, state):
+    return system.evaluate(state)[0] * state.free
+
+
 def test_steps_hardly_grow_with_the_net():
     """Steps to 1e-4 for four times the particles: at most half as many again (a method of one level would double)."""
     steps = []

@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from hookean import kernels
 from hookean.columns import IndexRows, Lines, NonNegatives
 from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
@@ -193,6 +194,19 @@ def springs_yield(x, indices, parameters, memory):  # type: ignore[no-untyped-de
                 memory[e, 0] += stretch - np.copysign(limit, stretch)
 
 
+def springs_measures(x, indices, parameters, memory, forces, length, force, strain):  # type: ignore[no-untyped-def]
+    """Write the length, the force along (tension +) and the strain of each spring; `forces` (m, 2, 3) on its ends."""
+    for e in range(indices.shape[0]):
+        a, b = np.uint64(indices[e, 0]), np.uint64(indices[e, 1])
+        dx, dy, dz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+        size = np.sqrt(dx * dx + dy * dy + dz * dz)
+        along = dx * forces[e, 0, 0] + dy * forces[e, 0, 1] + dz * forces[e, 0, 2]
+        rest = parameters[e, 2] * parameters[e, 3] + memory[e, 0]
+        length[e] = size
+        force[e] = along / size if size > 0.0 else along
+        strain[e] = (size - rest) / rest if rest > 0.0 else 0.0
+
+
 class Springs(Force):
     """Linear springs (Hooke): tension = k (l - L0), L0 = rest length x rest factor.
 
@@ -262,13 +276,11 @@ class Springs(Force):
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length [length], force [force; tension +] and strain (l - L0)/L0 [-; 0 for rest length 0]."""
-        d = x.take(block.indices[:, 1], axis=0) - x.take(block.indices[:, 0], axis=0)
-        length = lengths(d)
-        d *= element_forces[:, 0]
-        along = (d[:, 0] + d[:, 1] + d[:, 2]) / np.where(length > 0, length, 1.0)
-        rest = block.parameters[:, 2] * block.parameters[:, 3] + block.memory[:, 0]
-        strain = np.where(rest > 0, (length - rest) / np.where(rest > 0, rest, 1.0), 0.0)
-        return {"length": length, "force": along, "strain": strain}
+        length, force, strain = np.empty((3, len(block.indices)))
+        kernels.compiled(springs_measures)(
+            x, block.indices, block.parameters, block.memory, element_forces, length, force, strain
+        )
+        return {"length": length, "force": force, "strain": strain}
 
     @classmethod
     def example(cls) -> tuple[Springs, Floats]:

@@ -17,7 +17,7 @@ from hookean.multigrid.hierarchy import Hierarchy
 Floats = NDArray[np.float64]
 
 
-LEAST = 4  # steps before which nothing is concluded
+LEAST = 4  # steps before which nothing is concluded of a tangent that may be soft anywhere
 SETTLED = 0.2  # the last third of the steps may add this part of the energy at most
 
 
@@ -30,6 +30,7 @@ class Steps:
     Computations, 2013, 11.3.
     """
 
+    least: int = LEAST  # steps before which nothing is concluded
     energies: list[float] = field(default_factory=list)
     lengths: list[float] = field(default_factory=list)
     turns: list[float] = field(default_factory=list)
@@ -44,7 +45,7 @@ class Steps:
     def settled(self) -> bool:
         """Whether the last third of the steps added little to the energy of x."""
         k = len(self.energies)
-        return k >= LEAST and self.energies[-1] - self.energies[2 * k // 3 - 1] <= SETTLED * self.energies[-1]
+        return k >= self.least and self.energies[-1] - self.energies[2 * k // 3 - 1] <= SETTLED * self.energies[-1]
 
     def softness(self) -> float:
         """The lowest Ritz value by the highest: 1 where the preconditioner is as good as the inverse."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hookean.forces.base import lengths
 from hookean.multigrid.blocks import Blocks, Floats
 from hookean.multigrid.gradients import Steps, solve
 from hookean.multigrid.hierarchy import Hierarchy
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from hookean.system import System
 
 FIRST, LATER = 10.0, 3.0  # steps of conjugate gradients after which to gather anew, and times as many for the next time
+KNOWN = 3  # steps of conjugate gradients before which nothing is concluded, where the tangent is positive definite
+SLIGHT = 0.1  # of the last step, and of the energy of a movement
 PUSHED = 0.05  # of all connections: else the graph of the start does as well
 
 
@@ -87,10 +90,24 @@ class Tangent:
             self._filled = None
         return x, positive
 
-    def settle(self, b: Floats, most: int) -> tuple[Floats | None, Steps, bool]:
+    def correction(self, b: Floats, x: Floats, most: int) -> Floats | None:
+        """K^-1 b (n, 3), right within a factor of 3 where it is largest, by the tangent that is taken up, K that of a
+        shape x (n, 3) near by. None where they may differ more, or it takes more steps than `most`.
+
+        K changes on the way from shape to shape by about twice as much, for its part, as what is left to go is of that
+        way; and what the shift adds is seen in the energy of the movement."""
+        if self._filled is None or self._pulling:
+            return None
+        moved, steps, positive = self.settle(b, most, Steps(KNOWN))
+        if moved is None or not positive or not steps.settled:
+            return None
+        short = lengths(moved).max(initial=0.0) <= SLIGHT * lengths(x - self._filled).max(initial=0.0)
+        plain = self.blocks.shifted(self._shift, moved) <= SLIGHT * float((b * moved).sum())
+        return moved if short and plain else None
+
+    def settle(self, b: Floats, most: int, steps: Steps) -> tuple[Floats | None, Steps, bool]:
         """`solve`, until x has settled: right within a factor of 3 where it is largest. What the steps say, and whether
         A is positive definite as far as was seen."""
-        steps = Steps()
         x, count, positive = solve(self.hierarchy, b, 1e-3, most, steps)
         self.steps += count
         self.work += count * (1.0 + self.hierarchy.cycle_work)

@@ -79,7 +79,7 @@ class Method(Solver):
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """All steps at once; none done, and nothing moved, where they do not lead to balance."""
-        self._step = self.near = None
+        self._step, self.near, self.certain = None, None, False
         ground, pull = _linear(system, state)
         net = _net(system, state, ground, pull)
         if net is None:
@@ -109,6 +109,7 @@ class Method(Solver):
                 state.x[moving] = x[: len(moving)]
                 state.iteration += done
                 self._moving, self._step = moving, step
+                self.certain = True  # the matrix of q has a Cholesky factor
                 return done
         return 0
 

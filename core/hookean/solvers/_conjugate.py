@@ -53,7 +53,7 @@ def movement(system: System, state: State, free: Floats, found: Balance) -> Floa
         return None
     net = np.concatenate(indices), np.concatenate(stiffness)
     moved, r = np.zeros((n, 3)), found.forces * free
-    room = np.zeros((n, 6)), np.empty((n, 3)), np.zeros((n, 3)), np.empty((n, 3))
+    room = np.zeros((n, 6)), np.empty((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
     done = kernels.compiled(conjugate_loop)(*net, fixed, free, r, moved, *room, np.zeros(MOST))
     return moved if done > 0 else None
 
@@ -61,32 +61,29 @@ def movement(system: System, state: State, free: Floats, found: Balance) -> Floa
 def conjugate_loop(  # type: ignore[no-untyped-def]
     indices, stiffness, fixed, free, r, moved, blocks, z, p, y, energies
 ):
-    """Steps until the solution has settled: how many; 0 where a direction bends down, or they are too many."""
+    """Steps until the solution has settled: how many; 0 where a direction bends down, or they are too many. What is
+    held has no block, and so no z and no p; what r becomes there counts for nothing."""
     own_blocks(indices, stiffness, fixed, free, blocks)
-    falls, turn, energy = solve_blocks(blocks, r, z), 0.0, 0.0
+    falls, turn, energy = onward(0.0, blocks, p, y, moved, r, z), 0.0, 0.0
     for k in range(energies.shape[0]):
         if falls == 0.0:
             return k + 1
-        for i in range(p.shape[0]):
+        for j in range(p.shape[0]):
+            i = np.uint64(j)
             for c in range(3):
                 p[i, c] = z[i, c] + turn * p[i, c]
                 y[i, c] = fixed[i] * p[i, c]
         resist(indices, stiffness, p, y)
         bends = 0.0
-        for i in range(p.shape[0]):
-            for c in range(3):
-                y[i, c] *= free[i, c]
+        for j in range(p.shape[0]):
+            i = np.uint64(j)
             bends += p[i, 0] * y[i, 0] + p[i, 1] * y[i, 1] + p[i, 2] * y[i, 2]
         if not bends > 0.0:
             return 0
         along, before = falls / bends, falls
         energy += along * falls
         energies[k] = energy
-        for i in range(p.shape[0]):
-            for c in range(3):
-                moved[i, c] += along * p[i, c]
-                r[i, c] -= along * y[i, c]
-        falls = solve_blocks(blocks, r, z)
+        falls = onward(along, blocks, p, y, moved, r, z)
         turn = falls / before
         if k + 1 >= LEAST and energy - energies[2 * (k + 1) // 3 - 1] <= SETTLED * energy:
             return k + 1
@@ -94,9 +91,29 @@ def conjugate_loop(  # type: ignore[no-untyped-def]
 
 
 @device
+def onward(along: Any, blocks: Any, p: Any, y: Any, moved: Any, r: Any, z: Any) -> Any:
+    """Go along p, which y resists, and solve all blocks z = r; returns the sum of z r."""
+    total = 0.0
+    for j in range(r.shape[0]):
+        i = np.uint64(j)
+        xy, xz, yz = blocks[i, 3], blocks[i, 4], blocks[i, 5]
+        r0, r1, r2 = r[i, 0] - along * y[i, 0], r[i, 1] - along * y[i, 1], r[i, 2] - along * y[i, 2]
+        z0 = blocks[i, 0] * r0 + xy * r1 + xz * r2
+        z1 = xy * r0 + blocks[i, 1] * r1 + yz * r2
+        z2 = xz * r0 + yz * r1 + blocks[i, 2] * r2
+        m0, m1, m2 = moved[i, 0] + along * p[i, 0], moved[i, 1] + along * p[i, 1], moved[i, 2] + along * p[i, 2]
+        moved[i, 0], moved[i, 1], moved[i, 2] = m0, m1, m2
+        r[i, 0], r[i, 1], r[i, 2] = r0, r1, r2
+        z[i, 0], z[i, 1], z[i, 2] = z0, z1, z2
+        total += z0 * r0 + z1 * r1 + z2 * r2
+    return total
+
+
+@device
 def resist(indices: Any, stiffness: Any, p: Any, y: Any) -> None:
     """Add what springs put against a motion p of their ends."""
-    for e in range(indices.shape[0]):
+    for j in range(indices.shape[0]):
+        e = np.uint64(j)
         a, b = np.uint64(indices[e, 0]), np.uint64(indices[e, 1])
         across, n0, n1, n2 = stiffness[e, 1], stiffness[e, 2], stiffness[e, 3], stiffness[e, 4]
         d0, d1, d2 = p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
@@ -148,18 +165,3 @@ def own_blocks(indices: Any, stiffness: Any, fixed: Any, free: Any, blocks: Any)
         blocks[i, 0] *= free[i, 0]
         blocks[i, 1] *= free[i, 1]
         blocks[i, 2] *= free[i, 2]
-
-
-@device
-def solve_blocks(blocks: Any, r: Any, z: Any) -> Any:
-    """z of all blocks z = r; returns the sum of z r."""
-    total = 0.0
-    for i in range(r.shape[0]):
-        r0, r1, r2 = r[i, 0], r[i, 1], r[i, 2]
-        xy, xz, yz = blocks[i, 3], blocks[i, 4], blocks[i, 5]
-        z0 = blocks[i, 0] * r0 + xy * r1 + xz * r2
-        z1 = xy * r0 + blocks[i, 1] * r1 + yz * r2
-        z2 = xz * r0 + yz * r1 + blocks[i, 2] * r2
-        z[i, 0], z[i, 1], z[i, 2] = z0, z1, z2
-        total += z0 * r0 + z1 * r1 + z2 * r2
-    return total

@@ -26,6 +26,7 @@ from hookean.solvers import relaxation
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
+    from hookean.balance import Balance
     from hookean.multigrid.tangent import Tangent
     from hookean.state import State
     from hookean.system import System
@@ -100,6 +101,12 @@ class Method(Solver):
             self._step(system, state, goal)
             done += 1
         return done
+
+    def correction(self, system: System, state: State, found: Balance) -> Floats | None:
+        """By the tangent of the last step, where what is left to go is little beside that."""
+        if self.tangent is None:
+            return None
+        return self.tangent.correction(found.forces * state.free, state.x, CONJUGATE)
 
     def _step(self, system: System, state: State, goal: float) -> None:
         """One Newton step, and what relaxes after it."""
