@@ -69,6 +69,7 @@ def relax_state(
     _restore(state, watch.good, memory=status is Status.DIVERGED)
     if not method.physical:
         state.v[:] = 0.0  # fictitious: nothing moved
+    system.report.warnings += [note for note in watch.notes if note not in system.report.warnings]
     used = getattr(method, "used", None)
     name = f"auto: {', '.join(used) or 'nothing to do'}" if used is not None else method.name
     message = watch.sentence(system, status)

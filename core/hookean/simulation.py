@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -21,12 +20,13 @@ from hookean.history import History, Setup
 from hookean.patch import Patch, Undo, apply
 from hookean.result import Result, Status, carried, gather, kinetic
 from hookean.run import Progress, relax_state
+from hookean.saving import anchor_of, no_simulation, opened
 from hookean.scene import Scene
 from hookean.script import Playing, Script
 from hookean.solvers import solver
 from hookean.state import State
 from hookean.stream import Stream
-from hookean.system import Held, System, compile, hold
+from hookean.system import compile, hold
 from hookean.watch import Watch, seldom
 
 OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
@@ -125,6 +125,7 @@ class Simulation:
         self._judged()
         self.status = Status.RUNNING
         self._said = ""
+        self._note()
 
     def _judged(self) -> None:
         """The goal of what follows, kept with the state so that a resumed run stops where this one does."""
@@ -133,10 +134,19 @@ class Simulation:
             self.state.scratch["goal"] = np.array([self._watch.goal])
 
     def _warn(self) -> None:
+        """Report a time step that is too long for the present shape."""
         warnings = self.system.report.warnings
         warnings[:] = [w for w in warnings if not w.startswith("/settings/time_step")]
         if self.solver.physical and (said := stability.warning(self.system, self.state, self.solver)):
             warnings.append(said)
+        self._noted: list[str] = []
+
+    def _note(self) -> None:
+        """Report what the last look found out about the steps that were taken."""
+        notes, warnings = self._watch.notes if self.status is Status.RUNNING else [], self.system.report.warnings
+        if notes != self._noted:
+            warnings[:] = [w for w in warnings if w not in self._noted] + notes
+            self._noted = list(notes)
 
     def step(self, frames: int = 1) -> Status:
         """Advance by whole frames of `sub_iterations` steps; a diverged step restores the last good state."""
@@ -181,10 +191,12 @@ class Simulation:
         self._seen = None
         playing = self._playing
         while count and playing is not None and not playing.finished:
-            step = self.scene.settings.time_step
+            step = self.solver.covers(self.system, self.state)
             if playing.before(self.system, self.state, step):
                 self._warn()
                 self.state.scratch.pop("parts", None)
+                step = self.solver.covers(self.system, self.state)
+                playing.before(self.system, self.state, step)
             several = min(count, playing.quiet(self.state.time, step))
             self.solver.advance(self.system, self.state, several, 0.0)
             playing.after(self.system, self.state)
@@ -212,6 +224,7 @@ class Simulation:
         elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):
             self.status = Status.RUNNING  # somebody is watching; they decide when to stop
         self._judged()
+        self._note()
         return self.status
 
     @property
@@ -243,7 +256,8 @@ class Simulation:
         """How it stands, in a sentence."""
         if self.status is Status.RUNNING:
             found, unit = self.balance, self.scene.units.force
-            return f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance."
+            said = f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance."
+            return " ".join([said, *(f"{note}." for note in self._watch.notes)])
         return self._said or self._watch.sentence(self.system, self.status)
 
     def frame(self) -> Frame:
@@ -260,10 +274,10 @@ class Simulation:
         )
 
     def result(self) -> Result:
-        """Everything about the present state; a time step that holds at the start but not here is told."""
-        warnings = self.system.report.warnings
-        if self.status is Status.RUNNING and not any(w.startswith("/settings/time_step") for w in warnings):
+        """Everything about the present state; warnings name a time step that is too long for it."""
+        if self.status is Status.RUNNING:
             self._warn()
+            self._note()
         found, moving = self._balance(), self.solver.physical
         rest = self._watch.rest if self.status is Status.CONVERGED else None
         return gather(self.system, self.state, found, rest, self.status, self.message, self.solver.name, moving=moving)
@@ -366,7 +380,7 @@ class Simulation:
         if self._playing is not None:
             texts["script"] = np.array(self._playing.script.model_dump_json())
             texts["finished"] = np.array(self._playing.finished)
-        with _opened(path, "wb") as file:
+        with opened(path, "wb") as file:
             np.savez(file, allow_pickle=False, **texts, **arrays)
 
     @classmethod
@@ -374,22 +388,22 @@ class Simulation:
         """The simulation that `save` wrote; it goes on bit for bit, with its stream given anew from the first row.
         InputError where the file is not one."""
         try:
-            with _opened(path, "rb") as opened, np.load(opened, allow_pickle=False) as file:
+            with opened(path, "rb") as source, np.load(source, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in file.files}
             script = str(arrays.pop("script")) if "script" in arrays else None
             finished = bool(arrays.pop("finished", False))
             loaded = cls(Scene.read(str(arrays.pop("scene"))), script, stream)
             status = Status(str(arrays.pop("status")))
             count = sum(name.startswith("held_") for name in arrays)
-            loaded.system.held = [_anchor(arrays, i, loaded.system) for i in range(count)]
+            loaded.system.held = [anchor_of(arrays, i, loaded.system) for i in range(count)]
             loaded.system.brace()
             loaded.take_up(State.of(arrays), status)
         except InputError as error:
             if stream is not None or error.pointer == "/drives":
                 raise
-            raise _no_simulation(path) from None
+            raise no_simulation(path) from None
         except (OSError, KeyError, ValueError, IndexError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
-            raise _no_simulation(path) from None
+            raise no_simulation(path) from None
         if loaded._playing is not None:
             loaded._playing.finished = finished  # what patches moved after its end stays moved
         return loaded
@@ -403,24 +417,3 @@ class Simulation:
         self.state = self.system.start()
         self.state.revision = revision
         self._begin(start=True)
-
-
-def _opened(path: str | Path | IO[bytes], mode: str) -> contextlib.AbstractContextManager[IO[bytes]]:
-    """A file by its path, or a stream that its owner closes."""
-    return open(path, mode) if isinstance(path, str | Path) else contextlib.nullcontext(path)
-
-
-def _no_simulation(path: str | Path | IO[bytes]) -> InputError:
-    where = str(path) if isinstance(path, str | Path) else "file"
-    return InputError(where, "not a saved simulation; give a file that Simulation.save wrote")
-
-
-def _anchor(arrays: dict[str, NDArray[np.generic]], i: int, system: System) -> Held:
-    """The i-th anchor of a saved simulation; ValueError where it does not fit the system."""
-    rows = np.asarray(arrays.pop(f"held_{i}"), np.float64).reshape(-1, 4)
-    axes = np.asarray(arrays.pop(f"axes_{i}"), np.float64).reshape(4)
-    particles = rows[:, 0].astype(np.int64)
-    if len(rows) and not (particles.min() >= 0 and particles.max() < len(system.x) and np.isfinite(rows).all()):
-        raise ValueError
-    name = str(arrays.pop(f"name_{i}"))
-    return Held(int(axes[0]), particles, np.ascontiguousarray(rows[:, 1:]), axes[1:].copy(), name)

@@ -25,7 +25,10 @@ MOST_STEPS = 200  # in a frame of a simulation, where that is chosen here
 VERLET = Limit()
 DAMPED, UNDAMPED = 0.9, 0.5  # parts of the step that is stable for small vibrations, for motions of any size
 LIGHT = 0.02  # part of the highest frequency below which a rate of damping counts as none
-MOST_PARTS = 10_000  # of a step
+MOST_PARTS = 10_000  # of a step that are taken; one that needs more covers less time
+LEAST_MOST = 200  # of them in any system
+MOST_WORK = 50_000_000  # parts of a frame times the numbers of indices: less than a second
+MANY = 64  # times MOST_PARTS, or the parts that a shape asks for
 CAUTION = 0.8  # of the step that held in a shape, for the shapes that may follow
 
 
@@ -102,31 +105,52 @@ def time_step_of_all_shapes(system: System, state: State, limit: Limit = VERLET)
     return limit.step(stiffness, damping, system.drag * float(scale.max(initial=0.0)) ** 2)
 
 
-def warning(system: System, state: State, method: Solver, *, moving: bool = False) -> str:
-    """A sentence if the time step that a scene gives is too long for a solver, with one that holds; else empty.
-
-    Too long for small vibrations about the shape of a state, or with `moving` for a motion that led there.
-    """
-    settings, unit, bounds = system.scene.settings, system.scene.units.time, Bounds.of(system, state)
-    given = settings.time_step / (MOST_PARTS if settings.divide_steps else 1)
-    if given <= (bounds.holds(state, method.limit) if moving else method.limit.step(*bounds.highest(state))):
+def warning(system: System, state: State, method: Solver) -> str:
+    """A sentence if the time step that a scene gives is too long for small vibrations about a shape, with one that
+    leaves room for large motions; else empty. Steps that are divided are never too long."""
+    settings, unit = system.scene.settings, system.scene.units.time
+    if settings.divide_steps or settings.time_step <= method.limit.step(*Bounds.of(system, state).highest(state)):
         return ""
     rates = _rates(system, state)
     stable = method.limit.step(*rates)
-    if given <= stable and not moving:
+    if settings.time_step <= stable:
         return ""
-    part = margin(bounds.highest(state)[0], bounds.least(state))
-    holds, where = part * time_step_of_all_shapes(system, state, method.limit), "in any motion"
-    if holds == 0.0:
-        holds, where = CAUTION * part * stable, "while it is no stiffer"
-    holds = min(holds, CAUTION * given)
-    parts = f", divided into {MOST_PARTS:,} parts," if settings.divide_steps else ""
-    small = f", {_down(stable):.4g} {unit} in small ones" if stable < np.inf else ""
-    cause, less = _cause(system, state, rates) if given > stable else ("this motion", "")
+    steady = time_step_of_all_shapes(system, state, method.limit)
+    damped = margin(*Bounds.of(system, state).extremes(state)) == DAMPED
+    holds = min(DAMPED * steady if damped and steady else roomy(system, state, method), CAUTION * settings.time_step)
+    where = "in any motion" if damped and steady else "in most motions"
+    cause, less = _cause(system, state, rates)
     return (
-        f"/settings/time_step: {settings.time_step:g} {unit}{parts} is too large for {cause}. Steps up to "
-        f"{_down(holds):.4g} {unit} hold {where}{small}: use one, or leave time_step out{less}"
+        f"/settings/time_step: {settings.time_step:g} {unit} is too large for {cause}. Steps up to "
+        f"{floored(holds):.4g} {unit} hold {where}, {floored(stable):.4g} {unit} in small ones: use one, or leave "
+        f"time_step out{less}"
     )
+
+
+def too_long(system: System, state: State, method: Solver, held: tuple[float, float]) -> str:
+    """A sentence on a given time step that a motion which led to a shape did not bear; `held` is a step that did, and
+    the time for which (see `trial`), 0 where none is known."""
+    settings, unit = system.scene.settings, system.scene.units.time
+    rates = _rates(system, state)
+    stable = method.limit.step(*rates)
+    cause, less = _cause(system, state, rates) if settings.time_step > stable else ("this motion", "")
+    step, time = held
+    small = f", {floored(stable):.4g} {unit} in small ones" if stable < np.inf else ""
+    said = f"Steps of {step:.4g} {unit} held for {time:.4g} {unit} of the same motion{small}: use one"
+    if step == 0.0:
+        said = f"No step is known that holds{small and ', steps up to ' + small[2:]}: use a smaller one"
+    given = f"/settings/time_step: {settings.time_step:g} {unit}"
+    return f"{given} is too large for {cause}. {said}, or leave time_step out{less}"
+
+
+def roomy(system: System, state: State, method: Solver) -> float:
+    """A step [time] that is short enough for large motions from a shape, as far as can be known before they happen."""
+    bounds = Bounds.of(system, state)
+    stable = time_step_of_all_shapes(system, state, method.limit) or CAUTION * stable_time_step(
+        system, state, method.limit
+    )
+    damped = margin(*bounds.extremes(state)) == DAMPED
+    return (DAMPED if damped else 0.5 * UNDAMPED) * stable
 
 
 def _cause(system: System, state: State, rates: tuple[float, float, float]) -> tuple[str, str]:
@@ -182,11 +206,35 @@ def longest(system: System, state: State, limit: Limit) -> float:
 
 
 def parts(system: System, state: State, limit: Limit) -> int:
-    """In how many parts a time step is divided, where it may be, so that they hold."""
+    """In how many parts a time step is divided, where it may be, so that they hold; `most_parts` of them are taken."""
     step = system.scene.settings.time_step
     if not system.scene.settings.divide_steps or step <= (holds := longest(system, state, limit)):
         return 1
-    return int(min(np.ceil(step / holds), MOST_PARTS))
+    return int(np.ceil(step / holds))
+
+
+def most_parts(system: System) -> int:
+    """How many parts of a step are taken at most: so many that a frame is not long to compute. A number that follows
+    from the system alone, so that the same scene moves in the same way on every machine."""
+    size = 100 + sum(group.block.indices.size for group in system.groups)
+    return int(np.clip(MOST_WORK // (size * system.scene.settings.sub_iterations), LEAST_MOST, MOST_PARTS))
+
+
+def often(system: System, state: State, method: Solver) -> int:
+    """Parts of a step beyond which it is not their length that feeds energy into a motion about a shape."""
+    return MANY * max(MOST_PARTS, parts(system, state, method.limit))
+
+
+def slowed(system: System, parts: int) -> str:
+    """A sentence if a time step needs more parts than are taken; else empty."""
+    if parts <= (most := most_parts(system)):
+        return ""
+    step, unit = system.scene.settings.time_step, system.scene.units.time
+    return (
+        f"/settings/time_step: each step covers {step * most / parts:.3g} {unit}, not {step:g} {unit}: motion is "
+        f"{parts / most:.3g} times slower than asked for. Steps that hold with this stiffness, damping and mass are "
+        f"{step / parts:.3g} {unit} long, and {most:,} are taken; take more mass or less stiffness for more"
+    )
 
 
 def in_motion(scene: Scene) -> tuple[Scene, str]:
@@ -206,8 +254,8 @@ def in_motion(scene: Scene) -> tuple[Scene, str]:
     holds = longest(system, system.start(), method.limit)
     if settings.time_step <= holds:
         return scene, ""
-    step = float(f"{_down(holds):.4g}")
-    changed: dict[str, float] = {"time_step": step}
+    step = float(f"{floored(holds):.4g}")
+    changed: dict[str, float] = {"time_step": step, "divide_steps": True}
     if "sub_iterations" not in settings.model_fields_set:
         changed["sub_iterations"] = min(round(settings.sub_iterations * settings.time_step / step), MOST_STEPS)
     said = f"time steps of {step:g} {scene.units.time} are used; longer ones explode with this stiffness and mass"
@@ -256,10 +304,13 @@ class Bounds:
         """The least rate of damping of all that may move [1/time]."""
         return float((self.damping + self.drag)[state.moving].min(initial=np.inf))
 
+    def extremes(self, state: State) -> tuple[float, float]:
+        """The highest rate of stiffness and the least of damping: what `margin` depends on."""
+        return self.highest(state)[0], self.least(state)
+
     def holds(self, state: State, limit: Limit) -> float:
         """The step [time] that holds in motions of any size, in the shape that this was found for."""
-        highest = self.highest(state)
-        return margin(highest[0], self.least(state)) * limit.step(*highest)
+        return margin(*self.extremes(state)) * limit.step(*self.highest(state))
 
 
 def _column(group: Group, name: str) -> Floats:
@@ -303,7 +354,7 @@ def _largest(operator: Any) -> float:
         return 1.1 * float(found[-1]) if len(found) else float(np.abs(operator @ np.ones(size)).max())
 
 
-def _down(value: float) -> float:
+def floored(value: float) -> float:
     """Rounded down to four digits, so that the number told is itself safe."""
     digits = 10.0 ** (np.floor(np.log10(value)) - 3)
     return float(np.floor(value / digits * (1 + 1e-12)) * digits)

@@ -11,12 +11,13 @@ from hookean import kernels, stability
 from hookean.balance import ALONG, Balance, balance
 from hookean.equilibrium import Equilibrium, Stability, assess, excess, leave
 from hookean.films.endings import Endings
-from hookean.heating import heated
+from hookean.heating import FAR, accept, cool, flown, gained, heated
 from hookean.result import Status
 from hookean.solvers import Solver
 from hookean.state import State
 from hookean.system import System
 
+UTMOST = 10**12  # parts of a step that is far too long
 FIRST_LOOK = 25  # iterations before the first look at the balance; later looks come at growing distances
 LEAVES = 20  # unstable equilibria that a run leaves
 TRIES = 5  # tighter tolerances that a run takes without half the position error
@@ -49,10 +50,15 @@ class Watch:
         self.size = system.size
         self.top, self.top_found = self.good, self.found  # of the best residual
         self.back = 0  # iterations that the last look took back
+        self.origin, self.driven = self.good, False
         self.fault, self.lost = "", -1  # what is not sane, and the particle
+        self.flew = False  # it moved too far, and no time step is to blame
+        self._advised = ""
         self.collapse = ""
         self.films = Endings(physical=method.physical) if system.films is not None else None
         self._exploding(system, state, self.found, driven=False)  # notes the energy of the start
+        # on the steps of a motion: how far they may be trusted; those of a run that is resumed are known
+        self.notes = self._noted(system, state) if "parts" in state.scratch else []
 
     @property
     def goal(self) -> float:
@@ -71,14 +77,16 @@ class Watch:
         """Judge the state as it is now; `known` says that it is the one this began with, `driven` that a script moves
         it."""
         self.last, self.rest, self.back = state.iteration, None, 0
+        self.driven, self.flew, self._advised = driven, False, ""
         if not self._sane(system, state):
             return self._burst(system, state, driven=driven)
         if self._collapsed(system, state, known=known):
             return self._fallen(system)
         found = self.found if known else balance(system, state)
-        if self._exploding(system, state, found, driven=driven):
+        if self._exploding(system, state, found, driven=driven) and not self._cooled(system, state, found):
             return self._burst(system, state, driven=driven)
         self.found = found
+        self.notes = self._noted(system, state)
         if self.method.anew > self.best_at:  # what the other way had reached is no measure of this one
             self.best, self.best_at = np.inf, self.method.anew
         if not known:
@@ -138,19 +146,42 @@ class Watch:
             self.fault = f"particle {particle}{_owner(system, particle)}"
         return particle is not None
 
+    def _noted(self, system: System, state: State) -> list[str]:
+        if not self.method.physical:
+            return []
+        slow = stability.slowed(system, self.method.parts(system, state))
+        return [note for note in (slow, gained(system, state, self.method, self.found, driven=self.driven)) if note]
+
     def _burst(self, system: System, state: State, *, driven: bool) -> Status:
-        """What follows where a motion has exploded: where its time steps are to be divided, back to the last good state
+        """What follows where a motion has exploded: where its time steps may be divided, back to the last good state
         with twice as many parts; but what drives a motion does not go back."""
-        dividing = self.method.physical and self.settings.divide_steps and not system.steady
+        dividing = self.method.physical and self.settings.divide_steps and not driven
+        self.flew = self.lost >= 0 and flown(system, state, self.found, self.lost, driven=driven)
         parts = 2 * self.method.parts(system, state)
-        if not dividing or driven or parts > stability.MOST_PARTS:
+        known = all(group.cls.conservative for group in system.groups)  # energies tell whether a step is too long
+        if not dividing or self.flew or parts > (UTMOST if known else stability.often(system, self.good, self.method)):
             return self._fallen(system)
         good = self.good.copy()
         self.back = state.iteration - good.iteration
         state.x, state.v, state.memory = good.x, good.v, good.memory
         state.time, state.iteration = good.time, good.iteration
         state.scratch["parts"] = np.array([parts])
+        accept(system, state, self.found)
+        self.lost = -1
         return Status.RUNNING
+
+    def _cooled(self, system: System, state: State, found: Balance) -> bool:
+        """Whether steps are divided so often already that what they still add is of the forces' making, which jump
+        where elements collapse: it is taken out of the motion."""
+        parts = self.method.parts(system, state)
+        if (
+            not self.settings.divide_steps
+            or self.driven
+            or 2 * parts <= stability.often(system, self.good, self.method)
+        ):
+            return False
+        cool(system, state, found)
+        return True
 
     def _fallen(self, system: System) -> Status:
         """The end of a run that diverged; the last good shape of films is one that can be a film."""
@@ -175,12 +206,12 @@ class Watch:
 
     def _sane(self, system: System, state: State) -> bool:
         """Finite, and not a hundred thousand times the model's size away; else say which particle and force."""
-        if kernels.compiled(within)(state.x, state.v, system.x, state.free, 1e5 * self.size):
+        if kernels.compiled(within)(state.x, state.v, system.x, state.free, FAR * self.size):
             return True
         away = np.abs(state.x - system.x) * state.free
         bad = ~np.isfinite(state.x).all(axis=1) | ~np.isfinite(state.v).all(axis=1)
         if not bad.any():
-            bad = away.max(axis=1) > 1e5 * self.size
+            bad = away.max(axis=1) > FAR * self.size
         particle = int(np.argmax(bad))
         others = int(np.count_nonzero(bad)) - 1
         # where many are lost at once, the forces of the first in number need not be the cause
@@ -213,18 +244,29 @@ class Watch:
 
     def _advice(self, system: System) -> str:
         """What to do about a run that diverged."""
-        if self.method.physical and (said := stability.warning(system, self.good, self.method, moving=True)):
-            return said
+        if not self._advised:
+            self._advised = self._blame(system)
+        return self._advised
+
+    def _blame(self, system: System) -> str:
+        if self.method.physical and not self.settings.divide_steps and not self.flew:
+            from hookean.trial import trial
+
+            held = (0.0, 0.0) if self.driven else trial(system, self.origin, self.good, self.method)
+            return stability.too_long(system, self.good, self.method, held)
+        part = self.found.components.label[self.lost] if self.lost >= 0 else -1
+        if self.flew and part >= 0 and not self.found.components.supported[part]:
+            return f"Nothing supports {_called(system, self.found, part)}: add anchors"
         if said := _adrift(system, self.found):
             return said
-        part = self.found.components.label[self.lost] if self.lost >= 0 else -1
         if part >= 0 and not self.found.components.supported[part]:
             return f"Nothing supports {_called(system, self.found, part)}: add anchors"
         if said := _overloaded(system, self.good, self.size):
             return said
         if self.method.physical:
-            given, unit = self.settings.time_step, system.scene.units.time
-            return f"/settings/time_step: {given:g} {unit} became too large on the way: use a smaller one, or more mass"
+            return (
+                "The forces grow without bound there, and no time step holds: add damping, more mass, or less stiffness"
+            )
         other = "" if self.method.name == "auto" else "use auto, "
         return (
             f"The solver {self.method.name} found no equilibrium from here: {other}see that every part is held along "

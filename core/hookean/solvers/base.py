@@ -56,8 +56,12 @@ class Solver(ABC):
     limit: ClassVar[Limit] = Limit()  # of its time steps, where it is physical
 
     def parts(self, system: System, state: State) -> int:
-        """In how many parts a time step is taken."""
+        """In how many parts a time step is divided."""
         return 1
+
+    def covers(self, system: System, state: State) -> float:
+        """The time [time] that an iteration takes, where time is physical."""
+        return system.scene.settings.time_step
 
     def refuse(self, system: System) -> str:
         """Why this solver cannot take the system, as a sentence; empty if it can."""

@@ -168,7 +168,8 @@ class Method(Solver):
     """Velocity Verlet; what classic Kangaroo does, and what bounces.
 
     With `divide_steps` a step is divided into equal parts that hold (see `stability.parts`); how many is kept in
-    `state.scratch`. Where every force is `steady` they hold in all shapes, else a watched run takes more where needed.
+    `state.scratch`; a watched run takes more where they feed energy into the motion. A step that needs more than
+    `stability.most_parts` covers less time.
     """
 
     name: ClassVar[str] = "verlet"
@@ -182,10 +183,15 @@ class Method(Solver):
         self._free = np.zeros((0, 3))  # of the state that forces were laid out for
 
     def parts(self, system: System, state: State) -> int:
-        """In how many parts a time step is taken."""
+        """In how many parts a time step is divided."""
         if "parts" not in state.scratch:
             state.scratch["parts"] = np.array([stability.parts(system, state, self.limit)])
         return int(state.scratch["parts"][0])
+
+    def covers(self, system: System, state: State) -> float:
+        """The time that a step takes: the scene's time step, or less where it needs too many parts."""
+        parts, step = self.parts(system, state), system.scene.settings.time_step
+        return step * min(1.0, stability.most_parts(system) / parts)
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Exactly `count` time steps; physical time does not stop early."""
@@ -197,10 +203,8 @@ class Method(Solver):
             self._own = lean(system, state, damped=True)
             self._tables = (self._own.quiet, self._own.lively, *contacts(system), _noted(system, state))
             self._free = state.free.copy()
-            if system.steady:
-                state.scratch.pop("parts", None)  # found without the shape, they are soon found again
         parts = self.parts(system, state)
-        steps = step / parts * np.tile(self.weights, parts)
+        steps = step / parts * np.tile(self.weights, min(parts, stability.most_parts(system)))
         touching, lively = bool(system.contacts), len(self._own.lively) > 0
         rows, new = self._desk.keep(n, 6 + lively + 6 * touching)
         x, v, pull, load, base, seen, *rest = rows
@@ -215,9 +219,10 @@ class Method(Solver):
             *others, seen, system.drag, steps, touching, same and not new, count,
         )  # fmt: skip
         state.iteration += count
+        covered = self.covers(system, state)
         for _ in range(count):
             # one by one: the same bits however the steps are divided into calls
-            state.time += step
+            state.time += covered
         return count
 
 
