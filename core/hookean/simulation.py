@@ -275,7 +275,8 @@ class Simulation:
 
     def result(self) -> Result:
         """Everything about the present state; warnings name a time step that is too long for it."""
-        if self.status is Status.RUNNING:
+        known = [w for w in self.system.report.warnings if w not in self._noted]
+        if self.status is Status.RUNNING and not any(w.startswith("/settings/time_step") for w in known):
             self._warn()
             self._note()
         found, moving = self._balance(), self.solver.physical

@@ -27,7 +27,8 @@ class Welded:
     """All particles of a scene and, for each force, anchor and geometry, which of them it means.
 
     Given particles come first, unmerged; then the coordinates of internal forces in order of first appearance.
-    Loads, anchors and geometry create none: their coordinates must meet a particle within the tolerance.
+    Loads, hinges, bends, anchors and geometry create none: their coordinates must meet a particle within the
+    tolerance.
     """
 
     def __init__(self, scene: Scene) -> None:

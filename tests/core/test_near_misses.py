@@ -287,6 +287,7 @@ def test_every_force_with_lines_or_faces_takes_part() -> None:
         else:
             other["points"] = [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]][: cls.arity]]
         cable = springs("c", [[[0.5, 0.4, 0.01], [0.5, 0.4, 5]], [[0.5, 0.01, 0], [0.5, -5, 0]]])
-        if any(one.startswith("c:") for one in found(other, cable, meshes={"m": mesh(1)})):
+        corners = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]]  # hinges and bends must meet particles
+        if any(one.startswith("c:") for one in found(other, cable, meshes={"m": mesh(1)}, particles=corners)):
             lying.add(kind)
     assert lying == {"shell", "soapfilm", "springs"}

@@ -265,3 +265,26 @@ def test_a_load_on_what_nothing_touches_is_a_warning(
     more = f" (and {len(alone) - 1} more)" if len(alone) > 1 else ""
     first = f"particle {alone[0]} carries a load but no spring, other force or anchor holds it" if alone else ""
     assert said == ([first + more] if alone else [])
+
+
+@pytest.mark.parametrize("kind", ["bend", "hinge"])
+def test_corners_that_meet_nothing_create_no_particles(kind: str):
+    """A bend or hinge drawn beside the springs is an error, as a load there is. With strict false its other elements
+    act as if it had not been drawn, also where the one in the middle of a rod is left out."""
+    x = np.array([[i, 0.3 * np.sin(2.0 * i), 0.1 * i * i] for i in range(7)])
+    count = {"bend": 3, "hinge": 4}[kind]
+    places = [x[i : i + count] for i in range(8 - count)]
+    beside = [*places[:1], places[1] + [0, 0, 5.0], *places[2:]]
+    springs = {"kind": "springs", "lines": [[x[i], x[i + 1]] for i in range(6)], "stiffness": 1e4}
+    load = {"kind": "unary", "points": [x[3]], "vector": [0, 0, -1.0]}
+
+    def scene(points: list, **more: object) -> Scene:
+        drawn = {"kind": kind, "points": points, "angle_factor": 0.9}
+        return Scene.read({"forces": [springs, drawn, load], "anchors": [{"points": [x[0], x[1], x[6]]}], **more})
+
+    with pytest.raises(InputError, match=r"/forces/1/points: 1 of \d points met no particle"):
+        relax(scene(beside))
+    left, without = relax(scene(beside, strict=False)), relax(scene([*places[:1], *places[2:]]))
+    assert len(left.particles) == len(without.particles) == 7
+    assert left.particles.tobytes() == without.particles.tobytes()
+    assert "/forces/1/points: 1 of" in left.report.left_out()[0]

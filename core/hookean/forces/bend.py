@@ -150,6 +150,7 @@ class Bend(Force):
     )
 
     formula: ClassVar[str] = "E = EI |φ - φ0|²/(2 l)"
+    creates: ClassVar[bool] = False
     arity: ClassVar[int] = 3
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     blur: ClassVar[float] = 5e-13
@@ -177,7 +178,10 @@ class Bend(Force):
             held=np.repeat(none, 2, axis=1),
         )
         if self.sections == "tied":
-            rod_links.link(places.x, block.indices, block.parameters)
+            met = (index >= 0).all(axis=1)  # the others are left out before anything follows a chain
+            table = np.ascontiguousarray(block.parameters[met])
+            rod_links.link(places.x, block.indices[met], table)
+            block.parameters[met] = table
         else:
             block.parameters[:, SHARE] = 0.0
         return block

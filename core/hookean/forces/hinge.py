@@ -49,6 +49,7 @@ class Hinge(Force):
     angle_factor: Reals = Field(default=1.0, description="Factor on the rest angle [-]; 0: flat")
 
     formula: ClassVar[str] = "E = S (θ - θ0)²/2"
+    creates: ClassVar[bool] = False
     arity: ClassVar[int] = 4
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     kernel: ClassVar[Any] = staticmethod(hinge_kernel)
