@@ -80,28 +80,27 @@ def heated(system: System, state: State, method: Solver, found: Balance, *, driv
 def gained(system: System, state: State, method: Solver, found: Balance, *, driven: bool) -> str:
     """A sentence on the energy that time steps have fed into a motion since its start, if it is worth one."""
     energies = entered(system, state, found, driven=driven)
-    if energies is None or system.films is not None:
+    if energies is None:
         return ""
     books, units = state.scratch["energy"], system.scene.units
     gain, exchanged = sum(energies) - books[START] + books[TAKEN], books[START] - books[LOWEST]
     least = GAIN * _rounding(found, energies)
-    if gain <= max(WORTH * exchanged, least):
+    worth = WORTH if system.films is None else 1.0  # what spreads the vertices of a film does work, too
+    if gain <= max(worth * exchanged, least):
         return ""
     if books[SWING] == 0.0:
         books[SWING] = _swing(system, state, method)
-    if gain <= (books[SWING] - 1.0 + WORTH) * exchanged:
+    if gain <= (books[SWING] - 1.0 + worth) * exchanged:
         return ""
     unit = units.of("energy")
     # one digit: what changes from frame to frame is no news
     part = f", {100.0 * gain / exchanged:,.1g} % of what it exchanges" if exchanged > least else ""
     taken = f"; about {books[TAKEN]:.1g} {unit} were taken out of it again" if books[TAKEN] > 0.0 else ""
+    who = "steps have" if system.films is None else "steps, and what spreads the vertices of films evenly, have"
     what = "use a smaller one, or leave it out"
     if system.scene.settings.divide_steps:
         what = "damping, or more mass at the lightest particles, keeps it lower"
-    return (
-        f"/settings/time_step: steps have added about {gain:.1g} {unit} to the energy of this motion{part}{taken}: "
-        f"{what}"
-    )
+    return f"/settings/time_step: {who} added about {gain:.1g} {unit} to the energy of this motion{part}{taken}: {what}"
 
 
 def accept(system: System, state: State, found: Balance) -> None:
