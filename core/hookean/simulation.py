@@ -31,6 +31,8 @@ from hookean.watch import Watch, seldom
 
 OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
 
+_DAMAGED = (zipfile.BadZipFile, zlib.error)
+
 Floats = NDArray[np.float64]
 Source = Stream | str | Path | Iterable[str]
 
@@ -403,7 +405,7 @@ class Simulation:
             if stream is not None or error.pointer == "/drives":
                 raise
             raise no_simulation(path) from None
-        except (OSError, KeyError, ValueError, IndexError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
+        except (OSError, KeyError, ValueError, IndexError, TypeError, EOFError, NotImplementedError, *_DAMAGED):
             raise no_simulation(path) from None
         if loaded._playing is not None:
             loaded._playing.finished = finished  # what patches moved after its end stays moved
