@@ -66,8 +66,11 @@ def heated(system: System, state: State, method: Solver, found: Balance, *, driv
     if np.isfinite(gain) and gain <= max(most, least):
         return None
     if system.films is not None:  # what keeps them even does work
-        step = system.scene.settings.time_step / method.parts(system, state)
-        if step <= method.limit.step(*Bounds.of(system, state, found.stiffness).highest(state)):
+        step, bounds = (
+            system.scene.settings.time_step / method.parts(system, state),
+            Bounds.of(system, state, found.stiffness),
+        )
+        if step <= (bounds.holds(state, method.limit) if divided else method.limit.step(*bounds.highest(state))):
             return None
     if not gain <= MOST_SWING * max(exchanged, least):  # no swing: beyond it numbers may be too large for factors
         return int(np.argmax(_moving(system, state)))
