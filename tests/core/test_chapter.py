@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hookean import InputError, Scene, Simulation, relax, simulate
+from hookean.forces.self_weight import SelfWeight
 from samples import cable
 
 
@@ -19,6 +20,26 @@ def test_weight_per_length_follows_the_start_lengths():
         anchors=[{"particles": []}, {"points": [[0, 0, 0], [3, 0, 0]]}],
     )
     assert relax(scene).force("self_weight")["force"][:, 2] == pytest.approx([-1.5, -4.5, -3.0], rel=1e-15)
+
+
+def test_a_total_of_nothing_weighs_nothing():
+    """0 N shared by two particles is 0 N each."""
+    scene = Scene(
+        particles=[[0, 0, 0], [1, 0, 0]],
+        forces=[{"kind": "springs", "particles": [[0, 1]]}, {"kind": "self_weight", "particles": [0, 1], "total": 0}],
+        anchors=[{"particles": [0, 1]}],
+    )
+    assert (relax(scene).force("self_weight")["force"] == 0.0).all()
+
+
+@pytest.mark.parametrize("places", [{"particles": [[0, 1]]}, {"lines": [[[0, 0, 0], [1, 0, 0]]]}])
+def test_a_weight_per_length_needs_lengths(places):
+    """Pairs and lines have them; points do not, and nothing given has none."""
+    assert SelfWeight(**places, per_length=2.0).element_arity == 2
+    with pytest.raises(InputError, match="per_length needs lines, pairs of particles or a mesh"):
+        SelfWeight(per_length=2.0)
+    with pytest.raises(InputError, match="per_length needs lines, pairs of particles or a mesh"):
+        SelfWeight(points=[[0, 0, 0]], per_length=2.0)
 
 
 def test_bouncing_cable_approaches_its_motion_with_order_two():

@@ -11,7 +11,11 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
 
 from hookean import Result, Scene, Simulation, relax
-from hookean.equilibrium import LARGE_NET
+from hookean.balance import balance
+from hookean.equilibrium import LARGE_NET, Equilibrium, Stability, excess, leave
+from hookean.run import relax_state
+from hookean.solvers import solver
+from hookean.system import compile
 
 from .test_components import Springs, chain
 
@@ -164,6 +168,49 @@ def test_what_lies_on_a_floor() -> None:
         floor = {"static_friction": friction, "kinetic_friction": friction}
         found = relax(Scene.read({**bar, "settings": {"floor": floor, "solver": "relaxation"}}))
         assert found.converged and (found.stability, found.soft_modes) == (kind, modes)
+
+
+def test_what_stands_on_a_floor_is_held_there_alone() -> None:
+    """A triangle on edge, with friction under its base: its top still turns about that, one motion; loaded, it falls
+    over."""
+    upright = {
+        "particles": [[0, 0, 0], [1, 0, 0], [0.5, 0, 1]],
+        "forces": [
+            {"kind": "springs", "particles": [[0, 1], [1, 2], [2, 0]]},
+            {"kind": "unary", "particles": [0, 1], "vector": [0, 0, -1]},
+        ],
+    }
+    settings = {"floor": {"static_friction": 0.5, "kinetic_friction": 0.5}, "solver": "relaxation"}
+    found = relax(Scene.read({**upright, "settings": settings}))
+    assert found.converged and (found.stability, found.soft_modes, found.soft_particle) == ("mechanism", 1, 2)
+    loads = {"kind": "unary", "particles": [2], "vector": [0, 0, -0.1]}
+    loaded = relax(Scene.read({**upright, "forces": [*upright["forces"], loads], "settings": settings}))
+    assert (loaded.stability, loaded.soft_particle) == ("unstable", 2)
+
+
+def test_the_lowest_shape_is_not_left() -> None:
+    """From where the energy has its minimum a mode leads nowhere lower: nothing moves."""
+    system = compile(Scene.read(column(6, 0.5)))
+    state = system.start()
+    relax_state(system, state, solver("auto"))
+    rest, mode = state.x.copy(), np.zeros_like(state.x)
+    mode[3, 1] = 1.0
+    assert not leave(system, state, Equilibrium(Stability.UNSTABLE, mode=mode))
+    assert (state.x == rest).all()
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-3, None])
+def test_errors_are_measured_by_the_size_of_their_component(tolerance: float | None) -> None:
+    """A chain of length 8 under tension: its error by the tolerance times 8; without a tolerance nothing counts."""
+    x = np.column_stack([np.linspace(0.0, 8.0, 9), *np.zeros((2, 9))])
+    springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(8)], "rest_factor": 0.5}
+    settings = {"position_tolerance": tolerance}
+    spec = {"particles": x, "forces": [springs], "anchors": [{"particles": [0, 8]}], "settings": settings}
+    system = compile(Scene.read(spec))
+    state = system.start()
+    rest = Equilibrium(Stability.STABLE, position_errors=np.array([1e-4]))
+    found = excess(system, state, balance(system, state), rest)
+    assert found == (0.0 if tolerance is None else pytest.approx(1e-4 / (8.0 * tolerance), rel=1e-14))
 
 
 RIGID = [([], 6), ([0], 3), ([0, 3], 1)]
