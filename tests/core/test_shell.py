@@ -12,7 +12,7 @@ from scipy.spatial import Delaunay
 
 from hookean import Scene, relax
 from hookean.errors import InputError
-from hookean.forces import Shell, Springs, Unary
+from hookean.forces import Block, Shell, Springs, Unary
 from hookean.forces.shell import triangles
 from hookean.system import System, compile
 
@@ -33,6 +33,16 @@ def at(scene: Scene, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, float, Syst
     state.x = np.ascontiguousarray(x, dtype=float)
     f, w, energy = system.evaluate(state)
     return f, w, float(energy.sum()), system
+
+
+def test_a_whole_shell_is_packed_and_a_part_is_not() -> None:
+    """Where all triangles are there that bend with one another, edges are gone through once each; and where one of
+    them is missing, every element by itself. Both give the same forces (see the laws)."""
+    x = Shell.example()[1]
+    group = compile(skin(x, Shell.example_faces)).groups[0]
+    assert Shell.pack(group.block, group.block.memory, False) is not None
+    part = group.block.indices[:-1], group.block.parameters[:-1], group.block.memory[:-1]
+    assert Shell.pack(Block(*part, group.block.names), part[2], False) is None
 
 
 def moments(scene: Scene, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -13,6 +13,7 @@ from scipy.optimize import brentq, fsolve
 
 from hookean import Scene, relax
 from hookean.forces import SoapFilm
+from hookean.forces.soapfilm import shapes
 from hookean.result import Result, Status
 from hookean.system import compile
 
@@ -21,6 +22,16 @@ from .film_meshes import Heights, area, disc, film, inside, patch, scene, slopes
 SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)
 EPS = float(np.finfo(float).eps)
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
+
+
+@pytest.mark.parametrize("axes", [(0, 1), (1, 2), (2, 0)])
+def test_triangles_in_every_plane_have_their_area(axes: tuple[int, int]) -> None:
+    """Legs 3 and 4: 6, wherever they lie; its quality is 4 sqrt(3) 6 / (9 + 16 + 25). On a line: 0 and 0."""
+    x = np.zeros((4, 3))
+    x[1, axes[0]], x[2, axes[1]], x[3, axes[0]] = 3.0, 4.0, 7.0
+    found, quality = shapes(x, np.array([[0, 1, 2], [0, 1, 3]]))
+    assert found == pytest.approx([6.0, 0.0], rel=1e-15) and quality[1] == 0.0
+    assert quality[0] == pytest.approx(24.0 * np.sqrt(3.0) / 50.0, rel=1e-15)
 
 
 def scherk(x: np.ndarray, y: np.ndarray) -> np.ndarray:
