@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import typer
 
+from hookean import cells
 from hookean.commands import outputs
 from hookean.commands import relax as command
 from hookean.errors import InputError
@@ -211,7 +212,7 @@ def _table(given: str | None, target: Path | None) -> Iterator[Callable[[list[An
         lines = csv.writer(file, lineterminator="\n")
 
         def write(row: list[Any]) -> None:
-            lines.writerow(row)
+            lines.writerow(cells.row(row))
             file.flush()
 
         yield write

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from hookean import cells
 from hookean.errors import InputError
 from hookean.result import Result
 from hookean.system import System
@@ -193,12 +194,13 @@ def _unit(units: Units, dimension: str) -> str:
 
 
 def csv_text(table: Sequence[Row]) -> str:
-    """The rows as CSV with a header; numbers to the last digit, lines end in CR LF as RFC 4180 says."""
+    """The rows as CSV with a header; numbers to the last digit, lines end in CR LF as RFC 4180 says. Text that begins
+    like a formula has an apostrophe in front."""
     header = list(dict.fromkeys(key for row in table for key in row))
     out = io.StringIO()
-    writer = csv.DictWriter(out, header, restval="")
-    writer.writeheader()
-    writer.writerows(table)
+    writer = csv.writer(out)
+    writer.writerow(cells.row(header))
+    writer.writerows(cells.row(row.get(key, "") for key in header) for row in table)
     return out.getvalue()
 
 

@@ -9,6 +9,7 @@ import json
 from collections.abc import AsyncIterator
 from typing import Any
 
+from hookean import cells
 from hookean_server.jobs import rows
 from hookean_server.jobs.manager import Jobs, summary
 from hookean_server.jobs.runner import Live
@@ -54,9 +55,9 @@ def _cells(row: dict[str, Any], names: list[str], columns: list[str]) -> list[An
     return [row["number"], *shown, row["status"], *(found[name] for name in columns), row["message"]]
 
 
-def _lines(cells: list[list[Any]]) -> bytes:
+def _lines(table: list[list[Any]]) -> bytes:
     stream = io.StringIO()
-    csv.writer(stream).writerows(cells)
+    csv.writer(stream).writerows(cells.row(row) for row in table)
     return stream.getvalue().encode()
 
 
