@@ -17,7 +17,7 @@ from .archive_binary import of_bytes, to_bytes
 from .archive_chunk import MOST_BYTES, Chunk, Item, Type
 from .archive_xml import of_xml, to_xml
 
-__all__ = ["Chunk", "Item", "Type", "of_bytes", "of_xml", "read", "to_bytes", "to_xml", "write"]
+__all__ = ["Chunk", "Item", "Type", "of_bytes", "of_xml", "parse", "read", "read_bytes", "to_bytes", "to_xml", "write"]
 
 _XML = re.compile(rb"(\xef\xbb\xbf)?\s*<[?!A-Za-z]|\xff\xfe<\x00|\xfe\xff\x00<")
 
@@ -28,18 +28,27 @@ def read(path: str | Path, limit: int = MOST_BYTES) -> Chunk:
     InputError where the file cannot be read, is not an archive (a Git LFS pointer, for one), is damaged, or has more
     than `limit` bytes unpacked.
     """
-    path = Path(path)
+    return parse(read_bytes(path, limit), str(path), limit)
+
+
+def read_bytes(path: str | Path, limit: int = MOST_BYTES) -> bytes:
+    """The bytes of a file; InputError where it cannot be read or has more than `limit`."""
     try:
-        with path.open("rb") as file:
+        with Path(path).open("rb") as file:
             data = file.read(limit + 1)
     except OSError as error:
         raise InputError(str(path), f"cannot be read: {error.strerror or error}.") from None
     if len(data) > limit:
         raise InputError(str(path), f"has more than the {limit} bytes allowed; take large geometry out of the file.")
+    return data
+
+
+def parse(data: bytes, where: str, limit: int = MOST_BYTES) -> Chunk:
+    """The archive in bytes, as of the file `where`; InputError as for `read`."""
     if not data:
-        raise InputError(str(path), "is empty; a Grasshopper archive was expected.")
-    refuse_pointer(data, str(path))
-    return of_xml(data, str(path), limit) if _XML.match(data) else of_bytes(data, str(path), limit)
+        raise InputError(where, "is empty; a Grasshopper archive was expected.")
+    refuse_pointer(data, where)
+    return of_xml(data, where, limit) if _XML.match(data) else of_bytes(data, where, limit)
 
 
 def write(chunk: Chunk, path: str | Path) -> None:

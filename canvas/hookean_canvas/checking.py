@@ -13,9 +13,10 @@ from typing import Any
 
 from hookean.errors import InputError
 from hookean.example import Example, Expected
-from hookean_canvas import graph
+from hookean_canvas import archive, graph
 from hookean_canvas.evaluate import Canvas, Outcome
 from hookean_canvas.trees import Tree, text_of
+from hookean_canvas.trust import require
 
 
 @dataclass(frozen=True)
@@ -67,13 +68,20 @@ class Checked:
         }
 
 
-def check(path: Path, settings: Mapping[str, str] | None = None, seconds: float = 120.0) -> Checked:
+def check(
+    path: Path, settings: Mapping[str, str] | None = None, seconds: float = 120.0, trust: bool | None = None
+) -> Checked:
     """Run a definition and compare it; with settings other than its own nothing is compared.
 
-    InputError where it cannot be read or run.
+    `trust`: False where its scripts may run only if they are trusted already, True where they are from now on (see
+    `trust.require`); None: whoever calls this has judged them. InputError where it cannot be read or run.
     """
+    data = archive.read_bytes(path)
+    definition = graph.parse(data, path)
+    if trust is not None:
+        require(definition, data, path, trust)
     os.environ.setdefault("HOOKEAN_PYTHON", sys.executable)  # a component may have to start the server
-    outcome = Canvas(graph.read(path), settings).run(seconds)
+    outcome = Canvas(definition, settings).run(seconds)
     folder = Path(path).resolve().parent
     compared: list[Compared] = []
     if not settings and (folder / "expected.json").is_file():
@@ -133,9 +141,9 @@ def settings_of(texts: list[str]) -> dict[str, str]:
     return found
 
 
-def run(path: Path, texts: list[str], as_json: bool, seconds: float) -> int:
+def run(path: Path, texts: list[str], as_json: bool, seconds: float, trust: bool) -> int:
     """`hookean canvas run`: prints what a definition came to; 0, or 1 where something is not as it should be."""
-    checked = check(path, settings_of(texts), seconds)
+    checked = check(path, settings_of(texts), seconds, trust)
     if as_json:
         print(json.dumps(checked.as_json(), indent=2))
         return 1 if checked.faults else 0

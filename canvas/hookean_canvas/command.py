@@ -87,14 +87,17 @@ def run(
     set_: Annotated[list[str] | None, typer.Option("--set", help="A slider, toggle or panel: 'name=value'")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON")] = False,
     seconds: Annotated[float, typer.Option(help="How long it may run [s]", min=0)] = 120.0,
+    trust: Annotated[bool, typer.Option("--trust", help="Run its scripts, now and later: they run as you")] = False,
 ) -> None:
     """Evaluate a definition without Rhino: print its panels, compare its numbers with an expected.json beside it.
 
-    Exit code 0; 1 where a number is not as expected, a component fails or it does not come to rest.
+    Scripts in it run as you, so that a file that was not run before needs --trust, unless it was shipped with hookean
+    or HOOKEAN_TRUST is 1. Exit code 0; 1 where a number is not as expected, a component fails or it does not come to
+    rest; 2 where it cannot be run.
     """
     from hookean_canvas import checking
 
-    raise typer.Exit(_told(lambda: checking.run(file, set_ or [], as_json, seconds)))
+    raise typer.Exit(_told(lambda: checking.run(file, set_ or [], as_json, seconds, trust)))
 
 
 @app.command()

@@ -131,7 +131,12 @@ class Graph:
 
 def read(path: Path) -> Graph:
     """The definition in a .ghx or .gh file; InputError where it is none."""
-    found = of(archive.read(path), str(path))
+    return parse(archive.read_bytes(path), path)
+
+
+def parse(data: bytes, path: Path) -> Graph:
+    """The definition in the bytes of the file `path`; InputError where it is none."""
+    found = of(archive.parse(data, str(path)), str(path))
     found.file = Path(path).resolve()
     return found
 
