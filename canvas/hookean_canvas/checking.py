@@ -78,10 +78,11 @@ def check(
     """
     data = archive.read_bytes(path)
     definition = graph.parse(data, path)
+    canvas = Canvas(definition, settings)
     if trust is not None:
         require(definition, data, path, trust)
     os.environ.setdefault("HOOKEAN_PYTHON", sys.executable)  # a component may have to start the server
-    outcome = Canvas(definition, settings).run(seconds)
+    outcome = canvas.run(seconds)
     folder = Path(path).resolve().parent
     compared: list[Compared] = []
     if not settings and (folder / "expected.json").is_file():
