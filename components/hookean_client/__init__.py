@@ -11,14 +11,11 @@ shows that it is this user's.
 """
 
 import base64
-import errno
 import hashlib
 import json
 import os
 import socket
 import struct
-import subprocess
-import sys
 import threading
 import time
 
@@ -31,15 +28,13 @@ except ImportError:  # Python 2
 
 __version__ = "0.1.0"
 WIRE = 1
-REACH, ANSWER = 0.2, 2.0  # seconds to reach a server, for it to say who it is
-PATIENCE, STARTING = 60.0, 30.0  # seconds a socket may be silent, a start may take
+ANSWER = 2.0  # seconds for a server to be reached and to prove who it is
+PATIENCE = 60.0  # seconds a socket may be silent
 STATUSES = "running converged stalled diverged max_iterations time_limit cancelled".split()
 HEADER = struct.Struct("<4sHHIIQQddIIBBHf")
 FIELDS = "magic version size flags number revision iteration time residual n m status playing _ kinetic".split()
 FAILURES = (EnvironmentError, httplib.HTTPException, EOFError, ValueError, TypeError, AttributeError, LookupError)
 _now = getattr(time, "monotonic", time.time)
-_lock = threading.Lock()
-_children = {}  # started from here, by folder
 
 
 class Problem(Exception):
@@ -54,18 +49,20 @@ def connect(start=True, python=None, timeout=15.0, folder=None, parent=None, idl
     """The client of this user's server, started where none runs, by `python`, HOOKEAN_PYTHON or what `hookean serve`
     recorded; it ends with the process `parent` (None: this one; 0: none) and after `idle` minutes without use. A start
     that takes longer than `timeout` goes on."""
+    from . import finding
+
     place = folder or state_folder()
 
     def find(start, until):
-        found = _found(place)
+        found = finding.found(place, _now() + ANSWER)
         while not found:
             if not start:
                 raise Problem("no-server", "No hookean server runs; `hookean serve` starts it.")
-            _start(place, python, os.getpid() if parent is None else parent, idle)
+            finding.start(place, python, os.getpid() if parent is None else parent, idle)
             if _now() > until:
                 raise Problem("starting", "The hookean server is starting; try again soon.")
             time.sleep(0.02)
-            found = _found(place)
+            found = finding.found(place, _now() + ANSWER)
         return found
 
     client = Client(find, start)
@@ -77,13 +74,14 @@ class Client(object):
     """One server. `get`, `post`, `put`, `patch` and `delete` take what `request` does."""
 
     def __init__(self, find, start=False):
-        self.url = self.token = self.instance = ""
+        self.url = self.token = self.instance = self.proof = ""
         self._find, self._start, self._idle = find, start, []
 
     def renew(self, timeout=15.0, start=None):
         """Find the server again, or start it."""
         found = self._find(self._start if start is None else start, _now() + timeout)
-        self.url, self.token, self.instance = [str(found[name]) for name in ("url", "token", "instance")]
+        told = [str(found[name]) for name in ("url", "token", "instance", "proof")]
+        self.url, self.token, self.instance, self.proof = told
 
     def relax(self, scene, **options):
         """The scene in equilibrium."""
@@ -94,8 +92,9 @@ class Client(object):
         return Session(self, key)
 
     def request(self, method, path, body=None, query=None, headers=None, timeout=60.0):
-        """JSON, or bytes. GET, PUT and DELETE are repeated where the connection is lost."""
-        until = _now() + timeout
+        """JSON, or bytes. GET, PUT and DELETE are repeated where the connection is lost, all where there is a new
+        token."""
+        until, given, token = _now() + timeout, (path, body, query, headers), self.token
         path = str(path) + "?" + urlencode([(k, v) for k, v in (query or {}).items() if v is not None])
         if body is not None and not isinstance(body, (bytes, bytearray)):
             body = json.dumps(body).encode("utf-8")
@@ -114,6 +113,8 @@ class Client(object):
                     raise Problem("lost", "No answer to %s; it may be done." % method)
         if connection.sock is not None:
             self._idle.append((self.instance, _now(), connection))
+        if answer.status == 401 and self._other_token(token, until):
+            return self.request(method, *given, timeout=max(0.01, until - _now()))
         if answer.status >= 400:
             raise _refusal(answer.status, data)
         if (answer.getheader("content-type") or "").startswith("application/json"):
@@ -125,7 +126,19 @@ class Client(object):
         while self._idle:
             self._idle.pop()[2].close()
 
+    def _other_token(self, token, until):
+        try:
+            self.renew(max(0.0, until - _now()), False)
+        except Problem:
+            pass
+        return self.token != token
+
     def _connection(self, until, start=None):
+        from . import finding
+
+        def reach():
+            return finding.reach(self.url, self.instance, self.proof, min(until, _now() + ANSWER))
+
         try:
             while True:
                 instance, since, connection = self._idle.pop()
@@ -133,12 +146,12 @@ class Client(object):
                     return connection
                 connection.close()
         except IndexError:
-            connection = _open(self.url, self.instance, until)
+            connection = reach()
         while connection is None:
             if _now() > until:
                 raise Problem("no-answer", "The hookean server does not answer.")
             self.renew(max(0.0, until - _now()), start)
-            connection = _open(self.url, self.instance, until)
+            connection = reach()
         return connection
 
 
@@ -235,6 +248,8 @@ class Frames(object):
             except Problem as problem:
                 self.message = problem.detail
                 self.ended |= problem.slug in ("not-found", "wrong-version")
+                if problem.status == 401:
+                    client._other_token(client.token, _now() + ANSWER)
             except FAILURES as error:
                 self.message = "The connection was lost: %s." % error
             if self._link is not None:
@@ -321,7 +336,7 @@ class Link(object):
     def end(self):
         """Close it."""
         try:
-            self._connection.sock.settimeout(REACH)
+            self._connection.sock.settimeout(0.2)
             self.send(8, b"\x03\xe8")
             self._connection.sock.shutdown(socket.SHUT_RDWR)
         except FAILURES:
@@ -372,95 +387,6 @@ def state_folder():
     return os.environ.get("HOOKEAN_STATE") or os.path.join(top, "hookean")
 
 
-def _found(place):
-    told = _told(place, "server.json")
-    connection = _alive(told.get("pid")) and _open(told.get("url"), told.get("instance"), _now() + ANSWER)
-    if not connection:
-        return None
-    connection.close()
-    _check(told.get("wire"))
-    _unlink(os.path.join(place, "starting"))
-    return told
-
-
-def _open(url, instance, until):
-    connection = httplib.HTTPConnection("")
-    try:
-        host, _, port = url.split("//")[-1].rpartition(":")
-        connection = httplib.HTTPConnection(host.strip("[]"), int(port), timeout=REACH)
-        connection.connect()
-        connection.sock.settimeout(max(0.01, min(ANSWER, until - _now())))
-        connection.request("GET", "/v1/health")
-        if json.loads(connection.getresponse().read().decode("utf-8"))["instance"] == instance:
-            return connection
-    except FAILURES:
-        pass
-    connection.close()
-    return None
-
-
-def _told(place, name):
-    try:
-        with open(os.path.join(place, name)) as file:
-            return dict(json.load(file))
-    except FAILURES:
-        return {}
-
-
-def _start(place, python, parent, idle):
-    path, log = os.path.join(place, "starting"), os.path.join(place, "start.log")
-    with _lock:
-        child = _children.get(place)
-        if child is not None:
-            if child.poll() is None:
-                return
-            del _children[place]
-            _unlink(path)
-            if child.returncode > 0:
-                with open(log) as file:
-                    raise Problem("not-started", "It did not start: " + file.read().strip().split("\n")[-1][:300])
-        python = python or os.environ.get("HOOKEAN_PYTHON") or _told(place, "python.json").get("python")
-        if not python:
-            raise Problem("no-python", "Set HOOKEAN_PYTHON to the Python with hookean, or run `hookean serve` once.")
-        command = [str(python), "-m", "hookean.cli", "serve", "--any-port"]
-        command += ["--parent-pid", str(parent), "--idle-exit", str(idle)]
-        ours = False
-        try:
-            if not os.path.isdir(place):
-                os.makedirs(place, 0o700)
-            if os.path.exists(path) and time.time() - os.stat(path).st_mtime > STARTING:
-                _unlink(path)
-            os.close(os.open(path, os.O_CREAT | os.O_EXCL, 0o600))
-            ours = True
-            _children[place] = _spawn(command, place, log)
-        except EnvironmentError as error:
-            if ours or error.errno not in (errno.EEXIST, errno.ENOENT):
-                _unlink(path)
-                raise Problem("not-started", "%s cannot be started (%s)." % (python, error))
-
-
-def _spawn(command, place, log):
-    kept = dict(os.environ, HOOKEAN_STATE=place)
-    for name in ("PYTHONHOME", "PYTHONPATH", "PYTHONSTARTUP"):
-        kept.pop(name, None)
-    options = {"cwd": place, "env": kept, "close_fds": True}
-    if os.name == "nt":
-        options["creationflags"] = 0x08000000 | 0x00000200  # no window, own group
-    else:
-        options.update({"start_new_session": True} if sys.version_info > (3,) else {"preexec_fn": os.setsid})
-    with open(log, "w+b") as file:
-        if os.name != "nt" or sys.version_info > (3, 7):
-            options.update(stdin=file, stdout=file, stderr=file)
-        return subprocess.Popen(command, **options)
-
-
-def _alive(pid):
-    try:
-        return bool(pid) and (os.name == "nt" or os.kill(pid, 0) is None)
-    except FAILURES:
-        return False
-
-
 def _refusal(status, data):
     try:
         said = json.loads(data.decode("utf-8"))
@@ -478,10 +404,3 @@ def _check(wire):
 
 def _octets(data):
     return bytearray(data if isinstance(data, (bytes, bytearray)) else map(ord, data))
-
-
-def _unlink(path):
-    try:
-        os.unlink(path)
-    except OSError:
-        pass

@@ -3,13 +3,26 @@
 For Python 2.7 to 3.13.
 """
 
+import binascii
+import os
+import threading
 import webbrowser
 
-from . import Problem, connect
+try:
+    from urllib.request import pathname2url
+except ImportError:  # Python 2
+    from urllib import pathname2url
+
+from . import Problem, connect, state_folder
 from . import canvas_geometry as geometry
 from . import canvas_link as link
 
 OLD = 0.05  # seconds after which a solution looks again
+PAGE = """<!doctype html>
+<meta charset="utf-8"><meta name="referrer" content="no-referrer"><title>hookean studio</title>
+<meta http-equiv="refresh" content="0; url=%(address)s">
+<p><a href="%(address)s">Open the studio</a></p>
+"""
 _looks = {}  # by component: (what was asked for, Task, what was shown last)
 
 
@@ -65,13 +78,38 @@ def _work(start, stop, studio):
             raise Problem("stopped", "The hookean server has been stopped; its sessions are kept.")
         health = client.get("/v1/health", timeout=5.0)
         if studio:
-            webbrowser.open("%s/#t=%s" % (client.url, client.token))
+            _show(client)
         rows = client.get("/v1/sessions", timeout=5.0)["sessions"]
     finally:
         client.close()
     lines = [_line(row) for row in rows]
     status = "The hookean server runs, version %s, %d sessions." % (health["version"], len(rows))
     return Stand(status, client.url, health["version"], lines)
+
+
+def _show(client):
+    """Open the studio in a browser by a file that only this user can read, which has a code for one log-in: everybody
+    on this machine can read what a program is given as arguments. It is removed when the code is worth nothing."""
+    made = client.post("/v1/login/codes", timeout=5.0)
+    path = os.path.join(state_folder(), "open-%s.html" % binascii.hexlify(os.urandom(8)).decode("ascii"))
+    with os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as file:
+        file.write(PAGE % {"address": "%s/#t=%s" % (client.url, made["code"])})
+    _later(made["seconds"], _remove, path)
+    url = pathname2url(path)  # on Windows it begins with three slashes
+    webbrowser.open("file:" + ("" if url.startswith("//") else "//") + url)
+
+
+def _later(seconds, work, given):
+    waiting = threading.Timer(seconds, work, [given])
+    waiting.daemon = True
+    waiting.start()
+
+
+def _remove(path):
+    try:
+        os.unlink(path)
+    except EnvironmentError:
+        pass
 
 
 def _line(row):

@@ -170,9 +170,15 @@ def studio(
 @app.command()
 def token(
     url: Annotated[bool, typer.Option("--url", help="The address that lets a browser in, instead")] = False,
+    header: Annotated[bool, typer.Option("--header", help="The header for curl -H @-, instead")] = False,
+    renew: Annotated[bool, typer.Option("--renew", help="Log everybody out: give the service another token")] = False,
 ) -> None:
-    """Print the token of the service: what HOOKEAN_TOKEN says, else that of the service that runs."""
-    raise typer.Exit(_service().token(url))
+    """Print the token of the service: what HOOKEAN_TOKEN says, else that of the service that runs.
+
+    Every start of the service has another token. --renew replaces it while the service runs: the old token, the log-ins
+    of all browsers and open connections end.
+    """
+    raise typer.Exit(_service().token(url, header, renew))
 
 
 def _service() -> Any:

@@ -19,17 +19,20 @@ from hookean_server import (
     openapi,
     routes_about,
     routes_discretize,
+    routes_docs,
     routes_examples,
     routes_geometry,
     routes_hops,
     routes_page,
     routes_relax,
 )
+from hookean_server.access import Table
 from hookean_server.guard import Guard, Origins
 from hookean_server.jobs import routes as job_routes
 from hookean_server.jobs.manager import Jobs
 from hookean_server.limits import BodyLimit
 from hookean_server.logs import Seen
+from hookean_server.manners import Always, Manners
 from hookean_server.metrics import Metrics
 from hookean_server.pool import Pool
 from hookean_server.problems import Problem
@@ -57,7 +60,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         pool.start()
         store.start()
-        await app.state.tokens.start()
         await sessions.start()
         about = {"version": hookean.__version__, "instance": app.state.instance, "port": settings.port}
         log.info("started", extra={"fields": about})
@@ -83,12 +85,13 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.settings, app.state.pool, app.state.instance = settings, pool, secrets.token_hex(16)
     app.state.store, app.state.sessions, app.state.jobs = store, sessions, jobs
-    app.state.tokens, app.state.metrics = Tokens(settings.token or chosen(), store), Metrics(app.state)
-    for part in (
+    app.state.tokens, app.state.metrics = Tokens(settings.token or chosen()), Metrics(app.state)
+    parts = (
         routes_about,
         ending,
         routes_relax,
         routes_discretize,
+        routes_docs,
         routes_geometry,
         routes_examples,
         routes_hops,
@@ -96,13 +99,17 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         session_routes,
         frames,
         job_routes,
-    ):
+    )
+    table = app.state.table = Table([*app.routes, *(route for part in parts for route in part.router.routes)])
+    for part in parts:
         app.include_router(part.router)
     # the last one added is the outermost
     app.add_middleware(BodyLimit, settings=settings)
-    app.add_middleware(Guard, settings=settings, tokens=app.state.tokens)
+    app.add_middleware(Guard, settings=settings, tokens=app.state.tokens, table=table)
+    app.add_middleware(Manners)
     app.add_middleware(Problems)
-    app.add_middleware(Origins, settings=settings)
+    app.add_middleware(Origins, settings=settings, table=table)
+    app.add_middleware(Always)
     app.add_middleware(Seen, metrics=app.state.metrics)
     openapi.install(app)
     return app
@@ -116,7 +123,10 @@ async def _refused(request: Request, error: Exception) -> Response:
         404: "There is nothing at this address; GET /v1/openapi.json lists every one.",
         405: f"{request.method} is not taken here.",
     }.get(error.status_code, "The request cannot be understood.")
-    raise Problem(slug, detail, headers=dict(error.headers or {}))
+    headers = dict(error.headers or {})
+    if error.status_code == 405:  # the framework names the methods of one route
+        headers = {"allow": ", ".join(request.app.state.table.methods(request.scope["path"]))}
+    raise Problem(slug, detail, headers=headers)
 
 
 async def _faulty(request: Request, error: Exception) -> Response:

@@ -8,7 +8,20 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from hookean_server.discovery import LOCK, SESSIONS, Found, Held, Lock, ask, find, folder, prepare, record_python
+from hookean_server.discovery import (
+    LOCK,
+    SESSIONS,
+    Distrusted,
+    Found,
+    Held,
+    Lock,
+    ask,
+    check,
+    find,
+    folder,
+    prepare,
+    record_python,
+)
 from hookean_server.tokens import VARIABLE
 
 PORT = 8765
@@ -37,6 +50,8 @@ def run(options: Options) -> int:
     try:
         prepare(place)
         record_python(place)
+    except Distrusted as error:
+        return _refuse(str(error))
     except OSError as error:
         return _refuse(f"{place} cannot be written ({error.strerror}); set HOOKEAN_STATE to a folder of yours.")
     if options.port and not options.keep and find(place) is not None:
@@ -63,6 +78,10 @@ def run(options: Options) -> int:
 def stop() -> int:
     """Stop the server of this user; the exit code: 0 if none runs afterwards, else 1."""
     place = folder()
+    try:
+        check(place)
+    except Distrusted as error:
+        return _refuse(str(error))
     found = find(place)
     if found is None:
         if not (place / LOCK).exists() or _free(place):
@@ -70,7 +89,7 @@ def stop() -> int:
             return 0
         print("A hookean server is starting, or does not answer; try again, or end its process.", file=sys.stderr)
         return 1
-    ask(found, "POST", "/v1/shutdown", found.token)
+    ask(found, "POST", "/v1/shutdown")
     until = time.monotonic() + WAIT
     while not _free(place):
         if time.monotonic() > until:
@@ -85,21 +104,37 @@ def studio(file: Path | None, browser: bool) -> int:
     """Show the page, or a file in it; the exit code (see `studio.run`)."""
     from hookean_server.studio import run
 
+    try:
+        check(folder())
+    except Distrusted as error:
+        return _refuse(str(error))
     return run(file, browser)
 
 
-def token(url: bool = False) -> int:
+def token(url: bool = False, header: bool = False, renew: bool = False) -> int:
     """Print the token that HOOKEAN_TOKEN gives, else that of the running server; the exit code: 0, or 1 for neither.
 
-    `url`: the address that lets a browser in, instead; what follows its # stays in the browser.
+    `url`: the address that lets a browser in, instead; what follows its # stays in the browser. `header`: the header
+    that a program sends. `renew`: make the running server take another token first, which logs everybody out.
     """
-    given = os.environ.get(VARIABLE, "")
-    found = find(folder()) if url or not given else None
+    place = folder()
+    try:
+        check(place)
+    except Distrusted as error:
+        return _refuse(str(error))
+    given = "" if renew else os.environ.get(VARIABLE, "")
+    found = find(place) if url or not given else None
     if found is None and not given:
         print("No hookean server is running; start one with: hookean serve", file=sys.stderr)
         return 1
+    if renew and found is not None:
+        if ask(found, "POST", "/v1/token") is None or (found := find(place)) is None:
+            print("The token was not renewed: the server could not write its file, or has ended.", file=sys.stderr)
+            return 1
+        print("Everybody is logged out; programs and pages need this token.", file=sys.stderr)
     known = given or (found.token if found is not None else "")
-    print(f"{found.url if found is not None else f'http://127.0.0.1:{PORT}'}/#t={known}" if url else known)
+    at = found.url if found is not None else f"http://127.0.0.1:{PORT}"
+    print(f"{at}/#t={known}" if url else f"Authorization: Bearer {known}" if header else known)
     return 0
 
 

@@ -1,17 +1,25 @@
 """How clients find the server of this user: a folder with its address, its token, and the Python that starts it.
 
-`server.json` is there while a server runs and is trusted only where its process lives and `GET /v1/health` at its
-address answers with the same instance. `python.json` names the interpreter that has hookean, for programs whose own
-Python has not. Locks are held by the operating system: a server that is killed leaves none behind.
+`server.json` is there while a server runs. Only its user can read it, and it is trusted only where no other user could
+have written it, and where what answers at its address proves that it knows the key in it: HMAC-SHA256 of a random
+nonce, by `GET /v1/proof`. A token is sent down a connection that has proven this, and no other. `python.json` names the
+interpreter that has hookean, for programs whose own Python has not. Locks are held by the operating system: a server
+that is killed leaves none behind.
 """
 
 from __future__ import annotations
 
+import hashlib
+import hmac
 import http.client
 import json
 import os
+import secrets
+import socket
+import stat
 import sys
 import tempfile
+import threading
 import time
 from contextlib import suppress
 from dataclasses import asdict, dataclass
@@ -22,6 +30,7 @@ import platformdirs
 
 from hookean_server.problems import MEDIA_TYPE
 
+VARIABLE = "HOOKEAN_STATE"
 SERVER, PYTHON, LOCK, SESSIONS = "server.json", "python.json", "server.lock", "sessions.db"
 CONNECT = 0.5  # seconds a server may take to be reached
 ANSWER = 5.0  # seconds it may take to say how it is
@@ -29,7 +38,7 @@ ANSWER = 5.0  # seconds it may take to say how it is
 
 def folder() -> Path:
     """Where the server of this user is found and keeps its sessions; HOOKEAN_STATE moves it."""
-    given = os.environ.get("HOOKEAN_STATE")
+    given = os.environ.get(VARIABLE)
     return Path(given) if given else Path(platformdirs.user_state_dir("hookean", appauthor=False))
 
 
@@ -45,6 +54,8 @@ class Found:
     instance: str
     started: float
     """Seconds since 1970."""
+    proof: str
+    """Key by which it proves that it wrote this file."""
     wire: int = 1
     """Version of the frames."""
     keeps: bool = True
@@ -62,28 +73,91 @@ class Found:
                 (place / SERVER).unlink()
 
 
+class Distrusted(OSError):
+    """A folder, or a file in it, that other users could have written; the sentence says what to do."""
+
+
+def check(place: Path) -> None:
+    """Raise Distrusted where other users may write to the folder, or have put their file in it; a folder that there is
+    not is fine."""
+    if not hasattr(os, "getuid"):
+        return
+    advice = f"see who made it, then remove it, or set {VARIABLE} to a folder that is yours alone."
+    try:
+        about = place.stat()
+    except OSError:
+        return
+    if about.st_uid != os.getuid():
+        raise Distrusted(f"{place} belongs to another user; {advice}")
+    if about.st_mode & 0o022:
+        raise Distrusted(f"Other users may write to {place}; chmod 700 it, or set {VARIABLE} to another folder.")
+    for path in (place / SERVER, place / PYTHON):
+        if not _private_or_none(path):
+            raise Distrusted(f"{path} is not a file that you alone can write to; {advice}")
+
+
 def find(place: Path) -> Found | None:
-    """The server of a folder: the file says where, its process lives, and what answers there is that instance."""
+    """The server of a folder: what answers at the address in its file proves that it wrote that file."""
     told = _read(place / SERVER)
     try:
         found = Found(**told) if told is not None else None
     except TypeError:
         return None  # a file of another version
-    if found is None or not (type(found.pid) is int and type(found.port) is int and alive(found.pid)):
+    connection = proven(found) if found is not None else None
+    if connection is None:
         return None
-    health = ask(found, "GET", "/v1/health")
-    return found if health is not None and health.get("instance") == found.instance else None
+    connection.close()
+    return found
 
 
-def ask(found: Found, method: str, path: str, token: str = "") -> dict[str, Any] | None:
-    """The JSON that a server answers; none where it cannot be reached or answers otherwise."""
-    connection = http.client.HTTPConnection(found.url.split("//")[1].rsplit(":", 1)[0], found.port, timeout=CONNECT)
+def proven(found: Found, patience: float = ANSWER) -> http.client.HTTPConnection | None:
+    """A connection to a server that has proven who it is; None where nothing there can. Once it has closed it is not
+    opened again, as somebody else may have taken the port."""
+    nonce = secrets.token_hex(32)
+    connection = http.client.HTTPConnection("")
+    patient = threading.Timer(ANSWER, lambda: _end(connection))  # also of what trickles
+    patient.daemon = True
     try:
+        host, _, port = found.url.split("//")[1].rpartition(":")
+        connection = http.client.HTTPConnection(host.strip("[]"), int(port), timeout=CONNECT)
         connection.connect()
+        connection.auto_open = 0
         connection.sock.settimeout(ANSWER)
-        connection.request(method, path, headers={"authorization": f"Bearer {token}"} if token else {})
+        patient.start()
+        connection.request("GET", f"/v1/proof?nonce={nonce}")
+        said = json.loads(connection.getresponse().read(1 << 16))
+        address = connection.sock.getpeername()[0]
+        text = f"hookean {found.instance} {address} {port} {nonce}"
+        known = hmac.new(found.proof.encode(), text.encode(), hashlib.sha256)
+        if hmac.compare_digest(known.hexdigest().encode(), str(said["proof"]).encode()):
+            connection.sock.settimeout(patience)
+            return connection
+    except (OSError, http.client.HTTPException, ValueError, TypeError, LookupError, AttributeError):
+        pass
+    finally:
+        patient.cancel()
+    connection.close()
+    return None
+
+
+def _end(connection: http.client.HTTPConnection) -> None:
+    with suppress(OSError, AttributeError):
+        connection.sock.shutdown(socket.SHUT_RDWR)
+
+
+def ask(found: Found, method: str, path: str) -> dict[str, Any] | None:
+    """The JSON object that a server answers to its user, empty for an answer without a body; None where it cannot be
+    reached or answers with a problem."""
+    connection = proven(found)
+    if connection is None:
+        return None
+    try:
+        connection.request(method, path, headers={"authorization": f"Bearer {found.token}"})
         answer = connection.getresponse()
-        value = json.loads(answer.read(1 << 20)) if answer.headers.get_content_type() != MEDIA_TYPE else None
+        body = answer.read(1 << 20)
+        if answer.status == 204:
+            return {}
+        value = json.loads(body) if answer.headers.get_content_type() != MEDIA_TYPE else None
         return value if isinstance(value, dict) else None
     except (OSError, http.client.HTTPException, ValueError):
         return None
@@ -99,8 +173,9 @@ def record_python(place: Path) -> None:
 
 
 def prepare(place: Path) -> None:
-    """Make the folder, for this user alone; raises OSError."""
+    """Make the folder, for this user alone; raises OSError, or Distrusted with a sentence."""
     place.mkdir(parents=True, exist_ok=True, mode=0o700)
+    check(place)
 
 
 def _write(path: Path, value: dict[str, Any]) -> None:
@@ -131,14 +206,27 @@ def _replace(name: str, path: Path) -> None:
 
 def _read(path: Path) -> dict[str, Any] | None:
     """The object in a file that is this user's and that no other user could have written."""
+    # no link is followed, and nothing waits for somebody to write to a pipe
+    flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
     try:
-        stat = path.stat()
-        if hasattr(os, "getuid") and (stat.st_uid != os.getuid() or stat.st_mode & 0o022):
-            return None
-        value = json.loads(path.read_text(encoding="utf-8"))
+        with os.fdopen(os.open(path, flags), encoding="utf-8") as file:
+            value = json.load(file) if _private(os.fstat(file.fileno())) else None
     except (OSError, ValueError):
         return None
     return value if isinstance(value, dict) else None
+
+
+def _private(file: os.stat_result) -> bool:
+    """Whether a file is one that no other user could have written: where the system has users."""
+    ours = not hasattr(os, "getuid") or file.st_uid == os.getuid() and not file.st_mode & 0o022
+    return ours and stat.S_ISREG(file.st_mode)
+
+
+def _private_or_none(path: Path) -> bool:
+    try:
+        return _private(path.lstat())
+    except OSError:
+        return True
 
 
 class Held(OSError):

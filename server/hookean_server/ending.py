@@ -25,7 +25,7 @@ from hookean_server.pool import end_fork_server
 SIGNALS = [s for name in ("SIGINT", "SIGTERM", "SIGBREAK") if (s := getattr(signal, name, None)) is not None]
 LONGEST = 2.8  # seconds that a clean end may take before it is cut short
 LOOK = 1.0  # seconds between looks at the parent and at who uses the service
-UNCOUNTED = {"/v1/health", "/metrics"}  # asking these is not using the service
+UNCOUNTED = {"/v1/health", "/v1/proof", "/metrics"}  # asking these is not using the service
 
 router = APIRouter(tags=["about"])
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
+from contextlib import suppress
+
 from starlette.datastructures import MutableHeaders
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from hookean_server import access
+from hookean_server.access import Access, Table
 from hookean_server.claimed import NAMES
-from hookean_server.problems import Problem, is_function
+from hookean_server.problems import Problem
 from hookean_server.settings import Settings
-from hookean_server.tokens import Tokens, cookie_name, cookies
+from hookean_server.tokens import Entry, Tokens, cookie_name, cookies, set_cookie
 
 SAFE = {"GET", "HEAD", "OPTIONS"}
 CORS = {
@@ -21,44 +27,40 @@ CORS = {
 EXPOSED = ", ".join(("etag", "location", "retry-after", "server-timing", "x-request-id", *NAMES))
 
 
-def needs_token(method: str, path: str) -> bool:
-    """Whether an address is for those who hold the token. Open: health, pages of problems, page files, Hops' calls."""
-    if method in ("GET", "HEAD") and (path == "/v1/health" or path.startswith(("/problems/", "/page/"))):
-        return False
-    return not is_hops(method, path)
-
-
-def is_hops(method: str, path: str) -> bool:
-    """Whether this is one of Hops' own calls: pure functions, which no page may call. GET / lists them, POST /solve
-    runs them; any other name at the root is one, or one that there is not."""
-    if method in ("GET", "HEAD"):
-        return path == "/" or is_function(path)
-    return (method, path) == ("POST", "/solve")
-
-
 class Guard:
     """Refuses other hosts, other sites' pages, and whoever has no token; compressed bodies and huge headers too."""
 
-    def __init__(self, app: ASGIApp, settings: Settings, tokens: Tokens) -> None:
-        self.app, self.settings, self.tokens = app, settings, tokens
+    def __init__(self, app: ASGIApp, settings: Settings, tokens: Tokens, table: Table) -> None:
+        self.app, self.settings, self.tokens, self.table = app, settings, tokens, table
         self.names = {"127.0.0.1", "localhost", "[::1]", *(h.lower() for h in settings.hosts)}
         self.origins = {o.lower() for o in settings.origins}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """One request."""
-        if scope["type"] in ("http", "websocket"):
-            headers = _Headers(scope)
-            self._check_host(scope, headers)
-            if scope.get("preflight"):  # of a listed origin; the answer's headers are added further out
-                await send({"type": "http.response.start", "status": 204, "headers": []})
-                await send({"type": "http.response.body", "body": b""})
-                return
-            self._check_origin(scope, headers)
-            self._check_token(scope, headers)
-            if any(encoding not in ("identity", "") for encoding in headers.all(b"content-encoding")):
-                said = "The body is compressed; send it as it is, without Content-Encoding."
-                raise Problem("unsupported-media", said)
-        await self.app(scope, receive, send)
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        headers = _Headers(scope)
+        self._check_host(scope, headers)
+        if not access.is_plain(scope["path"]):
+            raise Problem("not-found", "There is nothing at this address; GET /v1/openapi.json lists every one.")
+        if scope.get("preflight"):  # of a listed origin; the answer's headers are added further out
+            await send({"type": "http.response.start", "status": 204, "headers": []})
+            await send({"type": "http.response.body", "body": b""})
+            return
+        # a socket has no method, and none is open
+        needed = self.table.access(scope["method"], scope["path"]) if scope["type"] == "http" else Access.TOKEN
+        self._check_origin(scope, headers, needed)
+        entry, renewal = self._entry(scope, headers, needed)
+        if any(encoding not in ("identity", "") for encoding in headers.all(b"content-encoding")):
+            said = "The body is compressed; send it as it is, without Content-Encoding."
+            raise Problem("unsupported-media", said)
+        if entry is None:
+            await self.app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await _Watched(entry, receive, send).run(self.app, scope)
+        else:
+            await self.app(scope, receive, _while_in(entry, renewal, _cookie_of(scope), send))
 
     def _check_host(self, scope: Scope, headers: _Headers) -> None:
         if headers.size > self.settings.header_limit:
@@ -74,49 +76,103 @@ class Guard:
         served = scope.get("server") or (None, None)
         return name in self.names and port == str(served[1] if served[1] is not None else 80)
 
-    def _check_origin(self, scope: Scope, headers: _Headers) -> None:
+    def _check_origin(self, scope: Scope, headers: _Headers, needed: Access) -> None:
         origins, sites = headers.all(b"origin"), headers.all(b"sec-fetch-site")
-        method = scope.get("method", "")
-        if origins and is_hops(method, scope["path"]):
+        if origins and needed is Access.HOPS:
             raise Problem("forbidden-origin", "Hops' calls are for Hops: pages of any origin are refused.")
-        if scope["type"] == "http" and method in SAFE:
+        if scope["type"] == "http" and scope["method"] in SAFE:
             return
         if len(origins) > 1 or any(o != headers.own and o not in self.origins for o in origins):
             raise Problem("forbidden-origin", "This came from a page of another origin, which may not do this.")
         if not _same_site(sites) and not (origins and origins[0] in self.origins):
             raise Problem("forbidden-origin", "This came from a page of another site, which may not do this.")
 
-    def _check_token(self, scope: Scope, headers: _Headers) -> None:
-        method = scope.get("method", "")
-        if scope["type"] == "http" and not needs_token(method, scope["path"]):
-            return
+    def _entry(self, scope: Scope, headers: _Headers, needed: Access) -> tuple[Entry | None, str]:
+        """Who sends this, and a new value for their cookie where it is time; nobody where that does not matter. Raises
+        the problem `unauthorized`."""
+        if needed in (Access.OPEN, Access.HOPS):
+            return None, ""
         given = headers.all(b"authorization", lower=False)
-        if given:
-            if len(given) == 1 and self.tokens.named(given[0]):
-                return
-        elif self._by_cookie(scope, headers):
-            return
-        raise Problem(
-            "unauthorized",
-            "Send the service's token: Authorization: Bearer, with what the command `hookean token` prints.",
-            headers={"www-authenticate": 'Bearer realm="hookean"'},
-        )
+        entry, renewal = None, ""
+        if len(given) == 1:
+            entry = self.tokens.named(given[0])
+            if entry is None and needed is Access.CODE:
+                entry = self.tokens.spend(given[0])
+        elif not given and needed is Access.TOKEN:
+            entry, renewal = self._by_cookie(scope, headers)
+        if entry is None:
+            raise Problem(
+                "unauthorized",
+                "Send the service's token: Authorization: Bearer, with what the command `hookean token` prints.",
+                headers={"www-authenticate": 'Bearer realm="hookean"'},
+            )
+        return entry, renewal
 
-    def _by_cookie(self, scope: Scope, headers: _Headers) -> bool:
+    def _by_cookie(self, scope: Scope, headers: _Headers) -> tuple[Entry | None, str]:
         """A page's cookie counts for requests of that page alone: browsers send it to every port of this machine, and
         for requests that other pages cause."""
-        ours = all(o == headers.own for o in headers.all(b"origin")) and _same_site(headers.all(b"sec-fetch-site"))
-        name = cookie_name(scope["server"][1] if scope.get("server") else 80)
+        if any(o != headers.own for o in headers.all(b"origin")) or not _same_site(headers.all(b"sec-fetch-site")):
+            return None, ""
+        name = _cookie_of(scope)
         given = [v for header in headers.all(b"cookie", lower=False) for v in cookies(header, name)]
-        return ours and self.tokens.logged_in(given)
+        return self.tokens.logged_in(name, given)
+
+
+def _cookie_of(scope: Scope) -> str:
+    return cookie_name(scope["server"][1] if scope.get("server") else 80)
+
+
+def _while_in(entry: Entry, renewal: str, cookie: str, send: Send) -> Send:
+    """Sends an answer, with the new value of the cookie; one that streams ends when its client is logged out."""
+
+    async def sent(message: Message) -> None:
+        if message["type"] == "http.response.start" and renewal and not entry.ended.is_set():
+            headers = MutableHeaders(raw=list(message.get("headers", [])))
+            headers.setdefault("set-cookie", set_cookie(cookie, renewal))
+            message["headers"] = headers.raw
+        if message.get("more_body") and entry.ended.is_set():
+            raise ClientDisconnect
+        await send(message)
+
+    return sent
+
+
+class _Watched:
+    """A WebSocket that is closed with 4401 when its client is logged out."""
+
+    def __init__(self, entry: Entry, receive: Receive, send: Send) -> None:
+        self.entry, self._receive, self._send = entry, receive, send
+        self.open = False
+
+    async def run(self, app: ASGIApp, scope: Scope) -> None:
+        """Until either ends."""
+        serving = asyncio.ensure_future(app(scope, self._receive, self._sent))
+        ended = asyncio.ensure_future(self.entry.ended.wait())
+        try:
+            await asyncio.wait({serving, ended}, return_when=asyncio.FIRST_COMPLETED)
+            if not serving.done() and self.open:
+                with suppress(OSError, RuntimeError):
+                    await self._send({"type": "websocket.close", "code": 4401, "reason": "Logged out."})
+        finally:
+            ended.cancel()
+            serving.cancel()
+            with suppress(asyncio.CancelledError):
+                await serving
+
+    async def _sent(self, message: Message) -> None:
+        if message["type"] == "websocket.accept":
+            self.open = True
+        elif self.entry.ended.is_set():
+            raise OSError("logged out")
+        await self._send(message)
 
 
 class Origins:
     """Lets pages of listed origins read answers, and answers what their browsers ask first. None are listed: CORS is
     off."""
 
-    def __init__(self, app: ASGIApp, settings: Settings) -> None:
-        self.app, self.origins = app, set(settings.origins)
+    def __init__(self, app: ASGIApp, settings: Settings, table: Table) -> None:
+        self.app, self.origins, self.table = app, set(settings.origins), table
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """One request."""
@@ -139,7 +195,7 @@ class Origins:
             await send(message)
 
         asks = scope["method"] == "OPTIONS" and any(k == b"access-control-request-method" for k, _ in scope["headers"])
-        scope["preflight"] = asks and listed and not is_hops("POST", scope["path"])
+        scope["preflight"] = asks and listed and not self.table.is_for_hops(scope["path"])
         await self.app(scope, receive, told)
 
 

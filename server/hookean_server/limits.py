@@ -11,6 +11,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
+from hookean_server.manners import ALWAYS
 from hookean_server.problems import MEDIA_TYPE, Problem
 from hookean_server.settings import Settings
 
@@ -109,7 +110,8 @@ class Connection(H11Protocol):
         """What is no HTTP."""
         problem = Problem("bad-request", "This is no HTTP request, or its headers are too large.")
         body = problem.body("urn:uuid:00000000-0000-0000-0000-000000000000")
-        headers = [("content-type", MEDIA_TYPE), ("content-length", str(len(body))), ("connection", "close")]
+        own = {"content-type": MEDIA_TYPE, "content-length": str(len(body)), "connection": "close", **ALWAYS}
+        headers = [*self.server_state.default_headers, *((k.encode(), v.encode()) for k, v in own.items())]
         with suppress(h11.LocalProtocolError):
             for event in (
                 h11.Response(status_code=400, headers=headers, reason=b"Bad Request"),

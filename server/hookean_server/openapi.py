@@ -10,10 +10,13 @@ from fastapi.openapi.utils import get_openapi
 
 import hookean
 from hookean_server import claimed
+from hookean_server.access import Access
 from hookean_server.problems import CATALOGUE, MEDIA_TYPE
 from hookean_server.schemas import EXAMPLES, SCHEMAS, operation_schema
+from hookean_server.tokens import cookie_name
 
 HEALTH = {"application/json": {"schema": {"$ref": "#/components/schemas/Health"}}}
+PROOF = {"application/json": {"schema": {"$ref": "#/components/schemas/Proof"}}}
 SESSION = {"application/json": {"schema": {"$ref": "#/components/schemas/Session"}}}
 SESSIONS = {"application/json": {"schema": {"$ref": "#/components/schemas/Sessions"}}}
 FORCES = {"application/json": {"schema": {"$ref": "#/components/schemas/Catalogue"}}}
@@ -31,16 +34,18 @@ def problems(
     computed: bool = False,
     live: bool = False,
     open_to_all: bool = False,
+    asked: bool = False,
     headers: dict[str, Any] | None = None,
 ) -> dict[int | str, dict[str, Any]]:
-    """`responses` of an operation: its success, with `headers`, and every problem it can give."""
+    """`responses` of an operation: its success, with `headers`, and every problem it can give; `asked`: of parameters
+    that may be faulty, too."""
     found: dict[int | str, dict[str, Any]] = {}
     if success is not None:
         found[200] = {"description": "Done", "content": success, **({"headers": headers} if headers else {})}
     for code in codes:
         found[code] = {"description": "As before"} if code == 304 else {"description": "Done", "content": success or {}}
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
-    for status in _LIVE if live else _COMPUTED if computed else _ALWAYS:
+    for status in _LIVE if live else _COMPUTED if computed else (*_ALWAYS, 422) if asked else _ALWAYS:
         if status == 401 and open_to_all:
             continue
         titles = [f"{title} (`{slug}`)" for slug, (code, title, _) in CATALOGUE.items() if code == status]
@@ -160,6 +165,12 @@ def shutdown() -> dict[str, Any]:
     return {"responses": {**problems(None, computed=True), **told}}
 
 
+def code() -> dict[str, Any]:
+    """What the route of codes says of itself."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Code"}}}
+    return {"responses": {**problems(), 201: {"description": "The code", "content": success}}}
+
+
 def hops_list() -> dict[str, Any]:
     """What GET / says of itself."""
     listed = {"type": "array", "items": {"$ref": "#/components/schemas/HopsFunction"}}
@@ -212,6 +223,7 @@ def _build(app: FastAPI) -> dict[str, Any]:
         description="Bodies are JSON unless said otherwise; every failure is a problem document (RFC 9457).",
         routes=app.routes,
     )
+    _secure(app, document)
     scene = json.loads(json.dumps(schema()).replace("#/$defs/", "#/components/schemas/"))
     schemas = scene.pop("$defs")
     schemas["Scene"] = scene
@@ -224,6 +236,39 @@ def _build(app: FastAPI) -> dict[str, Any]:
     found.clear()  # the framework's own forms of validation errors are not ours
     found.update(sorted({**schemas, **SCHEMAS}.items()))
     return document
+
+
+def _secure(app: FastAPI, document: dict[str, Any]) -> None:
+    """Say of every operation who may call it, as the guard has it."""
+    table, settings = app.state.table, app.state.settings
+    document.setdefault("components", {})["securitySchemes"] = {
+        "token": {
+            "type": "http",
+            "scheme": "bearer",
+            "description": "What `hookean token` prints; another one for each start of the service",
+        },
+        "code": {
+            "type": "http",
+            "scheme": "bearer",
+            "description": "A code of POST /v1/login/codes, which is good for one log-in within a minute",
+        },
+        "cookie": {
+            "type": "apiKey",
+            "in": "cookie",
+            "name": cookie_name(settings.port),
+            "description": "Of POST /v1/login, for the service's own page; the name has the service's port",
+        },
+    }
+    by: dict[Access, list[dict[str, list[str]]]] = {
+        Access.TOKEN: [{"token": []}, {"cookie": []}],
+        Access.PROGRAM: [{"token": []}],
+        Access.CODE: [{"token": []}, {"code": []}],
+        Access.OPEN: [],
+        Access.HOPS: [],
+    }
+    for path, item in document["paths"].items():
+        for method, operation in item.items():
+            operation["security"] = by[table.declared(method.upper(), path)]
 
 
 def _accept_documents(schemas: dict[str, Any]) -> None:

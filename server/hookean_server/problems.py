@@ -136,7 +136,7 @@ class Problem(Exception):
 
 def is_function(path: str) -> bool:
     """Whether an address is a name at the root, as Hops' functions have; whoever asks for one reads as Hops does."""
-    return path.startswith("/") and "/" not in path[1:] and path not in ("/", "/metrics", "/v1")
+    return path.startswith("/") and "/" not in path[1:] and path not in ("/", "/docs", "/metrics", "/v1")
 
 
 def not_stored(error: BaseException) -> Problem:

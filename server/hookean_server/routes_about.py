@@ -5,16 +5,17 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request
-from starlette.responses import PlainTextResponse, Response
+from fastapi import APIRouter, Query, Request
+from starlette.responses import JSONResponse, PlainTextResponse, Response
 
 import hookean
 from hookean_server import openapi
+from hookean_server.access import Access, marked
 from hookean_server.metrics import TYPE, Metrics
-from hookean_server.problems import CATALOGUE, Problem, page
-from hookean_server.tokens import cookie_name, cookies, set_cookie
+from hookean_server.problems import CATALOGUE, Problem, not_stored, page
+from hookean_server.tokens import CODE_LIFE, cookie_name, cookies, set_cookie
 
 router = APIRouter(tags=["about"])
 
@@ -22,6 +23,7 @@ router = APIRouter(tags=["about"])
 @router.get(
     "/v1/health", summary="Whether the service is well", responses=openapi.problems(openapi.HEALTH, open_to_all=True)
 )
+@marked(Access.OPEN)
 async def health(request: Request) -> dict[str, Any]:
     """Answers at once, whatever is being solved. `status`: `starting`, `ok`, `full` or `stopping`."""
     state = request.app.state
@@ -60,6 +62,7 @@ async def forces(request: Request) -> Response:
     responses=openapi.problems(open_to_all=True),
     response_class=PlainTextResponse,
 )
+@marked(Access.OPEN)
 async def problem(slug: str) -> Response:
     """The page that a problem's `type` names."""
     if slug not in CATALOGUE:
@@ -74,25 +77,75 @@ async def metrics(request: Request) -> Response:
     return Response(found.text(), headers={"content-type": TYPE, "cache-control": "no-store"})
 
 
+@router.get(
+    "/v1/proof",
+    summary="Whether this is the server that wrote the file its clients read",
+    responses=openapi.problems(openapi.PROOF, open_to_all=True, asked=True),
+)
+@marked(Access.OPEN)
+async def proof(
+    request: Request,
+    nonce: Annotated[str, Query(pattern="^[0-9a-f]{32,128}$", description="16 to 64 random bytes, in hex")],
+) -> dict[str, str]:
+    """For clients of this user, before they send a token down the same connection: `proof` is the HMAC-SHA256, in hex,
+    of `hookean <instance> <address> <port> <nonce>` by the key `proof` of server.json, which no other user can read;
+    address and port are those that the client has connected to."""
+    state, (address, port) = request.app.state, request.scope["server"]
+    return {"instance": state.instance, "proof": state.tokens.proven(state.instance, str(address), int(port), nonce)}
+
+
 @router.post("/v1/login", status_code=204, summary="A cookie for a page", responses=openapi.problems())
+@marked(Access.CODE)
 async def login(request: Request) -> Response:
-    """For the page that was opened with the token behind the # of its address: it sends the token as programs do, once,
-    and its browser keeps a cookie that scripts cannot read and other sites' pages cannot use. It stays valid
-    when the service is started again, until it was not used for 30 days or is taken back."""
-    value = await request.app.state.tokens.login()
-    return Response(status_code=204, headers={"set-cookie": set_cookie(_cookie(request), value)})
+    """For the page that was opened with the token, or a code, behind the # of its address: it sends that as programs
+    send the token, once, and its browser keeps a cookie that scripts cannot read and other sites' pages cannot use. It
+    ends with this start of the service, when it was not used for 12 hours, or when it is taken back."""
+    name = cookie_name(_port(request))
+    value = request.app.state.tokens.login(name)
+    return Response(status_code=204, headers={"set-cookie": set_cookie(name, value)})
 
 
-@router.delete("/v1/login", status_code=204, summary="Take the cookie back", responses=openapi.forgotten())
+@router.delete("/v1/login", status_code=204, summary="Take the cookie back", responses=openapi.problems())
 async def logout(request: Request) -> Response:
-    """The cookie is worth nothing from now on, wherever it is kept."""
-    name = _cookie(request)
-    await request.app.state.tokens.logout(cookies(request.headers.get("cookie", ""), name))
+    """The cookie is worth nothing from now on, wherever it is kept, and sockets that it opened are closed."""
+    name = cookie_name(_port(request))
+    request.app.state.tokens.logout(name, cookies(request.headers.get("cookie", ""), name))
     return Response(status_code=204, headers={"set-cookie": set_cookie(name, "")})
 
 
-def _cookie(request: Request) -> str:
-    return cookie_name(request.scope["server"][1])
+@router.post("/v1/login/codes", status_code=201, summary="A code for one log-in", **openapi.code())
+@marked(Access.PROGRAM)
+async def code(request: Request) -> JSONResponse:
+    """A code that a page may send to `/v1/login` in place of the token, once, within so many `seconds`."""
+    body = {"code": request.app.state.tokens.code(), "seconds": CODE_LIFE}
+    return JSONResponse(body, 201, headers={"cache-control": "no-store"})
+
+
+@router.get(
+    "/v1/login/codes/{sha256}", status_code=204, summary="Whether a code can be used", responses=openapi.problems()
+)
+@marked(Access.PROGRAM)
+async def code_waits(request: Request, sha256: str) -> Response:
+    """204 until it was used or its time is over, then 404. The code is named by its SHA-256, in hex."""
+    if not request.app.state.tokens.waits(sha256):
+        raise Problem("not-found", "There is no such code any more.")
+    return Response(status_code=204)
+
+
+@router.post("/v1/token", status_code=204, summary="Log everybody out", responses=openapi.forgotten())
+@marked(Access.PROGRAM)
+async def renew(request: Request) -> Response:
+    """The service has another token from now on, which clients of this user read in its file; this one, every cookie
+    and every code are worth nothing, and sockets and streams that they opened are closed."""
+    try:
+        request.app.state.tokens.renew()
+    except OSError as error:
+        raise not_stored(error) from None
+    return Response(status_code=204)
+
+
+def _port(request: Request) -> int:
+    return int(request.scope["server"][1])
 
 
 _made: tuple[bytes, str] | None = None

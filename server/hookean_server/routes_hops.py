@@ -10,6 +10,7 @@ from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from hookean_server import openapi
+from hookean_server.access import Access, marked
 from hookean_server.handling import compute
 from hookean_server.hops import FUNCTIONS
 from hookean_server.operations import uses_rhino
@@ -20,6 +21,7 @@ router = APIRouter(tags=["hops"])
 
 
 @router.get("/", summary="The page, or Hops' list of functions", **openapi.hops_list())
+@marked(Access.HOPS)
 async def root(request: Request) -> Response:
     """A browser, which asks for text/html, gets the page; Hops, which does not say, gets its functions."""
     if "text/html" in request.headers.get("accept", ""):
@@ -27,10 +29,8 @@ async def root(request: Request) -> Response:
     return JSONResponse([function.described(name) for name, function in FUNCTIONS.items()], headers={"vary": "Accept"})
 
 
-router.head("/", include_in_schema=False)(root)
-
-
 @router.post("/solve", summary="Run a function for Hops", **openapi.hops_solve())
+@marked(Access.HOPS)
 async def solve(request: Request) -> Response:
     """Answers and refusals are both as Hops reads them: `values`, `errors` and `warnings`."""
     settings = request.app.state.settings
@@ -39,6 +39,7 @@ async def solve(request: Request) -> Response:
 
 
 @router.get("/{function}", summary="Hops' description of a function", **openapi.hops_description())
+@marked(Access.HOPS)
 async def described(function: str) -> dict[str, Any]:
     """Inputs and outputs as Hops reads them."""
     if function == "solve":

@@ -8,6 +8,7 @@ from pathlib import Path
 from fastapi import APIRouter, Request
 from starlette.responses import FileResponse, Response
 
+from hookean_server.access import Access, marked
 from hookean_server.problems import Problem
 
 router = APIRouter()
@@ -37,7 +38,8 @@ NOT_BUILT = (
 )
 
 
-@router.api_route("/page/{path:path}", methods=["GET", "HEAD"], include_in_schema=False)
+@router.get("/page/{path:path}", include_in_schema=False)
+@marked(Access.OPEN)
 async def page_file(request: Request, path: str) -> Response:
     """A file of the page."""
     return _answer(request, path)

@@ -7,6 +7,7 @@ import shlex
 import shutil
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from socket import socket
 
@@ -38,7 +39,7 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
         ws_per_message_deflate=False,
         ws_max_size=settings.message_limit,
         server_header=False,
-        date_header=False,
+        date_header=True,
         http=Connection,
         h11_max_incomplete_event_size=2 * settings.header_limit,
         timeout_graceful_shutdown=1,
@@ -46,12 +47,18 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
         lifespan="on",
     )
     server = Server(config, app)
-    found = _found(app.state.instance, settings)
+    tokens = app.state.tokens
+    found = _found(app.state.instance, settings, tokens.proof, sock.getsockname()[0])
+
+    def publish(token: str, proof: str) -> None:
+        if place is not None:
+            replace(found, token=token, proof=proof).write(place)
 
     def on_start() -> None:
-        if place is not None:
-            found.write(place)
+        publish(tokens.token, tokens.proof)
         _say(found.url)
+
+    tokens.publish = publish
 
     server.on_start = on_start
     server.on_end = lambda: found.remove(place) if place is not None else None
@@ -62,13 +69,13 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
         server.close()
 
 
-def _found(instance: str, settings: Settings) -> Found:
-    """What clients are told."""
-    name = settings.host if settings.host not in ("0.0.0.0", "::") else "127.0.0.1"
+def _found(instance: str, settings: Settings, proof: str, address: str) -> Found:
+    """What clients are told. An address, not a name: others may listen at another address of the same name."""
+    name = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(address, address)
     url = f"http://{f'[{name}]' if ':' in name else name}:{settings.port}"
     return Found(
-        os.getpid(), settings.port, url, settings.token, hookean.__version__, instance, time.time(), wire.VERSION,
-        settings.state is not None,
+        os.getpid(), settings.port, url, settings.token, hookean.__version__, instance, time.time(), proof,
+        wire.VERSION, settings.state is not None,
     )  # fmt: skip
 
 
@@ -80,8 +87,8 @@ def _say(url: str) -> None:
     )
     command = shlex.quote(shutil.which("hookean") or str(Path(sys.executable).with_name("hookean")))
     print(f"hookean serves at {url} (Ctrl-C ends it). To look at it in a browser: hookean studio. Try:")
+    # by a pipe, as everybody on this machine can read what a command is given as arguments
     print(
-        f'  curl {url}/v1/relax -H "Authorization: Bearer $({command} token)" '
-        f"-H 'Content-Type: application/json' -d '{scene}'",
+        f"  {command} token --header | curl {url}/v1/relax -H @- -H 'Content-Type: application/json' -d '{scene}'",
         flush=True,
     )

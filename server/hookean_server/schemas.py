@@ -110,6 +110,8 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         workers={"type": "object"},
         requests={"type": "object"},
     ),
+    "Proof": _object(instance={"type": "string"}, proof={"type": "string", "pattern": "^[0-9a-f]{64}$"}),
+    "Code": _object(code={"type": "string"}, seconds={"type": "number"}),
     "Examples": _object(
         examples={
             "type": "array",

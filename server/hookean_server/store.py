@@ -76,10 +76,6 @@ CREATE TABLE answers (
 );
 """
 LATER = """
-CREATE TABLE IF NOT EXISTS logins (
-    hash TEXT PRIMARY KEY,       -- SHA-256 of a cookie's value
-    used REAL NOT NULL           -- seconds since 1970
-);
 CREATE TABLE IF NOT EXISTS notes (
     key TEXT PRIMARY KEY REFERENCES sessions(key) ON DELETE CASCADE,
     sentences TEXT NOT NULL      -- on the file a session was made of, one in a line

@@ -3,22 +3,37 @@
 from __future__ import annotations
 
 import hashlib
+import html
 import http.client
 import json
+import os
 import re
 import secrets
 import sys
+import tempfile
 import threading
 import time
 import webbrowser
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from hookean_server.discovery import Found, ask, find, folder
+from hookean_server.discovery import Found, ask, find, folder, proven
 
 STARTED = 60.0  # seconds a server may take to start; kernels may have to be compiled first
 READ = 240.0  # seconds it may take to read a file
+PAUSE = 0.2  # seconds between looks whether a page has logged in
+DOOR = "open-"  # what names of files begin with that lead a browser to the page
+REDIRECT = """<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="referrer" content="no-referrer">
+<title>hookean studio</title>
+<meta http-equiv="refresh" content="0; url={address}">
+<p><a href="{address}">Open the studio</a></p>
+</html>
+"""
 
 
 class Refused(Exception):
@@ -53,7 +68,7 @@ def _served(file: Path | None, data: bytes | None, browser: bool) -> int:
                 return
         codes.append(_show(found, file, data, browser))
         if codes[0] and not over.is_set():
-            ask(found, "POST", "/v1/shutdown", found.token)
+            ask(found, "POST", "/v1/shutdown")
 
     shown = threading.Thread(target=show, name="hookean-studio", daemon=True)
     shown.start()
@@ -65,7 +80,7 @@ def _served(file: Path | None, data: bytes | None, browser: bool) -> int:
 
 def _show(found: Found, file: Path | None, data: bytes | None, browser: bool) -> int:
     """Open the page of a server; with a file, on a session of it."""
-    address = f"{found.url}/#t={quote(found.token)}"
+    session = ""
     if file is not None and data is not None:
         try:
             key, notes = opened(found, file, data)
@@ -73,14 +88,61 @@ def _show(found: Found, file: Path | None, data: bytes | None, browser: bool) ->
             return _say_no(str(error))
         for note in notes:
             print(f"{file.name}: {note}", file=sys.stderr)
-        address += f"&s={quote(key)}"
+        session = f"&s={quote(key)}"
+    address = f"{found.url}/#t={quote(found.token)}{session}"
     if not browser:
         print(address, flush=True)
-    elif webbrowser.open(address):
-        print(f"The studio is open in a browser, at {found.url}.", flush=True)
-    else:
-        print(f"No browser could be opened; open this address in one:\n{address}", flush=True)
+        return 0
+    try:
+        if _opened_by_file(found, session):
+            return 0
+    except Refused as error:
+        return _say_no(str(error))
+    print(f"No browser could be opened; open this address in one:\n{address}", flush=True)
     return 0
+
+
+def _opened_by_file(found: Found, session: str) -> bool:
+    """Whether a browser was opened. It is given a file that only this user can read, which leads it to the page with a
+    code that is good for one log-in: everybody on this machine can read what a program is given as arguments. The file
+    is there until the code was used, or its time is over."""
+    made = ask(found, "POST", "/v1/login/codes")
+    if made is None:
+        raise Refused(f"The service at {found.url} does not answer; try again.")
+    _sweep()
+    code, until = str(made["code"]), time.monotonic() + float(made["seconds"])
+    handle, name = tempfile.mkstemp(dir=folder(), prefix=DOOR, suffix=".html")  # made with mode 0600
+    path = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(REDIRECT.format(address=html.escape(f"{found.url}/#t={quote(code)}{session}")))
+        if not webbrowser.open(path.as_uri()):
+            return False
+        print(f"The studio is open in a browser, at {found.url}.", flush=True)
+        with suppress(KeyboardInterrupt):
+            if not _used(found, code, until):
+                print("No page has logged in; open the address that `hookean token --url` prints.", file=sys.stderr)
+        return True
+    finally:
+        path.unlink(missing_ok=True)
+
+
+def _used(found: Found, code: str, until: float) -> bool:
+    """Wait until a code was used, or the server has ended; whether that was in time."""
+    known = hashlib.sha256(code.encode()).hexdigest()
+    while ask(found, "GET", f"/v1/login/codes/{known}") is not None:
+        if time.monotonic() > until - 2 * PAUSE:
+            return False
+        time.sleep(PAUSE)
+    return True
+
+
+def _sweep() -> None:
+    """Remove the files of commands that were killed; their codes are of no use any more."""
+    for path in folder().glob(f"{DOOR}*.html"):
+        with suppress(OSError):
+            if time.time() - path.stat().st_mtime > 10 * STARTED:
+                path.unlink()
 
 
 def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
@@ -88,7 +150,7 @@ def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
     same session, with what was changed there by hand. Raises Refused."""
     content = hashlib.sha256(str(file.resolve()).encode() + b"\0" + data).hexdigest()[:12]
     key = f"{re.sub(r'[^A-Za-z0-9._-]+', '-', file.stem)[:80]}-{content}"
-    if ask(found, "GET", f"/v1/sessions/{key}", found.token) is not None:
+    if ask(found, "GET", f"/v1/sessions/{key}") is not None:
         return key, []
     boundary = secrets.token_hex(16)
     name = re.sub(r'[^ -~]|["\\]', "_", file.name)
@@ -102,15 +164,18 @@ def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
 
 def _put(found: Found, path: str, body: bytes, boundary: str) -> tuple[int, dict[str, Any]]:
     headers = {"authorization": f"Bearer {found.token}", "content-type": f"multipart/form-data; boundary={boundary}"}
-    connection = http.client.HTTPConnection(found.url.split("//")[1].rsplit(":", 1)[0], found.port, timeout=READ)
+    connection = proven(found, READ)
     try:
-        connection.request("PUT", path, body, headers)
-        answer = connection.getresponse()
-        return answer.status, json.loads(answer.read())
+        if connection is not None:
+            connection.request("PUT", path, body, headers)
+            answer = connection.getresponse()
+            return answer.status, json.loads(answer.read())
     except (OSError, http.client.HTTPException, ValueError):
-        raise Refused(f"The service at {found.url} does not answer; try again.") from None
+        pass
     finally:
-        connection.close()
+        if connection is not None:
+            connection.close()
+    raise Refused(f"The service at {found.url} does not answer; try again.")
 
 
 def _say_no(sentence: str) -> int:

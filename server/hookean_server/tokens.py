@@ -1,30 +1,29 @@
-"""Who may: one token for each start of the server, and cookies that a page gets for it.
+"""What lets in: one token for each start of the server, cookies that a page gets for it, and codes for one log-in.
 
-Programs send `Authorization: Bearer <token>`. A page is opened as `/#t=<token>`: the part behind # stays in the
-browser; its script sends it once to `/v1/login` and gets a cookie that scripts cannot read. The token ends with the
-server; cookies outlive it, so that a page goes on where the server is started again. Of them the store has hashes.
+Programs send `Authorization: Bearer <token>`. A page is opened as `/#t=<token or code>`: the part behind # stays in
+the browser; its script sends it once to `/v1/login` and gets a cookie that scripts cannot read. All of it ends with the
+server; a cookie is good for its port alone and for hours, and is renewed while it is used.
 """
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import hmac
 import os
 import re
 import secrets
-import sqlite3
 import time
-from collections.abc import Iterable
-from contextlib import suppress
-
-from hookean_server.problems import Problem
-from hookean_server.store import Store, Work
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 
 VARIABLE = "HOOKEAN_TOKEN"
 SHORTEST = 16
-LOGINS = 64  # cookies that are valid at a time; the one longest unused goes first
-UNUSED = 30 * 24 * 3600.0  # seconds after which a cookie that nobody used is worth nothing
-NOTED = 3600.0  # seconds of use that may be missing in the store
+LOGINS = 64  # browsers that are logged in at a time; the one longest unused goes first
+LIFE = 12 * 3600.0  # seconds a cookie is good for
+RENEWED = 600.0  # seconds after which an answer brings a new one
+CODES = 16  # codes that wait to be used at a time; the oldest goes first
+CODE_LIFE = 60.0  # seconds
 
 
 class Unfit(ValueError):
@@ -43,82 +42,134 @@ def chosen(given: str = "") -> str:
     return token
 
 
+@dataclass(eq=False)
+class Entry:
+    """Somebody who was let in. `ended`: is no more, so that what goes on for them ends."""
+
+    used: float = 0.0
+    ended: asyncio.Event = field(default_factory=asyncio.Event)
+
+
 class Tokens:
-    """The token of one server, and the cookies given for it and for those before it. Methods run on the event loop."""
+    """The token of one server, the cookies given for it, and codes. Methods run on the event loop.
 
-    def __init__(self, token: str, store: Store) -> None:
-        self.token, self.store = token, store
-        self._logins: dict[str, float] = {}  # when each was last used [s since 1970], by its hash
-        self._noted: dict[str, float] = {}  # the same as the store has it
+    `proof` is the key by which this server shows clients that it is the one that wrote the file they read. `publish`
+    writes that file for a new token and key; it may raise OSError.
+    """
 
-    async def start(self) -> None:
-        """Take up the cookies that the store has; none where it cannot be read."""
-        with suppress(Problem):
-            self._noted = await self.store.run(_kept)
-        self._logins = dict(self._noted)
+    def __init__(self, token: str) -> None:
+        self.token, self.proof = token, secrets.token_hex(32)
+        self.publish: Callable[[str, str], None] = lambda token, proof: None
+        self._begin()
 
-    def named(self, authorization: str) -> bool:
-        """Whether a header Authorization holds the token."""
-        scheme, _, given = authorization.strip().partition(" ")
-        return scheme.lower() == "bearer" and hmac.compare_digest(given.strip().encode(), self.token.encode())
+    def _begin(self) -> None:
+        self._key = secrets.token_bytes(32)
+        self._bearer = Entry()
+        self._logins: dict[str, Entry] = {}
+        self._codes: dict[str, float] = {}  # when each ends, by its hash
 
-    async def login(self) -> str:
-        """The value of a new cookie. Where it cannot be stored it ends with the server."""
-        value = secrets.token_urlsafe(32)
-        self._logins[_hash(value)] = time.time()
+    def renew(self) -> None:
+        """Log everybody out, for good: another token, no cookie, no code. Raises OSError, and changes nothing, where
+        clients cannot be given the new one."""
+        token, proof = secrets.token_urlsafe(32), secrets.token_hex(32)
+        self.publish(token, proof)
+        before = [self._bearer, *self._logins.values()]
+        self.token, self.proof = token, proof
+        self._begin()
+        for entry in before:
+            entry.ended.set()
+
+    def named(self, authorization: str) -> Entry | None:
+        """Who sends this header Authorization; None where it does not hold the token."""
+        return self._bearer if hmac.compare_digest(_given(authorization).encode(), self.token.encode()) else None
+
+    def proven(self, instance: str, address: str, port: int, nonce: str) -> str:
+        """What only a process that knows the key can answer to a nonce that reached it at this address: HMAC-SHA256,
+        in hex. What was passed on from elsewhere reached it at another."""
+        said = f"hookean {instance} {address.removeprefix('::ffff:')} {port} {nonce}"
+        return hmac.new(self.proof.encode(), said.encode(), hashlib.sha256).hexdigest()
+
+    # codes
+
+    def code(self) -> str:
+        """A code that stands for the token once, for one log-in within a minute."""
+        self._forget_codes()
+        code = secrets.token_urlsafe(32)
+        self._codes[_hash(code)] = time.monotonic() + CODE_LIFE
+        while len(self._codes) > CODES:
+            del self._codes[next(iter(self._codes))]
+        return code
+
+    def waits(self, known: str) -> bool:
+        """Whether a code can still be used, by its hash."""
+        self._forget_codes()
+        return known in self._codes
+
+    def spend(self, authorization: str) -> Entry | None:
+        """Who sends this header Authorization; None where it does not hold a code that waits. It waits no more."""
+        self._forget_codes()
+        return self._bearer if self._codes.pop(_hash(_given(authorization)), None) is not None else None
+
+    def _forget_codes(self) -> None:
+        now = time.monotonic()
+        self._codes = {known: until for known, until in self._codes.items() if until > now}
+
+    # cookies
+
+    def login(self, name: str) -> str:
+        """The value of a new cookie of this name."""
+        who = secrets.token_urlsafe(16)
+        self._logins[who] = Entry(time.monotonic())
         while len(self._logins) > LOGINS:
-            del self._logins[min(self._logins, key=lambda known: self._logins[known])]
-        with suppress(Problem):
-            await self._store()
-        return value
+            self._end(min(self._logins, key=lambda known: self._logins[known].used))
+        return self._signed(name, who)
 
-    def logged_in(self, values: Iterable[str]) -> bool:
-        """Whether one of these values of the cookie was given, used since, and not taken back."""
-        now = time.time()
-        for known in map(_hash, values):
-            if known in self._logins and now - self._logins[known] < UNUSED:
-                self._logins[known] = now
-                if now - self._noted.get(known, now) > NOTED:
-                    self._noted[known] = now
-                    self.store.submit(_put({known: now}))
-                return True
-        return False
+    def logged_in(self, name: str, values: Iterable[str]) -> tuple[Entry | None, str]:
+        """Who sends one of these values of the cookie, None where they are no good, or not any more; and a new value,
+        empty where the one sent is good for longer."""
+        now = time.monotonic()
+        for value in values:
+            who, given = self._read(name, value)
+            entry = self._logins.get(who)
+            if entry is not None and now - given < LIFE:
+                entry.used = now
+                return entry, self._signed(name, who) if now - given > RENEWED else ""
+        return None, ""
 
-    async def logout(self, values: Iterable[str]) -> None:
-        """Take cookies back for good. Raises the problem `not-stored`; they are worth nothing even then, until the
-        server is started again."""
-        for known in map(_hash, values):
-            self._logins.pop(known, None)
-        await self._store()
+    def logout(self, name: str, values: Iterable[str]) -> None:
+        """Take cookies back, and all that they were renewed by."""
+        for value in values:
+            self._end(self._read(name, value)[0])
 
-    async def _store(self) -> None:
-        """Make the store's cookies those that are known."""
-        kept = dict(self._logins)
-        await self.store.run(_put(kept, only=True))
-        self._noted = kept
+    def _end(self, who: str) -> None:
+        entry = self._logins.pop(who, None)
+        if entry is not None:
+            entry.ended.set()
+
+    def _signed(self, name: str, who: str) -> str:
+        said = f"{who}.{int(time.monotonic())}"
+        return f"{said}.{self._mac(name, said)}"
+
+    def _read(self, name: str, value: str) -> tuple[str, float]:
+        """Who has this value of a cookie, and when it was given; nobody where this server did not give it."""
+        said, _, mac = value.rpartition(".")
+        if not hmac.compare_digest(mac.encode(), self._mac(name, said).encode()):
+            return "", 0.0
+        who, _, given = said.rpartition(".")
+        return who, float(given)
+
+    def _mac(self, name: str, said: str) -> str:
+        return hmac.new(self._key, f"{name}={said}".encode(), hashlib.sha256).hexdigest()
+
+
+def _given(authorization: str) -> str:
+    scheme, _, given = authorization.strip().partition(" ")
+    return given.strip() if scheme.lower() == "bearer" else ""
 
 
 def _hash(value: str) -> str:
-    """What is kept of a cookie: 256 random bits need no salt, and nobody finds them by their hash."""
+    """What is kept of a code: 256 random bits need no salt, and nobody finds them by their hash."""
     return hashlib.sha256(value.encode()).hexdigest()
-
-
-def _kept(db: sqlite3.Connection) -> dict[str, float]:
-    """When each cookie was last used, by its hash; those long unused are forgotten."""
-    db.execute("DELETE FROM logins WHERE used < ?", (time.time() - UNUSED,))
-    rows = db.execute("SELECT hash, used FROM logins WHERE typeof(used) = 'real' ORDER BY used DESC LIMIT ?", (LOGINS,))
-    return {str(known): float(used) for known, used in rows}
-
-
-def _put(logins: dict[str, float], *, only: bool = False) -> Work:
-    """Store when cookies were last used; with `only` no other is kept."""
-
-    def work(db: sqlite3.Connection) -> None:
-        if only:
-            db.execute("DELETE FROM logins")
-        db.executemany("INSERT OR REPLACE INTO logins VALUES (?, ?)", list(logins.items()))
-
-    return work
 
 
 def cookie_name(port: object) -> str:
@@ -134,5 +185,4 @@ def cookies(header: str, name: str) -> list[str]:
 
 def set_cookie(name: str, value: str) -> str:
     """The header Set-Cookie for a login; an empty value takes the cookie back."""
-    ends = "" if value else "; Max-Age=0"
-    return f"{name}={value}; Path=/; HttpOnly; SameSite=Strict{ends}"
+    return f"{name}={value}; Path=/; HttpOnly; SameSite=Strict; Max-Age={int(LIFE) if value else 0}"

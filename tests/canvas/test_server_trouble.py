@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import hmac
 import json
-import os
+import re
 import socket
 import threading
 import time
@@ -12,14 +13,16 @@ from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
+import httpx
 import psutil
 import pytest
 
 import hookean_client
 from canvas.canvasing import Bench, let_go, line, point, sentences
 from hookean_canvas import bundles, stand_in
-from hookean_client import canvas, canvas_engine, canvas_geometry, canvas_link, canvas_server
+from hookean_client import canvas, canvas_engine, canvas_geometry, canvas_link, canvas_server, finding
 from serving import HANG, SOAK, Home
 
 SOON = 1.0 if SOAK else HANG  # seconds to the sentence; the strict one on a machine with nothing else to do
@@ -46,10 +49,10 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
     let_go()
     canvas_server._looks.clear()
     found.end()
-    for child in hookean_client._children.values():  # started by components, perhaps just now
+    for child in finding._children.values():  # started by components, perhaps just now
         child.kill()
         child.wait(HANG)
-    hookean_client._children.clear()
+    finding._children.clear()
 
 
 def samples() -> dict[str, dict[str, Any]]:
@@ -172,7 +175,7 @@ def each_says(canvas: Canvas, *words: str) -> None:
 @contextmanager
 def told(home: Home, port: int, wire: int = 1) -> Iterator[None]:
     """What a server would tell of itself, of a process that lives."""
-    entry = {"url": f"http://127.0.0.1:{port}", "token": "t", "instance": "i", "pid": os.getpid(), "wire": wire}
+    entry = {"url": f"http://127.0.0.1:{port}", "token": "t", "instance": "i", "proof": "p", "wire": wire}
     (home.folder / "server.json").write_text(json.dumps(entry))
     yield
     (home.folder / "server.json").unlink()
@@ -189,10 +192,13 @@ def silent(home: Home) -> Iterator[None]:
 
 
 class Health(BaseHTTPRequestHandler):
-    """Answers who it is, as a server of another version would."""
+    """Proves who it is, as a server of another version would."""
+
+    protocol_version = "HTTP/1.1"  # what is proven is the connection, which stays
 
     def do_GET(self) -> None:
-        body = b'{"instance": "i"}'
+        text = f"hookean i 127.0.0.1 {self.server.server_port} {self.path.partition('=')[2]}"  # type: ignore[attr-defined]
+        body = json.dumps({"proof": hmac.new(b"p", text.encode(), "sha256").hexdigest()}).encode()
         self.send_response(200)
         self.send_header("Content-Length", str(len(body)))
         self.end_headers()
@@ -278,7 +284,7 @@ def test_a_session_is_left_without_starting_a_server(home: Home) -> None:
     for thread in threading.enumerate():
         if thread.name == "hookean-task":
             thread.join(HANG)
-    assert not hookean_client._children and not home.serving()
+    assert not finding._children and not home.serving()
 
 
 def test_a_client_whose_server_is_gone_is_closed(home: Home) -> None:
@@ -301,17 +307,17 @@ def test_nothing_holds_the_canvas_up(home: Home, monkeypatch: pytest.MonkeyPatch
     """A solution of a component returns while its server is silent: whatever speaks with the server does so in a thread
     of its own, and a solution waits for that for `WAIT` at most."""
     spoke, waited = set(), []  # type: set[int], list[float]
-    open_, wait = hookean_client._open, canvas_link.Task.wait
+    reach, wait = finding.reach, canvas_link.Task.wait
 
     def opened(*given: Any) -> Any:
         spoke.add(threading.get_ident())
-        return open_(*given)
+        return reach(*given)
 
     def waits(task: Any, seconds: float) -> Any:
         waited.append(seconds)
         return wait(task, seconds)
 
-    monkeypatch.setattr(hookean_client, "_open", opened)
+    monkeypatch.setattr(finding, "reach", opened)
     monkeypatch.setattr(canvas_link.Task, "wait", waits)
     with silent(home):
         canvas = Canvas()
@@ -320,3 +326,31 @@ def test_nothing_holds_the_canvas_up(home: Home, monkeypatch: pytest.MonkeyPatch
     assert spoke and threading.get_ident() not in spoke
     assert waited and max(waited) <= canvas_link.WAIT
     assert canvas.longest < (0.5 if SOAK else HANG)
+
+
+def test_the_studio_is_opened_by_a_file_of_this_user(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The component gives the browser no token: a file that this user alone can read leads to the page, with a code
+    that logs in once; it is removed when the code is worth nothing."""
+    opened: list[str] = []
+    removing: list[Any] = []
+
+    home.serve()
+    client = hookean_client.connect(start=False, timeout=HANG)
+    monkeypatch.setattr(canvas_server.webbrowser, "open", opened.append)
+    monkeypatch.setattr(canvas_server, "_later", lambda *given: removing.append(given))
+    canvas_server._show(client)
+    try:
+        [address], [(seconds, remove, path)] = opened, removing
+        file = Path(urlsplit(address).path)
+        assert address == file.as_uri() and file.parent == home.folder and file.stat().st_mode & 0o777 == 0o600
+        page = file.read_text()
+        [code] = set(re.findall(r"#t=([\w-]+)", page))
+        assert client.token not in address + page and code not in address and seconds == 60.0
+        for status in (204, 401):
+            login = httpx.post(f"{client.url}/v1/login", headers={"authorization": f"Bearer {code}"}, timeout=HANG)
+            assert login.status_code == status
+        for _ in range(2):
+            remove(path)
+            assert not file.exists()
+    finally:
+        client.close()

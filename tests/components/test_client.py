@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import hookean_client
-from hookean_client import Problem, buffer, connect
+from hookean_client import Problem, buffer, connect, finding
 from serving import CABLE, HANG, SOAK, SWING, Home, living, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
@@ -35,9 +35,9 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
         client.close()
     CLIENTS.clear()
     found.end()
-    for child in hookean_client._children.values():
+    for child in finding._children.values():
         child.wait(HANG)
-    hookean_client._children.clear()
+    finding._children.clear()
 
 
 @pytest.fixture(scope="module")
@@ -334,8 +334,35 @@ def test_a_stranger_is_told_nothing(home: Home) -> None:
             client.post("/v1/relax", CABLE)
         server.shutdown()
     assert found.value.slug == "no-server"
-    assert heard and {(method, path) for method, path, _ in heard} == {("GET", "/v1/health")}
-    assert client.token not in str(heard)
+    assert heard and {(method, path.split("=")[0]) for method, path, _ in heard} == {("GET", "/v1/proof?nonce")}
+    assert client.token not in str(heard) and client.proof not in str(heard)
+
+
+def test_a_renewed_token_is_taken_up(home: Home) -> None:
+    """`hookean token --renew` logs programs out, too; those of the same user read the file again and go on: requests
+    of every kind, and frames."""
+    client = started(home)
+    session = client.session("a")
+    session.put(CABLE)
+    frames = session.frames()
+    assert frames.wait(timeout=HANG) is not None
+    before, received = client.token, frames.received
+    for ask in (lambda: session.read(), lambda: session.step(), lambda: client.relax(CABLE)):
+        assert home.command("token", "--renew").returncode == 0
+        assert ask() is not None and client.token == home.told["token"] != before
+        before = client.token
+    wait_for(lambda: frames.received > received and not frames.message)
+    frames.close()
+
+
+def test_a_token_that_is_wrong_for_good_is_a_problem(home: Home) -> None:
+    client = started(home)
+    file = home.folder / "server.json"
+    file.write_text(json.dumps({**home.told, "token": "another-token-than-the-servers"}))
+    client.token = "a-third-token"
+    with pytest.raises(Problem) as found:
+        client.get("/v1/sessions")
+    assert (found.value.slug, found.value.status) == ("unauthorized", 401)
 
 
 def test_a_server_of_other_frames_is_refused_with_a_sentence(home: Home) -> None:

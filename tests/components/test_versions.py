@@ -16,6 +16,7 @@ from pythons import interpreter
 from serving import CABLE, HANG, Home
 
 SOURCE = Path(hookean_client.__file__)
+FINDING = SOURCE.with_name("finding.py")
 VERSIONS = ["2.7", *(f"3.{minor}" for minor in range(6, 15))]
 
 
@@ -98,7 +99,7 @@ def test_it_is_written_in_what_all_pythons_read() -> None:
         ast.JoinedStr, ast.AnnAssign, ast.AsyncFunctionDef, ast.Await, ast.YieldFrom, ast.Nonlocal, ast.Starred,
         ast.NamedExpr, ast.MatMult, ast.Match,
     )  # fmt: skip
-    text = SOURCE.read_text(encoding="ascii")
+    text = "".join(path.read_text(encoding="ascii") for path in (SOURCE, FINDING))
     for node in ast.walk(ast.parse(text)):
         assert not isinstance(node, newer) or _star_of_a_call(node, text), ast.dump(node)
         if isinstance(node, ast.FunctionDef | ast.Lambda):
@@ -121,10 +122,10 @@ def _star_of_a_call(node: ast.AST, text: str) -> bool:
 
 def test_it_needs_the_standard_library_alone() -> None:
     found = set()
-    for node in ast.walk(ast.parse(SOURCE.read_text())):
+    for node in [node for path in (SOURCE, FINDING) for node in ast.walk(ast.parse(path.read_text()))]:
         if isinstance(node, ast.Import):
             found |= {alias.name.split(".")[0] for alias in node.names}
-        if isinstance(node, ast.ImportFrom):
+        if isinstance(node, ast.ImportFrom) and not node.level:
             found.add(str(node.module).split(".")[0])
     assert found - {"httplib"} <= set(sys.stdlib_module_names)
 

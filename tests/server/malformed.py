@@ -229,7 +229,7 @@ def table() -> dict[str, tuple[bytes, str]]:
         "bad UTF-8": b'{"a": "\xff"}',
         "overlong UTF-8": b'{"a": "\xc0\xaf"}',
         "UTF-16": good.encode("utf-16"),
-        "byte order mark": b"\xef\xbb\xbf" + good.encode(),
+        "two byte order marks": 2 * b"\xef\xbb\xbf" + good.encode(),
         "zero bytes": b"\0" * 1000,
         "gzip": b"\x1f\x8b\x08\x00" + b"\0" * 100,
         "spaces, 40 MB": b" " * 40_000_000,

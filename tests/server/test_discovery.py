@@ -11,7 +11,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from http.server import BaseHTTPRequestHandler, HTTPServer
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -37,24 +37,29 @@ def home(tmp_path: Path) -> Iterator[Home]:
 
 @pytest.fixture(scope="module")
 def stranger() -> Iterator[tuple[int, list[dict[str, str]]]]:
-    """A program of somebody else: it answers /v1/health like a server of ours, and notes what it is sent."""
+    """A program of somebody else: it answers every question like a server of ours, as far as it knows, and notes what
+    it is sent."""
     heard: list[dict[str, str]] = []
 
     class Handler(BaseHTTPRequestHandler):
+        protocol_version = "HTTP/1.1"
+
         def do_GET(self) -> None:
             heard.append({k.lower(): v for k, v in self.headers.items()})
-            body = json.dumps({"service": "hookean", "instance": "0" * 32}).encode()
+            body = json.dumps({"service": "hookean", "instance": "a" * 32, "proof": "0" * 64}).encode()
             self.send_response(200)
+            self.send_header("content-type", "application/json")
             self.send_header("content-length", str(len(body)))
             self.end_headers()
             self.wfile.write(body)
 
-        do_POST = do_GET
+        do_POST = do_PUT = do_GET
 
         def log_message(self, *_: Any) -> None:
             pass
 
-    server = HTTPServer(("127.0.0.1", 0), Handler)
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    server.daemon_threads = True
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield server.server_port, heard
     server.shutdown()
@@ -62,7 +67,7 @@ def stranger() -> Iterator[tuple[int, list[dict[str, str]]]]:
 
 
 def told(pid: int, port: int) -> Found:
-    return Found(pid, port, f"http://127.0.0.1:{port}", "t" * 43, "0.1.0", "a" * 32, 0.0)
+    return Found(pid, port, f"http://127.0.0.1:{port}", "t" * 43, "0.1.0", "a" * 32, 0.0, "b" * 64)
 
 
 def test_the_file_is_for_this_user_alone_and_true(home: Home) -> None:
@@ -151,15 +156,6 @@ def test_a_stranger_on_the_port_is_told_nothing(tmp_path: Path, stranger: tuple[
     assert not any("authorization" in headers or "t" * 43 in str(headers) for headers in heard)
 
 
-def test_a_dead_process_is_asked_nothing(tmp_path: Path, stranger: tuple[int, list[dict[str, str]]]) -> None:
-    port, heard = stranger
-    ended = subprocess.Popen([sys.executable, "-c", ""])
-    ended.wait()
-    told(ended.pid, port).write(tmp_path)
-    heard.clear()
-    assert find(tmp_path) is None and not heard
-
-
 @pytest.mark.parametrize("text", ["", "{", "[]", "null", '{"pid": 1}', '{"pid": "x", "port": []}'])
 def test_a_file_that_is_none(tmp_path: Path, text: str) -> None:
     (tmp_path / "server.json").write_text(text)
@@ -175,7 +171,7 @@ def test_a_file_that_others_may_write_is_not_trusted(home: Home) -> None:
 
 
 def test_only_its_own_file_is_removed(tmp_path: Path) -> None:
-    mine, other = told(1, 1), Found(2, 2, "u", "t", "v", "b" * 32, 0.0)
+    mine, other = told(1, 1), Found(2, 2, "u", "t", "v", "b" * 32, 0.0, "p")
     other.write(tmp_path)
     mine.remove(tmp_path)
     assert (tmp_path / "server.json").exists()

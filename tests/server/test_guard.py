@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import itertools
+import json
 import os
 import re
 import socket
@@ -58,7 +59,7 @@ def say(served: Served, head: str, body: bytes = b"", seconds: float = HANG) -> 
 HOSTS = {"ours": "127.0.0.1:{port}", "name": "localhost:{port}", "other": "evil.example:{port}", "no port": "127.0.0.1"}
 ORIGINS = {"none": None, "own": "http://{host}", "foreign": "http://evil.example", "null": "null", "listed": FRIEND}
 SITES = {"none": None, "same-origin": "same-origin", "cross-site": "cross-site"}
-KINDS = ("GET", "POST", "SOCKET")
+KINDS = ("GET", "HEAD", "POST", "PUT", "SOCKET")
 TOKENS = ("right", "wrong", "missing", "cookie")
 
 
@@ -67,7 +68,7 @@ def passes(kind: str, host: str, origin: str, site: str, token: str) -> bool:
     the cookie from our own page."""
     if host not in ("ours", "name"):
         return False
-    if kind != "GET":
+    if kind not in ("GET", "HEAD"):
         if origin in ("foreign", "null"):
             return False
         if site == "cross-site" and origin != "listed":
@@ -103,11 +104,15 @@ def cookie(served: Served) -> str:
 
 @pytest.mark.parametrize(("kind", "host", "origin", "site"), MATRIX)
 def test_only_ours_pass(served: Served, cookie: str, kind: str, host: str, origin: str, site: str) -> None:
-    """180 lines with four kinds of token each: what passes is what the rule lets pass, nothing else."""
+    """300 lines with four kinds of token each: what passes is what the rule lets pass, nothing else."""
+    scene = json.dumps(CABLE).encode()
     for token in TOKENS:
         head = headers_of(served, host, origin, site, token, cookie)
-        if kind == "GET":
-            found = say(served, f"GET /v1/sessions/a HTTP/1.1\n{head}\nConnection: close")
+        if kind in ("GET", "HEAD"):
+            found = say(served, f"{kind} /v1/sessions/a HTTP/1.1\n{head}\nConnection: close")
+        elif kind == "PUT":
+            start = f"PUT /v1/sessions/a HTTP/1.1\nContent-Type: application/json\nContent-Length: {len(scene)}"
+            found = say(served, f"{start}\n{head}\nConnection: close", scene)
         elif kind == "POST":
             start = "POST /v1/sessions/a/pause HTTP/1.1"
             found = say(served, f"{start}\n{head}\nConnection: close\nContent-Length: 0")
@@ -137,12 +142,12 @@ def test_every_address_needs_the_token_but_for_the_open_ones(served: Served) -> 
                 else:
                     problem(answer, 401, "unauthorized")
                     assert answer.headers["www-authenticate"].startswith("Bearer")
-        assert nobody.get("/v1/openapi.json").status_code == 401
+        assert nobody.get("/v1/openapi.json").status_code == nobody.get("/docs").status_code == 401
         assert nobody.get("/v1/nothing").status_code == nobody.post("/nothing").status_code == 401
         assert nobody.get("/nothing").status_code == 404  # a function of Hops that there is not
         assert nobody.get("/page/app.js").status_code == 200
     hops = {("get", "/"), ("get", "/{function}"), ("post", "/solve")}
-    assert opened == {("get", "/v1/health"), ("get", "/problems/{slug}"), *hops}
+    assert opened == {("get", "/v1/health"), ("get", "/v1/proof"), ("get", "/problems/{slug}"), *hops}
 
 
 @pytest.mark.parametrize(

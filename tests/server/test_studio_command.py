@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from html import unescape
 from pathlib import Path
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs, unquote, urlsplit
 
 import httpx
 import pytest
@@ -41,13 +45,22 @@ def begun(home: Home, *words: str) -> subprocess.Popen[str]:
     return process
 
 
+def led(seen: str) -> str:
+    """Where the file leads that a browser was given."""
+    page = Path(unquote(urlsplit(seen).path)).read_text()
+    [address] = re.findall(r'content="0; url=([^"]*)"', page)
+    return unescape(address)
+
+
 @contextmanager
 def lets_in(address: str) -> Iterator[httpx.Client]:
-    """Somebody who opens the address: the token behind the # is that of the service."""
+    """Somebody who opens the address: the token or code behind the # gets a cookie, as the page does."""
     [token] = parse_qs(urlsplit(address).fragment)["t"]
     base = f"http://{urlsplit(address).netloc}"
-    with httpx.Client(base_url=base, headers={"authorization": f"Bearer {token}"}, timeout=HANG) as client:
-        assert client.post("/v1/login").status_code == 204
+    with httpx.Client(base_url=base, timeout=HANG) as client:
+        login = client.post("/v1/login", headers={"authorization": f"Bearer {token}"})
+        assert login.status_code == 204
+        client.headers["cookie"] = login.headers["set-cookie"].split(";")[0]
         yield client
 
 
@@ -75,20 +88,94 @@ def test_a_file_is_shown_by_a_service_that_runs(home: Home, tmp_path: Path) -> N
 
 
 def test_it_starts_the_service_and_opens_a_browser(home: Home, tmp_path: Path) -> None:
-    """The browser gets the token, the terminal does not; Ctrl-C ends the service, which began here."""
+    """The browser gets a file that leads it to the page with a code; the token stays where it was; once the code was
+    used the file is gone; Ctrl-C ends the service, which began here."""
     file = tmp_path / "scene.json"
     file.write_text(json.dumps(CABLE))
     process = begun(home, str(file))
     seen = tmp_path / "seen"
     wait_for(lambda: seen.exists() and seen.read_text())
-    with lets_in(seen.read_text()) as client:
+    given, token = seen.read_text(), home.told["token"]
+    door = Path(unquote(urlsplit(given).path))
+    assert given.startswith("file://") and door.stat().st_mode & 0o777 == 0o600 and door.parent == home.folder
+    address = led(given)
+    assert token not in given + door.read_text()
+    with lets_in(address) as client:
         [session] = client.get("/v1/sessions").json()["sessions"]
-        assert session["label"] == "scene.json" and f"s={session['key']}" in seen.read_text()
-        token = client.headers["authorization"].split()[1]
+        assert session["label"] == "scene.json" and f"s={session['key']}" in address
+        [code] = parse_qs(urlsplit(address).fragment)["t"]
+        assert client.post("/v1/login", headers={"authorization": f"Bearer {code}"}).status_code == 401
+    wait_for(lambda: not door.exists())
     process.send_signal(signal.SIGINT)
     said, wrong = process.communicate(timeout=HANG)
     assert process.returncode == 0 and "hookean serves at" in said and "open in a browser" in said, (said, wrong)
-    assert token not in said + wrong and not home.told
+    assert token not in said + wrong and code not in said + wrong and not home.told
+
+
+def test_a_second_user_finds_nothing_in_the_list_of_processes() -> None:
+    """`nobody` reads the arguments of all processes, over and over, while `hookean studio` opens a browser and for as
+    long as it is open, and tries to read what is named there."""
+    if os.getuid() != 0 or not Path("/proc/self/cmdline").exists():
+        pytest.skip("takes root, who can be another user, and /proc")
+    folder = Path(tempfile.mkdtemp(prefix="hookean-studio-"))
+    folder.chmod(0o755)
+    home = Home(folder / "state")
+    browser = folder / "browser.py"
+    browser.write_text(
+        "import pathlib, sys, time\npathlib.Path(sys.argv[0]).with_name('seen').write_text(sys.argv[1])\n"
+        "while not pathlib.Path(sys.argv[0]).with_name('enough').exists(): time.sleep(0.05)\n"
+    )
+    home.environment["BROWSER"] = f"{sys.executable} {browser} %s &"  # as a browser that goes on by itself
+    poll = (
+        "import glob, os, sys\nos.setgroups([]); os.setgid(65534); os.setuid(65534)\nlines, read = set(), set()\n"
+        "print('polling', flush=True)\n"
+        f"while not os.path.exists({str(folder / 'enough')!r}):\n"
+        "    for path in glob.glob('/proc/[0-9]*/cmdline'):\n"
+        "        try:\n            line = open(path, 'rb').read().replace(b'\\0', b' ').decode('utf-8', 'replace')\n"
+        "        except OSError:\n            continue\n"
+        "        lines.add(line)\n"
+        f"        for word in line.split():\n            if {str(folder)!r} in word:\n"
+        "                try:\n                    read.add(open(word.replace('file://', '')).read())\n"
+        "                except OSError:\n                    pass\n"
+        "print('\\n'.join(sorted(lines)))\nprint('FILES', sorted(read))\n"
+    )
+    try:
+        home.serve()
+        token = home.told["token"]
+        with subprocess.Popen([sys.executable, "-c", poll], stdout=subprocess.PIPE, text=True) as nobody:
+            assert nobody.stdout is not None and nobody.stdout.readline() == "polling\n"
+            process = begun(home)
+            wait_for(lambda: (folder / "seen").exists() and (folder / "seen").read_text())
+            address = led((folder / "seen").read_text())
+            [code] = parse_qs(urlsplit(address).fragment)["t"]
+            with lets_in(address) as page:
+                assert page.get("/v1/sessions").status_code == 200
+            assert process.wait(HANG) == 0  # the browser goes on, with the pipes that it was given
+            (folder / "enough").write_text("")
+            found = nobody.communicate(timeout=HANG)[0]
+        assert "open-" in found, "the poller saw the browser's arguments"
+        assert token not in found and code not in found
+        assert str(home.told["proof"]) not in found
+    finally:
+        (folder / "enough").write_text("")
+        home.end()
+        shutil.rmtree(folder)
+
+
+def test_files_of_commands_that_were_killed_are_removed(home: Home) -> None:
+    """Their codes are worth nothing after a minute; the next command removes what is older than ten."""
+    home.folder.mkdir(mode=0o700)
+    old, young = home.folder / "open-old.html", home.folder / "open-young.html"
+    for path in (old, young):
+        path.write_text("")
+    os.utime(old, (1, 1))
+    home.serve()
+    process = begun(home)
+    seen = home.folder.parent / "seen"
+    wait_for(lambda: seen.exists() and seen.read_text())
+    with lets_in(led(seen.read_text())):
+        process.communicate(timeout=HANG)
+    assert not old.exists() and young.exists() and process.returncode == 0
 
 
 @pytest.mark.parametrize(

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
 
-from serving import CABLE
+from serving import CABLE, HANG
 
 from .browser import Studio
 from .conftest import Opened
@@ -57,6 +61,24 @@ def test_who_has_no_token_is_told_what_to_do(open_studio: Opened):
     page.get_by_role("alert").filter(has_text=re.compile("token", re.I)).wait_for()
     page.get_by_label(re.compile("token", re.I)).fill(studio.service.token)
     studio.press("Log in")
+    page.get_by_role("heading", name="Figures").wait_for()
+
+
+def test_the_command_lets_a_browser_in(open_studio: Opened, tmp_path: Path):
+    """The file that `hookean studio` gives a browser leads it to the page, logged in; then the file is gone, and the
+    address and the history have no code."""
+    studio = open_studio(login=False)
+    page, seen, stub = studio.page, tmp_path / "seen", tmp_path / "browser.py"
+    stub.write_text(f"import pathlib, sys\npathlib.Path({str(seen)!r}).write_text(sys.argv[1])\n")
+    state = {"HOOKEAN_STATE": str(studio.service.folder / "state"), "BROWSER": f"{sys.executable} {stub} %s"}
+    command = [sys.executable, "-m", "hookean.cli", "studio"]
+    with subprocess.Popen(command, env={**os.environ, **state}, stdout=subprocess.DEVNULL) as process:
+        studio.until(lambda: seen.exists() and seen.read_text())
+        page.goto(seen.read_text(), wait_until="commit")
+        page.get_by_role("heading", name="Figures").wait_for()
+        assert process.wait(HANG) == 0
+    assert page.url == f"{studio.service.url}/" and not Path(urlsplit(seen.read_text()).path).exists()
+    page.reload()
     page.get_by_role("heading", name="Figures").wait_for()
 
 

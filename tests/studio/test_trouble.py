@@ -26,8 +26,9 @@ def mortal(tmp_path: Path, browser: object) -> Iterator[Service]:
 
 
 def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, mortal: Service):
-    """kill -9: the page says that it is reconnecting, and is there again by itself, on the same revision, logged in;
-    what was edited before is there, what is edited after arrives."""
+    """kill -9: the page says that it is reconnecting; the service that is started again has another token and knows no
+    cookie, so that the page asks to be let in, and is there again, on the same revision, once any page of this browser
+    was; what was edited before is there, what is edited after arrives."""
     mortal.put("cable", CABLE)
     studio = open_studio(mortal)
     studio.allowed = GONE
@@ -44,7 +45,15 @@ def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, morta
     mortal.kill()
     studio.page.get_by_text("Reconnecting").wait_for()
     assert not studio.page.get_by_text("Live", exact=True).is_visible()
+    studio.allowed = [*GONE, "401"]
     mortal.start()
+    studio.page.get_by_text("hookean token --url").wait_for()
+    other = studio.page.context.new_page()
+    other.goto(f"{mortal.url}/#t={mortal.token}")
+    other.get_by_role("heading", name="Figures").wait_for()
+    other.close()
+    studio.page.bring_to_front()
+    studio.page.evaluate("() => window.dispatchEvent(new Event('focus'))")  # as the window system would send it
     studio.page.get_by_text("Live", exact=True).wait_for()
     assert mortal.summary("cable")["revision"] == edited["revision"]
     assert mortal.anchors("cable") == ends

@@ -13,9 +13,10 @@ DEEPEST = 64
 
 
 def parse(text: str | bytes | bytearray, where: str = "/") -> Any:
-    """JSON text to Python values; InputError where it is not strict JSON or nests deeper than 64 levels."""
+    """JSON text to Python values; InputError where it is not strict JSON or nests deeper than 64 levels. Bytes may
+    begin with a byte order mark, as programs on Windows write it."""
     try:
-        text = text.decode("utf-8") if isinstance(text, bytes | bytearray) else text
+        text = text.decode("utf-8-sig") if isinstance(text, bytes | bytearray) else text
     except UnicodeDecodeError:
         raise InputError(where, "the text is not UTF-8; save it as UTF-8 and try again") from None
     try:

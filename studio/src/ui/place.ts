@@ -20,6 +20,8 @@ export function go(key: string): void {
   read();
 }
 
+const RENEWING = 3600e3; // ms; a cookie that is not used for 12 hours is worth nothing
+
 let isFirst = true;
 
 /** To be called by a page when it is there: all but the first are read from their beginning. */
@@ -35,6 +37,10 @@ export function arrive(): void {
 export function begin(): void {
   window.addEventListener("popstate", () => read());
   window.addEventListener("hashchange", () => read());
+  // another page of this browser may have logged in or out meanwhile; the cookie is renewed by being used
+  document.addEventListener("visibilitychange", () => document.hidden || void look());
+  window.addEventListener("focus", () => void look());
+  window.setInterval(() => void look(), RENEWING);
   if (!read()) void look();
 }
 
@@ -74,7 +80,8 @@ function read(): boolean {
 async function look(): Promise<void> {
   try {
     await api.sessions();
-    if (entry.value === "asking") entry.value = "in";
+    if (entry.value === "out") entries.value += 1;
+    entry.value = "in";
   } catch (error) {
     met(error);
     // a service that does not answer is told by what asks next
