@@ -167,7 +167,8 @@ SCHEMAS["Session"] = {
     "properties": {
         "key": {"type": "string"},
         "label": {"type": "string"},
-        "revision": {"type": "integer", "description": "Counts edits; the ETag"},
+        "etag": {"type": "string", "description": "Its ETag: of this creation, revision and shape"},
+        "revision": {"type": "integer", "description": "Counts edits"},
         "iteration": {"type": "integer"},
         "time": {**_NUMBER, "description": "[time]"},
         "residual": {**_NUMBER, "description": "[-]"},

@@ -80,6 +80,10 @@ CREATE TABLE IF NOT EXISTS notes (
     key TEXT PRIMARY KEY REFERENCES sessions(key) ON DELETE CASCADE,
     sentences TEXT NOT NULL      -- on the file a session was made of, one in a line
 );
+CREATE TABLE IF NOT EXISTS creations (
+    key TEXT PRIMARY KEY REFERENCES sessions(key) ON DELETE CASCADE,
+    nonce TEXT NOT NULL          -- of the creation of the session, part of its ETags
+);
 """
 """Tables that files of this version may not have yet; who does not know them leaves them alone."""
 Work = Callable[[sqlite3.Connection], Any]

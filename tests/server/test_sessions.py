@@ -94,7 +94,7 @@ def test_playing_ends_at_the_equilibrium_that_python_gives(client: httpx.Client)
 def test_edits_carry_a_revision_and_can_be_taken_back(client: httpx.Client) -> None:
     put(client)
     answer = client.patch("/v1/sessions/a", json={"forces": {"1": {"vector": [0, 0, -5]}}})
-    assert answer.json()["revision"] == 1 and answer.headers["etag"] == '"1"'
+    assert answer.json()["revision"] == 1 and answer.headers["etag"] == answer.json()["etag"]
     assert client.get("/v1/sessions/a/scene").json()["forces"][1]["vector"] == [0, 0, -5]
     assert client.post("/v1/sessions/a/undo").json()["revision"] == 2
     assert client.get("/v1/sessions/a/scene").json()["forces"][1]["vector"] == [0, 0, -20]
@@ -105,24 +105,24 @@ def test_edits_carry_a_revision_and_can_be_taken_back(client: httpx.Client) -> N
 
 
 def test_two_editors_cannot_overwrite_each_other_unseen(client: httpx.Client) -> None:
-    put(client)
-    first = client.patch("/v1/sessions/a", json={"release": [0]}, headers={"if-match": '"0"'})
+    seen = {"if-match": put(client)["etag"]}
+    first = client.patch("/v1/sessions/a", json={"release": [0]}, headers=seen)
     assert first.status_code == 200
-    second = client.patch("/v1/sessions/a", json={"release": [5]}, headers={"if-match": '"0"'})
+    second = client.patch("/v1/sessions/a", json={"release": [5]}, headers=seen)
     assert second.status_code == 412 and second.json()["type"] == "/problems/stale-revision"
     assert client.get("/v1/sessions/a").json()["revision"] == 1
 
 
-@pytest.mark.parametrize("given", ['"0"', '"7"', 'W/"1"', '"soon"', '"1", "2"', "", "-1"])
+@pytest.mark.parametrize("given", ['"0"', '"1"', 'W/"1"', '"soon"', '"1", "2"', "", "-1"])
 def test_a_refused_edit_has_the_etag_to_try_again_with(client: httpx.Client, given: str) -> None:
     """RFC 9110, section 13.1.1: 412 where If-Match does not match; its ETag is that of the session as it is."""
     put(client)
     client.patch("/v1/sessions/a", json={"release": [0]})
     refused = client.patch("/v1/sessions/a", json={"release": [5]}, headers={"if-match": given})
     assert refused.status_code == 412 and refused.json()["type"] == "/problems/stale-revision"
-    assert refused.headers["etag"] == client.get("/v1/sessions/a").headers["etag"] == '"1"'
+    assert refused.headers["etag"] == client.get("/v1/sessions/a").headers["etag"]
     again = client.patch("/v1/sessions/a", json={"release": [5]}, headers={"if-match": refused.headers["etag"]})
-    assert again.status_code == 200 and again.headers["etag"] == '"2"'
+    assert again.status_code == 200 and again.json()["revision"] == 2
 
 
 def test_the_etag_of_refusals_is_described(client: httpx.Client) -> None:

@@ -59,7 +59,7 @@ async def _served(socket: WebSocket, sessions: Manager, live: Live) -> None:
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-        code = 1012 if sessions.closing else 4404 if live.key not in sessions.sessions else client.code
+        code = 1012 if sessions.closing else 4404 if live.gone else client.code
         with suppress(RuntimeError, OSError, WebSocketDisconnect):
             await socket.close(code, client.reason[:120])
 
@@ -78,7 +78,7 @@ class _Client:
         live, told = self.live, ""
         hello = {"hello": VERSION, "topology": live.topology, "session": summary(live)}
         await self._text(hello)
-        while not self.sessions.closing and live.key in self.sessions.sessions:
+        while not (self.sessions.closing or live.gone):
             news = live.news
             now = json.dumps([live.topology, live.process is None, live.notes, [live.described.get(n) for n in _NEWS],
                               live.described.get("message") if not live.playing else ""])  # fmt: skip
@@ -137,21 +137,21 @@ class _Client:
             await self._text(answer)
 
     async def _done(self, order: dict[str, Any]) -> dict[str, Any]:
-        key, do = self.live.key, order.get("do")
+        live, do = self.live, order.get("do")
         if "edit" in order:
-            await self.sessions.edit(key, json.dumps(order["edit"]).encode(), order.get("revision"))
+            now = await self.sessions.edit(live, json.dumps(order["edit"]).encode(), order.get("revision"))
         elif do in ("reset", "undo", "redo"):
-            await self.sessions.edit(key, json.dumps({do: True}).encode())
+            now = await self.sessions.edit(live, json.dumps({do: True}).encode())
         elif do == "step" and isinstance(order.get("frames", 1), int) and 1 <= order.get("frames", 1) <= 100_000:
-            await self.sessions.command(key, "step", frames=order.get("frames", 1))
+            now = await self.sessions.command(live, "step", frames=order.get("frames", 1))
         elif do == "play":
-            await self.sessions.command(key, "play", fast=order.get("fast") is True)
+            now = await self.sessions.command(live, "play", fast=order.get("fast") is True)
         elif do in ("relax", "pause"):
-            await self.sessions.command(key, do)
+            now = await self.sessions.command(live, do)
         else:
             said = "A message is an ack, an edit, or do: play, relax, pause, step, reset, undo, redo."
             raise Problem("invalid-input", said)
-        return summary(self.live)
+        return summary(live, now)
 
     async def _text(self, value: dict[str, Any]) -> None:
         async with self.lock:

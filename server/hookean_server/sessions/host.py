@@ -125,11 +125,12 @@ class Host:
         if self.simulation is not None:
             self._finite(self.simulation)
         goes_on = self.resting is not None and head["do"] in CHANGES
-        if self.simulation is not None and self.resting is not None and head["do"] in (*CHANGES, *MOVES):
+        wanted = head["do"] in (*CHANGES, *MOVES) and not self._stale(head)
+        if self.simulation is not None and self.resting is not None and wanted:
             self.resting.leave(self.simulation)
             self.resting = None
         answer = self._do(head, body)
-        if goes_on:
+        if goes_on and self.resting is None:
             self._relax()
         if answer is not None:
             self._send({"id": head["id"], **answer[0]}, answer[1])
@@ -137,6 +138,8 @@ class Host:
     def _do(self, head: dict[str, Any], body: bytes) -> Reply | None:
         """The answer to a command; faults become problems."""
         try:
+            if self._stale(head):
+                raise Problem("stale-revision", f"{self._stale(head)}; read it and edit again.")
             action: Callable[[dict[str, Any], bytes], Reply | None] = getattr(self, f"do_{head['do']}")
             return action(head, body)
         except Problem as problem:
@@ -154,6 +157,12 @@ class Host:
         except Exception:
             log.exception("%s failed", head["do"])
             return _failed(Problem("internal", "The session failed on this input; the log tells more.")), b""
+
+    def _stale(self, head: dict[str, Any]) -> str:
+        """Why a command is for another revision than this one; "" where it is not."""
+        wanted = head.get("revision")
+        now = wanted if self.simulation is None else self.simulation.state.revision
+        return "" if wanted in (None, now) else f"The session is at revision {now}, not {wanted}"
 
     # commands
 
@@ -185,10 +194,6 @@ class Host:
     def do_edit(self, head: dict[str, Any], body: bytes) -> Reply:
         """A patch, an undo, a redo or a reset; answers with what to store so that it can be made again exactly."""
         simulation = self._simulation()
-        wanted, revision = head.get("revision"), simulation.state.revision
-        if wanted is not None and wanted != revision:
-            said = f"The session is at revision {revision}, not {wanted}; read it and edit again."
-            raise Problem("stale-revision", said, headers={"etag": f'"{revision}"'})
         self.before = parts.Before(simulation)
         resolved, sets = parts.make(simulation, body)
         self._mark()
@@ -360,7 +365,8 @@ class Host:
 
     def _described(self) -> dict[str, Any]:
         simulation = self._simulation()
-        return {**parts.describe(simulation), "wiring": self.wired.tag(simulation), "playing": self.playing}
+        wiring, now = self.wired.tag(simulation), time.monotonic_ns()  # a clock that all processes share
+        return {**parts.describe(simulation), "wiring": wiring, "playing": self.playing, "told": now}
 
     def _simulation(self) -> Simulation:
         if self.simulation is None:

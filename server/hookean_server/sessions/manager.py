@@ -6,15 +6,17 @@ import asyncio
 import logging
 import secrets
 import time
-from collections.abc import Coroutine, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Coroutine
+from contextlib import suppress
 from typing import Any
 
 from hookean_server.logs import short_hash
 from hookean_server.problems import Problem
 from hookean_server.sessions import rows
+from hookean_server.sessions.conditions import Conditions, stale
 from hookean_server.sessions.live import Live
 from hookean_server.sessions.process import Gone, SessionProcess
+from hookean_server.sessions.register import Deleted, Register
 from hookean_server.settings import Settings
 from hookean_server.store import Store
 
@@ -25,14 +27,16 @@ PAUSE = 1.5  # seconds it may take to pause, before it is killed and brought bac
 TICK = 15.0  # seconds between looks at what to put to sleep and to forget
 LOSSES, WITHIN = 3, 60.0  # a session that loses its process so often in so many seconds stays down until it is used
 MANY_EDITS = 400  # after so many the store gets a new base
+ALWAYS = Conditions()
 
 
-class Manager:
-    """The sessions of one server. All methods run on the event loop."""
+class Manager(Register):
+    """The sessions of one server. All methods run on the event loop, and take a session or its key."""
 
     def __init__(self, settings: Settings, store: Store) -> None:
+        super().__init__(settings.sessions)
         self.settings, self.store = settings, store
-        self.sessions: dict[str, Live] = {}
+        self.wanting: set[Live] = set()  # a place among those awake
         self.restarts = 0
         self.closing = False
         self.frames_sent = self.frames_skipped = 0
@@ -45,7 +49,8 @@ class Manager:
         self._loop = asyncio.get_running_loop()
         for kept in await self.store.run(rows.listed()):
             described = {name: getattr(kept, name) for name in _KEPT}
-            self.sessions[kept.key] = Live(kept.key, kept.label, {**described, "playing": False}, kept.notes)
+            paused = {**described, "playing": False}
+            self.sessions[kept.key] = Live(kept.key, kept.label, paused, kept.notes, kept.nonce)
         self._ticking = asyncio.create_task(self._tick())
 
     async def close(self) -> None:
@@ -62,48 +67,44 @@ class Manager:
 
     # what routes call
 
-    def find(self, key: str) -> Live:
-        """The session of a key; raises `not-found`."""
-        if key not in self.sessions:
-            raise Problem("not-found", "There is no session of this key; GET /v1/sessions lists those there are.")
-        live = self.sessions[key]
-        live.used = time.monotonic()
-        return live
-
     async def put(
-        self, key: str | None, body: bytes, label: str = "", notes: list[str] | None = None
-    ) -> tuple[Live, bool]:
-        """A session from a scene, or the scene of one that exists; whether it is new. `notes` on the file it came from
-        stay until there are others; None: it came from none. Raises Problem."""
-        if key is not None and key in self.sessions:
-            return await self._replace(self.find(key), body, label, notes), False
-        with self._room():
-            live = Live(key or secrets.token_hex(16), label, {}, notes or [])
-            # its place is taken at once: a second request with the same key waits for the first
-            self.sessions[live.key] = live
+        self, key: str | None, body: bytes, label: str = "", notes: list[str] | None = None, when: Conditions = ALWAYS
+    ) -> tuple[Live, dict[str, Any], bool]:
+        """A session from a scene, or the scene of one that exists; how it stands then; whether it is new. `notes` on
+        the file it came from stay until there are others; None: it came from none. Raises Problem."""
+        key = key or secrets.token_hex(16)
+        while (live := await self.settled(key)) is not None:
+            with suppress(Deleted):  # meanwhile; this scene is the first of another one then
+                return live, await self._replace(self.find(live), body, label, notes, when), False
+        when.check(None)
+        live = Live(key, label, {}, notes or [])
+        with self.reserved(live):
             async with live.lock, live.waking:
                 try:
                     process = await self._process(live)
                     described, base = await process.call("create", body, seconds=ANSWER, slug="invalid-scene")
-                    await self.store.run(rows.put(live.key, label, base, described, live.notes))
+                    await self.store.run(rows.put(live.key, label, base, described, live.notes, live.nonce))
                 except BaseException:
-                    self.sessions.pop(live.key, None)
                     self._end(live)
                     raise
-            self._heard(live, described)
+            live.note(described)
             live.scene = secrets.token_hex(8)
-            return live, True
+        return live, live.described, True
 
-    async def edit(self, key: str, body: bytes, revision: int | None = None) -> dict[str, Any]:
-        """Make an edit; it is in the store when this returns. Raises Problem.
+    async def edit(
+        self, key: str | Live, body: bytes, revision: int | None = None, when: Conditions = ALWAYS
+    ) -> dict[str, Any]:
+        """Make an edit; it is in the store when this returns how the session stands with it. Raises Problem.
 
         A client that leaves meanwhile does not stop it: an edit that was made is stored, or taken back.
         """
-        work = self._spawn(self._edit(self.find(key), body, revision))
-        return await asyncio.shield(work)
+        work = self._spawn(self._edit(self.find(key), body, revision, when))
+        found: dict[str, Any] = await asyncio.shield(work)
+        return found
 
-    async def _edit(self, live: Live, body: bytes, revision: int | None) -> dict[str, Any]:
-        async with live.lock:
+    async def _edit(self, live: Live, body: bytes, revision: int | None, when: Conditions) -> dict[str, Any]:
+        async with self.held(live):
+            when.check(live)
             process, described, made = await self._ask(
                 live, "edit", body, seconds=ANSWER, revision=revision, slug="invalid-input"
             )
@@ -114,64 +115,64 @@ class Manager:
                 except Problem:
                     await self._revert(live, process)
                     raise
-            self._heard(live, described)
+            found = live.note(described)
             if live.edits > MANY_EDITS:
                 with suppress(Problem):  # the edit is stored; the next one tries again
                     await self._rebase(live, process)
-        return live.described
+        return found
 
-    async def command(self, key: str, do: str, **options: Any) -> dict[str, Any]:
+    async def command(self, key: str | Live, do: str, when: Conditions = ALWAYS, **options: Any) -> dict[str, Any]:
         """play, relax, pause or step; how the session stands then."""
         live = self.find(key)
         if do == "pause":
+            when.check(live)
             return await self._pause(live)
-        async with live.lock:
+        async with self.held(live):
             await self._awake(live)
+            revision = when.check(live)
             live.playing, live.going, live.fast = do in ("play", "relax"), do, bool(options.get("fast"))
         seconds = self.settings.solve_seconds if do == "step" else ANSWER
-        _, described, _ = await self._ask(live, do, seconds=seconds, **options)
-        self._heard(live, described)
+        _, described, _ = await self._ask(live, do, seconds=seconds, revision=revision, **options)
+        found = live.note(described)
         if live.playing:
             live.playing = live.playing and described["playing"]
-        return live.described
+        return found
 
-    async def export(self, key: str, form: str, arrays: str = "list") -> tuple[dict[str, Any], bytes]:
+    async def export(self, key: str | Live, form: str, arrays: str = "list") -> tuple[dict[str, Any], bytes]:
         """The session in some format; its head has the media `type`."""
         _, head, body = await self._ask(self.find(key), "export", seconds=ANSWER, format=form, arrays=arrays)
         return head, body
 
-    async def branch(self, key: str, new: str | None, label: str) -> Live:
+    async def branch(self, key: str | Live, new: str | None, label: str, when: Conditions = ALWAYS) -> Live:
         """Another session that goes on from where this one is, paused."""
         live = self.find(key)
-        if new is not None and new in self.sessions:
-            raise Problem("key-taken", "There is a session of this key already; choose another, or none.")
-        with self._room():
-            async with live.lock:
-                process = await self._awake(live)
-                described, base = await process.call("save", seconds=ANSWER)
-            paused = {**described, "playing": False}
-            other = Live(new or secrets.token_hex(16), label or live.label, paused, live.notes)
-            await self.store.run(rows.put(other.key, other.label, base, described, other.notes))
-            self.sessions[other.key] = other
+        other = Live(new or secrets.token_hex(16), label or live.label, {}, live.notes)
+        with self.reserved(other):
+            async with self.held(live):
+                when.check(live)
+                _, described, base = await self._ask(live, "save", seconds=ANSWER)
+            other.notes = live.notes
+            await self.store.run(rows.put(other.key, other.label, base, described, other.notes, other.nonce))
+            other.described = {**described, "playing": False}
         return other
 
-    async def delete(self, key: str) -> None:
+    async def delete(self, key: str | Live, when: Conditions = ALWAYS) -> None:
         """Forget a session and end its process."""
         live = self.find(key)
+        when.check(live)
         if live.lock.locked():
             await self._pause(live)  # what holds it may hang
-        async with live.lock:
-            await self.store.run(rows.delete(key))
-            self.sessions.pop(key, None)
-            self._end(live)
-            live.tell()
+        async with self.held(live):
+            when.check(live)
+            await self.store.run(rows.delete(live.key))
+            self._gone(live)
 
-    async def watch(self, key: str) -> Live:
+    async def watch(self, key: str | Live) -> Live:
         """A session whose frames somebody wants to see: awake, with one watcher more; raises Problem."""
         live = self.find(key)
         live.watchers += 1
         try:
-            async with live.lock:
+            async with self.held(live):
                 await self._awake(live)
         except BaseException:
             live.watchers -= 1
@@ -186,12 +187,16 @@ class Manager:
         """What the session's process answers, and which one it was; one that ends meanwhile is brought back and asked
         once more."""
         for last in (False, True):
-            process = await self._awake(live)
             try:
+                process = await self._awake(live)
                 return process, *await process.call(do, body, seconds=seconds, **head)
             except Gone:
+                if live.gone:
+                    raise Deleted from None
                 if last:
                     raise
+            except Problem as problem:
+                raise stale(live, problem.detail) if problem.slug == "stale-revision" else problem from None
         raise AssertionError
 
     async def _awake(self, live: Live) -> SessionProcess:
@@ -199,14 +204,16 @@ class Manager:
         async with live.waking:
             if live.process is not None and not live.process.lost:
                 return live.process
-            return await self._restored(live)
+            try:
+                return await self._restored(live)
+            except BaseException:
+                self._end(live, playing=live.playing)  # half restored it is of no use
+                raise
 
     async def _restored(self, live: Live) -> SessionProcess:
-        if live.key not in self.sessions:
-            raise Problem("not-found", "This session has been deleted.")
-        found = await self.store.run(rows.load(live.key))
-        if found is None:
-            raise Problem("not-found", "This session has been deleted.")
+        found = None if live.gone else await self.store.run(rows.load(live.key))
+        if found is None or live.gone:
+            raise Deleted
         base, state, edits, revisions, _ = found
         process = await self._process(live)
         sizes = [len(part) for part in (base, state, *edits)]
@@ -214,34 +221,62 @@ class Manager:
         described, _ = await process.call("restore", body, seconds=ANSWER, sizes=sizes, revisions=revisions)
         live.edits = len(edits)
         live.scene = live.scene or secrets.token_hex(8)
-        self._heard(live, described)
+        live.note(described)
         return process
 
     async def _process(self, live: Live) -> SessionProcess:
+        """A process for a session, which counts among those awake from now on."""
+        self.wanting.add(live)
+        try:
+            await self._make_room()
+        finally:
+            self.wanting.discard(live)
+        live.starting = True
+        try:
+            return await self._started(live)
+        finally:
+            live.starting = False
+
+    async def _make_room(self) -> None:
+        """Put sessions to sleep until one more may be awake; raises `busy`."""
+        while not self.closing:
+            awake = [live for live in (*self.sessions.values(), *self.making.values()) if live.awake]
+            if len(awake) < self.settings.awake:
+                return
+            # one that wants a process itself would wait for us
+            unused = [other for other in awake if not (other.in_use or other in self.wanting)]
+            if not unused:
+                break
+            other = min(unused, key=lambda o: (o.lock.locked(), o.used))
+            try:
+                async with asyncio.timeout(ANSWER) as patience, other.lock, other.waking:
+                    patience.reschedule(None)
+                    if not other.in_use:  # who wants it meanwhile waits, and wakes it again
+                        await self._sleep(other, PAUSE, unsaved=False)
+            except TimeoutError:
+                break
         if self.closing:
             raise Problem("shutting-down", "The service is shutting down; start it again and repeat the request.")
-        while len(awake := [other for other in self.sessions.values() if other.process is not None]) >= (
-            self.settings.awake
-        ):
-            resting = [other for other in awake if other.rests]
-            if not resting:
-                said = f"{len(awake)} sessions are running or being watched; pause one, or come back later."
-                raise Problem("busy", said, headers={"retry-after": "5"})
-            other = min(resting, key=lambda o: o.used)
-            async with other.lock:  # who wants it meanwhile waits, and wakes it again
-                await self._sleep(other, PAUSE, unsaved=False)
+        said = f"{len(awake)} sessions are running or being watched; pause one, or come back later."
+        raise Problem("busy", said, headers={"retry-after": "5"})
+
+    async def _started(self, live: Live) -> SessionProcess:
         loop = asyncio.get_running_loop()
+        process: SessionProcess | None = None  # until it is ours, and if it never is
 
         def on_event(head: dict[str, Any], body: bytes) -> None:
             if not loop.is_closed():
                 loop.call_soon_threadsafe(self._event, live, process, head, body)
 
-        process = await asyncio.to_thread(SessionProcess, self.settings.worker_memory, on_event)
+        process = await SessionProcess.begun(self.settings.worker_memory, on_event)
+        if live.gone:
+            process.kill()
+            raise Deleted
         live.process, live.asked, live.frame = process, False, b""
         return process
 
-    def _event(self, live: Live, process: SessionProcess, head: dict[str, Any], body: bytes) -> None:
-        if live.process is not process:
+    def _event(self, live: Live, process: SessionProcess | None, head: dict[str, Any], body: bytes) -> None:
+        if process is None or live.process is not process:
             return
         event = head["event"]
         if event == "frame":
@@ -250,10 +285,10 @@ class Manager:
         elif event == "lost":
             live.process = None
             live.asked = False
-            if not self.closing and live.key in self.sessions:
+            if not (self.closing or live.gone):
                 self._spawn(self._bring_back(live))
         else:
-            self._heard(live, head)
+            live.note(head)
             if event == "checkpoint":
                 stored = self.store.submit(rows.checkpoint(live.key, head, body))
                 stored.add_done_callback(lambda done: process.unstored() if done.exception() else None)
@@ -273,11 +308,11 @@ class Manager:
         if not (live.playing or live.watchers):
             return
         try:
-            async with live.lock:
+            async with self.held(live):
                 process = await self._awake(live)
             if live.playing:
                 described, _ = await process.call(live.going, seconds=ANSWER, fast=live.fast)
-                self._heard(live, described)
+                live.note(described)
         except Problem:
             live.tell()
 
@@ -287,7 +322,7 @@ class Manager:
         if process is not None:
             try:
                 described, _ = await process.call("pause", seconds=PAUSE)
-                self._heard(live, described)
+                live.note(described)
             except Problem:
                 live.described = {**live.described, "playing": False}
         return live.described
@@ -301,27 +336,37 @@ class Manager:
         try:
             described, state = await process.call("checkpoint", seconds=seconds)
             await self.store.run(rows.checkpoint(live.key, described, state))
-            self._heard(live, {**described, "playing": False})
+            live.note({**described, "playing": False})
         except Problem as problem:
             if problem.slug == "not-stored" and not unsaved:
                 raise
-        self._end(live)
+        if live.process is process:
+            self._end(live)
 
-    def _end(self, live: Live) -> None:
+    def _end(self, live: Live, *, playing: bool = False) -> None:
         process, live.process = live.process, None
-        live.playing = False
+        live.playing = playing
         if process is not None:
             process.kill()
 
-    async def _replace(self, live: Live, body: bytes, label: str, notes: list[str] | None) -> Live:
-        async with live.lock:
-            process = await self._awake(live)
-            described, base = await process.call("replace", body, seconds=ANSWER, slug="invalid-scene")
+    def _gone(self, live: Live) -> None:
+        """A session is forgotten: its process ends, its watchers hear of it."""
+        self.forget(live)
+        self._end(live)
+        live.tell()
+
+    async def _replace(
+        self, live: Live, body: bytes, label: str, notes: list[str] | None, when: Conditions
+    ) -> dict[str, Any]:
+        async with self.held(live):
+            when.check(live)
+            process, described, base = await self._ask(live, "replace", body, seconds=ANSWER, slug="invalid-scene")
             if not described.pop("same", False):
                 notes = live.notes if notes is None else notes
                 async with live.waking:
                     try:
-                        await self.store.run(rows.put(live.key, label or live.label, base, described, notes))
+                        kept = rows.put(live.key, label or live.label, base, described, notes, live.nonce)
+                        await self.store.run(kept)
                     except Problem:
                         await self._revert(live, process)
                         raise
@@ -330,14 +375,13 @@ class Manager:
                 live.edits = 0
                 live.tell()  # its process may have told the new revision before the new topology was known
             live.label = label or live.label
-            self._heard(live, described)
-        return live
+            return live.note(described)
 
     async def _revert(self, live: Live, process: SessionProcess) -> None:
         """What was done last could not be stored: the session goes on as if it had never been asked."""
         try:
             described, _ = await process.call("revert", seconds=ANSWER)
-            self._heard(live, described)
+            live.note(described)
         except Problem:
             self._end(live)  # it comes back as the store has it
 
@@ -347,25 +391,6 @@ class Manager:
         live.edits = 0
 
     # bookkeeping
-
-    def _heard(self, live: Live, head: dict[str, Any]) -> None:
-        described = {name: head[name] for name in _DESCRIBED if name in head}
-        if not described:
-            return
-        said = {name: live.described.get(name) for name in ("status", "playing", "revision", "warnings")}
-        live.described = {**live.described, **described}
-        live.wiring = head.get("wiring", live.wiring)
-        if not live.described.get("playing") and live.described.get("status") != "running":
-            live.playing = False  # it came to an end; one that was just brought back is about to play on
-        if any(live.described.get(name) != value for name, value in said.items()):
-            live.tell()
-
-    @contextmanager
-    def _room(self) -> Iterator[None]:
-        if len(self.sessions) >= self.settings.sessions:
-            said = f"There are {len(self.sessions)} sessions, as many as are kept; delete one that is not needed."
-            raise Problem("session-limit", said, headers={"retry-after": "60"})
-        yield
 
     def _spawn(self, work: Coroutine[Any, Any, Any]) -> asyncio.Task[Any]:
         task = asyncio.create_task(work)
@@ -391,14 +416,19 @@ class Manager:
                             await self._sleep(live, PAUSE, unsaved=False)
             used = [live.key for live in awake if live.playing or live.watchers or now - live.used < TICK]
             try:
-                gone = await self.store.run(rows.age(TICK, self.settings.session_seconds, used))
+                old = await self.store.run(rows.age(TICK, self.settings.session_seconds, used))
             except Problem:
                 continue
-            for key in gone:
-                if key in self.sessions:
-                    self._end(self.sessions.pop(key))
+            for live in [self.sessions[key] for key in old if key in self.sessions]:
+                with suppress(Problem):
+                    await self._outlived(live, now)
+
+    async def _outlived(self, live: Live, since: float) -> None:
+        """Forget a session that nobody used for long, unless somebody has used it `since`."""
+        async with self.held(live):
+            if live.used <= since and not (live.playing or live.watchers):
+                await self.store.run(rows.delete(live.key))
+                self._gone(live)
 
 
-_DESCRIBED = ("revision", "iteration", "time", "residual", "status", "message", "particles", "undo", "redo", "playing",
-              "energy", "units", "warnings")  # fmt: skip
 _KEPT = ("revision", "iteration", "status", "message", "particles", "created")

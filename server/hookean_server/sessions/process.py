@@ -53,6 +53,16 @@ class SessionProcess:
         for side in (self._listen, self._speak):
             threading.Thread(target=side, args=(ours,), name="hookean-session", daemon=True).start()
 
+    @classmethod
+    async def begun(cls, memory: int, on_event: Event) -> SessionProcess:
+        """A process, started beside the event loop; where whoever wants it is cancelled meanwhile, it is ended."""
+        starting = asyncio.ensure_future(asyncio.to_thread(cls, memory, on_event))
+        try:
+            return await asyncio.shield(starting)
+        except asyncio.CancelledError:
+            starting.add_done_callback(lambda done: None if done.exception() else done.result().kill())
+            raise
+
     async def call(self, do: str, body: bytes = b"", *, seconds: float, **head: Any) -> tuple[dict[str, Any], bytes]:
         """What the process answers. A process silent for `seconds` is killed; raises Problem."""
         future: Future[tuple[dict[str, Any], bytes]] = Future()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import secrets
 import sqlite3
 import time
 from dataclasses import dataclass
@@ -25,25 +26,36 @@ class Kept:
     created: float
     idle: float
     notes: list[str]
+    nonce: str  # of its creation, part of its ETags
 
 
-_COLUMNS = "sessions.key, label, revision, iteration, status, message, particles, created, idle, notes.sentences"
+_COLUMNS = (
+    "sessions.key, label, revision, iteration, status, message, particles, created, idle, notes.sentences, "
+    "creations.nonce"
+)
 
 
 def listed() -> Work:
     """All sessions, the latest first."""
 
     def work(db: sqlite3.Connection) -> list[Kept]:
-        joined = "sessions LEFT JOIN notes ON notes.key = sessions.key"
-        found = db.execute(f"SELECT {_COLUMNS} FROM {joined} ORDER BY created DESC, sessions.key")
-        return [Kept(*[*row[:-1], (row[-1] or "").splitlines()]) for row in found]
+        joined = "sessions LEFT JOIN notes USING (key) LEFT JOIN creations USING (key)"
+        found = db.execute(f"SELECT {_COLUMNS} FROM {joined} ORDER BY created DESC, sessions.key").fetchall()
+        return [Kept(*[*row[:-2], (row[-2] or "").splitlines(), row[-1] or _creation(db, row[0])]) for row in found]
 
     return work
 
 
-def put(key: str, label: str, base: bytes, described: dict[str, Any], notes: list[str]) -> Work:
-    """A session begun, or begun anew from another scene: its edits and checkpoint are those of the old one no more.
-    `notes` are sentences on the file it came from."""
+def _creation(db: sqlite3.Connection, key: str) -> str:
+    """The nonce of a session of a file that has none for it yet."""
+    nonce = secrets.token_hex(8)
+    db.execute("INSERT OR REPLACE INTO creations VALUES (?, ?)", (key, nonce))
+    return nonce
+
+
+def put(key: str, label: str, base: bytes, described: dict[str, Any], notes: list[str], nonce: str = "") -> Work:
+    """A session begun, or given another scene: its edits and checkpoint are those of the old one no more. `notes` are
+    sentences on the file it came from; `nonce` stands for its creation."""
 
     def work(db: sqlite3.Connection) -> None:
         db.execute("DELETE FROM edits WHERE key = ?", (key,))
@@ -59,6 +71,8 @@ def put(key: str, label: str, base: bytes, described: dict[str, Any], notes: lis
         if notes:
             lines = "\n".join(" ".join(note.split()) for note in notes)
             db.execute("INSERT INTO notes VALUES (?, ?)", (key, lines))
+        if nonce:
+            db.execute("INSERT OR REPLACE INTO creations VALUES (?, ?)", (key, nonce))
 
     return work
 
@@ -129,14 +143,12 @@ def delete(key: str) -> Work:
 
 
 def age(seconds: float, longest: float, awake: list[str]) -> Work:
-    """So many seconds of service have passed: sessions untouched for `longest` are forgotten; returns their keys."""
+    """So many seconds of service have passed; returns the keys of sessions that are untouched for `longest`."""
 
     def work(db: sqlite3.Connection) -> list[str]:
         db.execute("UPDATE sessions SET idle = idle + ?", (seconds,))
         db.executemany("UPDATE sessions SET idle = 0 WHERE key = ?", [(key,) for key in awake])
-        gone = [row[0] for row in db.execute("SELECT key FROM sessions WHERE idle > ?", (longest,))]
-        db.executemany("DELETE FROM sessions WHERE key = ?", [(key,) for key in gone])
-        return gone
+        return [row[0] for row in db.execute("SELECT key FROM sessions WHERE idle > ?", (longest,))]
 
     return work
 
