@@ -219,15 +219,24 @@ def test_a_second_deletion_does_not_take_the_session_made_after_the_first() -> N
     assert kept[2] == [], "the edit of the old session is not in the new one"
 
 
+class Begun(list[SessionProcess]):
+    """Every process of a session that is started; its start is over once `gate` is open."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.gate = threading.Event()
+        self.gate.set()
+
+
 @pytest.fixture
-def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[SessionProcess]]:
-    """Every process of a session that is started."""
-    found: list[SessionProcess] = []
+def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[Begun]:
+    found = Begun()
     init = SessionProcess.__init__
 
     def noted(self: SessionProcess, *given: Any) -> None:
         init(self, *given)
         found.append(self)
+        assert found.gate.wait(HANG)
 
     monkeypatch.setattr(SessionProcess, "__init__", noted)
     yield found
@@ -235,26 +244,33 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[SessionProcess]]:
         process.kill()
 
 
-def test_a_session_that_is_deleted_while_it_wakes_leaves_no_process(begun: list[SessionProcess]) -> None:
+def test_a_session_that_is_deleted_while_it_wakes_leaves_no_process(begun: Begun) -> None:
     async def raced() -> None:
-        store = SlowStore("load")
+        store = Store(None)
         manager = await opened(store)
-        live = manager.find("a")
-        await manager._sleep(live, HANG)
+        await manager._sleep(manager.find("a"), HANG)
+        begun.gate.clear()
         waking = asyncio.create_task(manager.export("a", "scene"))
-        await store.begun.wait()
+        while len(begun) < 2:
+            await asyncio.sleep(0.01)
         await manager.delete("a")
-        store.gate.set()
-        with pytest.raises(Problem, match="deleted"):
-            await waking
-        wait_for(lambda: all(process.lost for process in begun))
+        begun.gate.set()
+        found = await asyncio.gather(waking, return_exceptions=True)
+        assert isinstance(found[0], Problem) and "deleted" in found[0].detail
+        assert all(not process.process.is_alive() or process.lost for process in await ended(begun))
         await manager.close()
         store.close()
 
     asyncio.run(raced())
 
 
-def test_a_client_that_leaves_while_a_session_wakes_leaves_it_whole(begun: list[SessionProcess]) -> None:
+async def ended(begun: Begun) -> Begun:
+    """The processes, once they had the time to end that they are given."""
+    await asyncio.to_thread(lambda: [process.join(5.0) for process in begun])
+    return begun
+
+
+def test_a_client_that_leaves_while_a_session_wakes_leaves_it_whole(begun: Begun) -> None:
     """What it had begun is ended, and the next one to ask has the session awake."""
 
     async def left() -> None:
@@ -278,7 +294,7 @@ def test_a_client_that_leaves_while_a_session_wakes_leaves_it_whole(begun: list[
     asyncio.run(left())
 
 
-def test_no_more_are_awake_than_may_be_however_many_are_asked_for_at_once(begun: list[SessionProcess]) -> None:
+def test_no_more_are_awake_than_may_be_however_many_are_asked_for_at_once(begun: Begun) -> None:
     async def asked() -> int:
         store = Store(None)
         manager = await opened(store, awake=2)
