@@ -30,7 +30,7 @@ from hookean_server.access import Table
 from hookean_server.guard import Guard, Origins
 from hookean_server.jobs import routes as job_routes
 from hookean_server.jobs.manager import Jobs
-from hookean_server.limits import BodyLimit
+from hookean_server.limits import BodyLimit, Paced
 from hookean_server.logs import Seen
 from hookean_server.manners import Always, Manners
 from hookean_server.metrics import Metrics
@@ -43,6 +43,7 @@ from hookean_server.sessions.manager import Manager
 from hookean_server.settings import Settings
 from hookean_server.store import Store
 from hookean_server.tokens import Tokens, chosen
+from hookean_server.visits import Visits
 
 log = logging.getLogger("hookean.server")
 
@@ -104,6 +105,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     for part in parts:
         app.include_router(part.router)
     # the last one added is the outermost
+    app.add_middleware(Visits, settings=settings)
+    app.add_middleware(Paced, settings=settings)
     app.add_middleware(BodyLimit, settings=settings)
     app.add_middleware(Guard, settings=settings, tokens=app.state.tokens, table=table)
     app.add_middleware(Manners)

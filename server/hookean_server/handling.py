@@ -6,6 +6,7 @@ import asyncio
 import json
 import shutil
 import tempfile
+from collections.abc import Coroutine
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -32,10 +33,20 @@ async def compute(request: Request, task: str, options: dict[str, Any], *, once:
     the body that says so."""
     pool, settings = _service(request)
     with pool.place():
-        body = await read_json(request)
-        single = once(body) if callable(once) else bool(once)
-        job = Job(task, options, body, settings.solve_seconds + settings.grace_seconds, single)
-        return respond(await answered(request, pool, job))
+        job = _job(settings, task, options, await read_json(request), once)
+        return respond(await answered(request, pool.run(job)))
+
+
+async def compute_for_anyone(request: Request, task: str, options: dict[str, Any], *, once: Any = False) -> Response:
+    """`compute` for a request that needs no token, within the budgets of visits."""
+    pool, settings = _service(request)
+    job = _job(settings, task, options, await read_json(request), once)
+    return respond(await answered(request, request.scope["visit"].run(pool, job)))
+
+
+def _job(settings: Settings, task: str, options: dict[str, Any], body: bytes, once: Any) -> Job:
+    single = once(body) if callable(once) else bool(once)
+    return Job(task, options, body, settings.solve_seconds + settings.grace_seconds, single)
 
 
 async def compute_upload(request: Request, task: str, options: dict[str, Any], *, seconds: float = 0.0) -> Response:
@@ -69,7 +80,7 @@ async def _uploaded(request: Request, task: str, options: dict[str, Any], second
             given = {**options, "path": str(path), **told}
             longest = 2.0 * settings.read_seconds + seconds + settings.grace_seconds
             job = Job(task, given, b"", longest, once=True)
-            return await answered(request, pool, job)
+            return await answered(request, pool.run(job))
         finally:
             await asyncio.to_thread(shutil.rmtree, folder, ignore_errors=True)
 
@@ -78,9 +89,9 @@ def _service(request: Request) -> tuple[Pool, Settings]:
     return request.app.state.pool, request.app.state.settings
 
 
-async def answered(request: Request, pool: Pool, job: Job) -> Reply:
+async def answered(request: Request, running: Coroutine[Any, Any, Reply]) -> Reply:
     """The worker's answer; a client that leaves stops the worker."""
-    work = asyncio.ensure_future(pool.run(job))
+    work = asyncio.ensure_future(running)
     gone = asyncio.ensure_future(_left(request))
     try:
         await asyncio.wait({work, gone}, return_when=asyncio.FIRST_COMPLETED)

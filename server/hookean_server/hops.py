@@ -40,11 +40,11 @@ def solve(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
         known = ", ".join(f"/{one}" for one in FUNCTIONS)
         raise InputError("/pointer", f"there is no such function; there are {known}")
     function = FUNCTIONS[name]
-    inputs = Inputs(function, value, min(LONGEST, options["seconds"]), options["largest"])
+    inputs = Inputs(function, value, min(LONGEST, options["seconds"]), options["largest"], options["bytes"])
     clock.lap("decode")
     found = function.run(inputs, cancelled)
     clock.lap("solve")
-    answer = {"values": function.answer(found), "errors": [], "warnings": inputs.warnings}
+    answer = {"values": function.answer(found, inputs.bytes), "errors": [], "warnings": inputs.warnings}
     text = json.dumps(answer).encode()
     clock.lap("encode")
     return Done(text, timing=clock.parts)

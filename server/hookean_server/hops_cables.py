@@ -168,8 +168,7 @@ def _frames(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
     from hookean.discretize.curves import divide
 
     number, links, factor = inputs.one("Chains"), inputs.one("Links"), inputs.one("Length factor")
-    if number * links > inputs.largest:
-        raise InputError("/Links", f"this makes {number * links} springs; at most {inputs.largest} are allowed")
+    inputs.makes(number * links, "/Links")
     near, far = (divide(inputs.one(name), number) for name in ("Near frame", "Far frame"))
     closed = [np.allclose(side[0], side[-1]) for side in (near, far)]
     ends = [side[:-1] if all(closed) else side for side in (near, far)]

@@ -87,11 +87,11 @@ def _run(operation: Operation, inputs: Inputs) -> dict[str, Any]:
     takes = _TAKES[operation.takes].name
     geometry = _taken(operation, inputs, takes)
     given = {name: inputs.one(_OPTIONS[name][0]) for name in operation.options}
-    made = 1
+    made = len(geometry.Faces) if operation.at == "breps:mesh_faces" and hasattr(geometry, "Edges") else 1
     for name, (kind, _) in operation.options.items():
-        made *= given[name] if kind == "count" else 1
-        if made > inputs.largest:
-            raise InputError(f"/{_OPTIONS[name][0]}", f"this makes {made} pieces; at most {inputs.largest} are allowed")
+        if kind == "count":
+            made *= given[name]
+            inputs.makes(made, f"/{_OPTIONS[name][0]}")
     try:
         found = operation.function(geometry, **given)
     except InputError as error:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
-from hookean_server.hops_values import TYPES, read, write
+from hookean_server.hops_values import SIZES, TYPES, read, size, write
 from hookean_server.tasks import Cancelled
 
 Floats = NDArray[np.float64]
@@ -106,23 +106,34 @@ class Function:
                 "Category": "Hookean", "Subcategory": self.group, "Inputs": [p.described() for p in self.inputs],
                 "Outputs": [p.described() for p in self.outputs]}  # fmt: skip
 
-    def answer(self, found: dict[str, Any]) -> list[dict[str, Any]]:
-        """The outputs as Hops reads them."""
-        return [{"ParamName": p.name, "InnerTree": _branches(p, found[p.name])} for p in self.outputs]
+    def answer(self, found: dict[str, Any], most: int) -> list[dict[str, Any]]:
+        """The outputs as Hops reads them; InputError where they would be larger than `most` bytes."""
+        trees = [(p, _tree(p, found[p.name])) for p in self.outputs]
+        _afford(sum(size(p.kind, values) for p, tree in trees for values in tree.values()), most, "/")
+        return [
+            {"ParamName": p.name, "InnerTree": {path: write(p.kind, values) for path, values in tree.items()}}
+            for p, tree in trees
+        ]
 
 
-def _branches(parameter: Parameter, value: Any) -> dict[str, Any]:
-    if parameter.tree:
-        return {path: write(parameter.kind, values) for path, values in value.items()}
-    return {"{0}": write(parameter.kind, [value] if parameter.one else value)}
+def _tree(parameter: Parameter, value: Any) -> dict[str, Any]:
+    """The values of an output by the paths of their branches."""
+    return value if parameter.tree else {"{0}": [value] if parameter.one else value}
+
+
+def _afford(needed: int, most: int, where: str) -> None:
+    if needed > most:
+        said = f"the answer would have about {needed / 1e6:.0f} MB; at most {most / 1e6:.0f} MB are allowed"
+        raise InputError(where, f"{said}. Ask for fewer pieces, or for a part at a time")
 
 
 class Inputs:
     """The values of a request by the names of their inputs: every branch of a tree, in order, is one list."""
 
-    def __init__(self, function: Function, value: dict[str, Any], seconds: float, largest: int) -> None:
+    def __init__(self, function: Function, value: dict[str, Any], seconds: float, largest: int, most: int) -> None:
         self.warnings: list[str] = []
-        self.seconds, self.largest = seconds, largest
+        self.seconds, self.largest, self.bytes = seconds, largest, most
+        self.function = function
         units = str(value.get("modelunits") or "Meters")
         self.units = UNITS.get(units, "m")
         if units not in UNITS:
@@ -149,6 +160,13 @@ class Inputs:
         self._given[name] = {
             path: [read(parameter.kind, value, f"/{name}") for value in branch] for path, branch in tree.items()
         }
+
+    def makes(self, pieces: int, where: str) -> None:
+        """InputError where so many pieces, in each output that is a list, are more than may be asked for."""
+        if pieces > self.largest:
+            raise InputError(where, f"this makes {pieces} pieces; at most {self.largest} are allowed")
+        each = sum(SIZES[p.kind] for p in self.function.outputs if not p.one or p.kind in ("Mesh", "Curve"))
+        _afford(pieces * each, self.bytes, where)
 
     def tree(self, name: str) -> dict[str, list[Any]]:
         """The branches of an input by their paths."""

@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import Any
 
 import h11
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
@@ -16,6 +17,8 @@ from hookean_server.problems import MEDIA_TYPE, Problem
 from hookean_server.settings import Settings
 
 AT_ONCE = 32 * 1024  # bytes taken from a socket at a time
+PART = 256 * 1024  # bytes of an answer given to a socket at a time
+RATE = 2**20  # bytes of an answer that a client reads in a second, at least
 
 
 class BodyLimit:
@@ -81,15 +84,49 @@ class Body:
         return message
 
 
+class Paced:
+    """Gives a socket large answers in parts as they are read: the socket copies what it has to keep. A client that
+    reads too slowly is cut off."""
+
+    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+        self.app, self.seconds = app, settings.write_seconds
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """One request."""
+
+        async def paced(message: Message) -> None:
+            body = message.get("body", b"")
+            if message["type"] != "http.response.body" or len(body) <= PART:
+                await send(message)
+                return
+            try:
+                async with asyncio.timeout(self.seconds + len(body) / RATE):
+                    for start in range(0, len(body), PART):
+                        more = start + PART < len(body) or message.get("more_body", False)
+                        await send({**message, "body": body[start : start + PART], "more_body": more})
+                        await asyncio.sleep(0)  # a connection that ended is noticed, and others have their turn
+            except TimeoutError:
+                if cut := scope.get("state", {}).get("cut"):
+                    cut()
+                    await asyncio.sleep(0)  # the connection takes notice
+                raise ClientDisconnect from None
+
+        await self.app(scope, receive, paced if scope["type"] == "http" else send)
+
+
 class Connection(H11Protocol):
-    """One connection: takes little at a time, gives headers a time to arrive, answers what is no HTTP as a problem."""
+    """One connection: takes little at a time, gives headers a time to arrive and answers a time to be read, answers
+    what is no HTTP as a problem."""
 
     header_seconds = 30.0
+    write_seconds = 30.0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Begin to wait for headers."""
         transport.max_size = AT_ONCE  # type: ignore[attr-defined]  # of asyncio's transports for sockets
         super().connection_made(transport)  # type: ignore[arg-type]
+        self._unread: asyncio.TimerHandle | None = None
+        self.app_state = {**self.app_state, "cut": self.transport.abort}  # of the state of each request
         self._late: asyncio.TimerHandle | None = None
         self._expect()
 
@@ -104,7 +141,19 @@ class Connection(H11Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """The connection is closed."""
         self._expect_no_more()
+        self._is_read()
         super().connection_lost(exc)
+
+    def pause_writing(self) -> None:
+        """The client reads more slowly than it is answered."""
+        super().pause_writing()
+        self._is_read()
+        self._unread = self.loop.call_later(self.write_seconds, self.transport.abort)
+
+    def resume_writing(self) -> None:
+        """It has read most of what there is."""
+        self._is_read()
+        super().resume_writing()
 
     def send_400_response(self, msg: str) -> None:
         """What is no HTTP."""
@@ -120,6 +169,11 @@ class Connection(H11Protocol):
             ):
                 self.transport.write(self.conn.send(event) or b"")
         self.transport.close()
+
+    def _is_read(self) -> None:
+        if self._unread is not None:
+            self._unread.cancel()
+            self._unread = None
 
     def _expect(self) -> None:
         self._late = self.loop.call_later(self.header_seconds, self.transport.close)

@@ -101,6 +101,8 @@ class Pool:
 
     async def run(self, job: Job) -> Reply:
         """What a worker answers to `job`; cancelling this stops the worker. Raises Problem."""
+        if self.stopping.is_set():
+            raise Problem("shutting-down", "The service stopped before this was done.")
         self.start()
         self.jobs.put(job)
         try:
@@ -156,6 +158,7 @@ class Lane(threading.Thread):
                 continue
             self.state = "busy"
             self._serve(job)
+            del job  # and its answer, which is the client's now
             if self.process is None and not self.pool.stopping.is_set():
                 self._replace()
         self.kill()

@@ -62,7 +62,7 @@ async def scene(request: Request, example: Id) -> Response:
     pool, settings = request.app.state.pool, request.app.state.settings
     with pool.place():
         job = Job("example", {"name": name}, b"", settings.file_seconds + settings.grace_seconds)
-        return respond(await answered(request, pool, job))
+        return respond(await answered(request, pool.run(job)))
 
 
 def read_example(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:

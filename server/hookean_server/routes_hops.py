@@ -11,7 +11,7 @@ from starlette.responses import JSONResponse, Response
 
 from hookean_server import openapi
 from hookean_server.access import Access, marked
-from hookean_server.handling import compute
+from hookean_server.handling import compute_for_anyone
 from hookean_server.hops import FUNCTIONS
 from hookean_server.operations import uses_rhino
 from hookean_server.problems import Problem
@@ -34,8 +34,8 @@ async def root(request: Request) -> Response:
 async def solve(request: Request) -> Response:
     """Answers and refusals are both as Hops reads them: `values`, `errors` and `warnings`."""
     settings = request.app.state.settings
-    options = {"seconds": settings.solve_seconds, "largest": settings.largest_count}
-    return await compute(request, "hops", options, once=uses_rhino)
+    options = {"seconds": settings.solve_seconds, "largest": settings.largest_count, "bytes": settings.visit_limit}
+    return await compute_for_anyone(request, "hops", options, once=uses_rhino)
 
 
 @router.get("/{function}", summary="Hops' description of a function", **openapi.hops_description())

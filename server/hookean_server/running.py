@@ -21,11 +21,13 @@ from hookean_server.ending import Activity, Server, Watch
 from hookean_server.limits import Connection, Socket
 from hookean_server.sessions import wire
 from hookean_server.settings import Settings
+from hookean_server.workers import return_pages
 
 
 def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, idle_seconds: float) -> None:
     """Serve on a socket that listens; see `main.serve`."""
-    Connection.header_seconds = settings.header_seconds
+    Connection.header_seconds, Connection.write_seconds = settings.header_seconds, settings.write_seconds
+    return_pages()
     as_json = logs.begin(settings.log, queued=True)
     app = create_app(settings)
     activity = Activity(app)

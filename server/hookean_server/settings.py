@@ -19,11 +19,18 @@ class Settings:
     """Processes that solve; 0: one for each core, at most four."""
     queue: int = 16
     """Requests that may wait or be read while all workers are busy; the next one is told to come back."""
+    visits: int = 8
+    """Requests without a token that may wait or be read; the next one is told to come back. See `visits`."""
+    visit_limit: int = 160 * MIB
+    """Largest answer to a request without a token, as estimated from what it asks for."""
     json_limit: int = 16 * MIB
     file_limit: int = 64 * MIB
     header_limit: int = 16 * 1024
     body_seconds: float = 30.0
     """Time a client has to send its body."""
+    write_seconds: float = 30.0
+    """Time a client may read nothing of an answer that waits for it; of a large one, also each MiB more takes a second
+    at most."""
     solve_seconds: float = 300.0
     """Longest solve; a scene with a longer or no `time_limit` ends here with the status `time_limit`."""
     file_seconds: float = 180.0

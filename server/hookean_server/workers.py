@@ -151,6 +151,16 @@ def _limit_memory(memory: int) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (now + memory, now + memory))
 
 
+def return_pages() -> None:
+    """Give the memory of large values back to the system as soon as they are gone, not when its neighbours are."""
+    if sys.platform != "linux":
+        return
+    with suppress(Exception):
+        import ctypes
+
+        ctypes.CDLL(None).mallopt(-3, 256 * 2**10)  # M_MMAP_THRESHOLD; set once, it does not grow
+
+
 def keep_pages() -> None:
     """Take arrays up to 64 MB from memory that was used before: fresh pages cost more than the sums on them."""
     if sys.platform != "linux":

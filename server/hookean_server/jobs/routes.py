@@ -157,4 +157,4 @@ async def _partial(request: Request, live: Live, row: rows.Row) -> bytes:
 async def _worked(request: Request, job: Job) -> Reply:
     pool = request.app.state.pool
     with pool.place():
-        return await answered(request, pool, job)
+        return await answered(request, pool.run(job))
