@@ -11,15 +11,53 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 FEW = 300
+AT_ONCE = 2**22  # distances
 
 
 def tree(points: Floats) -> Any:
     """What answers `query` and `query_ball_point` as a cKDTree of `points` (n, 3) does, for n of at least 1."""
-    if len(points) <= FEW:
-        return Few(points)
+    return Few(points) if len(points) <= FEW else _large(points)
+
+
+def _large(points: Floats) -> Any:
     from scipy.spatial import cKDTree
 
     return cKDTree(points)
+
+
+def first(points: Floats, places: Floats, radius: float) -> Ints:
+    """For each place (m, 3) the first of `points` (n, 3) within `radius`; -1 where there is none.
+
+    However many points are alike or near a place, the time grows as (n + m) log(n)^2: whether the first half of some
+    points has a near one is asked before the points are.
+    """
+    found = np.full(len(places), -1, dtype=np.int64)
+    if not len(points) or not len(places):
+        return found
+    _, kept = np.unique(points, axis=0, return_index=True)
+    kept = np.sort(kept)
+    distinct = points[kept]
+    bound = max(radius * 1.001, 1e-150)  # also squared; what is farther need not be looked for
+    distances, which = tree(distinct).query(places, k=2, distance_upper_bound=bound)
+    near = distances <= radius
+    found[near[:, 0]] = which[near[:, 0], 0]
+    blocks = [(0, len(distinct), np.flatnonzero(near[:, 1]))]
+    while blocks:
+        start, stop, rows = blocks.pop()
+        if not len(rows):
+            continue
+        if stop - start <= FEW:
+            for some in np.array_split(rows, 1 + len(rows) * (stop - start) // AT_ONCE):
+                apart = np.sqrt(sum((places[some, i, None] - distinct[None, start:stop, i]) ** 2 for i in range(3)))
+                hits = apart <= np.maximum(radius, apart.min(axis=1))[:, None]  # there is one, whatever the rounding
+                found[some] = start + np.argmax(hits, axis=1)
+            continue
+        middle = (start + stop) // 2
+        nearest = _large(distinct[start:middle]).query(places[rows], k=1, distance_upper_bound=bound)[0]
+        there = nearest <= radius
+        blocks += [(start, middle, rows[there]), (middle, stop, rows[~there])]
+    found[found >= 0] = kept[found[found >= 0]]
+    return found
 
 
 class Few:

@@ -14,6 +14,7 @@ An element whose corners are all joined to p, and that is much longer than those
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -33,6 +34,7 @@ NEAR = 0.1  # of the length of an element, and of the distance to a corner that 
 APART = 0.5  # of the shortest element at the particle
 TIE = 3.0  # times the shortest element at the particle: what is as long or longer, between joined corners, is a tie
 MOST = 2_000  # particles compared with elements of one size of a force; of more, so many at even steps
+LEAST, ALTOGETHER = 20, 100_000  # of many forces fewer for each, so that the time grows with the scene alone
 MOST_LISTED = 10
 ROUNDING = 1e-12  # of the size of the scene: so far away is on it
 ALL_PAIRS = 200_000  # up to so many, comparing all is quicker than a tree, whose module takes long to import
@@ -52,22 +54,24 @@ def near_misses(system: System) -> list[str]:
         if part.rows.stop > part.rows.start
     ]
     forces.sort(key=lambda force: force.part.number)
-    owners = _owners(forces, len(system.x))
-    used = owners.any(axis=1)
-    best: dict[tuple[int, int], tuple[float, str]] = {}
+    owners = _Owners(forces, len(system.x))
+    spacing = _spacing(forces, len(system.x))
+    most = min(MOST, max(LEAST, ALTOGETHER // max(1, len(forces))))
+    best: dict[tuple[int, int], _Met] = {}
     for g, force in enumerate(forces):
-        foreign = np.flatnonzero(used & ~_owned(owners, g))
-        near = _compared(system.x, force, foreign) if len(foreign) else None
-        if near is None or not len(near.rows):
+        near = _compared(system.x, force, owners.beside(system.x, g, force), most)
+        if not len(near.rows):
             continue
-        near = near.take(near.distance < _reach(system.x, forces, owners, force.take(near.rows), near.particles))
-        for f, share, sentence in _sentences(forces, owners, g, near):
-            pair = (min(f, g), max(f, g))
-            if share > best.get(pair, (0.0, ""))[0]:
-                best[pair] = (share, sentence)
-    said = [best[pair][1] for pair in sorted(best)]
-    more = len(said) - MOST_LISTED
-    return [*said[:MOST_LISTED], f"particles of {more} more pairs of forces nearly meet"] if more > 0 else said
+        elements = force.take(near.rows)
+        near = near.take(near.distance < _reach(system.x, owners, spacing, elements, near.particles))
+        for met in _met(owners, force, g, near):
+            pair = (min(met.f, g), max(met.f, g))
+            if pair not in best or met.share > best[pair].share:
+                best[pair] = met
+    names = Counter(force.name for force in system.scene.forces)
+    said = [best[pair].sentence(forces, names) for pair in sorted(best)[:MOST_LISTED]]
+    more = len(best) - MOST_LISTED
+    return [*said, f"particles of {more} more pairs of forces nearly meet"] if more > 0 else said
 
 
 @dataclass(frozen=True)
@@ -151,30 +155,56 @@ class _Force:
         reach = np.concatenate([(0.5 + NEAR) * self.along, farthest + NEAR * self.shortest])
         return np.concatenate(middles), np.where(np.isfinite(reach), reach, 0.0)
 
-    @property
-    def name(self) -> str:
-        """What a person calls it: its name where no other force has that, else its place in the scene."""
-        name = self.part.force.name
-        names = [force.name for force in self.system.scene.forces]
-        return name if name and names.count(name) == 1 else f"/forces/{self.part.number}"
+
+class _Owners:
+    """The forces that each particle belongs to, by their places among those compared, in ascending order."""
+
+    def __init__(self, forces: list[_Force], count: int) -> None:
+        mine = [np.unique(force.index) for force in forces]
+        self.totals = np.array([len(particles) for particles in mine], np.int64)
+        particles, owner = np.concatenate(mine), np.repeat(np.arange(len(mine)), self.totals)
+        order = np.lexsort((owner, particles))
+        self.forces = owner[order]
+        self.start = np.searchsorted(particles[order], np.arange(count + 1))
+        self.pairs = np.unique(owner * count + particles)
+        self.count = count
+        self.mine = mine
+        self.used = np.flatnonzero(np.diff(self.start))
+        self._own = np.zeros(count, bool)
+        self._along: tuple[int, Ints, Floats] | None = None
+
+    def of(self, particles: Ints) -> tuple[Ints, Ints]:
+        """Rows of `particles` and a force of each; as many as they have forces."""
+        many = self.start[particles + 1] - self.start[particles]
+        rows = np.repeat(np.arange(len(particles)), many)
+        within = np.arange(len(rows)) - np.repeat(np.cumsum(many) - many, many)
+        return rows, self.forces[self.start[particles][rows] + within]
+
+    def has(self, particles: Ints, forces: Ints) -> Mask:
+        """Whether each of some particles belongs to the force beside it."""
+        wanted = forces * self.count + particles
+        return np.asarray(self.pairs[np.minimum(np.searchsorted(self.pairs, wanted), len(self.pairs) - 1)] == wanted)
+
+    def beside(self, x: Floats, g: int, force: _Force) -> Ints:
+        """Particles of other forces that are not beyond all elements of force g along the longest side of the scene."""
+        if self._along is None:
+            axis = int(np.argmax(np.ptp(x.take(self.used, axis=0), axis=0)))
+            order = self.used[np.argsort(x[self.used, axis], kind="stable")]
+            self._along = axis, order, x[order, axis]
+        axis, order, sorted_ = self._along
+        middle, reach = force.spheres()
+        least = (middle[:, axis] - reach).min(initial=np.inf)
+        most = (middle[:, axis] + reach).max(initial=-np.inf)
+        rounding = ROUNDING * np.abs(sorted_).max(initial=0.0)
+        low, high = np.searchsorted(sorted_, (least - rounding, most + rounding), "left")
+        found = np.sort(order[low:high])
+        self._own[self.mine[g]] = True
+        found = found[~self._own[found]]
+        self._own[self.mine[g]] = False
+        return np.asarray(found)
 
 
-def _owners(forces: list[_Force], count: int) -> NDArray[np.uint64]:
-    """For each particle the forces it belongs to, as bits (count, words)."""
-    owners = np.zeros((count, (len(forces) + 63) // 64), np.uint64)
-    for g, force in enumerate(forces):
-        mine = np.zeros(count, bool)
-        mine[force.index.ravel()] = True
-        owners[mine, g // 64] |= np.uint64(1 << g % 64)
-    return owners
-
-
-def _owned(owners: NDArray[np.uint64], g: int) -> Mask:
-    """Which particles belong to force g."""
-    return np.asarray(owners[:, g // 64] & np.uint64(1 << g % 64), dtype=bool)
-
-
-def _compared(x: Floats, force: _Force, foreign: Ints) -> _Near:
+def _compared(x: Floats, force: _Force, foreign: Ints, most: int = MOST) -> _Near:
     """Elements and foreign particles with less than a tenth of the element's length between them.
 
     Elements are compared by their size, within a factor of two, in cells as large as they are.
@@ -185,9 +215,9 @@ def _compared(x: Floats, force: _Force, foreign: Ints) -> _Near:
     for octave in np.flatnonzero(np.bincount(size + 1000)) - 1000:
         rows, radius = np.flatnonzero((size == octave) & (reach > 0.0)), float(np.ldexp(1.0, int(octave)))
         near = foreign
-        if len(near) > MOST:
+        if len(near) > most:
             near = near[_beside(x.take(near, axis=0), middle[rows], radius)]
-        some = near[:: max(1, -(-len(near) // MOST))]
+        some = near[:: max(1, -(-len(near) // most))]
         rows = rows[_beside(middle[rows], x.take(some, axis=0), radius)]
         first, second = _pairs(middle[rows], x.take(some, axis=0), radius)
         pairs = _Near(rows[first], some[second], np.zeros(len(first)), len(some) == len(near))
@@ -262,48 +292,75 @@ def _from_triangles(points: Floats, corners: Floats) -> Floats:
     return np.where(inside, height, nearest)
 
 
-def _reach(x: Floats, forces: list[_Force], owners: NDArray[np.uint64], elements: _Elements, particles: Ints) -> Floats:
+def _reach(x: Floats, owners: _Owners, spacing: Floats, elements: _Elements, particles: Ints) -> Floats:
     """How near each particle must be to lie on its element."""
-    spacing = _spacing(forces, particles, len(x))
-    reach = np.minimum(NEAR * elements.length, APART * spacing)
-    tie = elements.length >= TIE * spacing
+    shortest = spacing[particles]
+    reach = np.minimum(NEAR * elements.length, APART * shortest)
+    tie = elements.length >= TIE * shortest
+    rows, forces = owners.of(particles)
     for corner in elements.corners.T:
-        joined = (owners[corner] & owners[particles]).any(axis=1)
+        joined = np.zeros(len(particles), bool)
+        joined[rows[owners.has(corner[rows], forces)]] = True
         away = NEAR * lengths(x.take(corner, axis=0) - x.take(particles, axis=0))
         reach = np.where(joined, np.minimum(reach, away), reach)
         tie &= joined
     return np.where(tie, 0.0, reach)
 
 
-def _spacing(forces: list[_Force], particles: Ints, count: int) -> Floats:
+def _spacing(forces: list[_Force], count: int) -> Floats:
     """The shortest line at each particle, infinite where there is none."""
-    wanted = np.zeros(count, bool)
-    wanted[particles] = True
     shortest = np.full(count, np.inf)
     for force in forces:
-        there = wanted[force.lines].any(axis=1) & (force.along > 0.0)
-        for end in force.lines[there].T:
-            np.minimum.at(shortest, end, force.along[there])
-    return shortest[particles]
+        long = force.along > 0.0
+        for end in force.lines[long].T:
+            np.minimum.at(shortest, end, force.along[long])
+    return shortest
 
 
-def _sentences(
-    forces: list[_Force], owners: NDArray[np.uint64], g: int, near: _Near
-) -> Iterator[tuple[int, float, str]]:
-    """For each force with particles on force g: its number here, the part of its particles, and a sentence."""
-    kind, system = forces[g].take(near.rows).kind, forces[g].system
+@dataclass(frozen=True)
+class _Met:
+    """Particles of force f that lie on elements of force g: how many of all, whether all were compared, the first one
+    with its distance, and the kind of its element."""
+
+    f: int
+    g: int
+    count: int
+    total: int
+    all: bool
+    first: int
+    away: float
+    kind: int
+
+    @property
+    def share(self) -> float:
+        return self.count / self.total
+
+    def sentence(self, forces: list[_Force], names: Counter[str]) -> str:
+        """What a person reads of it."""
+        system = forces[self.g].system
+        spot = ", ".join(f"{c:.6g}" for c in system.x[self.first])
+        away = self.away * (self.away > ROUNDING * system.size)
+        one, other = (
+            force.name if force.name and names[force.name] == 1 else f"/forces/{number}"
+            for force, number in ((forces[i].part.force, forces[i].part.number) for i in (self.f, self.g))
+        )
+        return (
+            f"{one}: {'' if self.all else 'at least '}{self.count} of {self.total} particles lie on {WORDS[self.kind]} "
+            f"of {other}, within a tenth of their length, but are not joined to it; the first is particle {self.first} "
+            f"at ({spot}), {away:.3g} {system.scene.units.length} away. Divide both the same way or raise "
+            "weld_tolerance"
+        )
+
+
+def _met(owners: _Owners, force: _Force, g: int, near: _Near) -> Iterator[_Met]:
+    """What of each other force lies on force g."""
+    kind = force.take(near.rows).kind
     order = np.lexsort((near.distance, kind, near.particles))
     near, kind = near.take(order), kind[order]
-    for f in np.flatnonzero([_owned(owners[near.particles], f).any() for f in range(len(forces))]).tolist():
-        mine = np.flatnonzero(_owned(owners[near.particles], f))
-        first, away = near.particles[mine[0]], float(near.distance[mine[0]])
-        away *= away > ROUNDING * system.size
-        count, total = len(np.unique(near.particles[mine])), int(np.count_nonzero(_owned(owners, f)))
-        spot = ", ".join(f"{c:.6g}" for c in system.x[first])
-        least, what = "" if near.all else "at least ", WORDS[kind[mine[0]]]
-        sentence = (
-            f"{forces[f].name}: {least}{count} of {total} particles lie on {what} of {forces[g].name}, within a tenth "
-            f"of their length, but are not joined to it; the first is particle {first} at ({spot}), {away:.3g} "
-            f"{system.scene.units.length} away. Divide both the same way or raise weld_tolerance"
+    first = np.flatnonzero(np.diff(near.particles, prepend=-1))  # of each particle the nearest
+    rows, forces = owners.of(near.particles[first])
+    found, at, counts = np.unique(forces, return_index=True, return_counts=True)
+    for f, i, count in zip(found.tolist(), first[rows[at]].tolist(), counts.tolist(), strict=True):
+        yield _Met(
+            f, g, count, int(owners.totals[f]), near.all, int(near.particles[i]), float(near.distance[i]), int(kind[i])
         )
-        yield f, count / total, sentence

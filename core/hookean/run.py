@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -26,9 +27,10 @@ def relax(scene: Scene, *, progress: Progress | None = None, cancelled: Callable
 
     `cancelled` is asked between bursts of iterations. Raises InputError where the scene does not fit together.
     """
+    began = time.monotonic()
     system = compile(scene)
     state = system.start()
-    return relax_state(system, state, solver(scene.settings.solver), progress, cancelled)
+    return relax_state(system, state, solver(scene.settings.solver), progress, cancelled, began)
 
 
 def relax_state(
@@ -37,8 +39,11 @@ def relax_state(
     method: Solver,
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
+    began: float | None = None,
 ) -> Result:
-    """`relax` from a state; `state` is left at the last good shape."""
+    """`relax` from a state; `state` is left at the last good shape. `time_limit` counts from `began`, a time of
+    `time.monotonic` [s], or from now."""
+    began = time.monotonic() if began is None else began
     refusal = method.refuse(system)
     if refusal:
         raise InputError("/settings/solver", refusal)
@@ -47,6 +52,7 @@ def relax_state(
     method.start(system, state)
     state.force_scale = np.zeros(0)  # of this run alone
     watch = Watch(system, state, method)
+    watch.started = began
     status = watch.look(system, state, known=True)
     while True:
         if status is Status.CONVERGED:

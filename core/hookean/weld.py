@@ -37,6 +37,7 @@ class Welded:
         self.tolerance = scene.weld_tolerance
         self._patched: dict[int, Force] = {}  # rows are found by identity, so these must live as long as they do
         self._rows: dict[int, Ints] = {}
+        self._lost: set[str] = set()  # pointers of points that met no particle
         self._meshes: dict[str, Ints] = {}
         self._edges: dict[tuple[str, str], Ints] = {}
         self._pointer: dict[int, str] = {id(f): f"/forces/{i}" for i, f in enumerate(scene.forces)}
@@ -166,15 +167,7 @@ class Welded:
 
     def meet(self, points: Floats) -> Ints:
         """The particle of each point: the first within the tolerance, as welding has it; -1 where there is none."""
-        flat = points.reshape(-1, 3)
-        found = np.full(len(flat), -1, dtype=np.int64)
-        if len(self.x) and len(flat):
-            distances, which = self._tree.query(flat, k=2, distance_upper_bound=_bound(self.tolerance))
-            met = distances[:, 0] <= self.tolerance
-            found[met] = which[met, 0]
-            # where more than one is near enough, the first one wins
-            for i in np.flatnonzero(distances[:, 1] <= self.tolerance):
-                found[i] = min(self._tree.query_ball_point(flat[i], self.tolerance))
+        found = near.first(self.x, points.reshape(-1, 3), self.tolerance)
         return np.ascontiguousarray(found.reshape(points.shape[:-1]))
 
     def check_force(self, force: Force, pointer: str) -> None:
@@ -216,10 +209,10 @@ class Welded:
         self.report.missed.append(
             Missed(pointer, name, role, what, *counts, spots[least], float(distance[least]), unit)
         )
-        known = {unmatched.pointer for unmatched in self.report.unmatched}  # two forces may name the same mesh
         for place, spot, i, away in zip(np.argwhere(lost).tolist(), spots, nearest, distance, strict=True):
             where = at[place[0]] if at else "/".join([pointer, *map(str, place)])
-            if where not in known:
+            if where not in self._lost:  # two forces may name the same mesh
+                self._lost.add(where)
                 self.report.unmatched.append(Unmatched(where, name, spot, int(i), float(away)))
 
     @cached_property
@@ -241,7 +234,11 @@ def weld(given: Floats, points: Floats, tolerance: float) -> tuple[Floats, Ints]
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     merged = np.concatenate([given.reshape(-1, 3), unique[order]])
-    keeper = _keepers(merged, count, tolerance)
+    keeper = np.arange(len(merged))
+    met = near.first(merged[:count], merged[count:], tolerance)
+    alone = count + np.flatnonzero(met < 0)
+    keeper[count:][met >= 0] = met[met >= 0]
+    keeper[alone] = alone[_keepers(merged[alone], tolerance)]
     kept = keeper == np.arange(len(merged))
     number = np.cumsum(kept) - 1
     return np.ascontiguousarray(merged[kept]), number[keeper][count + rank[inverse]]
@@ -263,16 +260,21 @@ def _bound(tolerance: float) -> float:
     return max(tolerance * 1.001, 1e-150)
 
 
-def _keepers(points: Floats, given: int, tolerance: float) -> Ints:
-    """For each point the one it becomes: itself, or the first kept point within the tolerance."""
+def _keepers(points: Floats, tolerance: float) -> Ints:
+    """For each of some distinct points the one it becomes: itself, or the first kept point within the tolerance.
+
+    Kept points are farther apart than the tolerance, so that few of them are near any one point.
+    """
     keeper = np.arange(len(points))
+    if not len(points):
+        return keeper
     tree = near.tree(points)
     near_one = tree.query(points, k=2, distance_upper_bound=_bound(tolerance))[0][:, 1] <= tolerance
     for a in np.flatnonzero(near_one):
         if keeper[a] != a:
             continue
         for b in tree.query_ball_point(points[a], tolerance):
-            if b > a and b >= given and keeper[b] == b:
+            if b > a and keeper[b] == b:
                 keeper[b] = a
     return keeper
 

@@ -288,3 +288,70 @@ def test_corners_that_meet_nothing_create_no_particles(kind: str):
     assert len(left.particles) == len(without.particles) == 7
     assert left.particles.tobytes() == without.particles.tobytes()
     assert "/forces/1/points: 1 of" in left.report.left_out()[0]
+
+
+@settings(derandomize=True, deadline=None, max_examples=60)
+@given(
+    st.lists(st.tuples(*[st.integers(0, 4)] * 3), min_size=1, max_size=60),
+    st.lists(st.tuples(*[st.integers(0, 4)] * 3), min_size=1, max_size=60),
+    st.sampled_from([0.0, 0.5, 1.1, 2.0]),
+    st.integers(1, 12),
+)
+def test_points_join_the_first_given_particle_however_many_are_near(
+    first: list[tuple[int, int, int]], points: list[tuple[int, int, int]], tolerance: float, times: int
+) -> None:
+    """Given particles are kept, however near each other; a point joins the first one, else the first kept point."""
+    before = np.array(first * times, dtype=float)  # beyond 300 a tree is asked
+    kept, which = [*before], []
+    for point in np.array(points, dtype=float):
+        near = [i for i, other in enumerate(kept) if np.linalg.norm(point - other) <= tolerance]
+        which.append(near[0] if near else len(kept))
+        if not near:
+            kept.append(point)
+    found, index = weld(before, np.array(points, dtype=float), tolerance)
+    assert found.tolist() == np.array(kept).tolist() and index.tolist() == which
+
+
+def test_a_crowd_of_given_particles_is_welded_to_in_a_moment() -> None:
+    """40,000 points all within the tolerance of 40,000 particles: 1.6e9 pairs, which are not looked at one by one."""
+    crowd = np.random.default_rng(3).uniform(-1e-4, 1e-4, (40_000, 3))
+    found, index = weld(crowd, crowd[::-1] + 1e-9, 1e-3)
+    assert found.tolist() == crowd.tolist() and (index == 0).all()
+    scene = {"particles": crowd, "forces": [{"kind": "unary", "points": crowd[::-1] + 1e-9, "vector": [0, 0, -1]}]}
+    assert (compile(Scene(**scene)).groups[0].block.indices == 0).all()
+
+
+def test_many_forces_that_lie_on_each_other_are_reported_with_their_first_pairs() -> None:
+    """400 lines 1e-5 apart, 79,800 pairs of forces: ten sentences, and how many more."""
+    at = np.linspace(0.0, 1.0, 10)
+    rows = [np.c_[at, np.full(10, i * 1e-5), np.zeros(10)] for i in range(400)]
+    forces = [{"kind": "springs", "lines": np.stack([row[:-1], row[1:]], 1)} for row in rows]
+    scene = Scene(forces=forces, anchors=[{"points": rows[0][:1]}], settings={}, weld_tolerance=1e-9)
+    said = [w for w in compile(scene).report.warnings if "joined" in w or "nearly meet" in w]
+    assert len(said) == 11 and "/forces/0" in said[0] and said[-1].endswith("more pairs of forces nearly meet")
+
+
+def test_the_time_limit_counts_welding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A clock on which welding takes a minute: nothing is left of a limit of 30 s, and enough of one of a day."""
+    import time
+
+    from hookean.weld import Welded
+
+    passed, clock, welding = 0.0, time.monotonic, Welded._weld
+
+    def slow(self: Welded) -> None:
+        nonlocal passed
+        passed += 60.0
+        welding(self)
+
+    monkeypatch.setattr(Welded, "_weld", slow)
+    monkeypatch.setattr(time, "monotonic", lambda: clock() + passed)
+    scene = {
+        "forces": [
+            {"kind": "springs", "lines": lines((0, 1), (1, 2))},
+            {"kind": "unary", "points": [[1, 0, 0]], "vector": [0, 0, -9]},
+        ],
+        "anchors": [{"points": [[0, 0, 0], [2, 0, 0]]}],
+    }
+    ended = [str(relax(Scene(**scene, settings={"time_limit": limit})).status) for limit in (30.0, 90_000.0)]
+    assert ended == ["time_limit", "converged"]

@@ -129,6 +129,37 @@ def test_nested_blocks_expand_and_endless_ones_are_refused(make: Make) -> None:
         expand(replace(model, blocks=tuple(levels), objects=(below,)))
 
 
+def towers(model: Model, levels: int, wide: int, last: tuple[Any, ...]) -> Model:
+    """A model of one instance of a block with `wide` instances of the next one, and so on; `last` is in the last."""
+    inner, below = model.blocks[0], model.objects[2]
+    blocks = []
+    for level in range(levels):
+        block = replace(inner, id=UUID(int=100 + level), members=(below,) * wide if level else last)
+        blocks.append(block)
+        below = replace(below, geometry=rhino.InstanceReference(block.id, rhino.Transform.Identity()))
+    return replace(model, blocks=tuple(blocks), objects=(below,))
+
+
+@pytest.mark.parametrize(("levels", "wide"), [(1500, 1), (1500, 2), (2, 1500), (60, 1500)])
+def test_nested_blocks_without_an_object_come_to_nothing(make: Make, levels: int, wide: int) -> None:
+    """However deep and wide they are: up to 1500^59 instances, each block looked at once."""
+    model = read(make(8))
+    assert expand(towers(model, levels, wide, ())) == ()
+    leaf = model.blocks[0].members[:1]
+    if wide > 1 and levels > 2:
+        with pytest.raises(InputError, match="more than 100000"):
+            expand(towers(model, levels, wide, leaf))
+    else:
+        assert len(expand(towers(model, levels, wide, leaf))) == wide ** (levels - 1)
+
+
+def test_endless_blocks_are_refused_at_any_depth(make: Make) -> None:
+    model = towers(read(make(8)), 1500, 2, ())
+    first = replace(model.blocks[0], members=model.objects)
+    with pytest.raises(InputError, match="contains itself"):
+        expand(replace(model, blocks=(first, *model.blocks[1:])))
+
+
 def test_an_unknown_class_is_named_and_kept(
     make: Make, tmp_path: Path, unknown: Callable[..., Any], additions: Additions
 ) -> None:

@@ -10,6 +10,7 @@ import contextlib
 import json
 import math
 import re
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -148,9 +149,10 @@ def relax_file(
     with reading or contextlib.nullcontext():
         read = open_file(Path(source), recipe_text, recipe_name)
     with about(recipe_name if recipe_text is not None else Path(source).name):
+        began = time.monotonic()
         system = compile(read.scene if seconds is None else bounded(read.scene, seconds))
         state = system.start() if read.simulation is None else read.simulation.state
-        result = relax_state(system, state, solver(read.scene.settings.solver), progress, cancelled)
+        result = relax_state(system, state, solver(read.scene.settings.solver), progress, cancelled, began)
     return conclude(read, Path(source), system, result, target, limits=limits, limits_name=limits_name)
 
 

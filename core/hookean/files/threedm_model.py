@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 from uuid import UUID, uuid5
@@ -160,53 +160,88 @@ def expand(model: Model, objects: Iterable[Object] | None = None) -> tuple[Objec
 
     A copy has an id derived from the instance's and the member's, the member's layer, and the user text of
     both (the instance's wins). Raises InputError where a block contains itself, its definition is missing,
-    or more than 100,000 objects come out.
+    or more than 100,000 objects come out, nested instances included: before anything is copied.
     """
     blocks = {block.id: block for block in model.blocks}
+    given = model.objects if objects is None else tuple(objects)
+    sizes = _sizes([item for item in given if item.is_instance], blocks, model.name)
     found: list[Object] = []
-    for item in model.objects if objects is None else objects:
+    for item in given:
         if item.is_instance:
-            _expand(item, rhino.Transform.Identity(), blocks, (), found, model.name)
+            found.extend(_expanded(item, blocks, sizes, model.name))
         else:
             found.append(item)
     return tuple(found)
 
 
-def _expand(
-    instance: Object,
-    outer: Any,
-    blocks: Mapping[UUID, Block],
-    inside: tuple[UUID, ...],
-    found: list[Object],
-    name: str,
-) -> None:
+def _block(instance: Object, blocks: Mapping[UUID, Block], name: str) -> Block:
     block = blocks.get(instance.geometry.ParentIdefId)
     if block is None:
         raise InputError(
             name, f"block instance {instance.id} has no definition in the file; purge or explode it in Rhino."
         )
-    if block.id in inside:
-        raise InputError(name, f'block "{block.name}" contains itself; explode it in Rhino.')
-    xform = rhino.Transform.Multiply(outer, instance.geometry.Xform)
-    for member in block.members:
-        if len(found) >= MAX_EXPANDED:
+    return block
+
+
+def _sizes(instances: Iterable[Object], blocks: Mapping[UUID, Block], name: str) -> dict[UUID, int]:
+    """How many objects and instances are in each block that is used, nested ones included; 0 where there is no object
+    in any. Each block is looked at once, however often and however deep it is nested."""
+    sizes: dict[UUID, int] = {}
+    total = 0
+    for instance in instances:
+        top = _block(instance, blocks, name)
+        ways = [(top, iter([] if top.id in sizes else top.members))]
+        inside = {top.id: 0}
+        while ways:
+            block, members = ways[-1]
+            for member in members:
+                below = _block(member, blocks, name) if member.is_instance else None
+                if below is None or sizes.get(below.id):
+                    inside[block.id] += 1 + (sizes[below.id] if below else 0)
+                elif below.id in inside:
+                    raise InputError(name, f'block "{below.name}" contains itself; explode it in Rhino.')
+                elif below.id not in sizes:
+                    ways.append((below, iter(below.members)))
+                    inside[below.id] = 0
+                    break
+            else:
+                ways.pop()
+                sizes.setdefault(block.id, inside.pop(block.id))
+                if ways and sizes[block.id]:
+                    inside[ways[-1][0].id] += 1 + sizes[block.id]
+        total += sizes[top.id]
+        if total > MAX_EXPANDED:
             raise InputError(name, f"its blocks expand to more than {MAX_EXPANDED} objects; use fewer instances.")
-        placed = replace(
-            member,
-            id=uuid5(instance.id, str(member.id)),
-            index=instance.index,
-            user_text={**member.user_text, **instance.user_text},
-            visible=member.visible and instance.visible,
-            locked=member.locked or instance.locked,
-            colour=instance.colour if member.by_parent else member.colour,
-            by_parent=member.by_parent and instance.by_parent,
-            own=instance.own,
-            page=instance.page,
-        )
-        if member.is_instance:
-            _expand(placed, xform, blocks, (*inside, block.id), found, name)
-        else:
-            found.append(replace(placed, geometry=_transformed(placed, xform, name)))
+    return sizes
+
+
+def _expanded(instance: Object, blocks: Mapping[UUID, Block], sizes: Mapping[UUID, int], name: str) -> Iterator[Object]:
+    """The objects of an instance in the order of its members, those of nested instances in their places."""
+    waiting = [(instance, rhino.Transform.Identity())]
+    while waiting:
+        item, outer = waiting.pop()
+        if not item.is_instance:
+            yield replace(item, geometry=_transformed(item, outer, name))
+        elif sizes[item.geometry.ParentIdefId]:
+            xform = rhino.Transform.Multiply(outer, item.geometry.Xform)
+            members = blocks[item.geometry.ParentIdefId].members
+            waiting.extend((_placed(member, item), xform) for member in reversed(members))
+
+
+def _placed(member: Object, instance: Object) -> Object:
+    """A member of a block as an object of the block's instance."""
+    return replace(
+        member,
+        id=uuid5(instance.id, str(member.id)),
+        index=instance.index,
+        user_text={**member.user_text, **instance.user_text},
+        visible=member.visible and instance.visible,
+        locked=member.locked or instance.locked,
+        colour=instance.colour if member.by_parent else member.colour,
+        by_parent=member.by_parent and instance.by_parent,
+        own=instance.own,
+        page=instance.page,
+    )
 
 
 def _transformed(item: Object, xform: Any, name: str) -> Any:
