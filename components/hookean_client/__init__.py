@@ -33,7 +33,9 @@ PATIENCE = 60.0  # seconds a socket may be silent
 STATUSES = "running converged stalled diverged max_iterations time_limit cancelled".split()
 HEADER = struct.Struct("<4sHHIIQQddIIBBHf")
 FIELDS = "magic version size flags number revision iteration time residual n m status playing _ kinetic".split()
+LARGEST = 1 << 30  # bytes of an answer
 FAILURES = (EnvironmentError, httplib.HTTPException, EOFError, ValueError, TypeError, AttributeError, LookupError)
+FAILURES += (RuntimeError,)  # JSON nested too deeply
 _now = getattr(time, "monotonic", time.time)
 
 
@@ -101,24 +103,36 @@ class Client(object):
         for more in (method in ("GET", "PUT", "DELETE"), False):
             connection = self._connection(until)
             sent = {"authorization": "Bearer " + self.token, "content-type": "application/json"}
+            cut = _cut(connection, until)
             try:
                 connection.sock.settimeout(max(0.01, until - _now()))
                 connection.request(method, path, body, dict(sent, **(headers or {})))
                 answer = connection.getresponse()
-                data = answer.read()
+                data = _read(answer, LARGEST)
+                if _now() > until:  # what was read may be a part of it
+                    answer.close()
+                    raise EOFError("cut off")
                 break
             except FAILURES:
                 connection.close()
                 if not more or _now() > until:
                     raise Problem("lost", "No answer to %s; it may be done." % method)
+            finally:
+                cut.cancel()
+        if data is None:
+            connection.close()
+            raise Problem("too-large", "The answer to %s has more than %d bytes." % (method, LARGEST), answer.status)
         if connection.sock is not None:
             self._idle.append((self.instance, _now(), connection))
         if answer.status == 401 and self._other_token(token, until):
             return self.request(method, *given, timeout=max(0.01, until - _now()))
-        if answer.status >= 400:
+        if answer.status >= 400 or 300 <= answer.status != 304:
             raise _refusal(answer.status, data)
-        if (answer.getheader("content-type") or "").startswith("application/json"):
-            return json.loads(data.decode("utf-8"))
+        if data and (answer.getheader("content-type") or "").startswith("application/json"):
+            try:
+                return json.loads(data.decode("utf-8"))
+            except FAILURES:
+                raise Problem("broken", "The answer to %s is not valid JSON." % method, answer.status)
         return data or None
 
     def close(self):
@@ -209,7 +223,7 @@ class Frames(object):
     def __init__(self, session):
         self.session, self.topology, self.message, self.lost = {}, "", "", []
         self.ended, self.received = False, 0
-        self._of, self._frame, self._link, self._since = session, None, None, None
+        self._of, self._frame, self._link, self._since, self._connection = session, None, None, None, None
         self._news = threading.Condition()
         thread = threading.Thread(target=self._run, name="hookean-frames")
         thread.daemon = True
@@ -232,6 +246,7 @@ class Frames(object):
     def close(self):
         """No more frames."""
         self.ended, link = True, self._link
+        _shut(self._connection)
         if link is not None:
             link.end()
         with self._news:
@@ -242,7 +257,8 @@ class Frames(object):
         while not self.ended:
             before = self.received
             try:
-                self._link = Link(client._connection(_now() + ANSWER, False), self._of.path + "/frames", client.token)
+                self._connection = client._connection(_now() + ANSWER, False)
+                self._link = Link(self._connection, self._of.path + "/frames", client.token)
                 while not self.ended:
                     self._take(*self._link.receive())
             except Problem as problem:
@@ -289,23 +305,30 @@ class Link(object):
         key = base64.b64encode(os.urandom(16)).decode("ascii")
         headers = {"upgrade": "websocket", "connection": "upgrade", "authorization": "Bearer " + token}
         headers.update({"sec-websocket-key": key, "sec-websocket-version": "13"})
-        connection.request("GET", path, headers=headers)
-        self._answer = connection.getresponse()
-        if self._answer.status != 101:
-            problem = _refusal(self._answer.status, self._answer.read())
-            connection.close()
-            raise problem
+        cut = _cut(connection, _now() + PATIENCE)
+        try:
+            connection.request("GET", path, headers=headers)
+            self._answer = connection.getresponse()
+            if self._answer.status != 101:
+                problem = _refusal(self._answer.status, _read(self._answer, 1 << 16))
+                connection.close()
+                raise problem
+        finally:
+            cut.cancel()
         digest = hashlib.sha1((key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode("ascii")).digest()
         if self._answer.getheader("sec-websocket-accept") != base64.b64encode(digest).decode("ascii"):
             raise ValueError("no WebSocket")
 
-    def send(self, kind, data):
-        """Send a message of less than 64 kB: 1 text, 8 close, 10 pong."""
+    def send(self, kind, data, wait=True):
+        """Send a message of less than 64 kB: 1 text, 8 close, 10 pong; `wait` for others that are being sent."""
         data, mask, size = _octets(data), _octets(os.urandom(4)), len(data)
         head = bytearray([0x80 | kind, 0x80 | min(size, 126)] + ([size >> 8, size & 255] if size > 125 else []))
         data = bytearray([octet ^ mask[i & 3] for i, octet in enumerate(data)])
-        with self._sending:
-            self._connection.sock.sendall(bytes(head + mask + data))
+        if self._sending.acquire(wait):
+            try:
+                self._connection.sock.sendall(bytes(head + mask + data))
+            finally:
+                self._sending.release()
 
     def receive(self):
         """Kind and bytes of the next message."""
@@ -336,11 +359,11 @@ class Link(object):
     def end(self):
         """Close it."""
         try:
-            self._connection.sock.settimeout(0.2)
-            self.send(8, b"\x03\xe8")
-            self._connection.sock.shutdown(socket.SHUT_RDWR)
+            self._connection.sock.settimeout(REACH)
+            self.send(8, b"\x03\xe8", False)
         except FAILURES:
             pass
+        _shut(self._connection)  # who reads or sends has to let go first
         self._connection.close()
 
     def _exactly(self, size):
@@ -385,6 +408,36 @@ def state_folder():
         given, top = "XDG_STATE_HOME", "~/.local/state"
     top = os.environ.get(given, "").strip() or os.path.expanduser(top)
     return os.environ.get("HOOKEAN_STATE") or os.path.join(top, "hookean")
+
+
+def _cut(connection, until):
+    """What ends a connection at a time, whatever drips down it, unless it is cancelled before."""
+    timer = threading.Timer(max(0.01, until - _now()), _shut, [connection, connection.sock])
+    timer.daemon = True
+    timer.start()
+    return timer
+
+
+def _shut(connection, sock=None):
+    try:
+        sock = sock or connection.sock
+        getattr(sock, "_sock", sock).shutdown(socket.SHUT_RDWR)
+    except FAILURES:
+        pass
+
+
+def _read(answer, most):
+    """The body; None where it has more than `most` bytes."""
+    data, whole = None, False
+    try:
+        data = None if (answer.length or 0) > most else answer.read(most + 1)
+        whole = data is not None and len(data) <= most
+        if whole and answer.length:
+            raise EOFError("the server has gone")
+        return data if whole else None
+    finally:
+        if not whole:
+            answer.close()
 
 
 def _refusal(status, data):

@@ -10,14 +10,13 @@ import hashlib
 import hmac
 import json
 import os
-import socket
 import stat
 import subprocess
 import sys
 import threading
 import time
 
-from . import FAILURES, Problem, _check, _now, httplib
+from . import FAILURES, Problem, _check, _cut, _now, _read, httplib
 
 REACH, STARTING = 0.2, 30.0  # seconds to reach a server, a start may take
 ADVICE = "see who made it, then remove it, or set HOOKEAN_STATE to a folder that is yours alone."
@@ -41,19 +40,17 @@ def found(place, until):
 def reach(url, instance, proof, until):
     """A connection to a server that has proven who it is, or None. Once closed it is not opened again: somebody else
     may have its port then."""
-    connection = httplib.HTTPConnection("")
-    patient = threading.Timer(max(0.01, until - _now()), lambda: _end(connection))  # also of what trickles
-    patient.daemon = True
+    connection, cut = httplib.HTTPConnection(""), None
     try:
         host, _, port = url.split("//")[-1].rpartition(":")
         connection = httplib.HTTPConnection(host.strip("[]"), int(port), timeout=REACH)
         connection.connect()
         connection.auto_open = 0
         connection.sock.settimeout(max(0.01, until - _now()))
-        patient.start()
+        cut = _cut(connection, until)
         nonce = binascii.hexlify(os.urandom(32)).decode("ascii")
         connection.request("GET", "/v1/proof?nonce=" + nonce)
-        said = json.loads(connection.getresponse().read(65536).decode("utf-8"))["proof"]
+        said = json.loads(_read(connection.getresponse(), 1 << 16).decode("utf-8"))["proof"]
         text = "hookean %s %s %s %s" % (instance, connection.sock.getpeername()[0], port, nonce)
         # a comparison whose time tells nothing of use: the next question has another answer
         right = said == hmac.new(proof.encode("ascii"), text.encode("ascii"), hashlib.sha256).hexdigest()
@@ -62,16 +59,10 @@ def reach(url, instance, proof, until):
     except FAILURES:
         pass
     finally:
-        patient.cancel()
+        if cut:
+            cut.cancel()
     connection.close()
     return None
-
-
-def _end(connection):
-    try:
-        connection.sock.shutdown(socket.SHUT_RDWR)
-    except FAILURES:
-        pass
 
 
 def check(place):
