@@ -28,7 +28,7 @@ except ImportError:  # Python 2
 
 __version__ = "0.1.0"
 WIRE = 1
-ANSWER = 2.0  # seconds for a server to be reached and to prove who it is
+REACH, ANSWER = 0.2, 2.0  # seconds to reach a server, and for it to prove who it is
 PATIENCE = 60.0  # seconds a socket may be silent
 STATUSES = "running converged stalled diverged max_iterations time_limit cancelled".split()
 HEADER = struct.Struct("<4sHHIIQQddIIBBHf")

@@ -105,7 +105,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     for part in parts:
         app.include_router(part.router)
     # the last one added is the outermost
-    app.add_middleware(Visits, settings=settings)
+    app.add_middleware(Visits, settings=settings, table=table)
     app.add_middleware(Paced, settings=settings)
     app.add_middleware(BodyLimit, settings=settings)
     app.add_middleware(Guard, settings=settings, tokens=app.state.tokens, table=table)

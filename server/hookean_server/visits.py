@@ -13,7 +13,7 @@ from contextlib import contextmanager
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from hookean_server.guard import is_hops
+from hookean_server.access import Access, Table
 from hookean_server.pool import Job, Pool, Reply
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
@@ -22,8 +22,8 @@ from hookean_server.settings import Settings
 class Visits:
     """Gives each visit a place in the queue, from before its body is read until its answer has been sent."""
 
-    def __init__(self, app: ASGIApp, settings: Settings) -> None:
-        self.app = app
+    def __init__(self, app: ASGIApp, settings: Settings, table: Table) -> None:
+        self.app, self.table = app, table
         self.workers = max(1, settings.lanes // 2)
         self.room = self.workers + settings.visits
         self.taken = 0
@@ -31,7 +31,8 @@ class Visits:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """One request."""
-        if scope["type"] != "http" or scope["method"] != "POST" or not is_hops("POST", scope["path"]):
+        visits = scope["type"] == "http" and scope["method"] == "POST"
+        if not visits or self.table.access("POST", scope["path"]) is not Access.HOPS:
             await self.app(scope, receive, send)
             return
         with self._place() as scope["visit"]:
