@@ -3,6 +3,7 @@ bounded, and what it raises is its own Problem."""
 
 from __future__ import annotations
 
+import hmac
 import json
 import socket
 import threading
@@ -16,13 +17,13 @@ import hookean_client
 from hookean_client import Client, Problem
 from serving import HANG
 
-INSTANCE = "of-a-test"
+INSTANCE, KEY = "of-a-test", "k" * 40
 OK = "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\n"
 Script = Callable[["Hostile", socket.socket], None]
 
 
 class Hostile:
-    """A server that says who it is, and then does as its script says until `over`."""
+    """A server that proves who it is, and then does as its script says until `over`."""
 
     def __init__(self) -> None:
         self.script: Script = lambda server, sock: None
@@ -49,7 +50,9 @@ class Hostile:
             heard = b""
             while b"\r\n\r\n" not in heard:
                 heard += sock.recv(65536)
-            body = json.dumps({"instance": INSTANCE})
+            nonce = heard.partition(b"nonce=")[2].split()[0].decode()
+            text = f"hookean {INSTANCE} 127.0.0.1 {self.url.rpartition(':')[2]} {nonce}"
+            body = json.dumps({"proof": hmac.new(KEY.encode(), text.encode(), "sha256").hexdigest()})
             sock.sendall(f"{OK}Content-Length: {len(body)}\r\n\r\n{body}".encode())
             if sock.recv(65536):
                 self.script(self, sock)
@@ -75,7 +78,7 @@ def server() -> Iterator[Hostile]:
 
 @pytest.fixture
 def client(server: Hostile) -> Iterator[Client]:
-    found = Client(lambda start, until: {"url": server.url, "token": "t", "instance": INSTANCE})
+    found = Client(lambda start, until: {"url": server.url, "token": "t", "instance": INSTANCE, "proof": KEY})
     found.renew()
     yield found
     found.close()
