@@ -333,15 +333,23 @@ def test_the_diagonal_of_a_quad_folds_as_any_edge() -> None:
 
 
 def test_orientation_of_faces_does_not_matter() -> None:
-    """Some faces turned over, corners named in another order: the same energy and forces, to rounding."""
+    """Some faces turned over, corners named in another order: the same energy, forces and moments, to rounding."""
     rng = np.random.default_rng(3)
     x, faces = irregular(3)
     moved = x + rng.uniform(-0.03, 0.03, x.shape)
     f, _, energy, _ = at(skin(x, faces), moved)
     mixed = np.array([np.roll(t[::-1] if rng.random() < 0.5 else t, rng.integers(3)) for t in faces])
-    g, _, same, _ = at(skin(x, mixed[rng.permutation(len(mixed))]), moved)
+    mixed = mixed[rng.permutation(len(mixed))]
+    g, _, same, _ = at(skin(x, mixed), moved)
     assert same == pytest.approx(energy, rel=1e-10)
     assert np.abs(f - g).max() <= 1e-9 * np.abs(f).max()
+    one, other = (by_corners(*moments(skin(x, some), moved)) for some in (faces, mixed))
+    assert other == pytest.approx(one, rel=1e-9)
+
+
+def by_corners(corners: np.ndarray, moment: np.ndarray) -> dict[str, float]:
+    """The moment of each triangle, whatever order its corners are named in."""
+    return {str(sorted(three)): float(size) for three, size in zip(corners.tolist(), moment, strict=True)}
 
 
 def test_a_band_with_one_side_is_a_shell_too() -> None:
