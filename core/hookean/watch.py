@@ -156,7 +156,9 @@ class Watch:
         """What follows where a motion has exploded: where its time steps may be divided, back to the last good state
         with twice as many parts; but what drives a motion does not go back."""
         dividing = self.method.physical and self.settings.divide_steps and not driven
-        self.flew = self.lost >= 0 and flown(system, state, self.found, self.lost, driven=driven)
+        self.flew = (
+            self.method.physical and self.lost >= 0 and flown(system, state, self.found, self.lost, driven=driven)
+        )
         parts = 2 * self.method.parts(system, state)
         known = all(group.cls.conservative for group in system.groups)  # energies tell whether a step is too long
         if not dividing or self.flew or parts > (UTMOST if known else stability.often(system, self.good, self.method)):
