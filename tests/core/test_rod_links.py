@@ -43,6 +43,21 @@ def test_corners_are_given_in_any_order_and_direction(closed: bool) -> None:
     assert np.abs(g[::-1] - f).max() <= 1e-13 * w.max()
 
 
+@pytest.mark.parametrize("origin", [0.0, -7.0, 1e3])
+def test_what_makes_a_rod_does_not_depend_on_where_it_is_drawn(origin: float) -> None:
+    """Corners of segments with lengths that do not fold back make one rod, two links of three corners; beside one that
+    folds back, or that has a segment without length, there are none."""
+    straight = np.array([[0, 0, 0], [1, 0, 0], [2, 0.3, 0], [3, 0.1, 0.2], [4, 0, 0]], float)
+    folded = straight.copy()
+    folded[3] = straight[2] + 0.7 * (straight[1] - straight[2])
+    short = straight.copy()
+    short[3] = short[2]
+    for x, links in ((straight, 2), (folded, 0), (short, 0)):
+        bend = {"kind": "bend", "particles": corners_of(5), "rest_angle": 0.1}
+        block = compile(Scene(particles=x + origin, forces=[bend])).groups[0].block
+        assert np.count_nonzero(block.parameters[:, block.names.index("next")]) == links
+
+
 def test_rows_of_results_are_those_of_the_input() -> None:
     """In disorder, angles and moments belong to the corners given, and so do their particles."""
     x = coil(6, 1.0, 0.2)
