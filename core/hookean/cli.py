@@ -212,6 +212,20 @@ def canvas(context: typer.Context) -> None:
 
 
 @app.command()
+def store(
+    action: Annotated[str, typer.Argument(help="check, salvage, backup or compact")],
+    target: Annotated[Path | None, typer.Argument(help="Of backup: the file to write; of the others: none")] = None,
+) -> None:
+    """Look after the file in which the service keeps sessions and jobs.
+
+    check: is it whole, and what was lost from it? salvage: repair it, keeping a copy. backup: copy it to a file, while
+    the service runs or not. compact: give unused space back. Exits with 0 if all is well, 1 if something is damaged or
+    lost, 2 where the action is not possible. HOOKEAN_STATE moves the folder of the file.
+    """
+    raise typer.Exit(_service().store(action, target))
+
+
+@app.command()
 def forces() -> None:
     """List all forces with their formulas, columns, defaults and units."""
     from hookean.commands.forces import text

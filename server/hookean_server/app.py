@@ -53,7 +53,7 @@ _SLUGS = {404: "not-found", 405: "method-not-allowed", 413: "too-large", 415: "u
 def create_app(settings: Settings | None = None) -> FastAPI:
     """The service as an ASGI application; its workers start with its lifespan, or with the first request."""
     settings = settings or Settings()
-    pool, store = Pool(settings), Store(settings.state)
+    pool, store = Pool(settings), Store(settings.state, settings.quota, keep=settings.backups)
     sessions = Manager(settings, store)
     jobs = Jobs(settings, store, pool)
 

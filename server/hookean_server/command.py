@@ -111,6 +111,13 @@ def studio(file: Path | None, browser: bool) -> int:
     return run(file, browser)
 
 
+def store(action: str, target: Path | None) -> int:
+    """Look after the file of sessions; the exit code (see `keeping.commands`)."""
+    from hookean_server.keeping.commands import run
+
+    return run(action, folder() / SESSIONS, target)
+
+
 def token(url: bool = False, header: bool = False, renew: bool = False) -> int:
     """Print the token that HOOKEAN_TOKEN gives, else that of the running server; the exit code: 0, or 1 for neither.
 
@@ -156,10 +163,14 @@ def _serve(options: Options, place: Path | None) -> int:
     from hookean_server.settings import Settings
 
     state = place / SESSIONS if place is not None and options.keep else None
+    try:
+        settings = Settings(state=state)
+    except ValueError as error:
+        return _refuse(str(error))
     return serve(
         options.host,
         PORT if options.port is None else options.port,
-        Settings(state=state),
+        settings,
         place=place,
         any_port=options.any_port,
         parent_pid=options.parent_pid,

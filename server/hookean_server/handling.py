@@ -14,6 +14,7 @@ from typing import Any
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 
+from hookean_server import leftovers
 from hookean_server.limits import media_type
 from hookean_server.pool import Job, Pool, Reply
 from hookean_server.problems import Problem, not_stored
@@ -69,7 +70,7 @@ async def _uploaded(request: Request, task: str, options: dict[str, Any], second
         folder = ""
         try:
             try:
-                folder = tempfile.mkdtemp(prefix="hookean-")
+                folder = tempfile.mkdtemp(prefix=leftovers.prefix())
                 path = Path(folder) / "body"
                 with path.open("wb") as file:
                     async for chunk in request.stream():

@@ -7,6 +7,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from hookean_server import leftovers
 from hookean_server.discovery import Held, Lock
 from hookean_server.pool import FORKED, context, end_fork_server
 from hookean_server.ports import Taken, take
@@ -49,11 +50,13 @@ def serve(
         print(
             f"Warning: {host} can be reached from other machines, and nothing said to it is encrypted.", file=sys.stderr
         )
+    code = 0
     try:
+        leftovers.sweep(place)
         _start_fork_server()
         from hookean_server.running import run
 
-        run(settings, sock, place, parent_pid, idle_seconds)
+        code = run(settings, sock, place, parent_pid, idle_seconds)
     except KeyboardInterrupt:
         pass
     finally:
@@ -61,7 +64,7 @@ def serve(
         sock.close()
         if lock is not None:
             lock.release()
-    return 0
+    return code
 
 
 def _own(state: Path) -> Lock:

@@ -87,6 +87,11 @@ CATALOGUE: dict[str, tuple[int, str, str]] = {
         "It could not be stored",
         "Nothing was changed. Make room on the disk, or mend it, and repeat the request.",
     ),
+    "over-quota": (
+        507,
+        "The store may not take more",
+        "Nothing was changed. Delete sessions or jobs that are no longer needed, or raise HOOKEAN_QUOTA (MiB).",
+    ),
     "out-of-time": (
         504,
         "Not done in time",

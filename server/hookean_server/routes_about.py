@@ -25,7 +25,8 @@ router = APIRouter(tags=["about"])
 )
 @marked(Access.OPEN)
 async def health(request: Request) -> dict[str, Any]:
-    """Answers at once, whatever is being solved. `status`: `starting`, `ok`, `full` or `stopping`."""
+    """Answers at once, whatever is being solved. `status`: `starting`, `ok`, `full` or `stopping`. `store`: what is
+    wrong with the file that keeps sessions and jobs, and how much of them is lost; with the token by name."""
     state = request.app.state
     workers = state.pool.states()
     room = state.settings.lanes + state.settings.queue
@@ -44,6 +45,7 @@ async def health(request: Request) -> dict[str, Any]:
         "instance": state.instance,
         "workers": {**workers, "restarts": state.pool.restarts},
         "requests": {"taken": state.pool.taken, "room": room},
+        "store": state.store.described(names=state.tokens.named(request.headers.get("authorization", ""))),
     }
 
 

@@ -24,12 +24,17 @@ from hookean_server.settings import Settings
 from hookean_server.workers import return_pages
 
 
-def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, idle_seconds: float) -> None:
-    """Serve on a socket that listens; see `main.serve`."""
+def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, idle_seconds: float) -> int:
+    """Serve on a socket that listens; the exit code. See `main.serve`."""
     Connection.header_seconds, Connection.write_seconds = settings.header_seconds, settings.write_seconds
     return_pages()
     as_json = logs.begin(settings.log, queued=True)
     app = create_app(settings)
+    try:
+        app.state.store.start()
+    except OSError as error:
+        print(f"hookean: the store cannot be opened: {error}", file=sys.stderr, flush=True)
+        return 2
     activity = Activity(app)
     config = uvicorn.Config(
         activity,
@@ -59,6 +64,8 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
     def on_start() -> None:
         publish(tokens.token, tokens.proof)
         _say(found.url)
+        for report in app.state.store.reports:
+            print(report.sentence, file=sys.stderr, flush=True)
 
     tokens.publish = publish
 
@@ -69,6 +76,7 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
         server.run(sockets=[sock])
     finally:
         server.close()
+    return 0
 
 
 def _found(instance: str, settings: Settings, proof: str, address: str) -> Found:

@@ -109,9 +109,30 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         instance={"type": "string"},
         workers={"type": "object"},
         requests={"type": "object"},
+        store={"$ref": "#/components/schemas/Store"},
     ),
     "Proof": _object(instance={"type": "string"}, proof={"type": "string", "pattern": "^[0-9a-f]{64}$"}),
     "Code": _object(code={"type": "string"}, seconds={"type": "number"}),
+    "Store": {
+        "type": "object",
+        "properties": {
+            "bytes": {"type": "integer", "description": "What sessions and jobs take on disk"},
+            "quota": {"type": "integer", "description": "What they may take; 0: any number"},
+            "warnings": {"type": "array", "items": _TEXT},
+            "losses": {"type": "integer", "description": "Sessions and jobs of which something is lost"},
+            "repairs": {
+                "type": "array",
+                "description": "For clients with the token: each repair whose copy of the damaged files is still there",
+                "items": _object(
+                    when=_TEXT,
+                    why=_TEXT,
+                    copy=_TEXT,
+                    losses={"type": "array", "items": _object(kind=_TEXT, key=_TEXT, what=_TEXT)},
+                ),
+            },
+        },
+        "required": ["bytes", "quota", "warnings", "losses"],
+    },
     "Examples": _object(
         examples={
             "type": "array",
@@ -186,7 +207,10 @@ SCHEMAS["Session"] = {
     },
     "required": ["key", "label", "revision", "status", "message", "particles", "playing", "warnings", "awake"],
 }
-SCHEMAS["Sessions"] = _object(sessions={"type": "array", "items": {"$ref": "#/components/schemas/Session"}})
+SCHEMAS["Sessions"] = _object(
+    sessions={"type": "array", "items": {"$ref": "#/components/schemas/Session"}},
+    store={"$ref": "#/components/schemas/Store"},
+)
 SCHEMAS["Edit"] = {
     "type": "object",
     "description": "A change of a running session, all of it or nothing",

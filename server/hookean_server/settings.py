@@ -9,6 +9,16 @@ from pathlib import Path
 MIB = 2**20
 
 
+def _quota() -> int:
+    """Bytes that the store may take, as HOOKEAN_QUOTA says in MiB. Raises ValueError."""
+    given = os.environ.get("HOOKEAN_QUOTA") or "8192"
+    if not (given.isascii() and given.isdigit()):
+        raise ValueError(
+            f"HOOKEAN_QUOTA is {given[:20]!r}; it accepts a whole number of MiB, such as 8192, or 0 for any"
+        )
+    return int(given) * MIB
+
+
 @dataclass(frozen=True)
 class Settings:
     """Limits of one server. Sizes in bytes, times in seconds."""
@@ -47,6 +57,10 @@ class Settings:
     """Most points, pieces or faces an operation may be asked to make."""
     state: Path | str | None = None
     """The file that sessions and jobs are kept in; none: they end with the server."""
+    quota: int = field(default_factory=lambda: _quota())
+    """Bytes that this file may take, by default the MiB of HOOKEAN_QUOTA, or 8 GiB; 0: any number."""
+    backups: int = 3
+    """Copies of the file as it was at its last starts."""
     sessions: int = 200
     """Most sessions kept."""
     awake: int = 16

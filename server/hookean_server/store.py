@@ -1,111 +1,76 @@
-"""The store: one SQLite file that outlives the server. Everything acknowledged is in it.
+"""The store: one SQLite file that outlives the server. Everything acknowledged is in it, and named in its manifest.
 
 One thread owns the connection; work is a function of it and runs in a transaction, synced to disk before its caller
-goes on. A file that cannot be read is put aside and a new one begun. Where the disk is full or fails, work is rolled
-back and raises the problem `not-stored`.
+goes on. The write-ahead log is emptied into the file whenever the store is idle, and at most 1 MB or 10 s behind. How a
+file is checked and repaired at the start is in `keeping.opening`. Where the disk is full or fails, work is rolled back
+and raises the problem `not-stored`.
 """
 
 from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import queue
 import sqlite3
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from hookean_server.problems import not_stored
+from hookean_server.budget import Budget
+from hookean_server.keeping import backups
+from hookean_server.keeping.database import Database
+from hookean_server.keeping.manifest import apply
+from hookean_server.keeping.opening import Opened, Report, open_store, reopened, reports
+from hookean_server.problems import Problem, not_stored
 
 log = logging.getLogger("hookean.store")
 
-APPLICATION = 0x686F6F6B  # "hook"
-VERSION = 1
-SCHEMA = """
-CREATE TABLE sessions (
-    key TEXT PRIMARY KEY,
-    label TEXT NOT NULL,
-    base BLOB NOT NULL,          -- a saved simulation: scene, anchors, state
-    revision INTEGER NOT NULL,   -- of the last stored edit
-    iteration INTEGER NOT NULL,
-    status TEXT NOT NULL,
-    message TEXT NOT NULL,
-    particles INTEGER NOT NULL,
-    state BLOB,                  -- the last checkpoint: arrays of the state
-    created REAL NOT NULL,
-    idle REAL NOT NULL           -- seconds of service since it was last touched
-);
-CREATE TABLE edits (
-    key TEXT NOT NULL REFERENCES sessions(key) ON DELETE CASCADE,
-    number INTEGER NOT NULL,
-    revision INTEGER NOT NULL,
-    sets TEXT NOT NULL,          -- what it sets, if an edit of the same gesture may replace it
-    body BLOB NOT NULL,
-    PRIMARY KEY (key, number)
-);
-CREATE TABLE jobs (
-    id TEXT PRIMARY KEY,
-    kind TEXT NOT NULL,
-    request BLOB NOT NULL,
-    total INTEGER NOT NULL,
-    status TEXT NOT NULL,        -- waiting, running, done, failed, cancelled
-    message TEXT NOT NULL,
-    created REAL NOT NULL,
-    idle REAL NOT NULL
-);
-CREATE TABLE items (
-    job TEXT NOT NULL REFERENCES jobs(id) ON DELETE CASCADE,
-    number INTEGER NOT NULL,     -- place in the sweep
-    event INTEGER NOT NULL,      -- order of arrival, from 1
-    status TEXT NOT NULL,        -- done, failed
-    body BLOB NOT NULL,
-    PRIMARY KEY (job, number)
-);
-CREATE TABLE answers (
-    key TEXT PRIMARY KEY,        -- of Idempotency-Key and route
-    digest TEXT NOT NULL,
-    status INTEGER NOT NULL,
-    head TEXT NOT NULL,
-    body BLOB NOT NULL,
-    idle REAL NOT NULL
-);
-"""
-LATER = """
-CREATE TABLE IF NOT EXISTS notes (
-    key TEXT PRIMARY KEY REFERENCES sessions(key) ON DELETE CASCADE,
-    sentences TEXT NOT NULL      -- on the file a session was made of, one in a line
-);
-CREATE TABLE IF NOT EXISTS creations (
-    key TEXT PRIMARY KEY REFERENCES sessions(key) ON DELETE CASCADE,
-    nonce TEXT NOT NULL          -- of the creation of the session, part of its ETags
-);
-"""
-"""Tables that files of this version may not have yet; who does not know them leaves them alone."""
-Work = Callable[[sqlite3.Connection], Any]
+Work = Callable[[Database], Any]
+BEHIND = 1 << 20  # bytes that the log may hold before it is emptied into the file
+LATE = 10.0  # seconds that it may hold anything
+IDLE = 0.5  # seconds without work after which it is emptied
+FREE = 256  # pages without use that the file may keep
+STEP = 512  # pages by which it shrinks at a time
+NEARLY = 0.8  # of the quota: what is reported before it is reached
 
 
 class Store:
-    """The file at `path`; none: in memory, for a server that keeps nothing."""
+    """The file at `path`, which may take `quota` bytes (0: any number); without a path it is in memory, for a server
+    that keeps nothing."""
 
-    def __init__(self, path: Path | str | None) -> None:
+    def __init__(
+        self, path: Path | str | None, quota: int = 0, clock: Callable[[], float] = time.monotonic, keep: int = 0
+    ) -> None:
         self.path = None if path is None else Path(path)
+        self.quota, self.clock, self.backups = quota, clock, keep
+        self.budget = Budget(clock=clock)
         self.failing = ""
+        self.note = ""  # what could not be checked at the start
+        self.reports: list[Report] = []  # repairs whose copies are still there
+        self.size = 0  # bytes in use
         self.seconds = 0.0  # that the last work took
+        self._near = False
+        self._emptied = 0.0  # when the log was last empty
         self._work: queue.SimpleQueue[tuple[Work, Future[Any]] | None] = queue.SimpleQueue()
         self._thread: threading.Thread | None = None
         self._lock = threading.Lock()
 
     def start(self) -> None:
-        """Open the file, or begin a new one; raises OSError where its folder cannot be written."""
+        """Open the file, or begin a new one; raises OSError where that is not possible."""
         with self._lock:
             if self._thread is None:
-                connection = _opened(self.path)
-                self._thread = threading.Thread(target=self._run, args=(connection,), name="hookean-store", daemon=True)
+                opened = open_store(self.path)
+                opened.db.quota = self.quota
+                self.note, self.reports = opened.note, reports(self.path)
+                self.size = opened.db.size
+                if self.path is not None and self.backups:
+                    backups.begin(self.path, self.backups)
+                self._thread = threading.Thread(target=self._run, args=(opened,), name="hookean-store", daemon=True)
                 self._thread.start()
 
     def close(self) -> None:
@@ -124,96 +89,192 @@ class Store:
         return future
 
     async def run(self, work: Work) -> Any:
-        """What `work` returns, once it is on disk. Raises the problem `not-stored`."""
+        """What `work` returns, once it is on disk. Raises the problems `not-stored`, `over-quota`, `too-large`."""
         return await asyncio.wrap_future(self.submit(work))
 
-    def _run(self, connection: sqlite3.Connection) -> None:
-        while (task := self._work.get()) is not None:
-            work, future = task
-            if not future.set_running_or_notify_cancel():
-                continue
-            began = time.perf_counter()
-            try:
-                found = _transaction(connection, work)
-            except sqlite3.Error as error:
-                self.failing = str(error)
-                log.error("not stored: %s", error)
-                future.set_exception(not_stored(error))
-            except BaseException as error:
-                future.set_exception(error)
-            else:
-                self.failing = ""
-                future.set_result(found)
-            self.seconds = time.perf_counter() - began
-        with suppress(sqlite3.Error):
-            connection.close()
-
-
-def _transaction(connection: sqlite3.Connection, work: Work) -> Any:
-    connection.execute("BEGIN IMMEDIATE")
-    try:
-        found = work(connection)
-        connection.execute("COMMIT")
+    @property
+    def warnings(self) -> list[str]:
+        """What a person should know of the store, in sentences that name no session."""
+        found = [self.note] if self.note else []
+        if self.failing:
+            found.append(f"The last write was not stored: {self.failing}.")
+        if self._near:
+            used, most = self.size / 1e6, self.quota / 1e6
+            found.append(f"The store has {used:,.1f} MB of the {most:,.1f} MB it may take; delete sessions or jobs.")
         return found
-    except BaseException:
-        if connection.in_transaction:
-            connection.execute("ROLLBACK")
-        raise
+
+    def described(self, *, names: bool) -> dict[str, Any]:
+        """The store in the answers of routes; `names`: with the repairs, which name sessions."""
+        found: dict[str, Any] = {"bytes": self.size, "quota": self.quota}
+        repaired = [f"{report.head} The damaged files are kept in {report.copy}." for report in self.reports]
+        found["warnings"] = [*repaired, *self.warnings]
+        found["losses"] = sum(len(report.losses) for report in self.reports)
+        if names:
+            found["repairs"] = [asdict(report) for report in self.reports]
+        return found
+
+    def _run(self, opened: Opened) -> None:
+        writer = _Writer(opened, self.path)
+        self._emptied = self.clock()
+        while True:
+            try:
+                task = self._work.get(timeout=IDLE if writer.untidy else None)
+            except queue.Empty:
+                self._tidy(writer)
+                continue
+            if task is None:
+                break
+            work, future = task
+            if future.set_running_or_notify_cancel():
+                began = time.perf_counter()
+                self._do(writer, work, future)
+                self.seconds = time.perf_counter() - began
+            if writer.log > BEHIND or (writer.behind and self.clock() - self._emptied > LATE):
+                self._empty(writer)
+        self._empty(writer)
+        writer.close()
+
+    def _do(self, writer: _Writer, work: Work, future: Future[Any]) -> None:
+        try:
+            found = writer.transaction(work)
+        except (sqlite3.Error, OSError) as error:
+            self.failing = str(error)
+            log.error("not stored: %s", error)
+            future.set_exception(not_stored(error))
+        except BaseException as error:
+            if isinstance(error, Problem) and error.slug in ("over-quota", "too-large"):
+                log.warning("not stored: %s", error.detail)
+            future.set_exception(error)
+        else:
+            self.failing = ""
+            future.set_result(found)
+
+    def _empty(self, writer: _Writer) -> None:
+        """Empty the log into the file, and notice how large that has become."""
+        with suppress(sqlite3.Error, OSError):
+            writer.checkpoint()
+            self._emptied = self.clock()
+            self.size = writer.db.size
+        near = bool(self.quota) and self.size > NEARLY * self.quota
+        if near and not self._near:
+            log.warning("the store has %d of %d bytes it may take", self.size, self.quota)
+        self._near = near
+
+    def _tidy(self, writer: _Writer) -> None:
+        """What is done while nobody waits: the log is emptied, the file shrinks, the manifest is written again."""
+        self._empty(writer)
+        with suppress(sqlite3.Error, OSError):
+            while self._work.empty() and writer.shrink():
+                self._empty(writer)
+            writer.tidy()
+        writer.untidy = writer.behind or not self._work.empty()
 
 
-def _opened(path: Path | None) -> sqlite3.Connection:
-    if path is None:
-        return _prepared(sqlite3.connect(":memory:", check_same_thread=False, isolation_level=None))
-    path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+def _file(path: Path) -> tuple[int, int] | None:
+    """Which file is at a path."""
     try:
-        return _checked(path)
-    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # what is wrong may be told in damaged words
-        if isinstance(error, sqlite3.OperationalError) and not _damaged(error):
-            raise OSError(f"{path} cannot be opened ({error})") from None
-        aside = path.with_name(f"{path.name}.damaged-{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}")
-        log.error("%s cannot be read (%s); it is kept as %s and a new one begun", path.name, error, aside.name)
-        for end in ("-wal", "-shm"):
-            with suppress(OSError):
-                path.with_name(path.name + end).replace(aside.with_name(aside.name + end))
-        path.replace(aside)
-        return _checked(path)
+        found = path.stat()
+    except FileNotFoundError:
+        return None
+    return found.st_dev, found.st_ino
 
 
-def _damaged(error: sqlite3.Error) -> bool:
-    words = ("malformed", "not a database", "no such", "has no column", "corrupt", "already exists")
-    return any(word in str(error) for word in words)
+class _Writer:
+    """The connection of an open store, and its manifest."""
 
+    def __init__(self, opened: Opened, path: Path | None) -> None:
+        self._path = path
+        self._log = None if path is None else path.with_name(path.name + "-wal")
+        self._take(opened)
+        self.behind = self.untidy = False
+        self._sync = ThreadPoolExecutor(1, "hookean-manifest")
 
-def _checked(path: Path) -> sqlite3.Connection:
-    fresh = not path.exists()
-    if fresh:
-        os.close(os.open(path, os.O_CREAT | os.O_RDWR, 0o600))
-    connection = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
-    try:
-        connection.text_factory = lambda text: text.decode("utf-8", "replace")
-        found = connection.execute("PRAGMA integrity_check(1)").fetchone()
-        if found != ("ok",) or connection.execute("PRAGMA foreign_key_check").fetchone():
-            raise sqlite3.DatabaseError("malformed: its parts do not fit together")
-        (version,) = connection.execute("PRAGMA user_version").fetchone()
-        (application,) = connection.execute("PRAGMA application_id").fetchone()
-        if version not in (0, VERSION) or (version and application != APPLICATION):
-            raise sqlite3.DatabaseError(f"malformed: version {version} of application {application:#x}")
-        return _prepared(connection, version)
-    except BaseException:
-        connection.close()
-        raise
+    def _take(self, opened: Opened) -> None:
+        self.db, self.manifest = opened.db, opened.manifest
+        self._file = None if self._path is None else _file(self._path)
 
+    def _present(self) -> None:
+        """A file that was deleted while it is open takes writes that nobody would find again."""
+        if self._path is not None and _file(self._path) != self._file:
+            quota = self.db.quota
+            self._take(reopened(self._path, Opened(self.db, self.manifest)))
+            self.db.quota = quota
 
-def _prepared(connection: sqlite3.Connection, version: int = 0) -> sqlite3.Connection:
-    connection.execute("PRAGMA journal_mode = WAL")
-    connection.execute("PRAGMA synchronous = FULL")
-    connection.execute("PRAGMA foreign_keys = ON")
-    connection.execute("PRAGMA busy_timeout = 2000")
-    if version == 0:
-        script = f"BEGIN;{SCHEMA}PRAGMA application_id = {APPLICATION};PRAGMA user_version = {VERSION};COMMIT;"
-        connection.executescript(script)
-    else:
-        for table in ("sessions", "edits", "jobs", "items", "answers"):
-            connection.execute(f"SELECT * FROM {table} LIMIT 0")
-    connection.executescript(LATER)
-    return connection
+    def transaction(self, work: Work) -> Any:
+        """What `work` returns, once all it wrote is on disk; where it raises nothing has changed."""
+        self._present()
+        db = self.db
+        db.touched, changes = {}, db.total_changes
+        db.execute("BEGIN IMMEDIATE")
+        try:
+            found = work(db)
+            self._commit()
+            if self._log is not None and db.total_changes != changes:
+                self.behind = self.untidy = True
+            return found
+        except BaseException:
+            if db.in_transaction:
+                db.execute("ROLLBACK")
+            raise
+
+    def _commit(self) -> None:
+        """The manifest names the write before it is committed, and both are synced side by side."""
+        db, changes = self.db, self.db.settle()
+        if not changes or self.manifest is None:
+            db.execute("COMMIT")
+            apply(db.owners, changes)
+            return
+        db.mark("commit", self.manifest.commit + 1)
+        db.mark("seq", db.seq)
+        self.manifest.prepare(changes)
+        synced = self._sync.submit(self.manifest.sync)
+        try:
+            db.execute("COMMIT")
+        except BaseException:
+            synced.exception()
+            self.manifest.undo()
+            raise
+        self.manifest.done(changes)  # which are the owners of `db` as well
+        if (error := synced.exception()) is not None:
+            log.warning("the manifest is not synced: %s", error)
+
+    @property
+    def log(self) -> int:
+        """Bytes of the write-ahead log."""
+        if not self.behind or self._log is None:
+            return 0
+        try:
+            return self._log.stat().st_size
+        except OSError:
+            return 0
+
+    def checkpoint(self) -> None:
+        """Empty the log into the file. Where somebody reads the file, the next time does it."""
+        self.db.execute("PRAGMA busy_timeout = 0")
+        try:
+            busy = self.db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
+        finally:
+            self.db.execute("PRAGMA busy_timeout = 2000")
+        self.behind = bool(busy)
+
+    def shrink(self) -> bool:
+        """Give some pages without use back to the system; whether there were any."""
+        (free,) = self.db.execute("PRAGMA freelist_count").fetchone()
+        if free <= FREE:
+            return False
+        # `execute` would free one page: it stops at the first step of a statement without columns
+        self.db.executescript(f"PRAGMA incremental_vacuum({min(STEP, free - FREE // 2)})")
+        return True
+
+    def tidy(self) -> None:
+        """Write the manifest again, once most of it no longer counts."""
+        if self.manifest is not None and self.manifest.grown:
+            self.manifest.rewrite()
+
+    def close(self) -> None:
+        """Close the file and its manifest."""
+        self._sync.shutdown()
+        with suppress(sqlite3.Error):
+            self.db.close()
+        if self.manifest is not None:
+            self.manifest.close()

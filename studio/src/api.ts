@@ -1,5 +1,5 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
-import type { Action, Anchor, Example, Kind, Patch, Result, Scene, Summary, Topology } from "./model";
+import type { Action, Anchor, Example, Kind, Patch, Result, Scene, Store, Summary, Topology } from "./model";
 
 /** What the service refused, in its own words; status 0: it could not be reached. */
 export class Refused extends Error {
@@ -46,7 +46,7 @@ const labelled = (label: string) => (label ? `?label=${encodeURIComponent(label.
 export const login = (token: string) =>
   ask("/v1/login", { method: "POST", headers: { authorization: `Bearer ${token}` } });
 
-export const sessions = async () => (await read<{ sessions: Summary[] }>("/v1/sessions")).sessions;
+export const sessions = () => read<{ sessions: Summary[]; store?: Store }>("/v1/sessions");
 export const summary = (key: string) => read<Summary>(at(key));
 export const topology = (key: string) => read<Topology>(`${at(key)}/topology`);
 export const anchors = async (key: string) => (await read<{ anchors: Anchor[] }>(`${at(key)}/anchors`)).anchors;

@@ -9,6 +9,12 @@ export interface Units {
   time: string;
 }
 
+/** The file that keeps sessions and jobs. */
+export interface Store {
+  warnings: string[];
+  repairs?: { when: string; copy: string; losses: { key: string; what: string }[] }[];
+}
+
 /** How a session stands. */
 export interface Summary {
   key: string;

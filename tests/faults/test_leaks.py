@@ -85,7 +85,7 @@ def test_sessions_made_watched_and_deleted_leave_nothing(running: Served) -> Non
     wait_for(lambda: settled(running, before))
     wait_for(lambda: len(running.family()) <= family)
     assert figures(running)[2] - before[2] <= 5 * MIB
-    assert running.client.get("/v1/sessions").json() == {"sessions": []}
+    assert running.client.get("/v1/sessions").json()["sessions"] == []
 
 
 def _opened(served: Served, said: bytes) -> socket.socket:

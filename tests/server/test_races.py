@@ -216,7 +216,7 @@ def test_a_second_deletion_does_not_take_the_session_made_after_the_first() -> N
     (made, gone, edited), kept = asyncio.run(raced())
     assert made[2] is True and kept is not None
     assert all(isinstance(refused, Problem) and refused.slug == "not-found" for refused in (gone, edited))
-    assert kept[2] == [], "the edit of the old session is not in the new one"
+    assert kept.edits == [], "the edit of the old session is not in the new one"
 
 
 class Begun(list[SessionProcess]):

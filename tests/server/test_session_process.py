@@ -62,10 +62,10 @@ def test_drags_by_pins_are_few_rows_and_come_back_whole() -> None:
     for step in range(30):
         make({"pin": [{"particles": [5], "targets": [[10, 0, 0.1 * step]]}], "gesture": "drag"})
     make({"pin": [{"particles": [3], "targets": [[6, 0, 1]]}], "gesture": "drag"})
-    stored_base, state, edits, revisions, _ = store.submit(rows.load("a")).result(20.0)
+    stored = store.submit(rows.load("a")).result(20.0)
     store.close()
-    assert len(edits) == 4 and revisions == [30, 31, 61, 62]
-    again = parts.restored(stored_base, state, edits, revisions)
+    assert len(stored.edits) == 4 and stored.revisions == [30, 31, 61, 62] and stored.revision == 62
+    again = parts.restored(stored.base, stored.state, stored.edits, stored.revisions)
     for _ in range(2):
         for one, other in zip(again.system.held, simulation.system.held, strict=True):
             assert (one.number, one.particles.tolist()) == (other.number, other.particles.tolist())

@@ -17,7 +17,7 @@ from serving import CABLE, HANG
 
 from .browser import Studio
 from .conftest import Opened
-from .service import equilibrium
+from .service import Service, equilibrium
 
 ROOT = Path(__file__).parents[2]
 RHINO = ROOT.parent / "shared" / "data" / "rhino"
@@ -168,3 +168,22 @@ def test_a_file_that_is_none_is_refused_in_a_sentence(studio: Studio, content: b
     alert.wait_for()
     assert "Traceback" not in alert.inner_text() and len(alert.inner_text()) < 500
     assert "#s=" not in studio.page.url
+
+
+def test_what_the_store_lost_is_named(open_studio: Opened, tmp_path: Path):
+    """The database is deleted while the service is down: the start page names the session and where the copy is."""
+    service = Service(tmp_path)
+    try:
+        assert service.client.put("/v1/sessions/roof", json=CABLE, params={"label": "The roof"}).status_code == 201
+        service.kill()
+        for file in (tmp_path / "state").glob("sessions.db*"):
+            if not file.name.endswith((".manifest", ".lock")):
+                file.unlink()
+        service.start()
+        studio = open_studio(at=service)
+        told = studio.page.get_by_role("status", name="The store")
+        told.wait_for()
+        assert "The roof" in told.inner_text() and "damaged-" in told.inner_text()
+        studio.page.goto("about:blank")  # before its service ends
+    finally:
+        service.end()

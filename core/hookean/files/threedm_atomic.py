@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
+import platform
 import secrets
 import shutil
 import stat
@@ -35,14 +37,18 @@ def check_target(target: StrPath, source: StrPath | None = None, *, folder: bool
 
 
 def put(target: StrPath, data: bytes, check: Callable[[bytes], object]) -> None:
-    """Write `data` to a file beside `target`, `check` what is read back, then put it in target's place.
+    """Write `data` to a file beside `target`, `check` what is read back, then put it in target's place. A link is
+    written through: it stays, and the file that it leads to is replaced.
 
-    Whatever fails, `target` stays as it was and nothing is left beside it. Raises InputError if the folder
-    cannot be written to, and what `check` raises.
+    Whatever fails, `target` stays as it was and nothing is left beside it; what a killed process has left there is
+    deleted. Raises InputError if the folder cannot be written to, and what `check` raises.
     """
     path = Path(target)
-    beside = path.with_name(f".{secrets.token_hex(8)}.hookean")
+    if path.is_symlink():
+        path = Path(os.path.realpath(path))
+    beside = path.with_name(f".{_process(os.getpid())}-{secrets.token_hex(8)}.hookean")
     try:
+        _sweep(path.parent)
         _write(beside, data)
         back = beside.read_bytes()
         if back != data:
@@ -59,6 +65,30 @@ def put(target: StrPath, data: bytes, check: Callable[[bytes], object]) -> None:
     finally:
         with contextlib.suppress(OSError):
             beside.unlink()
+
+
+def _process(number: int) -> str:
+    """A process of this machine, as the names of unfinished files have it."""
+    return f"{number}-{hashlib.sha256(platform.node().encode()).hexdigest()[:8]}"
+
+
+def _sweep(folder: Path) -> None:
+    """Delete unfinished files of processes of this machine that have ended; Windows has no harmless way to ask."""
+    for file in folder.glob(".*.hookean") if os.name == "posix" else ():
+        number = file.name[1:].partition("-")[0]
+        if number.isdigit() and file.name.startswith(f".{_process(int(number))}-") and not _runs(int(number)):
+            with contextlib.suppress(OSError):
+                file.unlink()
+
+
+def _runs(number: int) -> bool:
+    try:
+        os.kill(number, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True
 
 
 def _same(target: StrPath, source: StrPath) -> bool:

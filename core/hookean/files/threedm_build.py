@@ -136,7 +136,7 @@ def carrier(planned: Plan, kept: Sequence[Layer], version: int, text: Mapping[st
 
 def written(file: Any, version: int) -> bytes:
     """The bytes rhino3dm writes for a file in Rhino version `version`."""
-    with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
+    with tempfile.TemporaryDirectory(prefix=f"hookean-{os.getpid()}-") as folder:
         path = os.path.join(folder, "new.3dm")
         if not file.Write(path, version):
             raise InputError("file", f"could not be written as .3dm version {version}; try another version.")

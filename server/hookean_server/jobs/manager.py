@@ -43,7 +43,6 @@ class Jobs:
 
     async def start(self) -> None:
         """Bring back what the store has; what was not finished goes on."""
-        await self.store.run(rows.prepare())
         for kept in await self.store.run(rows.listed()):
             live = Live(kept, event=kept.event, ended=kept.status in FINAL, cancelled=kept.status == "cancelled")
             self.jobs[kept.id] = live

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import sqlite3
 import time
 from dataclasses import dataclass
 from typing import Any
 
+from hookean_server.keeping.database import Database
 from hookean_server.store import Work
 
 UNFINISHED = ("waiting", "running")
@@ -64,7 +64,7 @@ _JOB = (
 def listed() -> Work:
     """All jobs, the oldest first."""
 
-    def work(db: sqlite3.Connection) -> list[Kept]:
+    def work(db: Database) -> list[Kept]:
         return [Kept(*row) for row in db.execute(f"{_JOB} ORDER BY created, id")]
 
     return work
@@ -73,12 +73,13 @@ def listed() -> Work:
 def add(job: Kept, request: bytes, key: str, digest: str, location: str, answer: bytes) -> Work:
     """A new job, and with a `key` the answer to its request."""
 
-    def work(db: sqlite3.Connection) -> None:
+    def work(db: Database) -> None:
         created = time.time()
-        values = (job.id, job.kind, request, job.total, job.status, job.message, created)
-        db.execute("INSERT INTO jobs VALUES (?, ?, ?, ?, ?, ?, ?, 0)", values)
+        said = {"kind": job.kind, "total": job.total, "status": job.status, "message": job.message}
+        db.keep("jobs", id=job.id, created=created, **said)
+        db.keep("requests", job=job.id, request=request)
         if key:
-            db.execute("INSERT INTO answers VALUES (?, ?, 202, ?, ?, 0)", (key, digest, location, answer))
+            db.keep("answers", key=key, job=job.id, digest=digest, status=202, head=location, body=answer)
 
     return work
 
@@ -86,7 +87,7 @@ def add(job: Kept, request: bytes, key: str, digest: str, location: str, answer:
 def answered(key: str) -> Work:
     """The answer under an Idempotency-Key, or None."""
 
-    def work(db: sqlite3.Connection) -> Answer | None:
+    def work(db: Database) -> Answer | None:
         row = db.execute("SELECT digest, head, body FROM answers WHERE key = ?", (key,)).fetchone()
         if row is not None:
             db.execute("UPDATE answers SET idle = 0 WHERE key = ?", (key,))
@@ -98,8 +99,8 @@ def answered(key: str) -> Work:
 def request(job: str) -> Work:
     """What tells of a job's table, and its request; None where there is no such job."""
 
-    def work(db: sqlite3.Connection) -> tuple[dict[str, Any], bytes] | None:
-        row = db.execute("SELECT request FROM jobs WHERE id = ?", (job,)).fetchone()
+    def work(db: Database) -> tuple[dict[str, Any], bytes] | None:
+        row = db.execute("SELECT request FROM requests WHERE job = ?", (job,)).fetchone()
         if row is None:
             return None
         about, _, rest = bytes(row[0]).partition(b"\n")
@@ -111,8 +112,8 @@ def request(job: str) -> Work:
 def status(job: str, status: str, message: str) -> Work:
     """How a job stands."""
 
-    def work(db: sqlite3.Connection) -> None:
-        db.execute("UPDATE jobs SET status = ?, message = ?, idle = 0 WHERE id = ?", (status, message, job))
+    def work(db: Database) -> None:
+        db.change("jobs", (job,), status=status, message=message, idle=0.0)
 
     return work
 
@@ -120,12 +121,13 @@ def status(job: str, status: str, message: str) -> Work:
 def store(job: str, found: list[Row]) -> Work:
     """Items that are done; of one that is there already the first stays. Returns the numbers of new ones."""
 
-    def work(db: sqlite3.Connection) -> list[int]:
+    def work(db: Database) -> list[int]:
         new = []
         for row in found:
             db.execute("DELETE FROM items WHERE job = ? AND number = ? AND status = ?", (job, row.number, PARTIAL))
-            values = (job, row.number, row.event, row.status, row.body)
-            if db.execute("INSERT OR IGNORE INTO items VALUES (?, ?, ?, ?, ?)", values).rowcount:
+            query = "SELECT 1 FROM items WHERE job = ? AND number = ?"
+            if db.execute(query, (job, row.number)).fetchone() is None:
+                db.keep("items", job=job, number=row.number, event=row.event, status=row.status, body=row.body)
                 new.append(row.number)
         return new
 
@@ -135,9 +137,8 @@ def store(job: str, found: list[Row]) -> Work:
 def checkpoint(job: str, event: int, body: bytes) -> Work:
     """How far a relaxation has come."""
 
-    def work(db: sqlite3.Connection) -> None:
-        values = (job, event, PARTIAL, body)
-        db.execute("INSERT OR REPLACE INTO items VALUES (?, 0, ?, ?, ?)", values)
+    def work(db: Database) -> None:
+        db.keep("items", job=job, number=0, event=event, status=PARTIAL, body=body)
 
     return work
 
@@ -145,7 +146,7 @@ def checkpoint(job: str, event: int, body: bytes) -> Work:
 def finished(job: str) -> Work:
     """Numbers of the items that are done or failed."""
 
-    def work(db: sqlite3.Connection) -> set[int]:
+    def work(db: Database) -> set[int]:
         query = "SELECT number FROM items WHERE job = ? AND status <> ?"
         return {row[0] for row in db.execute(query, (job, PARTIAL))}
 
@@ -157,7 +158,7 @@ def rows(job: str, after: int, most: int, *, by: str = "number") -> Work:
     their arrival (by `event`)."""
     assert by in ("number", "event")
 
-    def work(db: sqlite3.Connection) -> list[Row]:
+    def work(db: Database) -> list[Row]:
         query = (
             f"SELECT number, event, status, body FROM items WHERE job = ? AND {by} > ? AND status <> ? "
             f"ORDER BY {by} LIMIT ?"
@@ -170,7 +171,7 @@ def rows(job: str, after: int, most: int, *, by: str = "number") -> Work:
 def item(job: str, number: int) -> Work:
     """One item, finished or a checkpoint; None where there is none."""
 
-    def work(db: sqlite3.Connection) -> Row | None:
+    def work(db: Database) -> Row | None:
         query = "SELECT number, event, status, body FROM items WHERE job = ? AND number = ?"
         row = db.execute(query, (job, number)).fetchone()
         return None if row is None else Row(row[0], row[1], row[2], bytes(row[3]))
@@ -182,7 +183,7 @@ def age(seconds: float, longest: float, used: list[str], most: int) -> Work:
     """So many seconds of service have passed: finished jobs untouched for `longest` are forgotten, and the oldest
     beyond `most`; with them the answers to their requests. Returns their ids."""
 
-    def work(db: sqlite3.Connection) -> list[str]:
+    def work(db: Database) -> list[str]:
         db.execute("UPDATE jobs SET idle = idle + ?", (seconds,))
         db.execute("UPDATE answers SET idle = idle + ?", (seconds,))
         db.executemany("UPDATE jobs SET idle = 0 WHERE id = ?", [(job,) for job in used])
@@ -191,7 +192,6 @@ def age(seconds: float, longest: float, used: list[str], most: int) -> Work:
         beyond = f"SELECT id FROM jobs WHERE {done} ORDER BY created DESC, id LIMIT -1 OFFSET ?"
         gone = list(dict.fromkeys(gone + [row[0] for row in db.execute(beyond, (most,))]))
         db.executemany("DELETE FROM jobs WHERE id = ?", [(job,) for job in gone])
-        db.executemany("DELETE FROM answers WHERE head LIKE ?", [(f"%/{job}",) for job in gone])
         db.execute("DELETE FROM answers WHERE idle > ?", (longest,))
         return gone
 
@@ -201,17 +201,8 @@ def age(seconds: float, longest: float, used: list[str], most: int) -> Work:
 def one(job: str) -> Work:
     """One job; None where there is none."""
 
-    def work(db: sqlite3.Connection) -> Kept | None:
+    def work(db: Database) -> Kept | None:
         row = db.execute(f"{_JOB} WHERE id = ?", (job,)).fetchone()
         return None if row is None else Kept(*row)
-
-    return work
-
-
-def prepare() -> Work:
-    """What the store needs to find events quickly."""
-
-    def work(db: sqlite3.Connection) -> None:
-        db.execute("CREATE INDEX IF NOT EXISTS items_by_event ON items (job, event)")
 
     return work

@@ -217,7 +217,8 @@ class Runner:
         live.progress.append((live.event, said))
         live.kept.message = f"Running: {said['iteration']} iterations, residual {said['residual']:.3g}."
         live.tell()
-        if state:
+        if state and self.store.budget.allows(live.kept.id):
+            self.store.budget.spend(len(state))
             head = json.dumps({**said, "progress": list(live.progress)}).encode()
             stored = self.store.submit(rows.checkpoint(live.kept.id, live.event, head + b"\n" + state))
             stored.add_done_callback(lambda future: future.exception())  # the next one may be stored

@@ -9,7 +9,7 @@ from typing import Any
 
 from hookean.files import obj
 from hookean.simulation import Simulation
-from hookean_server import answers
+from hookean_server import answers, leftovers
 from hookean_server.sessions import parts
 
 LACKS = {
@@ -110,7 +110,7 @@ def _threedm(simulation: Simulation) -> tuple[bytes, list[str]]:
     from hookean.files.relax_file import conclude
 
     read = Source(simulation.edited_scene(), [], unit=simulation.scene.units.length)
-    with tempfile.TemporaryDirectory(prefix="hookean-") as folder:
+    with tempfile.TemporaryDirectory(prefix=leftovers.prefix()) as folder:
         target = Path(folder) / "session.3dm"
         done = conclude(read, Path("session.json"), simulation.system, simulation.result(), target)
         return target.read_bytes(), done.unwritten

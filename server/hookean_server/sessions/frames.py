@@ -46,7 +46,7 @@ async def frames(socket: WebSocket, key: str) -> None:
             await socket.accept()
             await _served(socket, sessions, live)
     finally:
-        live.watchers -= 1
+        sessions.unwatch(live)
 
 
 async def _served(socket: WebSocket, sessions: Manager, live: Live) -> None:

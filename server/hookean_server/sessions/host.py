@@ -2,7 +2,8 @@
 
 Messages are raw bytes, a JSON head and a body, each way. Commands have an `id` and are answered in order, but for
 `step`, which is answered when it is done. Events have none: frames, checkpoints and a sign of life twice a second.
-It may be killed any time: what is acknowledged is in the store, progress at most a second old in a checkpoint.
+It may be killed any time: what is acknowledged is in the store, progress in a checkpoint, which the server asks for
+(`keep`) once a sign of life reports `unsaved` progress and the disk's budget allows it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,6 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
-import numpy as np
 from pydantic import ValidationError
 
 from hookean.errors import InputError
@@ -26,6 +26,7 @@ from hookean.scene import faults
 from hookean.simulation import Simulation
 from hookean_server.problems import Problem, faulty
 from hookean_server.sessions import parts, wire
+from hookean_server.sessions.folding import foldable
 from hookean_server.sessions.resting import Resting
 
 log = logging.getLogger("hookean.session")
@@ -34,7 +35,7 @@ FRAME = 1.0 / 60.0  # seconds from frame to frame while it plays
 FAST = 0.05  # and at full speed, where each frame costs iterations
 SLICE = 0.005  # seconds of solving between commands
 BEAT = 0.5
-CHECKPOINT = 0.8
+CHECKPOINT = 0.8  # from checkpoint to checkpoint, at least
 
 CHANGES = ("edit", "replace", "revert")  # after them a relaxation goes on from what is then
 MOVES = ("play", "pause", "step", "relax")
@@ -92,7 +93,7 @@ class Host:
             if self.simulation is not None and self.resting is not None:
                 self._follow(self.simulation, self.resting)
             self._show()
-            self._keep()
+            self._beat()
 
     def _due(self) -> bool:
         """Whether iterations are due now."""
@@ -108,7 +109,7 @@ class Host:
             return FRAME
         if self.left or (self.playing and self.fast):
             return 0.0
-        wait = min(self.beat_at + BEAT, self.saved_at + CHECKPOINT if self.now != self.stored else np.inf) - now
+        wait = self.beat_at + BEAT - now
         if self.playing:
             wait = min(wait, 0.0 if self.owed else self.due - now)
         return max(0.0, float(wait))
@@ -121,6 +122,9 @@ class Host:
             return
         if head["do"] == "unstored":
             self.stored = -1  # the last checkpoint: another one is due
+            return
+        if head["do"] == "keep":
+            self._keep()
             return
         if self.simulation is not None:
             self._finite(self.simulation)
@@ -176,9 +180,20 @@ class Host:
         """A session from the store: its base, the edits since, and the last checkpoint of its state."""
         base, state, *edits = parts.split(body, head["sizes"])
         self.simulation = parts.restored(base, state, edits, head["revisions"])
+        after = self.simulation.state
+        after.revision = max(after.revision, head["revision"])  # later than what is there, where edits were lost
         self._mark()
         self.stored = self.now
         return self._described(), b""
+
+    def do_fold(self, head: dict[str, Any], body: bytes) -> Reply:
+        """A base of the store with the first edits after it as part of it: how many, and the new base. For a process
+        that holds nothing else."""
+        base, *edits = parts.split(body, head["sizes"])
+        count = foldable(edits)
+        if not count:
+            return {"count": 0}, b""
+        return {"count": count}, parts.saved(parts.restored(base, b"", edits[:count], head["revisions"][:count]))
 
     def do_replace(self, head: dict[str, Any], body: bytes) -> Reply:
         """Another scene, in which particles keep where they are, or a saved simulation, in which they are as saved."""
@@ -247,9 +262,12 @@ class Host:
         return self._described(), b""
 
     def do_checkpoint(self, head: dict[str, Any], body: bytes) -> Reply:
-        """The state as it is now."""
+        """The state as it is now; nothing where the store has it."""
+        simulation = self._simulation()
+        if self.stored == self.now:
+            return self._described(), b""
         self.stored = self.now
-        return self._described(), parts.state_bytes(self._simulation())
+        return self._described(), parts.state_bytes(simulation)
 
     def do_save(self, head: dict[str, Any], body: bytes) -> Reply:
         """All of it: scene, anchors and state."""
@@ -351,17 +369,24 @@ class Host:
             self._send({"event": "frame", "number": self.number}, wire.encode(frame))
 
     def _keep(self) -> None:
-        """A checkpoint or a sign of life, when one is due."""
-        now = time.monotonic()
-        if self.simulation is not None and self.now != self.stored and now >= self.saved_at + CHECKPOINT:
+        """Send a checkpoint, where there is progress to store."""
+        if self.simulation is not None and self.now != self.stored:
             self._finite(self.simulation)
-            self.saved_at, self.stored = now, self.now
+            self.saved_at, self.stored = time.monotonic(), self.now
             self._send({"event": "checkpoint", **self._described()}, parts.state_bytes(self.simulation))
-        if now >= self.beat_at + BEAT:
-            self.beat_at = now
-            if self.simulation is not None:
-                self._finite(self.simulation)
-            self._send({"event": "beat", **(self._described() if self.simulation else {})}, b"")
+
+    def _beat(self) -> None:
+        """Send a sign of life, when one is due; it reports whether there is progress to store."""
+        now = time.monotonic()
+        if now < self.beat_at + BEAT:
+            return
+        self.beat_at = now
+        if self.simulation is None:
+            self._send({"event": "beat"}, b"")
+            return
+        self._finite(self.simulation)
+        unsaved = self.now != self.stored and now >= self.saved_at + CHECKPOINT
+        self._send({"event": "beat", **self._described(), "unsaved": unsaved}, b"")
 
     def _described(self) -> dict[str, Any]:
         simulation = self._simulation()

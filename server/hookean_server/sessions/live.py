@@ -45,6 +45,9 @@ class Live:
     used: float = field(default_factory=time.monotonic)
     losses: list[float] = field(default_factory=list)
     edits: int = 0
+    folding: bool = False
+    fold_at: int = 0  # how many edits there must be for it
+    saving: bool = False  # whether a checkpoint is on its way
 
     def etag(self, described: dict[str, Any] | None = None) -> str:
         """The ETag of how it stands, or stood: creation, revision, and a digest of what else of it changes."""
@@ -86,6 +89,10 @@ class Live:
         if any(then.get(name) != before.get(name) for name in ("status", "playing", "revision", "warnings")):
             self.tell()
         return then
+
+    def use(self) -> None:
+        """Somebody uses it: it is neither put to sleep nor forgotten for a while."""
+        self.used = time.monotonic()
 
     def tell(self) -> None:
         """Wake everyone who waits for news."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
 import secrets
 import time
 from collections.abc import Coroutine
@@ -12,7 +13,7 @@ from typing import Any
 
 from hookean_server.logs import short_hash
 from hookean_server.problems import Problem
-from hookean_server.sessions import rows
+from hookean_server.sessions import rows, upkeep
 from hookean_server.sessions.conditions import Conditions, stale
 from hookean_server.sessions.live import Live
 from hookean_server.sessions.process import Gone, SessionProcess
@@ -25,8 +26,9 @@ log = logging.getLogger("hookean.sessions")
 ANSWER = 60.0  # seconds a process may take to answer; compiling a force for the first time takes a few
 PAUSE = 1.5  # seconds it may take to pause, before it is killed and brought back paused
 TICK = 15.0  # seconds between looks at what to put to sleep and to forget
+UNSTORED = ("not-stored", "over-quota", "too-large")
 LOSSES, WITHIN = 3, 60.0  # a session that loses its process so often in so many seconds stays down until it is used
-MANY_EDITS = 400  # after so many the store gets a new base
+MANY_EDITS = 400  # after so many those that cannot be taken back any more become part of the base
 ALWAYS = Conditions()
 
 
@@ -50,7 +52,8 @@ class Manager(Register):
         for kept in await self.store.run(rows.listed()):
             described = {name: getattr(kept, name) for name in _KEPT}
             paused = {**described, "playing": False}
-            self.sessions[kept.key] = Live(kept.key, kept.label, paused, kept.notes, kept.nonce)
+            live = Live(kept.key, kept.label, paused, kept.notes, kept.nonce, used=-math.inf)
+            self.sessions[kept.key] = live
         self._ticking = asyncio.create_task(self._tick())
 
     async def close(self) -> None:
@@ -85,7 +88,7 @@ class Manager(Register):
                     described, base = await process.call("create", body, seconds=ANSWER, slug="invalid-scene")
                     await self.store.run(rows.put(live.key, label, base, described, live.notes, live.nonce))
                 except BaseException:
-                    self._end(live)
+                    self.end(live)
                     raise
             live.note(described)
             live.scene = secrets.token_hex(8)
@@ -116,9 +119,9 @@ class Manager(Register):
                     await self._revert(live, process)
                     raise
             found = live.note(described)
-            if live.edits > MANY_EDITS:
-                with suppress(Problem):  # the edit is stored; the next one tries again
-                    await self._rebase(live, process)
+            if live.edits > max(MANY_EDITS, live.fold_at) and not live.folding:
+                live.folding = True
+                self._spawn(upkeep.fold(self, live))
         return found
 
     async def command(self, key: str | Live, do: str, when: Conditions = ALWAYS, **options: Any) -> dict[str, Any]:
@@ -140,7 +143,9 @@ class Manager(Register):
 
     async def export(self, key: str | Live, form: str, arrays: str = "list") -> tuple[dict[str, Any], bytes]:
         """The session in some format; its head has the media `type`."""
-        _, head, body = await self._ask(self.find(key), "export", seconds=ANSWER, format=form, arrays=arrays)
+        live = self.find(key)
+        _, head, body = await self._ask(live, "export", seconds=ANSWER, format=form, arrays=arrays)
+        live.use()
         return head, body
 
     async def branch(self, key: str | Live, new: str | None, label: str, when: Conditions = ALWAYS) -> Live:
@@ -165,7 +170,7 @@ class Manager(Register):
         async with self.held(live):
             when.check(live)
             await self.store.run(rows.delete(live.key))
-            self._gone(live)
+            self.drop(live)
 
     async def watch(self, key: str | Live) -> Live:
         """A session whose frames somebody wants to see: awake, with one watcher more; raises Problem."""
@@ -175,9 +180,14 @@ class Manager(Register):
             async with self.held(live):
                 await self._awake(live)
         except BaseException:
-            live.watchers -= 1
+            self.unwatch(live)
             raise
         return live
+
+    def unwatch(self, live: Live) -> None:
+        """A watcher has left; until now the session was in use."""
+        live.watchers -= 1
+        live.use()
 
     # processes
 
@@ -207,19 +217,20 @@ class Manager(Register):
             try:
                 return await self._restored(live)
             except BaseException:
-                self._end(live, playing=live.playing)  # half restored it is of no use
+                self.end(live, playing=live.playing)  # half restored it is of no use
                 raise
 
     async def _restored(self, live: Live) -> SessionProcess:
-        found = None if live.gone else await self.store.run(rows.load(live.key))
+        found: rows.Stored | None = None if live.gone else await self.store.run(rows.load(live.key))
         if found is None or live.gone:
             raise Deleted
-        base, state, edits, revisions, _ = found
         process = await self._process(live)
-        sizes = [len(part) for part in (base, state, *edits)]
-        body = b"".join((base, state, *edits))
-        described, _ = await process.call("restore", body, seconds=ANSWER, sizes=sizes, revisions=revisions)
-        live.edits = len(edits)
+        sizes = [len(part) for part in (found.base, found.state, *found.edits)]
+        body = b"".join((found.base, found.state, *found.edits))
+        described, _ = await process.call(
+            "restore", body, seconds=ANSWER, sizes=sizes, revisions=found.revisions, revision=found.revision
+        )
+        live.edits = len(found.edits)
         live.scene = live.scene or secrets.token_hex(8)
         live.note(described)
         return process
@@ -272,7 +283,7 @@ class Manager(Register):
         if live.gone:
             process.kill()
             raise Deleted
-        live.process, live.asked, live.frame = process, False, b""
+        live.process, live.asked, live.frame, live.saving = process, False, b"", False
         return process
 
     def _event(self, live: Live, process: SessionProcess | None, head: dict[str, Any], body: bytes) -> None:
@@ -290,8 +301,17 @@ class Manager(Register):
         else:
             live.note(head)
             if event == "checkpoint":
-                stored = self.store.submit(rows.checkpoint(live.key, head, body))
-                stored.add_done_callback(lambda done: process.unstored() if done.exception() else None)
+                live.saving = False
+                self._checkpoint(live, head, body, process)
+            elif head.get("unsaved") and not live.saving:
+                live.saving = self.store.budget.allows(live.key, resting=not head["playing"])
+                if live.saving:
+                    process.keep()
+
+    def _checkpoint(self, live: Live, head: dict[str, Any], state: bytes, process: SessionProcess) -> None:
+        self.store.budget.spend(len(state))
+        stored = self.store.submit(rows.checkpoint(live.key, head, state))
+        stored.add_done_callback(lambda done: process.unstored() if done.exception() else None)
 
     async def _bring_back(self, live: Live) -> None:
         """A new process for a session that lost its own, if somebody is using it."""
@@ -335,24 +355,27 @@ class Manager(Register):
             return
         try:
             described, state = await process.call("checkpoint", seconds=seconds)
-            await self.store.run(rows.checkpoint(live.key, described, state))
+            if state:
+                self.store.budget.spend(len(state))
+                await self.store.run(rows.checkpoint(live.key, described, state))
             live.note({**described, "playing": False})
         except Problem as problem:
-            if problem.slug == "not-stored" and not unsaved:
+            if problem.slug in UNSTORED and not unsaved:
                 raise
         if live.process is process:
-            self._end(live)
+            self.end(live)
 
-    def _end(self, live: Live, *, playing: bool = False) -> None:
+    def end(self, live: Live, *, playing: bool = False) -> None:
+        """End the process of a session; `playing`: it is to play on in another one."""
         process, live.process = live.process, None
         live.playing = playing
         if process is not None:
             process.kill()
 
-    def _gone(self, live: Live) -> None:
-        """A session is forgotten: its process ends, its watchers hear of it."""
+    def drop(self, live: Live) -> None:
+        """A session is not in the store any more: its process ends, its watchers hear of it."""
         self.forget(live)
-        self._end(live)
+        self.end(live)
         live.tell()
 
     async def _replace(
@@ -383,12 +406,7 @@ class Manager(Register):
             described, _ = await process.call("revert", seconds=ANSWER)
             live.note(described)
         except Problem:
-            self._end(live)  # it comes back as the store has it
-
-    async def _rebase(self, live: Live, process: SessionProcess) -> None:
-        described, base = await process.call("save", seconds=ANSWER)
-        await self.store.run(rows.rebase(live.key, base, described["revision"]))
-        live.edits = 0
+            self.end(live)  # it comes back as the store has it
 
     # bookkeeping
 
@@ -414,21 +432,7 @@ class Manager(Register):
                     async with live.lock:
                         with suppress(Problem):
                             await self._sleep(live, PAUSE, unsaved=False)
-            used = [live.key for live in awake if live.playing or live.watchers or now - live.used < TICK]
-            try:
-                old = await self.store.run(rows.age(TICK, self.settings.session_seconds, used))
-            except Problem:
-                continue
-            for live in [self.sessions[key] for key in old if key in self.sessions]:
-                with suppress(Problem):
-                    await self._outlived(live, now)
-
-    async def _outlived(self, live: Live, since: float) -> None:
-        """Forget a session that nobody used for long, unless somebody has used it `since`."""
-        async with self.held(live):
-            if live.used <= since and not (live.playing or live.watchers):
-                await self.store.run(rows.delete(live.key))
-                self._gone(live)
+            await upkeep.forget(self, TICK)
 
 
 _KEPT = ("revision", "iteration", "status", "message", "particles", "created")

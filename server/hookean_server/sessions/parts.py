@@ -69,9 +69,15 @@ def saved(simulation: Simulation) -> bytes:
 
 
 def state_bytes(simulation: Simulation) -> bytes:
-    """What moves of a simulation, for a checkpoint."""
+    """What moves of a simulation, for a checkpoint, but for what follows from its anchors and its start."""
     stream = io.BytesIO()
-    arrays: dict[str, Any] = simulation.state.arrays()
+    state = simulation.state
+    arrays: dict[str, Any] = state.arrays()
+    del arrays["free"]
+    for number, start in enumerate(simulation.system.start().memory):
+        if np.array_equal(state.memory[number], start):
+            del arrays[f"memory_{number}"]
+    arrays["memories"] = np.array(len(state.memory))
     np.savez(stream, allow_pickle=False, status=np.array(str(simulation.status)), **arrays)
     return stream.getvalue()
 
@@ -84,24 +90,30 @@ def restored(base: bytes, state: bytes, edits: list[bytes], revisions: list[int]
     if state:
         with np.load(io.BytesIO(state), allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
-    status = Status(str(arrays.pop("status"))) if arrays else simulation.status
-    kept = State.of(arrays) if arrays else None
     for edit, revision in zip(edits, revisions, strict=True):
-        if kept is not None and revision > kept.revision:
-            simulation = _put(simulation, kept, status)
-            kept = None
+        if arrays and revision > int(arrays["clock"][2]):
+            _put(simulation, arrays)
+            arrays = {}
         make(simulation, edit)
         simulation.state.revision = revision
-    return simulation if kept is None else _put(simulation, kept, status)
+    if arrays:
+        _put(simulation, arrays)
+    return simulation
 
 
-def _put(simulation: Simulation, state: State, status: Status) -> Simulation:
+def _put(simulation: Simulation, arrays: dict[str, NDArray[Any]]) -> None:
+    """Go on from a checkpoint, where it is one of this system."""
+    status = Status(str(arrays.pop("status")))
+    count = int(arrays.pop("memories", np.array(0)))
+    for number, start in enumerate(simulation.system.start().memory[:count]):
+        arrays.setdefault(f"memory_{number}", start)
+    arrays.setdefault("free", np.ones_like(arrays["x"]))
+    state = State.of(arrays)
     if state.fits(simulation.state):
         state.free[:] = 1.0  # the anchors are those of the edits, whatever the checkpoint saw
         for anchor in simulation.system.held:
             hold(state, anchor)
         simulation.take_up(state, status)
-    return simulation
 
 
 def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:

@@ -89,6 +89,10 @@ class SessionProcess:
         """One more frame is wanted."""
         self._send({"do": "credit"}, b"")
 
+    def keep(self) -> None:
+        """A checkpoint is wanted, if there is anything to store."""
+        self._send({"do": "keep"}, b"")
+
     def unstored(self) -> None:
         """The last checkpoint could not be stored; another one is wanted."""
         self._send({"do": "unstored"}, b"")

@@ -6,7 +6,6 @@ was deleted even where another one has its key by then.
 
 from __future__ import annotations
 
-import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 
@@ -39,7 +38,7 @@ class Register:
             live = self.sessions[key]
         else:
             raise Problem("not-found", "There is no session of this key; GET /v1/sessions lists those there are.")
-        live.used = time.monotonic()
+        live.use()
         return live
 
     @asynccontextmanager

@@ -69,8 +69,10 @@ async def put(request: Request, key: Key, when: When, label: Label = "") -> Resp
 
 @router.get("/v1/sessions", summary="All sessions", responses=openapi.problems(openapi.SESSIONS))
 async def listing(request: Request) -> dict[str, Any]:
-    """Every session with its state and the sentence on it."""
-    return {"sessions": [summary(live) for live in manager(request).sessions.values()]}
+    """Every session with its state and the sentence on it; and the store, with what was lost from it by name."""
+    sessions = manager(request)
+    listed = [summary(live) for live in sessions.sessions.values()]
+    return {"sessions": listed, "store": sessions.store.described(names=True)}
 
 
 @router.get(

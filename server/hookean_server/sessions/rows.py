@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 import secrets
 import sqlite3
 import time
 from dataclasses import dataclass
 from typing import Any
 
+from hookean_server.keeping.database import Database
+from hookean_server.keeping.layout import TABLES
 from hookean_server.store import Work
 
 
@@ -29,50 +30,39 @@ class Kept:
     nonce: str  # of its creation, part of its ETags
 
 
-_COLUMNS = (
-    "sessions.key, label, revision, iteration, status, message, particles, created, idle, notes.sentences, "
-    "creations.nonce"
-)
-
-
 def listed() -> Work:
     """All sessions, the latest first."""
 
-    def work(db: sqlite3.Connection) -> list[Kept]:
-        joined = "sessions LEFT JOIN notes USING (key) LEFT JOIN creations USING (key)"
-        found = db.execute(f"SELECT {_COLUMNS} FROM {joined} ORDER BY created DESC, sessions.key").fetchall()
-        return [Kept(*[*row[:-2], (row[-2] or "").splitlines(), row[-1] or _creation(db, row[0])]) for row in found]
+    def work(db: Database) -> list[Kept]:
+        query = (
+            "SELECT s.key, label, revision, coalesce(iteration, 0), coalesce(status, 'running'), "
+            "coalesce(message, ''), particles, created, idle, coalesce(sentences, ''), nonce "
+            "FROM sessions s LEFT JOIN states USING (key) LEFT JOIN notes USING (key) ORDER BY created DESC, s.key"
+        )
+        found = db.execute(query)
+        return [Kept(*[*values, notes.splitlines(), nonce]) for *values, notes, nonce in found]
 
     return work
 
 
-def _creation(db: sqlite3.Connection, key: str) -> str:
-    """The nonce of a session of a file that has none for it yet."""
-    nonce = secrets.token_hex(8)
-    db.execute("INSERT OR REPLACE INTO creations VALUES (?, ?)", (key, nonce))
-    return nonce
-
-
 def put(key: str, label: str, base: bytes, described: dict[str, Any], notes: list[str], nonce: str = "") -> Work:
-    """A session begun, or given another scene: its edits and checkpoint are those of the old one no more. `notes` are
-    sentences on the file it came from; `nonce` stands for its creation."""
+    """A session begun, or begun again from another scene: its edits and checkpoint are no longer those of the old one.
+    `notes` are sentences on the file it came from; `nonce` stands for its creation, "" for that which it has, or a new
+    one."""
 
-    def work(db: sqlite3.Connection) -> None:
+    def work(db: Database) -> None:
+        row = db.execute("SELECT created, nonce FROM sessions WHERE key = ?", (key,)).fetchone()
+        created, before = row or (time.time(), secrets.token_hex(8))
+        since, revision = db.seq + 1, described["revision"]
+        told = {name: described[name] for name in ("iteration", "status", "message")}
+        lines = "\n".join(" ".join(note.split()) for note in notes)
         db.execute("DELETE FROM edits WHERE key = ?", (key,))
-        db.execute(
-            "INSERT INTO sessions (key, label, base, revision, iteration, status, message, particles, created, idle) "
-            "VALUES (:key, :label, :base, :revision, :iteration, :status, :message, :particles, :now, 0) ON CONFLICT "
-            "(key) DO UPDATE SET label = :label, base = :base, revision = :revision, iteration = :iteration, "
-            "status = :status, message = :message, particles = :particles, state = NULL, idle = 0",
-            {name: described[name] for name in ("revision", "iteration", "status", "message", "particles")}
-            | {"key": key, "label": label, "base": _signed(base), "now": time.time()},
-        )
-        db.execute("DELETE FROM notes WHERE key = ?", (key,))
-        if notes:
-            lines = "\n".join(" ".join(note.split()) for note in notes)
-            db.execute("INSERT INTO notes VALUES (?, ?)", (key, lines))
-        if nonce:
-            db.execute("INSERT OR REPLACE INTO creations VALUES (?, ?)", (key, nonce))
+        said = {"label": label, "nonce": nonce or before, "revision": revision, "particles": described["particles"]}
+        db.keep("sessions", key=key, since=since, created=created, idle=0.0, **said)
+        db.keep("bases", key=key, since=since, number=0, revision=revision, base=base)
+        db.execute("DELETE FROM shapes WHERE key = ?", (key,))
+        db.keep("states", key=key, since=since, **told)
+        db.keep("notes", key=key, since=since, sentences=lines)
 
     return work
 
@@ -81,14 +71,15 @@ def edit(key: str, revision: int, sets: str, body: bytes) -> Work:
     """An edit that has been made, in place of the last one where that belongs to the same gesture and `sets` the same.
     Returns how many there are."""
 
-    def work(db: sqlite3.Connection) -> int:
+    def work(db: Database) -> int:
+        since, first = db.execute("SELECT since, number FROM bases WHERE key = ?", (key,)).fetchone()
         query = "SELECT number, sets FROM edits WHERE key = ? ORDER BY number DESC LIMIT 1"
-        number, before = db.execute(query, (key,)).fetchone() or (0, "")
+        number, before = db.execute(query, (key,)).fetchone() or (first, "")
         if not sets or sets != before:
             number += 1
-        db.execute("INSERT OR REPLACE INTO edits VALUES (?, ?, ?, ?, ?)", (key, number, revision, sets, _signed(body)))
-        db.execute("UPDATE sessions SET revision = ?, idle = 0 WHERE key = ?", (revision, key))
-        return int(number)
+        db.keep("edits", key=key, number=number, since=since, revision=revision, sets=sets, body=body)
+        db.change("sessions", (key,), revision=revision, idle=0.0)
+        return int(number - first)
 
     return work
 
@@ -96,72 +87,85 @@ def edit(key: str, revision: int, sets: str, body: bytes) -> Work:
 def checkpoint(key: str, described: dict[str, Any], state: bytes) -> Work:
     """How far a session has come."""
 
-    def work(db: sqlite3.Connection) -> None:
-        db.execute(
-            "UPDATE sessions SET state = :state, iteration = :iteration, status = :status, message = :message "
-            "WHERE key = :key",
-            {name: described[name] for name in ("iteration", "status", "message")}
-            | {"key": key, "state": _signed(state)},
-        )
+    def work(db: Database) -> None:
+        row = db.execute("SELECT since FROM bases WHERE key = ?", (key,)).fetchone()
+        if row is not None:
+            told = {name: described[name] for name in ("iteration", "status", "message")}
+            db.keep("states", key=key, since=row[0], **told)
+            db.keep("shapes", key=key, since=row[0], state=state)
 
     return work
 
 
-def rebase(key: str, base: bytes, revision: int) -> Work:
-    """A new base in place of all edits up to a revision, which can then not be taken back any more."""
+def rebase(key: str, since: int, number: int, revision: int, base: bytes) -> Work:
+    """A new base in place of the edits up to a number, which led to a revision; those after it stay, and can be taken
+    back. Nothing happens where the session has another scene by now than that of `since`."""
 
-    def work(db: sqlite3.Connection) -> None:
-        db.execute("DELETE FROM edits WHERE key = ? AND revision <= ?", (key, revision))
-        db.execute("UPDATE sessions SET base = ?, state = NULL WHERE key = ?", (_signed(base), key))
+    def work(db: Database) -> None:
+        row = db.execute("SELECT since, number FROM bases WHERE key = ?", (key,)).fetchone()
+        if row is not None and row[0] == since and row[1] < number:
+            db.execute("DELETE FROM edits WHERE key = ? AND number <= ?", (key, number))
+            db.keep("bases", key=key, since=since, number=number, revision=revision, base=base)
 
     return work
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A session as it is brought back: its base, a checkpoint (may be empty), and the edits after the base, each with
+    the revision that it led to."""
+
+    base: bytes
+    state: bytes
+    edits: list[bytes]
+    revisions: list[int]
+    revision: int
+    since: int
+    number: int
+    """Edits up to this one are in the base."""
 
 
 def load(key: str) -> Work:
-    """Base, checkpoint (may be empty), edits with their revisions, and label; None where there is no such session."""
+    """A session; None where there is none. Raises an error of the store where a row is not as it was written."""
 
-    def work(db: sqlite3.Connection) -> tuple[bytes, bytes, list[bytes], list[int], str] | None:
-        row = db.execute("SELECT base, state, label FROM sessions WHERE key = ?", (key,)).fetchone()
+    def work(db: Database) -> Stored | None:
+        row = db.execute("SELECT revision FROM sessions WHERE key = ?", (key,)).fetchone()
         if row is None:
             return None
-        found = db.execute("SELECT body, revision FROM edits WHERE key = ? ORDER BY number", (key,)).fetchall()
-        state = b"" if row[1] is None else _verified(row[1], b"")
-        base = _verified(row[0], None)
-        edits = [_verified(body, None) for body, _ in found]
-        return base, state, edits, [int(revision) for _, revision in found], row[2]
+        (base,) = _whole(db, "bases", key)
+        (shape,) = _whole(db, "shapes", key) or ({"state": b""},)
+        edits = sorted(_whole(db, "edits", key), key=lambda found: int(found["number"]))
+        bodies, revisions = [found["body"] for found in edits], [int(found["revision"]) for found in edits]
+        return Stored(base["base"], shape["state"], bodies, revisions, int(row[0]), base["since"], base["number"])
 
     return work
+
+
+def _whole(db: Database, table: str, key: str) -> list[dict[str, Any]]:
+    """The rows of a session, each as it was written."""
+    columns, found = TABLES[table].columns, []
+    for row in db.execute(f"SELECT {', '.join(columns)} FROM {table} WHERE key = ?", (key,)):
+        if not TABLES[table].whole(row):
+            raise sqlite3.DatabaseError("a stored session is malformed")
+        found.append(dict(zip(columns, row, strict=True)))
+    return found
 
 
 def delete(key: str) -> Work:
     """Forget a session; whether there was one."""
 
-    def work(db: sqlite3.Connection) -> bool:
+    def work(db: Database) -> bool:
         return db.execute("DELETE FROM sessions WHERE key = ?", (key,)).rowcount > 0
 
     return work
 
 
-def age(seconds: float, longest: float, awake: list[str]) -> Work:
-    """So many seconds of service have passed; returns the keys of sessions that are untouched for `longest`."""
+def age(seconds: float, longest: float, used: list[str]) -> Work:
+    """So many seconds of service have passed; the keys of sessions that were not used for `longest`."""
 
-    def work(db: sqlite3.Connection) -> list[str]:
+    def work(db: Database) -> list[str]:
         db.execute("UPDATE sessions SET idle = idle + ?", (seconds,))
-        db.executemany("UPDATE sessions SET idle = 0 WHERE key = ?", [(key,) for key in awake])
+        db.executemany("UPDATE sessions SET idle = 0 WHERE key = ?", [(key,) for key in used])
         return [row[0] for row in db.execute("SELECT key FROM sessions WHERE idle > ?", (longest,))]
 
     return work
-
-
-def _signed(data: bytes) -> bytes:
-    return hashlib.sha256(data).digest() + data
-
-
-def _verified(data: bytes, fallback: bytes | None) -> bytes:
-    """The bytes that were stored; the fallback, or an error of the store, where they were damaged."""
-    sign, body = bytes(data[:32]), bytes(data[32:])
-    if hashlib.sha256(body).digest() == sign:
-        return body
-    if fallback is None:
-        raise sqlite3.DatabaseError("a stored session is malformed")
-    return fallback

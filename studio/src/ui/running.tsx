@@ -1,7 +1,7 @@
 // The sessions of the service, whoever started them.
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api";
-import type { Summary } from "../model";
+import type { Store, Summary } from "../model";
 import { refuse, tell } from "./notices";
 import { linkTo, met } from "./place";
 import { counted } from "./words";
@@ -10,6 +10,7 @@ const AGAIN = 2000;
 
 export function Running() {
   const [sessions, setSessions] = useState<Summary[] | null>(null);
+  const [store, setStore] = useState<Store | null>(null);
   const [fault, setFault] = useState("");
   useEffect(() => {
     let here = true;
@@ -21,7 +22,10 @@ export function Running() {
       });
       if (!here) return;
       setFault(found instanceof Error ? found.message : "");
-      if (Array.isArray(found)) setSessions(found);
+      if (!(found instanceof Error)) {
+        setSessions(found.sessions);
+        setStore(found.store ?? null);
+      }
       timer = window.setTimeout(read, document.hidden ? 5 * AGAIN : AGAIN);
     };
     void read();
@@ -38,6 +42,7 @@ export function Running() {
           {fault} What follows is as it was last known.
         </p>
       )}
+      {store && <Stored store={store} />}
       {sessions?.length === 0 && <p class="faint">None yet: open a figure or a file, or begin one in Grasshopper.</p>}
       <ul class={fault ? "sessions stale" : "sessions"}>
         {sessions?.map((session) => (
@@ -45,6 +50,24 @@ export function Running() {
         ))}
       </ul>
     </>
+  );
+}
+
+/** What is wrong with the store, and what was lost from it, until the copy of the damaged files is deleted. */
+function Stored({ store }: { store: Store }) {
+  const losses = (store.repairs ?? []).flatMap((repair) => repair.losses);
+  if (!store.warnings.length && !losses.length) return null;
+  return (
+    <div class="stored" role="status" aria-label="The store">
+      {store.warnings.map((warning) => (
+        <p key={warning}>{warning}</p>
+      ))}
+      <ul>
+        {losses.map((loss) => (
+          <li key={loss.what}>{loss.what}</li>
+        ))}
+      </ul>
+    </div>
   );
 }
 

@@ -1,0 +1,109 @@
+"""`hookean store`: check, repair, copy and compact the file of sessions and jobs."""
+
+from __future__ import annotations
+
+import sqlite3
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+
+from hookean_server.discovery import Held, Lock
+from hookean_server.keeping import backups, manifest
+from hookean_server.keeping.opening import Broken, inspect, open_store, refuse_later, reports
+
+RUNS = "A hookean server uses this store; stop it first with: hookean serve --stop"
+
+
+def run(action: str, path: Path, target: Path | None) -> int:
+    """Do one of the actions on the store at `path`; the exit code: 0 if all is well, 1 if something is damaged or lost,
+    2 where it is not possible."""
+    actions: dict[str, Callable[[Path, Path | None], int]] = {
+        "check": check,
+        "salvage": salvage,
+        "backup": backup,
+        "compact": compact,
+    }
+    if action not in actions:
+        return _refuse(f'unknown action "{action}" (known: {", ".join(actions)})')
+    if target is not None and action != "backup":
+        return _refuse(f"{action} accepts no file; only backup writes one")
+    if not path.parent.is_dir() or not any(path.parent.glob(f"{path.name}*")):
+        return _refuse(f"there is no store at {path}")
+    try:
+        return actions[action](path, target)
+    except Held:
+        return _refuse(RUNS)
+    except (OSError, sqlite3.Error) as error:
+        return _refuse(str(error))
+
+
+def check(path: Path, target: Path | None = None) -> int:
+    """Print whether the store is whole, and all losses of repairs whose copies are still there. Changes nothing."""
+    said = manifest.read(manifest.place(path))  # before the file: a server may write meanwhile
+    refuse_later(path, said)
+    found = 0
+    try:
+        note = inspect(path, said)
+        print(note or f"{path} is whole.")
+        found = int(bool(note))
+    except Broken as broken:
+        print(f"{path} is damaged: {broken}. `hookean store salvage` or the next start of the service repairs it.")
+        found = 1
+    for report in reports(path):
+        print(report.sentence)
+        found = found or int(bool(report.losses))
+    return found
+
+
+def salvage(path: Path, target: Path | None = None) -> int:
+    """Repair the store, if it is damaged, and print what is lost."""
+    with _alone(path):
+        opened = open_store(path)
+        opened.db.close()
+        if opened.manifest is not None:
+            opened.manifest.close()
+    return check(path)
+
+
+def backup(path: Path, target: Path | None = None) -> int:
+    """Copy the store as it is at this moment to a file, or to the first of its backups."""
+    if target is None:
+        made = backups.rotate(path, backups.COUNT)
+        print(f"{backups.place(path, 1)} is " + ("a copy of the store." if made else "up to date."))
+        return 0
+    if target.exists():
+        return _refuse(f"{target} exists; name a new file")
+    backups.write(path, target)
+    print(f"{target} is a copy of the store.")
+    return 0
+
+
+def compact(path: Path, target: Path | None = None) -> int:
+    """Give the space without use back to the system."""
+    with _alone(path):
+        opened = open_store(path)
+        before = path.stat().st_size
+        with closing(opened.db) as db:
+            db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+            db.execute("VACUUM")
+            db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        if opened.manifest is not None:
+            opened.manifest.close()
+    print(f"{path} takes {path.stat().st_size / 1e6:.1f} MB; it took {before / 1e6:.1f} MB.")
+    return 0
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """The right to change a store that no server uses. Raises Held."""
+    lock = Lock(path.with_name(path.name + ".lock"))
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+def _refuse(sentence: str) -> int:
+    print(f"hookean: {sentence}", file=sys.stderr)
+    return 2
