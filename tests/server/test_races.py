@@ -15,7 +15,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from hookean_server.problems import Problem
-from hookean_server.sessions import rows
+from hookean_server.sessions import rows, upkeep
 from hookean_server.sessions.live import Live
 from hookean_server.sessions.manager import Manager
 from hookean_server.sessions.process import SessionProcess
@@ -217,6 +217,74 @@ def test_a_second_deletion_does_not_take_the_session_made_after_the_first() -> N
     assert made[2] is True and kept is not None
     assert all(isinstance(refused, Problem) and refused.slug == "not-found" for refused in (gone, edited))
     assert kept.edits == [], "the edit of the old session is not in the new one"
+
+
+@pytest.mark.parametrize("meanwhile", ["nothing", "read", "watched", "made again"])
+def test_a_session_that_is_used_while_old_ones_are_looked_for_is_not_forgotten(meanwhile: str) -> None:
+    """Nor is one that was made again under its key. What nobody used is, with its process."""
+
+    async def raced() -> tuple[bool, bool]:
+        store = SlowStore("age")
+        manager = await opened(store, session_seconds=-1.0)
+        old, process = manager.sessions["a"], manager.sessions["a"].process
+        forgetting = asyncio.create_task(upkeep.forget(manager, 0.0))
+        await store.begun.wait()
+        if meanwhile == "read":
+            manager.find("a")
+        elif meanwhile == "watched":
+            await manager.watch("a")
+        elif meanwhile == "made again":
+            await manager.delete("a")
+            await manager.put("a", json.dumps(CABLE).encode())
+        store.gate.set()
+        await forgetting
+        assert old.gone == (old.process is None) == (meanwhile in ("nothing", "made again")) and process is not None
+        found = "a" in manager.sessions, await store.run(rows.load("a")) is not None
+        await manager.close()
+        store.close()
+        return found
+
+    assert asyncio.run(raced()) == ((False, False) if meanwhile == "nothing" else (True, True))
+
+
+def test_an_edit_that_comes_while_its_session_is_forgotten_is_refused() -> None:
+    async def raced() -> tuple[list[Any], Any]:
+        store = SlowStore("delete")
+        manager = await opened(store, session_seconds=-1.0)
+        forgetting = asyncio.create_task(upkeep.forget(manager, 0.0))
+        await store.begun.wait()
+        others = [manager.edit("a", b'{"release": [0]}'), manager.watch("a")]
+        waiting = [asyncio.create_task(other) for other in others]
+        await asyncio.sleep(0.1)
+        store.gate.set()
+        await forgetting
+        found, kept = await asyncio.gather(*waiting, return_exceptions=True), await store.run(rows.load("a"))
+        await manager.close()
+        store.close()
+        return found, kept
+
+    found, kept = asyncio.run(raced())
+    assert kept is None
+    assert all(isinstance(refused, Problem) and refused.slug == "not-found" for refused in found)
+
+
+@pytest.mark.parametrize("making", [False, True])
+def test_what_nobody_knows_of_is_forgotten_but_not_what_is_being_made(making: bool) -> None:
+    """A row of the store whose maker has left, under a key that is free, or that somebody else makes a session of."""
+
+    async def raced() -> bool:
+        store = Store(None)
+        manager = await opened(store, session_seconds=-1.0)
+        await store.run(rows.put("b", "", b"base", manager.find("a").described, []))
+        if making:
+            manager.making["b"] = Live("b", "", {})
+        await upkeep.forget(manager, 0.0)
+        found = await store.run(rows.load("b")) is not None
+        await manager.close()
+        store.close()
+        return found
+
+    assert asyncio.run(raced()) is making
 
 
 class Begun(list[SessionProcess]):
