@@ -270,6 +270,8 @@ class Frames(object):
                 self.message = "The connection was lost: %s." % error
             if self._link is not None:
                 self._link.end()
+            if self._connection is not None:  # also one that became no link
+                self._connection.close()
             pause = 0.25 if self.received > before else min(4.0, 2 * pause)
             self._since = _now() if self.received > before else self._since
             with self._news:

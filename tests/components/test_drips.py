@@ -10,12 +10,13 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from typing import Any
 
 import pytest
 
 import hookean_client
 from hookean_client import Client, Problem
-from serving import HANG
+from serving import HANG, wait_for
 
 INSTANCE, KEY = "of-a-test", "k" * 40
 OK = "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\n"
@@ -190,3 +191,20 @@ def test_frames_close_while_the_server_drips(
     assert not closing.is_alive() and time.process_time() - began < 2.0
     assert server.ended.wait(HANG), "the connection is shut"
     assert frames.ended
+
+
+def test_a_connection_that_becomes_no_link_is_closed(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames are closed while their thread has a connection, and no link yet."""
+    made, closed = [], threading.Event()
+
+    def shut_before_it_is_asked(connection: Any, path: str, token: str) -> None:
+        made.append(connection)
+        assert closed.wait(HANG)
+        connection.sock.sendall(b"GET")
+
+    monkeypatch.setattr(hookean_client, "Link", shut_before_it_is_asked)
+    frames = client.session("a").frames()
+    wait_for(lambda: made)
+    frames.close()
+    closed.set()
+    wait_for(lambda: made[0].sock is None)
