@@ -4,7 +4,7 @@ PORT ?= 8765
 BIN = .venv/bin
 EXAMPLE = gh_examples/9.24-membrane
 
-.PHONY: run test soak mutants bench bench-service figures screenshots docs page studio lint clean
+.PHONY: run test quick soak mutants bench bench-service figures definitions screenshots docs page studio lint clean
 STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
 run: .venv/run
@@ -14,14 +14,18 @@ run: .venv/run
 		--picture out/membrane.png --csv out/membrane.csv
 	@$(BIN)/hookean serve --port $(PORT)
 
+# much of it waits for other processes: four workers keep two processors busy
 test: .venv/test lint
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 30
+
+quick: .venv/test # laws, core, files: what an edit of the engine breaks
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow" tests/laws tests/core tests/discretize tests/files
 
 soak: .venv/test
 	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile
 	$(MAKE) mutants
 
-mutants: .venv/mutants # of all modules, or of some: make mutants MODULES="units.py forces/springs.py"
+mutants: .venv/mutants # of all modules, or of some: make mutants MODULES="values/units.py forces/springs.py"
 	$(BIN)/python tests/mutation/run.py $(MODULES)
 
 bench: .venv/test
@@ -37,9 +41,12 @@ figures: .venv/run
 screenshots: .venv/test # of six figures in the studio, by chromium
 	cd tests && ../$(BIN)/python -m studio.screenshots
 
+definitions: .venv/test # of the examples, for people and programs that read XML
+	$(BIN)/python gh_examples/build_definitions.py --xml
+
 docs: .venv/run
-	$(BIN)/python -c "from hookean.catalogue import page; print(page(), end='')" > docs/forces.md
-	$(BIN)/python -c "from hookean.catalogue import write_exports; write_exports()"
+	$(BIN)/python -c "from hookean.scene.catalogue import page; print(page(), end='')" > docs/forces.md
+	$(BIN)/python -c "from hookean.scene.catalogue import write_exports; write_exports()"
 
 page: .venv/test
 	$(BIN)/python hatch_build.py

@@ -77,7 +77,7 @@ def scene_for(p: Problem, most: float, solver: str = "auto") -> Any:
 
     That has another scale, the mean load; a shape found to 1e-3 tells how the two compare.
     """
-    from hookean.run import relax
+    from hookean.running.run import relax
 
     def limited(tolerance: float) -> Any:
         scene = problems.scene(p, solver, min(tolerance, 1.0))
@@ -91,9 +91,9 @@ def scene_for(p: Problem, most: float, solver: str = "auto") -> Any:
 
 def hookean(p: Problem, most: float) -> Callable[[], Run]:
     """A solve of a scene that is built already: `relax`, with its solver at hand to ask for its work."""
-    from hookean.run import relax_state
+    from hookean.running.run import relax_state
     from hookean.solvers import solver
-    from hookean.system import compile
+    from hookean.system.system import compile
 
     scene = scene_for(p, most)
 
@@ -152,7 +152,7 @@ def compare(p: Problem, peers: dict[str, Peer], rounds: int, most: float, slow: 
 
 def reference(p: Problem, timed: dict[str, Timed], most: float) -> tuple[Floats, float]:
     """The shape with the least left over, of all runs and of one solved as far as it goes; and what is left of it."""
-    from hookean.run import relax
+    from hookean.running.run import relax
 
     shapes = [entry.runs[-1].x for entry in timed.values() if entry.runs]
     if len(p.x) < LARGE // 2:

@@ -69,7 +69,7 @@ def rounding(p: Problem, x: Floats) -> float:
 
 def scene(p: Problem, solver: str = "auto", tolerance: float = 1e-6) -> Any:
     """The problem as a scene of hookean."""
-    from hookean.scene import Scene
+    from hookean.scene.scene import Scene
 
     springs = {"kind": "springs", "particles": p.springs, "stiffness": p.k, "rest_length": p.l0}
     loaded = np.flatnonzero(p.load.any(axis=1))

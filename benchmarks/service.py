@@ -39,7 +39,7 @@ class Server:
     def __init__(self, state: Path) -> None:
         began = time.monotonic()
         code = (
-            "import sys; from hookean_server.main import serve; from hookean_server.settings import Settings;"
+            "import sys; from hookean_server.lifecycle.main import serve; from hookean_server.settings import Settings;"
             f"sys.exit(serve(port=0, settings=Settings(state={str(state)!r}, sessions=400)))"
         )
         environment = {**os.environ, "HOOKEAN_TOKEN": TOKEN, "HOOKEAN_STATE": str(state.parent)}

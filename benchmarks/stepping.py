@@ -70,9 +70,9 @@ def in_frames(step: Stepper) -> Stepper:
 
 def verlet(p: Problem, damping: float = 0.0) -> Stepper:
     """hookean's time steps, with the step a stable part of the period."""
-    from hookean.scene import Scene
+    from hookean.scene.scene import Scene
     from hookean.solvers import solver
-    from hookean.system import compile
+    from hookean.system.system import compile
 
     springs = {"kind": "springs", "particles": p.springs, "stiffness": p.k, "rest_length": p.l0, "damping": damping}
     load = {"kind": "unary", "particles": np.arange(len(p.x)), "vector": p.load}
@@ -145,10 +145,10 @@ def sphere(around: int, along: int) -> dict[str, Any]:
 
 def frames(spheres: tuple[tuple[int, int], ...] = SPHERES, seconds: float = 3.0) -> dict[int, float]:
     """Frames a second by the number of particles."""
-    from hookean.scene import Scene
-    from hookean.simulation import Simulation
-    from hookean.stability import stable_time_step
-    from hookean.system import compile
+    from hookean.running.simulation import Simulation
+    from hookean.scene.scene import Scene
+    from hookean.stability.time_steps import stable_time_step
+    from hookean.system.system import compile
 
     found = {}
     for around, along in spheres:

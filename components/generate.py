@@ -8,7 +8,9 @@ import json
 import sys
 from pathlib import Path
 
-from hookean_canvas import bundles, force_bundles, icons
+from hookean_canvas.components import bundles
+from hookean_canvas.components import force_bundles
+from hookean_canvas.components import icons
 
 HERE = Path(__file__).resolve().parent
 BEGIN, END = "<!-- all components, by generate.py -->\n", "<!-- end -->\n"

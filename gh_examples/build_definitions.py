@@ -1,7 +1,7 @@
-"""Writes the Grasshopper definitions of the examples, `definition.ghx` beside each `definition.py`.
+"""Writes the Grasshopper definitions of the examples, `definition.gh` beside each `definition.py`.
 
 Run it from the project's root: `.venv/bin/python gh_examples/build_definitions.py [FIGURE ...]`. The same components
-write the same bytes.
+write the same definition. With `--xml`, `definition.ghx` is written instead, for people to read.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import importlib.util
 import sys
 from pathlib import Path
 
-from hookean_canvas.definition import Definition
+from hookean_canvas.definitions.write import Definition
 
 HERE = Path(__file__).parent
 
@@ -32,6 +32,8 @@ def definition(figure: str) -> Definition:
 
 
 if __name__ == "__main__":
-    for name in sys.argv[1:] or figures():
-        definition(name).save(HERE / name / "definition.ghx")
-        print(f"{name}/definition.ghx")
+    words = sys.argv[1:]
+    file = "definition.ghx" if "--xml" in words else "definition.gh"
+    for name in [word for word in words if word != "--xml"] or figures():
+        definition(name).save(HERE / name / file)
+        print(f"{name}/{file}")

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import rhino3dm
 
-from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, write_new
 
 HERE = Path(__file__).parent
 

@@ -17,7 +17,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
 from hookean.discretize.curves import divide
-from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, write_new
 
 HERE = Path(__file__).parent
 Floats = NDArray[np.float64]

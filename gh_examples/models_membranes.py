@@ -11,7 +11,7 @@ from pathlib import Path
 import rhino3dm
 from build_models import square
 
-from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, write_new
 
 HERE = Path(__file__).parent
 SIDE = 10.0  # m

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import rhino3dm
 
-from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, write_new
 
 HERE = Path(__file__).parent
 

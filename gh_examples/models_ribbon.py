@@ -14,7 +14,7 @@ import rhino3dm
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, write_new
 
 HERE = Path(__file__).parent
 ARCS = 11

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import rhino3dm
 
-from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, write_new
 
 HERE = Path(__file__).parent
 RADIUS, DROP = 5.0, 5.0  # m

@@ -12,7 +12,7 @@ import numpy as np
 import rhino3dm
 from scipy.optimize import brentq
 
-from hookean.files.threedm import Additions, NewLayer, NewObject, write_new
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, write_new
 
 HERE = Path(__file__).parent
 LENGTH, WIDTH, SPAN, CHAIN = 20.0, 14.0, 16.0, 19.2  # m

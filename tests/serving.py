@@ -15,6 +15,10 @@ from typing import Any
 
 import psutil
 
+import forking
+from forking import hears as hears
+from soak import SOAK as SOAK
+
 CABLE: dict[str, Any] = {
     "particles": [[0, 0, 0], [2, 0, 0], [4, 0, 0], [6, 0, 0], [8, 0, 0], [10, 0, 0]],
     "forces": [
@@ -29,18 +33,19 @@ SWING: dict[str, Any] = {
     "settings": {"solver": "verlet", "drag": 0, "time_step": 0.001, "max_iterations": 10**9, "tolerance": 0},
 }
 """The same without damping: it never comes to rest."""
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
-HANG = 900.0
+
+HANG = forking.LONGEST
 """Seconds after which a test takes what it waits for to hang. Workers of jobs give way to everything else (nice 10),
 kernels may have to be compiled first: on a loaded machine a second of work takes a minute."""
 
 
 def wait_for(true: Callable[[], Any], seconds: float = HANG) -> Any:
     """What `true()` is, once it is; fails after `seconds`."""
-    until = time.monotonic() + seconds
+    until, pause = time.monotonic() + seconds, 0.005
     while not (found := true()):
         assert time.monotonic() < until, "waited too long"
-        time.sleep(0.02)
+        time.sleep(pause)  # longer and longer: looking takes time from what is waited for
+        pause = min(1.3 * pause, 0.06)
     return found
 
 
@@ -52,30 +57,24 @@ def living(pid: int) -> bool:
         return False
 
 
-def hears() -> None:
-    """For a child before it starts: signals end it that the shell of these tests may ignore (nohup, background)."""
-    for number in (signal.SIGINT, signal.SIGHUP):
-        signal.signal(number, signal.SIG_DFL)
-
-
 class Home:
-    """A state folder and the servers started in it."""
+    """A state folder and the servers started in it; `fresh`: each in a new interpreter."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, fresh: bool = False) -> None:
+        self.folder, self.fresh = folder, fresh
         self.environment = {**os.environ, "HOOKEAN_STATE": str(folder), "HOOKEAN_PYTHON": sys.executable}
         self.environment.pop("HOOKEAN_TOKEN", None)
         self.started: list[subprocess.Popen[str]] = []
 
     def start(self, *options: str) -> subprocess.Popen[str]:
         """`hookean serve` with any free port."""
-        command = [sys.executable, "-m", "hookean.cli", "serve", *(options or ("--port", "0"))]
-        pipes: Any = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-        process = subprocess.Popen(
-            command, env=self.environment, preexec_fn=hears if os.name == "posix" else None, **pipes
-        )
-        self.started.append(process)
-        return process
+        return self.run(forking.COMMAND, "serve", *(options or ("--port", "0")))
+
+    def run(self, code: str, *words: str) -> Any:
+        """A process of this code with these arguments, which ends with the rest of what was started here."""
+        pipe = subprocess.PIPE
+        self.started.append(forking.process(code, [*words], self.environment, pipe, pipe, self.fresh))
+        return self.started[-1]
 
     def serve(self, *options: str) -> subprocess.Popen[str]:
         """The same, once it says that it serves."""
@@ -87,8 +86,7 @@ class Home:
 
     def command(self, *words: str) -> subprocess.CompletedProcess[str]:
         """`hookean` with these words, to its end."""
-        command = [sys.executable, "-m", "hookean.cli", *words]
-        return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=120, check=False)
+        return forking.run(forking.COMMAND, *words, environment=self.environment, fresh=self.fresh)
 
     @property
     def told(self) -> dict[str, Any]:
@@ -104,7 +102,9 @@ class Home:
         lock, found = self.folder / "server.lock", []
         for process in psutil.process_iter():
             with suppress(psutil.Error, OSError):
-                if process.pid != os.getpid() and any(Path(file.path) == lock for file in process.open_files()):
+                if process.pid == os.getpid() or "python" not in process.name().lower():
+                    continue  # looking at what every process has open takes long
+                if any(Path(file.path) == lock for file in process.open_files()):
                     found.append(process.pid)
         return found
 

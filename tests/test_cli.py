@@ -17,8 +17,9 @@ from typer.testing import CliRunner
 import hookean
 from hookean import Scene, cli
 from hookean.commands import relax as command
-from hookean.files import threedm
-from hookean.files.threedm import Additions, NewObject
+from hookean.commands.command import taking
+from hookean.files.rhino import threedm
+from hookean.files.rhino.threedm import Additions, NewObject
 from hookean.forces import KINDS
 
 REAL = Path(__file__).resolve().parents[2] / "shared" / "data" / "rhino"
@@ -304,21 +305,18 @@ def test_version_forces_and_help() -> None:
     assert run("fold").exit_code == 2
 
 
-def test_serve_hands_over_to_the_service(monkeypatch: pytest.MonkeyPatch) -> None:
-    from types import ModuleType
+def test_commands_of_other_packages_are_found_by_their_entry_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An option stands once, in the dataclass that the command runs with; a package that is missing is named."""
+    from hookean_server.lifecycle import command
 
-    seen: list[object] = []
-    command = ModuleType("hookean_server.command")
-    command.Options = lambda *given: given  # type: ignore[attr-defined]
-    command.run = lambda options: seen.append(options) or 3  # type: ignore[attr-defined,func-returns-value]
-    command.stop = lambda: 4  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "hookean_server.command", command)
+    seen: list[command.Options] = []
+    monkeypatch.setattr(command, "serve", taking(command.Options, lambda options: seen.append(options) or 3))
     assert run("serve", "--host", "127.0.0.2", "--port", "1234", "--no-keep").exit_code == 3
-    assert seen == [("127.0.0.2", 1234, False, False, 0, 0.0)]
-    assert run("serve", "--stop").exit_code == 4 and len(seen) == 1
-    monkeypatch.setitem(sys.modules, "hookean_server.command", None)
-    refused = run("serve")
-    assert refused.exit_code == 2 and "not installed" in refused.stderr
+    assert seen == [command.Options("127.0.0.2", 1234, no_keep=True)]
+    monkeypatch.setitem(sys.modules, "hookean_server.lifecycle.command", None)
+    refused = run("serve", "--port", "0")
+    assert refused.exit_code == 2 and "serve: hookean_server is not installed" in refused.stderr
+    assert run("relax", "--help").exit_code == 0
 
 
 def test_help_starts_light() -> None:

@@ -17,8 +17,7 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from hookean import Scene, Simulation, cli
-from hookean.files import threedm
-from hookean.files.scene_json import write
+from hookean.files.rhino import threedm
 from samples import cable
 from serving import HANG, hears, wait_for
 
@@ -37,8 +36,8 @@ anchors = [{name = "ends", points = "ends:layer:cable"}]
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A working folder with the cable of the chapter, a script of its anchors, one of the wind, and wind."""
-    write(cable(), tmp_path / "cable.json")
-    write(cable(tolerance=1e-2, drag=10), tmp_path / "slow.json")
+    (tmp_path / "cable.json").write_text(cable().canonical)
+    (tmp_path / "slow.json").write_text(cable(tolerance=1e-2, drag=10).canonical)
     for name, text in (("lift.toml", LIFT), ("wind.toml", WIND), ("wind.csv", ROWS), ("recipe.toml", RECIPE)):
         (tmp_path / name).write_text(text, encoding="utf-8")
     line = threedm.NewObject(np.array([[0.0, 0, 0], [10, 0, 0]]), "cable", "main")
@@ -168,7 +167,7 @@ def test_what_never_rests_ends_at_the_most_iterations_with_3(folder: Path):
     """Without damping and drag the cable swings for ever."""
     scene = cable(drag=0, max_iterations=100).model_dump()
     scene["forces"][0]["damping"] = 0.0
-    write(Scene(**scene), folder / "swing.json")
+    (folder / "swing.json").write_text(Scene(**scene).canonical)
     done = run("swing.json")
     assert done.exit_code == 3
     assert "not at rest after 5 frames" in done.stderr
@@ -176,7 +175,7 @@ def test_what_never_rests_ends_at_the_most_iterations_with_3(folder: Path):
 
 def test_what_diverges_ends_with_3_and_its_frames(folder: Path):
     """A step beyond stability: told before, and told again."""
-    write(cable(time_step=0.5), folder / "wild.json")
+    (folder / "wild.json").write_text(cable(time_step=0.5).canonical)
     done = run("wild.json", "--csv", "out.csv")
     assert done.exit_code == 3
     assert "Diverged" in done.stderr

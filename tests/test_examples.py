@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -12,14 +13,9 @@ from typer.testing import CliRunner
 
 from hookean.cli import app
 from hookean.commands import example as command
-from hookean.example import Example, _figures, examples, find, gallery, home
+from hookean.commands.examples import Example, _figures, examples, find, gallery, home
 
 ALL = examples()
-
-
-@pytest.fixture(scope="module")
-def oracles() -> dict[str, dict[str, float]]:
-    return {}
 
 
 @pytest.mark.parametrize("example", ALL, ids=lambda e: e.name)
@@ -30,26 +26,51 @@ def test_a_fresh_run_gives_the_expected_numbers(example: Example) -> None:
     assert not off, {name: (value, str(example.expected.numbers[name])) for name, value in off.items()}
 
 
-# a finder in front of all others that knows of no hookean
+# runs one script after the other, behind a finder in front of all others that knows of no hookean
 WITHOUT = """
-import sys, runpy
+import contextlib, io, json, runpy, sys, traceback
 class Refuse:
     def find_spec(self, name, path=None, target=None):
         if name.partition(".")[0] in ("hookean", "hookean_server", "hookean_client"):
             raise ImportError("an oracle imports no hookean")
 sys.meta_path.insert(0, Refuse())
-runpy.run_path(sys.argv[1], run_name="__main__")
+before = sys.path[:]
+for script in sys.stdin:
+    said, failure = io.StringIO(), ""
+    try:
+        with contextlib.redirect_stdout(said):
+            runpy.run_path(script.rstrip("\\n"), run_name="__main__")
+    except BaseException:
+        failure = traceback.format_exc()
+    sys.path[:] = before
+    print(json.dumps([failure, said.getvalue()]), flush=True)
 """
 
 
+@pytest.fixture(scope="module")
+def without() -> Iterator[Callable[[Path], dict[str, float]]]:
+    """What a script prints in a Python without hookean, one for all of them."""
+    environment = {**os.environ, "PYTHONPATH": ""}
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "encoding": "utf-8"}
+    with subprocess.Popen([sys.executable, "-c", WITHOUT], env=environment, **pipes) as process:
+
+        def printed(script: Path) -> dict[str, float]:
+            process.stdin.write(f"{script}\n")
+            process.stdin.flush()
+            failure, said = json.loads(process.stdout.readline())
+            assert not failure, failure
+            return json.loads(said)
+
+        yield printed
+
+
 @pytest.mark.parametrize("example", ALL, ids=lambda e: e.name)
-def test_numbers_of_scripts_are_what_the_scripts_print_without_hookean(example: Example) -> None:
+def test_numbers_of_scripts_are_what_the_scripts_print_without_hookean(
+    example: Example, without: Callable[[Path], dict[str, float]]
+) -> None:
     sources = {n: e.source.split()[1].rstrip(":") for n, e in example.expected.numbers.items() if e.source[0] == "s"}
     for script in sorted(set(sources.values())):
-        run = [sys.executable, "-c", WITHOUT, str(example.folder / script)]
-        done = subprocess.run(run, capture_output=True, text=True, timeout=300, env={**os.environ, "PYTHONPATH": ""})
-        assert done.returncode == 0, done.stderr
-        printed = json.loads(done.stdout)
+        printed = without(example.folder / script)
         for name in (n for n, s in sources.items() if s == script):
             expected = example.expected.numbers[name]
             assert expected.holds(printed[name]), (name, printed[name], str(expected))
@@ -70,8 +91,8 @@ def test_a_folder_has_all_that_the_gallery_shows(example: Example) -> None:
 def test_a_run_that_found_no_equilibrium_is_told():
     """An outcome names the runs behind its panels that ended otherwise: none of their numbers is taken for one."""
     from hookean import Scene, relax
-    from hookean.example import Outcome
-    from hookean.sheet import Panel
+    from hookean.commands.examples import Outcome
+    from hookean.pictures.sheet import Panel
 
     scene = {"particles": [[0, 0, 0]], "forces": [{"kind": "unary", "particles": [0], "vector": [0, 0, -1]}]}
     lost = relax(Scene.read({**scene, "settings": {"max_iterations": 10}}))
@@ -126,7 +147,7 @@ def test_a_number_that_is_off_ends_with_1(tmp_path: Path, monkeypatch: pytest.Mo
     assert command.run("9.11", None, str(folder)) == 0
     expected = (find("9.11").folder / "expected.json").read_text(encoding="utf-8").replace("10.46,", "10.4,")
     (folder / "expected.json").write_text(expected, encoding="utf-8")
-    monkeypatch.setattr("hookean.example.home", lambda: tmp_path)
+    monkeypatch.setattr("hookean.commands.examples.home", lambda: tmp_path)
     told = CliRunner().invoke(app, ["example", "9.11"])
     assert told.exit_code == 1 and "(NOT as expected: 10.4 ± 0.01)" in told.stdout
     told = CliRunner().invoke(app, ["example", "--figures", str(tmp_path / "new" / "drawn")])

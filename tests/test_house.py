@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from mutation import table as mutants
+
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(p for top in ("core", "server", "components", "canvas") for p in (ROOT / top).rglob("*.py"))
 
@@ -76,20 +78,31 @@ def test_solvers_and_forces_import_without_numba():
 
 def test_the_project_carries_what_it_needs():
     """Licence, changelog, the two commands of the README, and no plain skips or leftovers in the sources."""
-    for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "Makefile", ".ci/run"):
+    carried = (
+        "README.md",
+        "CHANGELOG.md",
+        "CITATION.cff",
+        "CONTRIBUTING.md",
+        "LICENSE",
+        "Makefile",
+        "SECURITY.md",
+        ".ci/run",
+    )
+    for name in carried:
         assert (ROOT / name).stat().st_size > 0
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert "make run" in readme
     assert "make test" in readme
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert f"version: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
-def test_every_force_is_among_the_mutants():
-    """`make mutants` has tests for every file of the forces, and the tests and modules of its table exist."""
-    table = tomllib.loads((ROOT / "tests" / "mutation" / "table.toml").read_text(encoding="utf-8"))
-    core = ROOT / "core" / "hookean"
-    assert {f"forces/{path.name}" for path in (core / "forces").glob("*.py")} <= set(table["modules"])
-    for module, chosen in table["modules"].items():
+def test_every_module_among_the_mutants_has_tests():
+    """The tests and modules of `make mutants` exist; forces are among them without being listed."""
+    core, modules = ROOT / "core" / "hookean", mutants.modules()
+    assert {f"forces/{path.name}" for path in (core / "forces").glob("*.py")} <= set(modules)
+    for module, chosen in modules.items():
         files = [ROOT / argument for argument in chosen["tests"] if argument.endswith(".py")]
         assert files and all(path.is_file() for path in [core / module, *files]), module
-    for survivor in table["survivors"]:
-        assert survivor["place"].split()[0] in table["modules"] and len(survivor["reason"]) > 20, survivor
+    for survivor in mutants.TABLE["survivors"]:
+        assert survivor["place"].split()[0] in modules and len(survivor["reason"]) > 20, survivor

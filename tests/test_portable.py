@@ -44,7 +44,7 @@ def test_every_module_imports_without_unix_modules():
         "            print(found.name)\n"
     )
     assert done.returncode == 0, done.stderr
-    assert "hookean.run" in done.stdout
+    assert "hookean.running.run" in done.stdout
 
 
 def test_the_cores_tests_pass_without_unix_modules():

@@ -84,8 +84,8 @@ def test_the_readmes_picture_is_the_example_and_not_blank():
     """docs/membrane.png: many colours, and the legend's ends are the result's extreme forces."""
     from matplotlib.image import imread
 
-    from hookean.files.recipe import relax_file
-    from hookean.picture import legend
+    from hookean.files.relax_file import relax_file
+    from hookean.pictures.picture import legend
 
     pixels = imread(ROOT / "docs" / "membrane.png")
     assert len(np.unique((pixels[::4, ::4, :3] * 255).astype(int).reshape(-1, 3), axis=0)) > 100

@@ -8,15 +8,12 @@ from typing import Annotated, Any
 
 import typer
 
-from hookean.cli import fail
+from hookean.commands.command import fail, new
 from hookean.errors import InputError
 
-app = typer.Typer(
-    name="hookean canvas",
+app = new(
     help="Grasshopper without Rhino: build components, look into archives, run and import definitions.",
     no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
 )
 
 
@@ -33,7 +30,7 @@ def show(
     everything: Annotated[bool, typer.Option("--all", help="Every chunk and item, nothing interpreted")] = False,
 ) -> None:
     """Print what a Grasshopper file holds: objects with inputs, outputs, wires, values and scripts."""
-    from hookean_canvas.show import show
+    from hookean_canvas.inspect.show import show
 
     show(file, code, json, everything)
 
@@ -44,7 +41,7 @@ def check(
     strict: Annotated[bool, typer.Option("--strict", help="Also what Grasshopper repairs, drops or ignores")] = False,
 ) -> None:
     """Print why Grasshopper would refuse files or objects in them, a line for each fault; exits with 1 for any."""
-    from hookean_canvas.show import check
+    from hookean_canvas.inspect.show import check
 
     raise typer.Exit(check(files, strict))
 
@@ -54,7 +51,7 @@ def build(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write to")] = Path("dist"),
 ) -> None:
     """Build all components: .ghuser files for Rhino 8 and 9 and for Rhino 7, and a package (.yak) of each."""
-    from hookean_canvas.build import build
+    from hookean_canvas.components.build import build
 
     try:
         built = build(output)
@@ -72,7 +69,7 @@ def install(
     folder: Annotated[Path | None, typer.Option(help="Grasshopper's User Object Folder, where not found")] = None,
 ) -> None:
     """Put the components on Grasshopper's panel: copy them to its user objects; it shows them when next started."""
-    from hookean_canvas.build import install
+    from hookean_canvas.components.build import install
 
     try:
         files = install(rhino, folder)
@@ -95,7 +92,7 @@ def run(
     or HOOKEAN_TRUST is 1. Exit code 0; 1 where a number is not as expected, a component fails or it does not come to
     rest; 2 where it cannot be run.
     """
-    from hookean_canvas import checking
+    from hookean_canvas.run import checking
 
     raise typer.Exit(_told(lambda: checking.run(file, set_ or [], as_json, seconds, trust)))
 
@@ -106,7 +103,8 @@ def draw(
     output: Annotated[Path, typer.Option("--output", "-o", help="The picture, .png")],
 ) -> None:
     """Draw a definition as its canvas looks: boxes, groups and wires."""
-    from hookean_canvas import drawing, graph
+    from hookean_canvas.inspect import drawing
+    from hookean_canvas.run import graph
 
     left = _told(lambda: drawing.draw(graph.read(file), output))
     if left:
@@ -119,7 +117,7 @@ def import_(
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Default: NAME-hookean.ghx beside it")] = None,
 ) -> None:
     """Translate a definition made for Kangaroo: its components become ours, all else stays; says what could not be."""
-    from hookean_canvas import kangaroo
+    from hookean_canvas.kangaroo import translate as kangaroo
 
     target, report = _told(lambda: kangaroo.import_file(file, output))
     typer.echo(f"{report.text()}\n\nwritten: {target}")

@@ -34,6 +34,7 @@ STATUSES = "running converged stalled diverged max_iterations time_limit cancell
 HEADER = struct.Struct("<4sHHIIQQddIIBBHf")
 FIELDS = "magic version size flags number revision iteration time residual n m status playing _ kinetic".split()
 LARGEST = 1 << 30  # bytes of an answer
+PIECE = 1 << 20  # bytes of it that are read at once
 FAILURES = (EnvironmentError, httplib.HTTPException, EOFError, ValueError, TypeError, AttributeError, LookupError)
 FAILURES += (RuntimeError,)  # JSON nested too deeply
 _now = getattr(time, "monotonic", time.time)
@@ -365,7 +366,7 @@ class Link(object):
             self.send(8, b"\x03\xe8", False)
         except FAILURES:
             pass
-        _shut(self._connection)  # who reads or sends has to let go first
+        _shut(self._connection)  # a thread that reads or sends has to return first
         self._connection.close()
 
     def _exactly(self, size):
@@ -432,7 +433,7 @@ def _read(answer, most):
     """The body; None where it has more than `most` bytes."""
     data, whole = None, False
     try:
-        data = None if (answer.length or 0) > most else answer.read(most + 1)
+        data = None if (answer.length or 0) > most else _pieces(answer, most + 1)
         whole = data is not None and len(data) <= most
         if whole and answer.length:
             raise EOFError("the server has gone")
@@ -440,6 +441,16 @@ def _read(answer, most):
     finally:
         if not whole:
             answer.close()
+
+
+def _pieces(answer, count):
+    """Up to `count` bytes of the body; Python 3.9 fills a buffer with as many zeros as it is asked to read."""
+    pieces, left, piece = [], count, b"-"
+    while left and piece:
+        piece = answer.read(min(left, PIECE))
+        pieces.append(piece)
+        left -= len(piece)
+    return b"".join(pieces)
 
 
 def _refusal(status, data):

@@ -52,7 +52,7 @@ def reach(url, instance, proof, until):
         connection.request("GET", "/v1/proof?nonce=" + nonce)
         said = json.loads(_read(connection.getresponse(), 1 << 16).decode("utf-8"))["proof"]
         text = "hookean %s %s %s %s" % (instance, connection.sock.getpeername()[0], port, nonce)
-        # a comparison whose time tells nothing of use: the next question has another answer
+        # the time of this comparison reveals nothing useful: the next nonce has another proof
         right = said == hmac.new(proof.encode("ascii"), text.encode("ascii"), hashlib.sha256).hexdigest()
         if right:
             return connection

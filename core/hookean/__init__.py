@@ -26,11 +26,14 @@ from typing import TYPE_CHECKING, Any
 from hookean.errors import InputError as InputError
 
 if TYPE_CHECKING:
+    from hookean.files.save import open as open
+    from hookean.files.save import save as save
     from hookean.forces.anchor_spring import AnchorSpring as AnchorSpring
     from hookean.forces.base import Force as Force
     from hookean.forces.bend import Bend as Bend
     from hookean.forces.floor import Floor as Floor
     from hookean.forces.hinge import Hinge as Hinge
+    from hookean.forces.power_law import PowerLaw as PowerLaw
     from hookean.forces.pressure import Pressure as Pressure
     from hookean.forces.pull_to_curve import PullToCurve as PullToCurve
     from hookean.forces.pull_to_mesh import PullToMesh as PullToMesh
@@ -39,47 +42,53 @@ if TYPE_CHECKING:
     from hookean.forces.soapfilm import SoapFilm as SoapFilm
     from hookean.forces.springs import Springs as Springs
     from hookean.forces.unary import Unary as Unary
-    from hookean.patch import Move as Move
-    from hookean.patch import Patch as Patch
-    from hookean.report import Report as Report
-    from hookean.result import Result as Result
-    from hookean.result import Status as Status
-    from hookean.run import relax as relax
-    from hookean.scene import Anchor as Anchor
-    from hookean.scene import Anchors as Anchors
-    from hookean.scene import Geometry as Geometry
-    from hookean.scene import MeshData as MeshData
-    from hookean.scene import Scene as Scene
-    from hookean.scene import Settings as Settings
-    from hookean.script import Script as Script
-    from hookean.simulation import Frame as Frame
-    from hookean.simulation import Simulation as Simulation
-    from hookean.simulation import simulate as simulate
-    from hookean.stream import Stream as Stream
-    from hookean.units import Units as Units
+    from hookean.pictures.picture import picture as picture
+    from hookean.pictures.picture import render as render
+    from hookean.running.patch import Move as Move
+    from hookean.running.patch import Patch as Patch
+    from hookean.running.result import Result as Result
+    from hookean.running.result import Status as Status
+    from hookean.running.run import relax as relax
+    from hookean.running.script import Script as Script
+    from hookean.running.simulation import Frame as Frame
+    from hookean.running.simulation import Simulation as Simulation
+    from hookean.running.simulation import simulate as simulate
+    from hookean.running.stream import Stream as Stream
+    from hookean.scene.report import Report as Report
+    from hookean.scene.scene import Anchor as Anchor
+    from hookean.scene.scene import Anchors as Anchors
+    from hookean.scene.scene import Geometry as Geometry
+    from hookean.scene.scene import MeshData as MeshData
+    from hookean.scene.scene import Scene as Scene
+    from hookean.scene.scene import Settings as Settings
+    from hookean.values.units import Units as Units
 
 __version__ = "0.1.0"
 
 _HOMES = {
-    "Scene": "scene",
-    "Anchor": "scene",
-    "Anchors": "scene",
-    "Geometry": "scene",
-    "MeshData": "scene",
-    "Settings": "scene",
-    "Units": "units",
+    "Scene": "scene.scene",
+    "Anchor": "scene.scene",
+    "Anchors": "scene.scene",
+    "Geometry": "scene.scene",
+    "MeshData": "scene.scene",
+    "Settings": "scene.scene",
+    "Units": "values.units",
     "Force": "forces",
-    "Report": "report",
-    "Result": "result",
-    "Status": "result",
-    "Frame": "simulation",
-    "Simulation": "simulation",
-    "Move": "patch",
-    "Patch": "patch",
-    "Script": "script",
-    "Stream": "stream",
-    "relax": "run",
-    "simulate": "simulation",
+    "Report": "scene.report",
+    "Result": "running.result",
+    "Status": "running.result",
+    "Frame": "running.simulation",
+    "Simulation": "running.simulation",
+    "Move": "running.patch",
+    "Patch": "running.patch",
+    "Script": "running.script",
+    "Stream": "running.stream",
+    "open": "files.save",
+    "picture": "pictures.picture",
+    "relax": "running.run",
+    "render": "pictures.picture",
+    "save": "files.save",
+    "simulate": "running.simulation",
 }
 
 __all__ = [
@@ -96,6 +105,7 @@ __all__ = [
     "MeshData",
     "Move",
     "Patch",
+    "PowerLaw",
     "Pressure",
     "PullToCurve",
     "PullToMesh",
@@ -113,7 +123,11 @@ __all__ = [
     "Stream",
     "Unary",
     "Units",
+    "open",
+    "picture",
     "relax",
+    "render",
+    "save",
     "simulate",
 ]
 

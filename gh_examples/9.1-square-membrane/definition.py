@@ -1,6 +1,6 @@
 """Figure 9.1 on the canvas: a square membrane of particles and springs, held at its corners."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 GRID = """
 import Rhino

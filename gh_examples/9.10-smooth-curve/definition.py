@@ -1,6 +1,6 @@
 """Figure 9.10 on the canvas: a cable of four springs, and a smooth curve through its particles, for display only."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 import math

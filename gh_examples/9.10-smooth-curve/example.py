@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
+from hookean.commands.examples import Outcome
 from hookean.discretize import interpolate
-from hookean.example import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
 
 
 def run(folder: Path) -> Outcome:

@@ -1,6 +1,6 @@
 """Figure 9.11 on the canvas: springs nearer the supports of a loaded cable stretch more."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 lengths = [a.DistanceTo(b) for a, b in zip(particles, particles[1:])]

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Graph, Panel
+from hookean.pictures.sheet import Graph, Panel
 
 
 def run(folder: Path) -> Outcome:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 MOTION = '''
 """How a spring swings under its load: the length at last, and when it last was 0.5 cm away from rest."""

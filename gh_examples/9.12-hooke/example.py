@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from hookean import Scene, Simulation, relax, simulate
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Graph, Panel
+from hookean.pictures.sheet import Graph, Panel
 
 STIFFNESSES = (1.0, 2.0, 4.0, 8.0)  # N/cm
 DAMPINGS = {1.0: 5, 10.0: 20, 100.0: 80}  # N s/cm: time steps of 0.01 s in a frame, as slow as the motion

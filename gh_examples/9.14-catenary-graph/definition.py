@@ -1,6 +1,6 @@
 """Figures 9.14 and 9.15 on the canvas: y = a cosh(x / a) from the Catenary component, and a chain that hangs on it."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 LENGTH_OF = """
 # The length between x = -X and x = X of the catenary of parameter a, and its ends.

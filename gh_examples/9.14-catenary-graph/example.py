@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
-from hookean.catenary import catenary, catenary_of, parameter, sag, tensions
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
+from hookean.discretize.catenary import catenary, catenary_of, parameter, sag, tensions
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Graph, Panel
+from hookean.pictures.sheet import Graph, Panel
 
 TOP = 10.0  # m, where the graph ends
 

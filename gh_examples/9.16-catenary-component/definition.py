@@ -1,6 +1,6 @@
 """Figure 9.16 on the canvas: catenaries from A, B, L and G, and chains of 60 links that hang on them."""
 
-from hookean_canvas.definition import Definition, flat, graft
+from hookean_canvas.definitions.write import Definition, flat, graft
 
 LEGS = """
 # A chain lifted against gravity to two straight legs: its points, links, rest length and the weight on each joint.

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from hookean import InputError, Scene, relax
-from hookean.catenary import catenary, parameter, tensions
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
+from hookean.discretize.catenary import catenary, parameter, tensions
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
 
 SCENES = {
     "rising": "scene.json",

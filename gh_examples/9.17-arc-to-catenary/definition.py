@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 CASES = {
     "line": ("line", False),

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from hookean import Result, Scene, relax
-from hookean.catenary import catenary, catenary_of, parameter
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
+from hookean.discretize.catenary import catenary, catenary_of, parameter
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Graph, Panel
+from hookean.pictures.sheet import Graph, Panel
 
 ARC = 20.0  # m, the length of both arcs
 RECIPES = {

@@ -1,6 +1,6 @@
 """Figure 9.21 on the canvas: an arc of 20 m comes down to the catenary, seen at five moments and at rest."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 MOTION = """
 rows = [list(particles.Branch(path)) for path in particles.Paths]

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax, simulate
-from hookean.catenary import catenary
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
+from hookean.discretize.catenary import catenary
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Graph, Panel
+from hookean.pictures.sheet import Graph, Panel
 
 
 def run(folder: Path) -> Outcome:

@@ -1,6 +1,6 @@
 """Figure 9.22 on the canvas: chains between two free-form frames, and the catenaries drawn from their ends."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 LENGTHS = """
 lengths = [factor * a.DistanceTo(b) for a, b in zip(starts, ends)]

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
-from hookean.catenary import catenary
+from hookean.commands.examples import Outcome
+from hookean.discretize.catenary import catenary
 from hookean.discretize.curves import divide
-from hookean.example import Outcome
-from hookean.files import threedm
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.files.rhino import threedm
+from hookean.pictures.sheet import Panel
 
 
 def run(folder: Path) -> Outcome:

@@ -1,6 +1,6 @@
 """Figures 9.23 to 9.25 on the canvas: a surface becomes a net of springs, held at its corners; its mesh rides along."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 points = [mesh.Vertices.Point3dAt(i) for i in range(len(vertices))]

@@ -4,10 +4,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from hookean import relax
+from hookean.commands.examples import Outcome
 from hookean.discretize import edges
-from hookean.example import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
 
 
 def run(folder: Path) -> Outcome:

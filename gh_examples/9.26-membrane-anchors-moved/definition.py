@@ -1,6 +1,6 @@
 """Figure 9.26 on the canvas: a membrane whose corners are led up and down while it runs."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 start = [drawn.Vertices.Point3dAt(i) for i in range(len(drawn.Vertices))]

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from hookean import Script, Simulation
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
 
 
 def run(folder: Path) -> Outcome:

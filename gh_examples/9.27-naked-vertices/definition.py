@@ -1,6 +1,6 @@
 """Figure 9.27 on the canvas: a membrane held at its naked vertices, and the same one held at drawn points."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 points = [membrane.Vertices.Point3dAt(i) for i in range(len(membrane.Vertices))]

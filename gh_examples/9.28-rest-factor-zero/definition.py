@@ -1,6 +1,6 @@
 """Figure 9.28 on the canvas: a net of rest factor 0, and the soap film in the same frame."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 GRID = """
 def grid(mesh):

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from hookean import relax
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.result import Result
-from hookean.sheet import Graph, Panel
+from hookean.pictures.sheet import Graph, Panel
+from hookean.running.result import Result
 
 
 def run(folder: Path) -> Outcome:

@@ -1,6 +1,6 @@
 """Figure 9.29 on the canvas: the same membrane without diagonals, with one and with both in every face."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 import math

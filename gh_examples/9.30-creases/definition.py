@@ -1,6 +1,6 @@
 """Figure 9.30 on the canvas: a sheet of edges and diagonals; shorter diagonals fold its faces."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 import math

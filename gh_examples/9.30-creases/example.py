@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
 
 RECIPES = {"1": "recipe.toml", "0.95": "recipe-creased.toml", "0.9": "recipe-sharper.toml"}
 

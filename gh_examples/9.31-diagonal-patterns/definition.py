@@ -1,6 +1,6 @@
 """Figure 9.31 on the canvas: diagonals one way (A), the other way (B), and warp and weft that differ (C)."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 def grid(mesh):

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.result import Result
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
+from hookean.running.result import Result
 
 PATTERNS = {
     "A": ("recipe.toml", "A: diagonals one way"),

@@ -1,6 +1,6 @@
 """Figure 9.32 on the canvas: a membrane stretched over two free-form beams and eleven arcs."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 FINE = """
 import Rhino

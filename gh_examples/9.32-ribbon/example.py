@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from hookean import Simulation
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
 
 ARCS, BAY = 11, 6  # quads of a bay along the beams: `divide` of the recipe is 10 bays of 6
 

@@ -1,6 +1,6 @@
 """Figures 9.4 and 9.5 on the canvas: a line cut into springs, loads on its points, its ends held."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 lengths = [a.DistanceTo(b) for a, b in zip(particles, particles[1:])]

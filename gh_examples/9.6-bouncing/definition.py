@@ -1,6 +1,6 @@
 """Figure 9.6 on the canvas: a cable let go bounces until it is at rest; its shape at some times, and at last."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 MOTION = '''
 """The particles at a time: the same forces, anchors and settings, run for so many steps from the start."""

@@ -1,6 +1,6 @@
 """Figures 9.7 and 9.8 on the canvas: an anchor of a running cable is moved, put back, and the cable is reset."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 SEQUENCE = """
 # What a person does: wait until the cable is at rest, move the anchor, wait, put it back, wait, reset, wait.

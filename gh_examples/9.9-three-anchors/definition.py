@@ -1,6 +1,6 @@
 """Figure 9.9 on the canvas: a cable with two anchors, with a third one, and with a third that meets no particle."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 import re

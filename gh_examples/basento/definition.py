@@ -1,6 +1,6 @@
 """The Basento study on the canvas: a skin in tension, and the same shape with every force reversed."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 REVERSE = """
 import Rhino

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from hookean import Result, Scene, relax
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
 
 CONCRETE = 5e6  # kN/m, a strut of concrete about 0.3 m by 1 m, 1.8 m long: E A / l with E = 30 GPa
 

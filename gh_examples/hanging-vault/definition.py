@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 INNER = """
 inner = list(points)[1:-1]

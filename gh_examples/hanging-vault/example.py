@@ -6,9 +6,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from hookean import Result, Scene, relax
-from hookean.example import Outcome
+from hookean.commands.examples import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Panel
+from hookean.pictures.sheet import Panel
 
 WEIGHT, LENGTH, SPAN = 3.0, 19.2, 16.0  # kN/m, m, m: of the chain
 

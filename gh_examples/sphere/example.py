@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from hookean import Result, Scene, Simulation
+from hookean.commands.examples import Outcome
 from hookean.discretize import edges, remove_duplicate_lines
-from hookean.example import Outcome
 from hookean.files.relax_file import read_scene
-from hookean.sheet import Graph, Panel
-from hookean.stability import stable_time_step
+from hookean.pictures.sheet import Graph, Panel
+from hookean.stability.time_steps import stable_time_step
 
 SECONDS = 8.0
 VIEW = (-30.0, 12.0)  # degrees

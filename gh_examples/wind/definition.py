@@ -1,6 +1,6 @@
 """A sail in wind on the canvas: the load of every moment comes from a table of speeds."""
 
-from hookean_canvas.definition import Definition, flat
+from hookean_canvas.definitions.write import Definition, flat
 
 NUMBERS = """
 sail, edge, wind = [list(largest.Branch(path)) for path in largest.Paths]

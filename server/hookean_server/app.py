@@ -14,36 +14,28 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 import hookean
-from hookean_server import (
-    ending,
-    openapi,
-    routes_about,
-    routes_discretize,
-    routes_docs,
-    routes_examples,
-    routes_geometry,
-    routes_hops,
-    routes_page,
-    routes_relax,
-)
-from hookean_server.access import Table
-from hookean_server.guard import Guard, Origins
+from hookean_server.hops import routes as routes_hops
+from hookean_server.http import openapi
+from hookean_server.http.access import Table
+from hookean_server.http.anonymous import Visits
+from hookean_server.http.conformance import Always, Manners
+from hookean_server.http.guard import Guard, Origins
+from hookean_server.http.limits import BodyLimit, Paced
+from hookean_server.http.logs import Seen
+from hookean_server.http.metrics import Metrics
+from hookean_server.http.refusals import Problems
+from hookean_server.http.tokens import Tokens, chosen
 from hookean_server.jobs import routes as job_routes
 from hookean_server.jobs.manager import Jobs
-from hookean_server.limits import BodyLimit, Paced
-from hookean_server.logs import Seen
-from hookean_server.manners import Always, Manners
-from hookean_server.metrics import Metrics
-from hookean_server.pool import Pool
+from hookean_server.lifecycle import ending
 from hookean_server.problems import Problem
-from hookean_server.refusals import Problems
+from hookean_server.routes import about, discretize, docs, examples, geometry, page, relax
 from hookean_server.sessions import frames
 from hookean_server.sessions import routes as session_routes
 from hookean_server.sessions.manager import Manager
 from hookean_server.settings import Settings
 from hookean_server.store import Store
-from hookean_server.tokens import Tokens, chosen
-from hookean_server.visits import Visits
+from hookean_server.workers.pool import Pool
 
 log = logging.getLogger("hookean.server")
 
@@ -88,15 +80,15 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.store, app.state.sessions, app.state.jobs = store, sessions, jobs
     app.state.tokens, app.state.metrics = Tokens(settings.token or chosen()), Metrics(app.state)
     parts = (
-        routes_about,
+        about,
         ending,
-        routes_relax,
-        routes_discretize,
-        routes_docs,
-        routes_geometry,
-        routes_examples,
+        relax,
+        discretize,
+        docs,
+        geometry,
+        examples,
         routes_hops,
-        routes_page,
+        page,
         session_routes,
         frames,
         job_routes,

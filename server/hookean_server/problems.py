@@ -117,6 +117,17 @@ class Problem(Exception):
         self.errors = [(_cut(p, LONGEST_POINTER), _cut(d, LONGEST)) for p, d in errors]
         self.headers = headers or {}
 
+    def to_wire(self) -> dict[str, Any]:
+        """What stands for it in the head of a message between processes."""
+        return {"problem": self.slug, "detail": self.detail, "errors": self.errors, "headers": self.headers}
+
+    @classmethod
+    def from_wire(cls, head: dict[str, Any]) -> Problem | None:
+        """The problem in the head of a message, or None."""
+        if "problem" not in head:
+            return None
+        return cls(head["problem"], head["detail"], [(p, d) for p, d in head["errors"]], head["headers"])
+
     @property
     def status(self) -> int:
         """The HTTP status."""

@@ -30,7 +30,7 @@ class Settings:
     queue: int = 16
     """Requests that may wait or be read while all workers are busy; the next one is told to come back."""
     visits: int = 8
-    """Requests without a token that may wait or be read; the next one is told to come back. See `visits`."""
+    """Requests without a token that may wait or be read; the next one is answered 503. See `visits`."""
     visit_limit: int = 160 * MIB
     """Largest answer to a request without a token, as estimated from what it asks for."""
     json_limit: int = 16 * MIB

@@ -21,8 +21,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from hookean_server.budget import Budget
 from hookean_server.keeping import backups
+from hookean_server.keeping.budget import Budget
 from hookean_server.keeping.database import Database
 from hookean_server.keeping.manifest import apply
 from hookean_server.keeping.opening import Opened, Report, open_store, reopened, reports

@@ -7,14 +7,14 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from hookean_canvas import stand_in
+from hookean_canvas.run import stand_in
 from serving import HANG
 
 
 class Bench:
     """A document with components; `run` solves one of them as the canvas would."""
 
-    def __init__(self, path: str | None = "/work/cable.gh", identity: Any = None) -> None:
+    def __init__(self, path: str | None = "/models/cable.gh", identity: Any = None) -> None:
         self.document = stand_in.Document(path, identity)
 
     def component(self, name: str, inputs: tuple[str, ...] = (), guid: Any = None) -> Any:

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from uuid import UUID, uuid5
 
-from hookean_canvas import containers
 from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.definition import Definition, Made
-from hookean_canvas.guids import CLUSTER
-from hookean_canvas.kangaroo_guids import CLASSIC_LIBRARY, COMPONENTS, SECOND_LIBRARY, Known
-from hookean_canvas.parts import inputs, parts, sources
+from hookean_canvas.archive.guids import CLUSTER
+from hookean_canvas.archive.parts import inputs, parts, sources
+from hookean_canvas.definitions import containers
+from hookean_canvas.definitions.write import Definition, Made
+from hookean_canvas.kangaroo.ids import CLASSIC_LIBRARY, COMPONENTS, SECOND_LIBRARY, Known
 
 CLASSIC = "KangarooPhysics"
 NAMED = {known: guid for guid, known in reversed(COMPONENTS.items())}

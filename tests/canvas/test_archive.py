@@ -17,7 +17,7 @@ from canvas.archives import PACKAGES, TEXT, XML_TEXT, chunks, samples, user_obje
 from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Item, Type
-from hookean_canvas.archive_binary import inflate, of_plain, to_plain
+from hookean_canvas.archive.binary import inflate, of_plain, to_plain
 
 CASES = 1000 if os.environ.get("HOOKEAN_SOAK") == "1" else 100
 ID = uuid.UUID("00112233-4455-6677-8899-aabbccddeeff")

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.archive_binary import deflate, of_plain, to_plain
-from hookean_canvas.archive_chunk import DEEPEST
+from hookean_canvas.archive.binary import deflate, of_plain, to_plain
+from hookean_canvas.archive.chunk import DEEPEST
 
 CASES = 3000 if os.environ.get("HOOKEAN_SOAK") == "1" else 300
 

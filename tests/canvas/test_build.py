@@ -16,10 +16,12 @@ from typer.testing import CliRunner
 import hookean
 from canvas.archives import SHARED, user_objects
 from hookean.errors import InputError
-from hookean_canvas import archive, build, bundles, guids, inline, lint, userobject, yak
-from hookean_canvas.archive import Chunk
+from hookean_canvas import archive
+from hookean_canvas.archive import Chunk, guids
+from hookean_canvas.archive.parts import code
 from hookean_canvas.command import app
-from hookean_canvas.parts import code
+from hookean_canvas.components import build, bundles, inline, userobject, yak
+from hookean_canvas.inspect import lint
 
 ROOT = Path(__file__).parents[2]
 BUNDLES = {bundle.folder: bundle for bundle in bundles.read_all()}
@@ -250,12 +252,12 @@ def test_an_installed_wheel_can_build(tmp_path):
     with zipfile.ZipFile(wheel) as archive_:
         archive_.extractall(tmp_path / "site")
     told = (
-        f"import sys; sys.path.insert(0, {str(tmp_path / 'site')!r}); import hookean_canvas.build as b;"
-        "from pathlib import Path; from hookean_canvas import bundles;"
+        f"import sys; sys.path.insert(0, {str(tmp_path / 'site')!r}); import hookean_canvas.components.build as b;"
+        "from pathlib import Path; from hookean_canvas.components import bundles;"
         f"print(bundles.folder()); b.build(Path({str(tmp_path / 'dist')!r}), [bundles.read('Springs')])"
     )
     done = subprocess.run([sys.executable, "-c", told], cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.strip() == str(tmp_path / "site" / "hookean_canvas" / "components")
+    assert done.stdout.strip() == str(tmp_path / "site" / "hookean_canvas" / "component_sources")
     written = (tmp_path / "dist" / "rhino8" / "Hookean_Springs.ghuser").read_bytes()
     assert written == archive.to_bytes(userobject.user_object(BUNDLES["Springs"]))

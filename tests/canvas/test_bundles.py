@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from hookean.errors import InputError
-from hookean_canvas import bundles, guids, icons
+from hookean_canvas.archive import guids
+from hookean_canvas.components import bundles, icons
 
 SHIPPED = bundles.names()
 every_bundle = pytest.mark.parametrize("name", SHIPPED)

@@ -10,8 +10,9 @@ from typer.testing import CliRunner
 
 from canvas.test_lint import add_object, add_port, add_script, at, guid
 from hookean.cli import app
-from hookean_canvas import archive, archive_chunk, guids
-from hookean_canvas.archive import Chunk, Type
+from hookean_canvas import archive
+from hookean_canvas.archive import Chunk, Type, guids
+from hookean_canvas.archive import chunk as archive_chunk
 
 PAGE = (Path(__file__).parents[2] / "docs" / "canvas.md").read_text(encoding="utf-8")
 

@@ -101,7 +101,7 @@ def test_springs_side_by_side_are_added() -> None:
 
 
 def test_results_of_buffers_are_the_same() -> None:
-    from hookean_server import answers
+    from hookean_server.http import answers
 
     mesh = net()
     scene = Scene.read(compas.scene([mesh], [compas.springs(mesh, rest_factor=0.0)], [compas.anchors(mesh)]))

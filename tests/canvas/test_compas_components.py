@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from hookean import Scene, relax
-from hookean_canvas import bundles, inline, stand_in
+from hookean_canvas.components import bundles, inline
+from hookean_canvas.run import stand_in
 from pythons import interpreter
 from serving import HANG, Home
 

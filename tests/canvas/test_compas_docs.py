@@ -49,7 +49,7 @@ def test_the_page_names_functions_and_attributes_that_exist() -> None:
 
 
 def test_the_page_names_every_component_of_the_group() -> None:
-    from hookean_canvas import bundles
+    from hookean_canvas.components import bundles
 
     shipped = {bundles.read(name).name for name in bundles.names() if bundles.read(name).subcategory == "COMPAS"}
     assert shipped and shipped == set(re.findall(r"COMPAS (?:Structure|Springs|Load|Anchors|Relax)", TEXT))

@@ -9,9 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean.errors import InputError
-from hookean_canvas import archive, graph, layout, lint
-from hookean_canvas.definition import Definition, flat
-from hookean_canvas.guids import GROUP
+from hookean_canvas import archive
+from hookean_canvas.archive.guids import GROUP
+from hookean_canvas.definitions import layout
+from hookean_canvas.definitions.write import Definition, flat
+from hookean_canvas.inspect import lint
+from hookean_canvas.run import graph
 
 
 def line(key: str = "line") -> Definition:

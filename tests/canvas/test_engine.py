@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import hookean_client
 from canvas.canvasing import Bench, let_go, line, point, sentences, xyz
-from hookean_canvas import stand_in
+from hookean_canvas.run import stand_in
 from hookean_client import canvas, canvas_draw, canvas_engine, canvas_link
 from hookean_client.canvas_player import Player
 from serving import Home, wait_for
@@ -60,7 +60,7 @@ class Cable:
     """A definition: a line of ten springs under loads, held at both ends by two points."""
 
     def __init__(self, bench: Bench | None = None, guid: Any = None) -> None:
-        self.bench = bench or Bench(f"/work/cable-{next(COUNT)}.gh")
+        self.bench = bench or Bench(f"/models/cable-{next(COUNT)}.gh")
         self.engine = self.bench.component("Engine", ("_forces", "anchors_"), guid)
         self.count, self.load, self.stiffness = 10, -10.0, 1000.0
         self.anchors: Any = [point(0, 0, 0), point(10, 0, 0)]
@@ -234,7 +234,7 @@ def test_a_definition_saved_as_another_goes_on_in_a_session_of_its_own(home: Hom
     cable.anchors = [point(0, 0, 0), point(10, 0, 2.5)]
     cable.run()
     first, iterations, form = cable.player.key, cable.out.iterations, cable.at(5)
-    cable.bench.document.FilePath = f"/work/other-{next(COUNT)}.gh"
+    cable.bench.document.FilePath = f"/models/other-{next(COUNT)}.gh"
     cable.run()
     assert cable.player.key != first and {first, cable.player.key} <= keys()
     assert cable.out.iterations >= iterations and close(cable.at(5), form)
@@ -245,7 +245,7 @@ def test_a_definition_saved_over_another_takes_its_place(home: Home) -> None:
     cable = Cable()
     cable.run()
     there, first = cable.bench.document.FilePath, cable.player.key
-    cable.bench.document.FilePath = f"/work/other-{next(COUNT)}.gh"
+    cable.bench.document.FilePath = f"/models/other-{next(COUNT)}.gh"
     cable.load = -40.0
     cable.run()
     form = cable.at(5)

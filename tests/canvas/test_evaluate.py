@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from hookean.errors import InputError
-from hookean_canvas import graph
 from hookean_canvas.archive import Type
-from hookean_canvas.checking import check, number, shown
 from hookean_canvas.command import app
-from hookean_canvas.definition import Definition, flat, graft
-from hookean_canvas.evaluate import Canvas, Outcome
-from hookean_canvas.natives import BY_NAME, Unfit, as_kind
-from hookean_canvas.trees import FLATTEN, GRAFT, ITEM, LIST, TREE, Tree, modified, path_of, runs, text_of
+from hookean_canvas.definitions.write import Definition, flat, graft
+from hookean_canvas.run import graph
+from hookean_canvas.run.checking import check, number, shown
+from hookean_canvas.run.evaluate import Canvas, Outcome
+from hookean_canvas.run.natives import BY_NAME, Unfit, as_kind
+from hookean_canvas.run.trees import FLATTEN, GRAFT, ITEM, LIST, TREE, Tree, modified, path_of, runs, text_of
 
 paths = st.lists(st.integers(0, 5), min_size=1, max_size=3).map(tuple)
 trees = st.dictionaries(paths, st.lists(st.integers(), max_size=5), max_size=6).map(Tree)

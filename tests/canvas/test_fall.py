@@ -16,7 +16,7 @@ from canvas.test_engine import Cable
 from canvas.test_tools import Placed
 from canvas.test_tools_sweep import cable, tree
 from hookean import Scene, relax
-from hookean_canvas import stand_in
+from hookean_canvas.run import stand_in
 from hookean_client import canvas_fall, canvas_link, compas_canvas
 from serving import Home
 

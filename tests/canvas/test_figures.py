@@ -14,11 +14,14 @@ from pathlib import Path
 import pytest
 
 from canvas.canvasing import let_go
-from hookean.example import examples
-from hookean_canvas import archive, graph, inline, lint
-from hookean_canvas.checking import check
-from hookean_canvas.graph import Node
-from hookean_canvas.scripts import SCRIPTS, code_of
+from hookean.commands.examples import examples
+from hookean_canvas import archive
+from hookean_canvas.components import inline
+from hookean_canvas.inspect import lint
+from hookean_canvas.run import graph
+from hookean_canvas.run.checking import check
+from hookean_canvas.run.graph import Node
+from hookean_canvas.run.scripts import SCRIPTS, code_of
 from serving import SOAK, Home
 
 FIGURES = sorted(example.name for example in examples())
@@ -27,7 +30,7 @@ RUN = FIGURES if SOAK else ["9.4-cable", "9.24-membrane"]
 
 
 def shipped(figure: str) -> Path:
-    return HERE / figure / "definition.ghx"
+    return HERE / figure / "definition.gh"
 
 
 @pytest.fixture(scope="module")
@@ -54,8 +57,8 @@ def test_a_shipped_definition_is_what_its_module_writes_now(figure: str, tmp_pat
     assert spec is not None and spec.loader is not None
     builder = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(builder)
-    builder.definition(figure).save(tmp_path / "definition.ghx")
-    same = without_client(tmp_path / "definition.ghx") == without_client(shipped(figure))
+    builder.definition(figure).save(tmp_path / "definition.gh")
+    same = without_client(tmp_path / "definition.gh") == without_client(shipped(figure))
     assert same, f"run `.venv/bin/python gh_examples/build_definitions.py {figure}`"
 
 
@@ -83,13 +86,13 @@ def test_a_shipped_definition_has_no_faults_and_stands_as_a_person_lays_it_out(f
 def test_the_canvas_gives_the_numbers_of_the_figure(figure: str, home: Home, tmp_path: Path) -> None:
     folder = tmp_path / figure
     shutil.copytree(HERE / figure, folder)
-    checked = check(folder / "definition.ghx", seconds=300.0)
+    checked = check(folder / "definition.gh", seconds=300.0)
     assert checked.compared and checked.faults == []
 
 
 def test_another_slider_gives_other_numbers(home: Home, tmp_path: Path) -> None:
     shutil.copytree(HERE / "9.4-cable", tmp_path / "cable")
-    checked = check(tmp_path / "cable" / "definition.ghx", {"Load [N]": "-20"}, seconds=300.0)
+    checked = check(tmp_path / "cable" / "definition.gh", {"Load [N]": "-20"}, seconds=300.0)
     [lift] = checked.outcome.panels["lift of an anchor"].values_in_order()
     assert checked.faults == [] and abs(lift - 110.0) < 1e-6  # half of 11 loads of 20 N
 

@@ -12,9 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from hookean.catalogue import catalogue
+from canvas.wired import inputs
 from hookean.forces import KINDS
-from hookean_canvas import bundles, force_bundles, icons, inline, isolated
+from hookean.scene.catalogue import catalogue
+from hookean_canvas.components import bundles, force_bundles, icons, inline
+from hookean_canvas.run import isolated
 
 COMPONENTS = Path(__file__).parents[2] / "components"
 ENTRIES = {entry["kind"]: entry for entry in catalogue()}
@@ -166,26 +168,7 @@ def test_inputs_come_as_a_kangaroo_user_expects_them():
     ]
 
 
-def point(*parts: float) -> dict[str, object]:
-    return {"Point3d": list(parts)}
-
-
-LINE = {"Line": [[0, 0, 0], [1, 0, 0]]}
-MESH = {"Mesh": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.2]], "faces": [[0, 1, 2, 3]]}}
-GIVEN: dict[str, dict[str, object]] = {
-    "Springs": {"_connection": [LINE, LINE], "_stiffness_": [5.0, 6.0], "_edges_": ["warp"], "name_": ["cable"]},
-    "Unary": {"_point": [point(0, 0, 0), point(1, 0, 0)], "_force": [{"Vector3d": [0, 0, -1]}]},
-    "Hinge": {f"_point_{i + 1}": [point(i, i * i, 0)] for i in range(4)} | {"_strength_": [2.0]},
-    "Bend": {f"_point_{i + 1}": [point(i, i * i, 0)] for i in range(3)} | {"rest_angle_": [0.1]},
-    "Floor": {"_point_": [point(0, 0, -1)], "_normal_": [{"Vector3d": [0, 0, 1]}], "_restitution_": [0.5]},
-    "Pressure": {"_mesh": [MESH], "_pressure_": [3.0]},
-    "Shell": {"_mesh": [MESH], "_strength_": [3.0]},
-    "SoapFilm": {"_mesh": [MESH], "_tension_": [3.0], "_warp_": [1.0]},
-    "PullToMesh": {"_target": [MESH], "_point": [point(0, 0, 1)], "_strength_": [10.0]},
-    "PullToCurve": {"_curve": [LINE], "_point": [point(0, 0, 1), point(0, 1, 1)], "_strength_": [1.0, 2.0]},
-    "AnchorSpring": {"_point": [point(0, 0, 1), point(0, 1, 1)], "targets_": [point(0, 0, 2)]},
-    "SelfWeight": {"connection_": [LINE], "per_length_": [2.0], "_direction_": [{"Vector3d": [0, 0, -1]}]},
-}
+GIVEN = {cls.__name__: inputs(kind) for kind, cls in KINDS.items()}
 
 
 @pytest.fixture(scope="module")

@@ -25,17 +25,19 @@ from canvas.kangaroo_samples import (
     wires,
 )
 from hookean.errors import InputError
-from hookean_canvas import archive, kangaroo, lint
+from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Item, Type
+from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, CLUSTER, PANEL, PARAMETERS, PYTHON3_SCRIPT
+from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, parts, sources
 from hookean_canvas.command import app
-from hookean_canvas.guids import BOOLEAN_TOGGLE, CLUSTER, PANEL, PARAMETERS, PYTHON3_SCRIPT
-from hookean_canvas.kangaroo_guids import COMPONENTS, Known, libraries, recognised
-from hookean_canvas.kangaroo_report import Report
-from hookean_canvas.kangaroo_roles import Role, role
-from hookean_canvas.kangaroo_streams import copied
-from hookean_canvas.kangaroo_swap import FLOATING
-from hookean_canvas.kangaroo_table import CLASSIC, SECOND, markdown, swap_of
-from hookean_canvas.parts import Part, bounds_of, inputs, outputs, parts, sources
+from hookean_canvas.inspect import lint
+from hookean_canvas.kangaroo import translate as kangaroo
+from hookean_canvas.kangaroo.ids import COMPONENTS, Known, libraries, recognised
+from hookean_canvas.kangaroo.report import Report
+from hookean_canvas.kangaroo.roles import Role, role
+from hookean_canvas.kangaroo.streams import copied
+from hookean_canvas.kangaroo.swap import FLOATING
+from hookean_canvas.kangaroo.table import CLASSIC, SECOND, markdown, swap_of
 from serving import SOAK
 
 
@@ -261,8 +263,8 @@ def test_every_component_of_kangaroo_is_translated_or_named(known: Known) -> Non
 
 
 def test_every_input_of_the_table_is_one_of_a_component_that_there_is() -> None:
-    from hookean_canvas import bundles
-    from hookean_canvas.kangaroo_make import recipe
+    from hookean_canvas.components import bundles
+    from hookean_canvas.kangaroo.make import recipe
 
     for name, swap in [*CLASSIC.items(), *SECOND.items()]:
         for piece in swap.pieces:
@@ -276,7 +278,7 @@ def test_every_input_of_the_table_is_one_of_a_component_that_there_is() -> None:
 
 def test_the_table_of_the_docs_is_the_table_of_the_import() -> None:
     page = (Path(__file__).parents[2] / "docs" / "canvas.md").read_text(encoding="utf-8")
-    assert markdown() in page, "docs/canvas.md does not hold what hookean_canvas.kangaroo_table.markdown() gives"
+    assert markdown() in page, "docs/canvas.md does not hold what hookean_canvas.kangaroo.table.markdown() gives"
 
 
 @pytest.mark.parametrize(("number", "held", "gone"), [(0, ["verlet"], 0), (1, ["yoshida"], 0), (3, [], 1)])
@@ -332,7 +334,7 @@ def test_a_classic_component_that_is_a_cluster_of_others_is_translated_by_its_na
 
 
 def test_encoded_scripts_are_found_wherever_the_name_starts() -> None:
-    from hookean_canvas.kangaroo_guids import _ENCODED
+    from hookean_canvas.kangaroo.ids import _ENCODED
 
     for before in ("", "x", "xx", "xxx"):
         text = base64.b64encode(f"{before}KangarooSolver # more".encode()).decode()

@@ -15,13 +15,16 @@ import pytest
 
 from canvas.kangaroo_samples import wires
 from hookean.errors import InputError
-from hookean_canvas import archive, drawing, graph, kangaroo, lint, lint_refused
+from hookean_canvas import archive
 from hookean_canvas.archive import Chunk
-from hookean_canvas.describe import describe
-from hookean_canvas.evaluate import Canvas
-from hookean_canvas.kangaroo_guids import Known, libraries, recognised
-from hookean_canvas.parts import parts
-from hookean_canvas.show import lines, text
+from hookean_canvas.archive.parts import parts
+from hookean_canvas.inspect import drawing, lint, lint_refused
+from hookean_canvas.inspect.describe import describe
+from hookean_canvas.inspect.show import lines, text
+from hookean_canvas.kangaroo import translate as kangaroo
+from hookean_canvas.kangaroo.ids import Known, libraries, recognised
+from hookean_canvas.run import graph
+from hookean_canvas.run.evaluate import Canvas
 
 FOLDER = os.environ.get("HOOKEAN_DEFINITIONS", "")
 FILES = sorted([*Path(FOLDER).glob("*.gh"), *Path(FOLDER).glob("*.ghx")]) if FOLDER else []

@@ -14,8 +14,9 @@ import pytest
 from canvas.canvasing import let_go
 from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, cable, star, tent
 from hookean import Scene, relax
-from hookean_canvas import graph, kangaroo
-from hookean_canvas.evaluate import Canvas, Outcome
+from hookean_canvas.kangaroo import translate as kangaroo
+from hookean_canvas.run import graph
+from hookean_canvas.run.evaluate import Canvas, Outcome
 from serving import Home
 
 SOFT = UUID("3c30b1a1-4473-4ad4-a700-ea9770726c03")

@@ -15,14 +15,17 @@ from hypothesis import strategies as st
 
 from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, in_units, store
 from canvas.test_import import remaining, same_objects, the, translated
-from hookean_canvas import archive, drawing, graph, kangaroo, lint
+from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.definition import Made
-from hookean_canvas.describe import describe
-from hookean_canvas.guids import PARAMETERS, PYTHON3_SCRIPT
-from hookean_canvas.kangaroo_report import Report
-from hookean_canvas.parts import parts
-from hookean_canvas.show import lines, text
+from hookean_canvas.archive.guids import PARAMETERS, PYTHON3_SCRIPT
+from hookean_canvas.archive.parts import parts
+from hookean_canvas.definitions.write import Made
+from hookean_canvas.inspect import drawing, lint
+from hookean_canvas.inspect.describe import describe
+from hookean_canvas.inspect.show import lines, text
+from hookean_canvas.kangaroo import translate as kangaroo
+from hookean_canvas.kangaroo.report import Report
+from hookean_canvas.run import graph
 from serving import SOAK
 
 MERGE = "3cadddef-1e2b-4c09-9390-0e8f78f7609f"

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from hookean.errors import InputError
-from hookean_canvas import bundles, inline
+from hookean_canvas.components import bundles, inline
 from pythons import interpreter
 
 CODE = '"""Help."""\n\nimport hookean_client\nfrom hookean_client import Problem, canvas\n\nname = canvas.__name__\n'

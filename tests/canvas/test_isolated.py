@@ -16,7 +16,11 @@ from typing import Any
 import pytest
 
 import pythons
-from hookean_canvas import archive, bundles, isolated, userobject
+from canvas import wired
+from hookean.forces import KINDS
+from hookean_canvas import archive
+from hookean_canvas.components import bundles, userobject
+from hookean_canvas.run import isolated
 from serving import HANG, Home
 
 PYTHONS = ("2.7", "3.9", "3.13")
@@ -64,31 +68,22 @@ CURVE = {"NurbsCurve": {"degree": 2, "points": [[0, 0, 0], [1, 2, 0.5], [2, 0, 1
 SURFACE = {"NurbsSurface": {"degree_u": 1, "degree_v": 1, "points": [[[0, 0, 0], [0, 2, 0]], [[3, 0, 0], [3, 2, 1]]],
                             "knots_u": [0, 1], "knots_v": [0, 1]}}  # fmt: skip
 SAMPLES: dict[str, dict[str, Any]] = {
-    "AnchorSpring": {"_point": ROW, "_strength_": [5.0, "7"]},
+    **{cls.__name__: wired.inputs(kind) for kind, cls in KINDS.items()},
     "Anchors": {"_point": ROW, "_x_": [True, False]},
-    "Bend": {"_point_1": ROW[:2], "_point_2": ROW[1:3], "_point_3": ROW[2:]},
     "Catenary": {"_start": ROW[:1], "_end": ROW[3:], "_length": [4.0], "_count_": [5]},
     "Diagonals": {"_mesh": [MESH], "_pattern_": ["both"]},
     "Divide": {"_curve": [CURVE], "_count_": [7]},
-    "Floor": {"_point_": [point(0, 0, -1)]},
-    "Hinge": {"_point_1": ROW[:1], "_point_2": ROW[1:2], "_point_3": ROW[2:3], "_point_4": ROW[3:]},
     "Interpolate": {"_points": ROW, "_count_": [6]},
     "MeshCorners": {"_mesh": [MESH]},
     "MeshEdges": {"_mesh": [MESH]},
     "MeshSurface": {"_surface": [SURFACE], "_u_": [3], "_v_": [2]},
     "MeshVertices": {"_mesh": [MESH]},
     "NakedVertices": {"_mesh": [MESH]},
-    "Pressure": {"_mesh": [MESH], "_pressure_": [2.0]},
-    "PullToCurve": {"_curve": [CURVE], "_point": ROW},
-    "PullToMesh": {"_target": [MESH], "_point": ROW},
     "RemoveDuplicateLines": {"_lines": [line((0, 0, 0), (1, 0, 0)), line((1, 0, 0), (0, 0, 0))]},
     "RhinoFile": {"_file": [str(MODEL)]},
-    "SelfWeight": {"point_": ROW, "total_": [100.0]},
     "Server": {},
     "Settings": {"_drag_": [5.0], "_fast_": [True]},
     "Shatter": {"_curve": [CURVE], "_count_": [4]},
-    "Shell": {"_mesh": [MESH]},
-    "SoapFilm": {"_mesh": [MESH], "_tension_": [3.0]},
     "Springs": {"_connection": [line((i, 0, 0), (i + 1, 0, 0)) for i in range(10)], "_stiffness_": [1000.0]},
     "Unary": {"_point": [point(i, 0, 0) for i in range(11)], "_force": [{"Vector3d": [0, 0, -10]}]},
     "WarpWeft": {"_mesh": [MESH]},
@@ -157,7 +152,7 @@ def chain(version: str) -> list[dict[str, Any]]:
 def answers(version: str, folder: Path, home: Home) -> list[dict[str, Any]]:
     """The chain in one Python; each has a definition of its own."""
     identity = f"00000000-0000-0000-0000-0000000000{int(float(version) * 10):02d}"
-    request = {"path": f"/work/{version}.gh", "document": identity, "steps": chain(version)}
+    request = {"path": f"/models/{version}.gh", "document": identity, "steps": chain(version)}
     return ask(version, request, folder / version, home)
 
 

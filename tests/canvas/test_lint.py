@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 
 from canvas.archives import PACKAGES, samples, user_objects
-from hookean_canvas import archive, guids, lint, lint_code, lint_refused
-from hookean_canvas.archive import Chunk, Item, Type
-from hookean_canvas.parts import Code
+from hookean_canvas import archive
+from hookean_canvas.archive import Chunk, Item, Type, guids
+from hookean_canvas.archive.parts import Code
+from hookean_canvas.inspect import lint, lint_code, lint_refused
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 EVERY = 1 if SOAK else 8

@@ -12,7 +12,7 @@ import pytest
 from canvas.canvasing import Bench, let_go, line, point, sentences, xyz
 from canvas.test_tools import Placed, branches
 from hookean import Scene, simulate
-from hookean_canvas import stand_in
+from hookean_canvas.run import stand_in
 from hookean_client import canvas_link
 from serving import Home
 

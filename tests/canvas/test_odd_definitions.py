@@ -17,12 +17,14 @@ from canvas.kangaroo_samples import cable, star, tent
 from canvas.test_lint import add_object, at, container, definition, guid, objects
 from canvas.test_show import drawn
 from hookean.errors import InputError
-from hookean_canvas import archive, containers, graph, guids
-from hookean_canvas.archive import Chunk, Item, Type
+from hookean_canvas import archive
+from hookean_canvas.archive import Chunk, Item, Type, guids
 from hookean_canvas.command import app
-from hookean_canvas.definition import Definition
-from hookean_canvas.evaluate import Canvas
-from hookean_canvas.kangaroo_streams import copied
+from hookean_canvas.definitions import containers
+from hookean_canvas.definitions.write import Definition
+from hookean_canvas.kangaroo.streams import copied
+from hookean_canvas.run import graph
+from hookean_canvas.run.evaluate import Canvas
 from serving import SOAK
 
 HERE = Path(__file__).parents[2] / "gh_examples"
@@ -150,7 +152,7 @@ def test_objects_without_a_place_are_named(tmp_path: Path) -> None:
 
 def test_a_group_is_drawn_around_the_groups_in_it() -> None:
     """As Grasshopper draws nested groups; here two that hold each other besides."""
-    from hookean_canvas.drawing import _members
+    from hookean_canvas.inspect.drawing import _members
 
     root = placed()
     groups_of_groups(root)
@@ -247,7 +249,7 @@ SAMPLES: dict[str, Callable[[], Chunk]] = {
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_altered_definitions_end_every_command_with_a_result_or_a_sentence(sample: str, tmp_path: Path) -> None:
     root, chance = SAMPLES[sample](), random.Random(sample)
-    for _ in range(400 if SOAK else 6):
+    for _ in range(400 if SOAK else 3):
         try:
             file = saved(altered(root, chance), tmp_path)
         except InputError:
@@ -256,10 +258,10 @@ def test_altered_definitions_end_every_command_with_a_result_or_a_sentence(sampl
             told(command, file)
 
 
-REAL = [*sorted(HERE.glob("*/definition.ghx")), *sorted(SHARED.glob("*.gh"))]
+REAL = [*sorted(HERE.glob("*/definition.gh")), *sorted(SHARED.glob("*.gh"))]
 
 
-@pytest.mark.parametrize("file", REAL if SOAK else REAL[::12], ids=lambda file: file.parent.name)
+@pytest.mark.parametrize("file", REAL if SOAK else REAL[::24], ids=lambda file: file.parent.name)
 def test_altered_real_definitions_end_every_command_but_run(file: Path, tmp_path: Path) -> None:
     """What a run does before it solves is done; components that would start a service are not run."""
     root, chance = archive.read(file), random.Random(file.parent.name)

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from canvas.canvasing import Bench, line, point, sentences
 from hookean import Scene
-from hookean_canvas import stand_in
+from hookean_canvas.run import stand_in
 from hookean_client import canvas, canvas_geometry, canvas_link, canvas_scene
-from hookean_server.operations import OPERATIONS
+from hookean_server.workers.discretize_task import OPERATIONS
 
 
 @pytest.fixture(params=["stand-ins", "rhino3dm"])

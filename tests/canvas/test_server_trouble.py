@@ -21,7 +21,8 @@ import pytest
 
 import hookean_client
 from canvas.canvasing import Bench, let_go, line, point, sentences
-from hookean_canvas import bundles, stand_in
+from hookean_canvas.components import bundles
+from hookean_canvas.run import stand_in
 from hookean_client import canvas, canvas_engine, canvas_geometry, canvas_link, canvas_server, finding
 from serving import HANG, SOAK, Home
 

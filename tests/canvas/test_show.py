@@ -19,11 +19,12 @@ from canvas.archives import PACKAGES, samples, user_objects
 from canvas.kangaroo_samples import CLASSIC, LENGTH, PHYSICS, PHYSICS_OUT, SOLVER, Kangaroo
 from canvas.test_lint import add_object, add_port, at, container, definition, guid, objects, port, user_object
 from hookean.cli import app
-from hookean_canvas import archive, guids, lint, lint_code
-from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.archive_chunk import DEEPEST
-from hookean_canvas.describe import describe
-from hookean_canvas.show import lines, text
+from hookean_canvas import archive
+from hookean_canvas.archive import Chunk, Type, guids
+from hookean_canvas.archive.chunk import DEEPEST
+from hookean_canvas.inspect import lint, lint_code
+from hookean_canvas.inspect.describe import describe
+from hookean_canvas.inspect.show import lines, text
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 
@@ -109,7 +110,7 @@ def test_a_definition_is_shown_with_its_wires_by_name(file: Path) -> None:
 
 
 def test_on_a_terminal_it_is_a_tree(file: Path) -> None:
-    from hookean_canvas.show import show
+    from hookean_canvas.inspect.show import show
 
     console = Console(file=io.StringIO(), force_terminal=True, width=200, highlight=False, color_system=None)
     show(file, with_code=False, as_json=False, everything=False, console=console)

@@ -16,11 +16,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from canvas.canvasing import Bench, let_go, line, point, sentences, xyz
-from hookean.catenary import catenary
-from hookean.discretize import curves, interpolate, meshes, nurbs_surface, surfaces, unique_lines, warp_weft
-from hookean.files import threedm
-from hookean.mesh import Mesh
-from hookean_canvas import bundles, stand_in
+from hookean.discretize import curves, interpolate, meshes, meshing, nurbs_surface, unique_lines, warp_weft
+from hookean.discretize.catenary import catenary
+from hookean.files.rhino import threedm
+from hookean.values.mesh import Mesh
+from hookean_canvas.components import bundles
+from hookean_canvas.run import stand_in
 from hookean_client import canvas_engine, canvas_file, canvas_geometry
 from serving import Home
 
@@ -193,7 +194,7 @@ def test_mesh_surface(rhino: Any) -> None:
             "weights": [[1.0, 0.5, 1.0], [1.0, 1.0, 2.0]]}  # fmt: skip
     surface = canvas_file.to_surface(form)
     [mesh] = run("MeshSurface", _surface=[surface], _u_=[3])["mesh"]
-    wanted = surfaces.mesh_surface(nurbs_surface(**form), 3, 10)
+    wanted = meshing.mesh_surface(nurbs_surface(**form), 3, 10)
     found = canvas_geometry.mesh(mesh)
     assert np.allclose(found["vertices"], wanted.vertices, atol=1e-14) and found["faces"] == wanted.faces.tolist()
     assert len(run("MeshSurface", _surface=[surface] * 2, _u_=[1, 2])["mesh"]) == 2
@@ -271,7 +272,7 @@ def test_what_does_not_fit_is_one_sentence(rhino: Any, name: str, inputs: dict[s
 
 def test_a_rhino_file_gives_what_is_drawn(rhino: Any) -> None:
     """Beside the definition, by layer and name; surfaces as surfaces and as meshes."""
-    bench = Bench(str(EXAMPLES / "9.32-ribbon" / "definition.ghx"))
+    bench = Bench(str(EXAMPLES / "9.32-ribbon" / "definition.gh"))
     found = Placed("RhinoFile", bench).run(_file=["model.3dm"], _u_=[6], _v_=[4])
     drawn = threedm.read(EXAMPLES / "9.32-ribbon" / "model.3dm").foreign()
     assert found["names"] == [item.name for item in drawn] and found["unit"] == "m"
@@ -280,7 +281,7 @@ def test_a_rhino_file_gives_what_is_drawn(rhino: Any) -> None:
     for mine, item in zip(found["curves"], bent, strict=True):
         plain = canvas_geometry.curve(mine)
         assert np.array(plain["points"]).shape == (len(item.geometry.Points), 3)
-    wanted = surfaces.mesh_surface(drawn[-1].geometry, 6, 4)
+    wanted = meshing.mesh_surface(drawn[-1].geometry, 6, 4)
     [mesh] = found["meshes"]
     assert np.allclose(canvas_geometry.mesh(mesh)["vertices"], wanted.vertices, atol=1e-13)
     again = run("MeshSurface", _surface=found["surfaces"], _u_=[6], _v_=[4])["mesh"][0]

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from canvas.test_isolated import CURVE, PYTHONS, QUADS, SAMPLES, SURFACE, ask, step
-from hookean.catenary import catenary
 from hookean.discretize import divide, interpolate, mesh_surface, meshes, nurbs_curve, nurbs_surface, shatter, threads
-from hookean.files import threedm
-from hookean.mesh import Mesh
+from hookean.discretize.catenary import catenary
+from hookean.files.rhino import threedm
+from hookean.values.mesh import Mesh
 from serving import Home
 
 ROOF = Path(__file__).parents[2] / "gh_examples" / "9.24-membrane" / "model.3dm"

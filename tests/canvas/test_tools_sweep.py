@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from canvas.canvasing import Bench, let_go, line, point, sentences
 from canvas.test_tools import Placed, branches
 from hookean import Scene
-from hookean.sweep import solve
-from hookean_canvas import stand_in
+from hookean.running.sweep import solve
+from hookean_canvas.run import stand_in
 from hookean_client import canvas_link, canvas_sweep
 from server.conftest import endless
 from serving import SWING, Home, wait_for

@@ -12,13 +12,17 @@ import threading
 from pathlib import Path
 
 import pytest
+from click.testing import Result
+from typer.testing import CliRunner
 
-from hookean.example import home
-from hookean_canvas import archive, graph, trust
-from hookean_canvas.definition import Definition
+from hookean.commands.examples import home
+from hookean_canvas import archive
+from hookean_canvas.command import app
+from hookean_canvas.definitions.write import Definition
+from hookean_canvas.run import graph, trust
 from serving import HANG
 
-SHIPPED = sorted(home().glob("*/definition.ghx"))
+SHIPPED = sorted(home().glob("*/definition.gh"))
 
 
 class Person:
@@ -32,15 +36,22 @@ class Person:
 
     def definition(self, name: str = "a.ghx", more: str = "") -> Path:
         d = Definition("trace", "Trace", "Leaves a trace." + more)
-        code = f"open({str(self.trace)!r}, 'a').write('x'); a = 2 * x"
+        code = f"with open({str(self.trace)!r}, 'a') as trace:\n    trace.write('x')\na = 2 * x"
         d.numbers(code, {"x": d.slider("X", 6, 0, 10)}, {"a": "twice"})
         d.save(self.folder / name)
         return self.folder / name
 
-    def run(self, file: Path, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "hookean.cli", "canvas", "run", str(file), *words]
-        environment = {**self.environment, **variables}
-        return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=HANG, check=False)
+    def command(self, *words: str) -> subprocess.CompletedProcess[str]:
+        """`hookean canvas` with these words, in a process of its own."""
+        command = [sys.executable, "-m", "hookean.cli", "canvas", *words]
+        return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=HANG, check=False)
+
+    def run(self, file: Path, *words: str, **variables: str) -> Result:
+        """`hookean canvas run` of a file, in this process."""
+        environment = {name: self.environment.get(name) for name in ("HOME", "XDG_DATA_HOME", "HOOKEAN_TRUST")}
+        found = CliRunner().invoke(app, ["run", str(file), *words], env={**environment, **variables})
+        assert found.exception is None or isinstance(found.exception, SystemExit), found.exception
+        return found
 
     @property
     def times(self) -> int:
@@ -60,30 +71,30 @@ def test_a_file_that_was_not_run_before_is_refused(person: Person) -> None:
     """Nothing of it runs; one sentence says why and what to do; with --trust it runs, says that it does, and is
     remembered by its bytes, under every name; after a change it is asked again."""
     file = person.definition()
-    refused = person.run(file)
+    refused = person.command("run", str(file))
     assert refused.returncode == 2 and refused.stdout == "" and person.times == 0 and not person.remembered.exists()
     assert refused.stderr.count("\n") == 1
     assert "runs as you" in refused.stderr and "--trust" in refused.stderr and "show --code" in refused.stderr
-    trusted = person.run(file, "--trust")
+    trusted = person.command("run", str(file), "--trust")
     assert (trusted.returncode, trusted.stdout) == (0, "twice: 12\n") and person.times == 1
     assert "runs as you" in trusted.stderr
     again = person.run(file)
-    assert (again.returncode, again.stdout) == (0, "twice: 12\n") and "runs as you" in again.stderr
+    assert (again.exit_code, again.stdout) == (0, "twice: 12\n") and "runs as you" in again.stderr
     shutil.copy(file, person.folder / "b.ghx")
-    assert person.run(person.folder / "b.ghx").returncode == 0 and person.times == 3
+    assert person.run(person.folder / "b.ghx").exit_code == 0 and person.times == 3
     changed = person.definition(more=" Changed.")
-    assert person.run(changed).returncode == 2 and person.times == 3
+    assert person.run(changed).exit_code == 2 and person.times == 3
     assert person.remembered.stat().st_mode & 0o777 == 0o600
     assert len(person.remembered.read_text().split()) == 1
 
 
 def test_the_variable_is_for_ci(person: Person) -> None:
-    """1 trusts every file and remembers none; anything else is no trust."""
+    """1 trusts every file and remembers none; anything else trusts no file."""
     file = person.definition()
     for value in ("", "0", "yes", "11"):
-        assert person.run(file, HOOKEAN_TRUST=value).returncode == 2
-    assert person.run(file, HOOKEAN_TRUST="1").returncode == 0
-    assert person.run(file).returncode == 2 and person.times == 1
+        assert person.run(file, HOOKEAN_TRUST=value).exit_code == 2
+    assert person.run(file, HOOKEAN_TRUST="1").exit_code == 0
+    assert person.run(file).exit_code == 2 and person.times == 1
 
 
 def test_a_definition_without_scripts_needs_no_trust(person: Person) -> None:
@@ -91,7 +102,7 @@ def test_a_definition_without_scripts_needs_no_trust(person: Person) -> None:
     d.panel("length", d.native("List Length", list=d.parameter("Number", "Numbers", [1.0, 2.0])))
     d.save(person.folder / "plain.ghx")
     done = person.run(person.folder / "plain.ghx")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "length: 2\n", "")
+    assert (done.exit_code, done.stdout, done.stderr) == (0, "length: 2\n", "")
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.parent.name)
@@ -112,7 +123,7 @@ def test_what_is_shipped_is_trusted_by_its_digest(
 
 def test_what_is_judged_is_what_runs(person: Person, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file that is replaced at the moment it was judged runs as it was judged: it is read once."""
-    from hookean_canvas import checking
+    from hookean_canvas.run import checking
 
     evil, good = person.definition("evil.ghx", " Evil."), person.folder / "good.ghx"
     d = Definition("good", "Good", "Nothing evil.")
@@ -151,11 +162,11 @@ def test_a_list_that_others_could_have_written_is_not_believed(person: Person, k
     else:
         person.remembered.write_bytes(b"\xff" + digest.encode())
     done = person.run(file)
-    assert done.returncode == 2 and person.times == 0 and "Traceback" not in done.stderr
+    assert done.exit_code == 2 and person.times == 0 and "Traceback" not in done.stderr
     if kind != "rubbish":
         done = person.run(file, "--trust")
-        assert done.returncode == 0 and "Traceback" not in done.stderr
-        assert "cannot be used" in done.stderr and person.run(file).returncode == 2
+        assert done.exit_code == 0 and "Traceback" not in done.stderr
+        assert "cannot be used" in done.stderr and person.run(file).exit_code == 2
     if kind == "link":
         assert (person.folder / "other").read_text() == digest, "nothing is written through a link"
 
@@ -167,7 +178,7 @@ def test_a_list_of_another_user_is_not_believed(person: Person) -> None:
     person.remembered.parent.mkdir(parents=True)
     person.remembered.write_text(hashlib.sha256(file.read_bytes()).hexdigest())
     os.chown(person.remembered, 65534, 65534)
-    assert person.run(file).returncode == 2 and person.times == 0
+    assert person.run(file).exit_code == 2 and person.times == 0
 
 
 def test_files_that_are_trusted_at_once_are_all_remembered(person: Person, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -185,7 +196,6 @@ def test_files_that_are_trusted_at_once_are_all_remembered(person: Person, monke
 def test_commands_that_run_nothing_need_no_trust(person: Person) -> None:
     file = person.definition()
     for words in (["show", str(file)], ["check", str(file)], ["draw", str(file), "-o", str(person.folder / "x.png")]):
-        command = [sys.executable, "-m", "hookean.cli", "canvas", *words]
-        done = subprocess.run(command, env=person.environment, capture_output=True, timeout=HANG, check=False)
+        done = person.command(*words)
         assert done.returncode == 0, done
     assert person.times == 0 and archive.read(file) is not None

@@ -56,6 +56,12 @@ def started(home: Home) -> hookean_client.Client:
     return CLIENTS[-1]
 
 
+def beside(home: Home) -> hookean_client.Client:
+    """The same of a server that runs already."""
+    home.serve()
+    return started(home)
+
+
 # methods
 
 
@@ -195,7 +201,7 @@ sys.stdout.flush()
 """
 
 
-@pytest.mark.parametrize("times", [50 if SOAK else 2])
+@pytest.mark.parametrize("times", [50 if SOAK else 1])
 def test_eight_that_race_get_one_server(home: Home, times: int) -> None:
     components = str(Path(hookean_client.__file__).parents[1])
     for _ in range(times):
@@ -323,7 +329,7 @@ def test_a_stranger_is_told_nothing(home: Home) -> None:
         def log_message(self, *_: Any) -> None:
             pass
 
-    client = started(home)
+    client = beside(home)
     home.kill()
     with HTTPServer(("127.0.0.1", 0), Handler) as server:  # as if it had the port of the server that died
         threading.Thread(target=server.serve_forever, daemon=True).start()
@@ -342,7 +348,7 @@ def test_a_stranger_is_told_nothing(home: Home) -> None:
 def test_a_renewed_token_is_taken_up(home: Home) -> None:
     """`hookean token --renew` logs programs out, too; those of the same user read the file again and go on: requests
     of every kind, and frames."""
-    client = started(home)
+    client = beside(home)
     session = client.session("a")
     session.put(CABLE)
     frames = session.frames()
@@ -357,7 +363,7 @@ def test_a_renewed_token_is_taken_up(home: Home) -> None:
 
 
 def test_a_token_that_is_wrong_for_good_is_a_problem(home: Home) -> None:
-    client = started(home)
+    client = beside(home)
     file = home.folder / "server.json"
     file.write_text(json.dumps({**home.told, "token": "another-token-than-the-servers"}))
     client.token = "a-third-token"
@@ -385,9 +391,9 @@ def test_a_file_that_is_none(home: Home, text: str) -> None:
 
 
 def test_both_sides_mean_the_same_folder(monkeypatch: pytest.MonkeyPatch) -> None:
-    from hookean_server import discovery
+    from hookean_server.lifecycle import discovery
 
-    for name, value in (("XDG_STATE_HOME", "/tmp/x"), ("HOOKEAN_STATE", "/tmp/y"), ("HOOKEAN_STATE", "")):
+    for name, value in (("XDG_STATE_HOME", "/anywhere/x"), ("HOOKEAN_STATE", "/anywhere/y"), ("HOOKEAN_STATE", "")):
         monkeypatch.setenv(name, value)
         assert hookean_client.state_folder() == str(discovery.folder())
     monkeypatch.delenv("XDG_STATE_HOME")
@@ -399,7 +405,7 @@ def test_both_sides_mean_the_same_folder(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_a_server_killed_under_a_client_is_started_again(home: Home) -> None:
     """Requests start it, frames come back by themselves and say what was lost; sessions have kept every edit."""
-    client = started(home)
+    client = beside(home)
     session = client.session("a")
     session.put(SWING)
     revision = session.edit({"pin": [{"particles": [2]}]})["revision"]
@@ -422,7 +428,7 @@ def test_a_server_killed_under_a_client_is_started_again(home: Home) -> None:
 
 
 def test_frames_start_no_server(home: Home) -> None:
-    client = started(home)
+    client = beside(home)
     client.session("a").put(CABLE)
     frames = client.session("a").frames()
     assert frames.wait(timeout=HANG) is not None
@@ -434,7 +440,7 @@ def test_frames_start_no_server(home: Home) -> None:
 
 
 def test_an_edit_that_may_have_been_made_is_not_made_twice(home: Home) -> None:
-    client = started(home)
+    client = beside(home)
     session = client.session("a")
     session.put(CABLE)
     [pid] = home.serving()

@@ -171,7 +171,7 @@ def upgraded(server: Hostile, sock: socket.socket) -> None:
 def test_frames_close_while_the_server_drips(
     server: Hostile, client: Client, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whoever closes them goes on at once, also while the receiving thread is in the middle of a message: 2 s is what
+    """`close` returns at once, also while the receiving thread is in the middle of a message: 2 s is what
     the call may take, and the socket is shut with it."""
     if name == "handshake":
         server.script = drips("HTTP/1.1 101 Switching Protocols\r\nX-Slow: ", b"x")

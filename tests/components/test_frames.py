@@ -78,14 +78,14 @@ def test_a_frame_of_another_version_says_so() -> None:
 
 @given(st.lists(st.tuples(FLOATS, FLOATS, FLOATS), min_size=1))
 def test_rows_of_numbers_are_what_a_scene_reads(rows: list[tuple[float, float, float]]) -> None:
-    from hookean.columns import _decoded
+    from hookean.values.columns import _decoded
 
     assert _decoded(buffer(rows)).tolist() == [list(row) for row in rows]
     assert _decoded(buffer([row[0] for row in rows])).tolist() == [row[0] for row in rows]
 
 
 def test_whole_numbers_are_what_a_scene_reads() -> None:
-    from hookean.columns import _decoded
+    from hookean.values.columns import _decoded
 
     assert _decoded(buffer([[0, 1], [1, 2]], "q")).dtype == np.int64
     assert _decoded(buffer([])).shape == (0,)

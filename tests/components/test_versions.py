@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -24,6 +25,12 @@ def interpreters() -> list[str]:
     """The newest of each version that is found, this one among them."""
     found = [interpreter(version) for version in VERSIONS] + [shutil.which("ipy")]
     return [python for python in found if python]
+
+
+def sample() -> list[Any]:
+    """All of them; those between the oldest and the newest are left to `make soak`."""
+    found = interpreters()
+    return [*found[:1], *(pytest.param(python, marks=pytest.mark.soak) for python in found[1:-1]), *found[1:][-1:]]
 
 
 SMOKE = """
@@ -68,7 +75,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     found.end()
 
 
-@pytest.mark.parametrize("python", interpreters())
+@pytest.mark.parametrize("python", sample())
 def test_every_python_speaks_with_the_server(home: Home, python: str) -> None:
     import json
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hookean import Scene, relax
-from hookean.result import Result
+from hookean.running.result import Result
 
 Heights = Callable[[np.ndarray, np.ndarray], np.ndarray]
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from hookean import Scene
-from hookean.run import relax_state
+from hookean.running.run import relax_state
 from hookean.solvers import solver
-from hookean.system import compile
+from hookean.system.system import compile
 
 RISE, AXIAL = 0.05, 1e4
 RADIUS = (0.25 + RISE**2) / (2 * RISE)

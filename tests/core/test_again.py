@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from hookean import Scene
-from hookean.run import relax_state
+from hookean.running.run import relax_state
 from hookean.solvers import solver
-from hookean.system import compile
+from hookean.system.system import compile
 
 from ..laws.scenes import FAMILIES, random_scene
 

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from hookean import Scene, Simulation, relax
-from hookean.balance import BEYOND, NOISE, OUT, ROUNDING, Balance, balance
-from hookean.state import State
-from hookean.system import System, compile
+from hookean.system.balance import BEYOND, NOISE, OUT, ROUNDING, Balance, balance
+from hookean.system.state import State
+from hookean.system.system import System, compile
 
 
 def judged(seed: int, *, loads: bool, floor: bool) -> tuple[System, State, Balance]:

@@ -14,7 +14,7 @@ from scipy.special import ellipe, ellipk
 
 from hookean import Scene, relax
 from hookean.forces import Bend, Springs, Unary
-from hookean.system import compile
+from hookean.system.system import compile
 
 EPS = float(np.finfo(float).eps)
 EA = 1e7  # axial stiffness in units of EI / L^2: strains P / EA ~ 1e-6 or less

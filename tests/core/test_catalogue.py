@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean import catalogue
 from hookean.forces import KINDS
-from hookean.scene import Scene
+from hookean.scene import catalogue
+from hookean.scene.scene import Scene
 
 ENTRIES = {e["kind"]: e for e in catalogue.catalogue()}
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hookean.catenary import catenary, catenary_of, parameter, sag, tensions
+from hookean.discretize.catenary import catenary, catenary_of, parameter, sag, tensions
 from hookean.errors import InputError
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=200, database=None)

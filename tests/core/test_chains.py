@@ -11,11 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 from scipy.optimize import brentq, root
 
-from hookean import Result, Scene, kernels, relax
-from hookean.balance import balance
-from hookean.solvers import _complementary, _profile
-from hookean.stability import _scaled_stiffness
-from hookean.system import compile
+from hookean import Result, Scene, relax
+from hookean.compiled import dispatch
+from hookean.linear import profile_cholesky as _profile
+from hookean.solvers import _complementary
+from hookean.stability.time_steps import _scaled_stiffness
+from hookean.system.balance import balance
+from hookean.system.system import compile
 
 Spec = dict[str, Any]
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
@@ -320,7 +322,7 @@ def test_profile_factors_solve_what_dense_ones_do(seed: int, size: int, reach: i
         matrix[i, first[i] : i] = rng.normal(size=i - first[i])
     matrix += matrix.T
     lowest = np.linalg.eigvalsh(matrix)[0]
-    factor, solve = kernels.compiled(_profile.factor), kernels.compiled(_profile.solve)
+    factor, solve = dispatch.compiled(_profile.factor), dispatch.compiled(_profile.solve)
     starts = np.concatenate([[0], np.cumsum(np.arange(size) - first + 1)])
     for shift, positive in ((0.1 - lowest, True), (-0.1 - lowest, False)):
         whole = matrix + shift * np.eye(size)

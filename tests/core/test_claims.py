@@ -7,9 +7,10 @@ import math
 
 import pytest
 
-from hookean import Scene, claims, relax
-from hookean.claims import CLAIMS, Claim, document_text
-from hookean.result import Result
+from hookean import Scene, relax
+from hookean.running import claims
+from hookean.running.claims import CLAIMS, Claim, document_text
+from hookean.running.result import Result
 from serving import CABLE
 
 

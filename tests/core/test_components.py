@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
@@ -11,11 +10,12 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from hookean import Result, Scene, relax
-from hookean.components import sizes
-from hookean.system import compile
+from hookean.system.components import sizes
+from hookean.system.system import compile
+from serving import SOAK
 
 Spec = dict[str, Any]
-SEEDS = range(500 if os.environ.get("HOOKEAN_SOAK") == "1" else 120)
+SEEDS = range(500 if SOAK else 60)
 SOLVERS = ("auto", "newton", "relaxation")
 
 

@@ -11,11 +11,11 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
 
 from hookean import Result, Scene, Simulation, relax
-from hookean.balance import balance
-from hookean.equilibrium import LARGE_NET, Equilibrium, Stability, excess, leave
-from hookean.run import relax_state
+from hookean.running.run import relax_state
 from hookean.solvers import solver
-from hookean.system import compile
+from hookean.stability.equilibrium import LARGE_NET, Equilibrium, Stability, excess, leave
+from hookean.system.balance import balance
+from hookean.system.system import compile
 
 from .test_components import Springs, chain
 

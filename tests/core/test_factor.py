@@ -12,10 +12,11 @@ import scipy.sparse as sparse
 from hypothesis import given, settings
 from hypothesis import strategies as some
 
-from hookean import Scene, factor, relax
-from hookean.factor import Factors
+from hookean import Scene, relax
+from hookean.linear import sparse_factors as factor
+from hookean.linear.sparse_factors import Factors
 from hookean.solvers.newton import Pattern
-from hookean.system import compile
+from hookean.system.system import compile
 
 from ..laws.scenes import random_scene
 
@@ -131,6 +132,7 @@ def test_both_libraries_lead_newton_to_one_shape(monkeypatch: pytest.MonkeyPatch
     assert np.abs(first.particles - second.particles).max() <= 1e-8
 
 
+@pytest.mark.slow
 def test_bits_do_not_depend_on_threads() -> None:
     """Newton on a net of 1,600 particles in processes of one and of two threads: the same bytes."""
     script = (

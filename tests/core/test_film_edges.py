@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from hookean import relax
 from hookean.forces import Springs
-from hookean.result import Status
+from hookean.running.result import Status
 
 from .film_meshes import area, disc, film, inside, patch, scene, slopes, square, triangles, tube
 

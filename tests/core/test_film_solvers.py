@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean import Simulation, relax
-from hookean.balance import balance
-from hookean.equilibrium import Stability
 from hookean.errors import InputError
 from hookean.films import EDGE, SLIDING, WHOLE, WITHIN
 from hookean.solvers import solver
-from hookean.system import compile
+from hookean.stability.equilibrium import Stability
+from hookean.system.balance import balance
+from hookean.system.system import compile
 
 from .film_meshes import area, disc, film, inside, patch, scene, slopes, square, thinnest, triangles, tube
 from .test_soapfilm import off_scherk, scherk

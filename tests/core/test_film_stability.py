@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hookean import relax
-from hookean.equilibrium import Stability
-from hookean.result import Status
+from hookean.running.result import Status
+from hookean.stability.equilibrium import Stability
 
 from .film_meshes import area, inside, scene, square, tube
 

@@ -15,9 +15,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from hookean import Scene, relax
-from hookean.solvers import _aggregates, _gradients, force_density, solver
-from hookean.solvers._laplacian import Laplacian, laplacian
-from hookean.system import System, compile
+from hookean.linear import scalar_aggregation as _aggregates
+from hookean.linear import scalar_cg as _gradients
+from hookean.linear.laplacian import Laplacian, laplacian
+from hookean.solvers import force_density, solver
+from hookean.system.system import System, compile
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 SEEDED = settings(max_examples=300 if SOAK else 30, derandomize=True, deadline=None)
@@ -226,6 +228,7 @@ def test_hubs_do_not_cost_their_square() -> None:
     assert result.converged and result.iterations == 1
 
 
+@pytest.mark.slow
 def test_bits_do_not_depend_on_threads() -> None:
     """A net too wide for a front, in processes of one and of two threads: the same bytes."""
     script = (

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hookean import Scene, relax
 from hookean.forces import Hinge, Springs, Unary
 from hookean.forces.dihedral import fold_angles
-from hookean.system import compile
+from hookean.system.system import compile
 
 EPS = float(np.finfo(float).eps)
 FLAT = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.7, 1.5, 0.0], [1.2, -0.6, 0.0]])

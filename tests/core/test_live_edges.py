@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from hookean import InputError, Scene, Simulation, relax
-from hookean.result import Status
-from hookean.stability import critical_time_step, stable_time_step
-from hookean.system import compile
-from hookean.weld import weld
+from hookean.running.result import Status
+from hookean.stability.time_steps import critical_time_step, stable_time_step
+from hookean.system.system import compile
+from hookean.system.weld import weld
 from samples import cable
 
 

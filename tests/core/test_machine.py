@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import subprocess
 import sys
 import weakref
@@ -12,9 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hookean import kernels, machine
+from hookean.compiled import dispatch
+from hookean.compiled import object_cache as machine
+from hookean.compiled.object_cache import Compiled, readable
 from hookean.forces.springs import Springs, springs_kernel
-from hookean.machine import Compiled, readable
+from serving import HANG
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32" or not readable(), reason="numba compiles here")
 
@@ -30,7 +33,21 @@ def scaled(x, factor, count, twice):  # type: ignore[no-untyped-def]
 
 def code(folder: Path) -> Compiled:
     """`scaled` from an empty folder, as a new process sees it."""
-    return Compiled("scaled", folder, lambda: kernels.dispatcher(scaled), None)
+    return Compiled("scaled", folder, lambda: dispatch.dispatcher(scaled), None)
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the code of `scaled` for numbers in double precision."""
+    folder = tmp_path_factory.mktemp("code")
+    code(folder)(np.ones((2, 2)), 1.0, 2, False)
+    return folder
+
+
+@pytest.fixture
+def folder(stored: Path, tmp_path: Path) -> Path:
+    """A copy of it."""
+    return Path(shutil.copytree(stored, tmp_path / "code"))
 
 
 def test_code_from_the_disk_gives_the_same_bits_as_numba() -> None:
@@ -38,7 +55,7 @@ def test_code_from_the_disk_gives_the_same_bits_as_numba() -> None:
     springs, x = Springs.example()
     block, memory = springs.compile(_Places(x)), np.zeros((4, 1))
     answers = []
-    for run in (kernels.dispatcher(springs_kernel, "force"), kernels.compiled(springs_kernel, "force")):
+    for run in (dispatch.dispatcher(springs_kernel, "force"), dispatch.compiled(springs_kernel, "force")):
         f, w = np.zeros_like(x), np.zeros(len(x))
         energy = run(x, 0.1 * x, block.indices, block.parameters, memory, f, w)
         answers.append((energy, f.tobytes(), w.tobytes()))
@@ -64,20 +81,20 @@ def test_values_go_in_and_out_as_they_do_with_numba(tmp_path: Path) -> None:
         assert (run.made, run.loaded) == (made, loaded)
 
 
-def test_values_of_two_kinds_in_turn_go_to_the_code_of_each(tmp_path: Path) -> None:
-    """Numbers in single and in double precision: each keeps its own, and its code is made once."""
-    run = code(tmp_path)
+def test_values_of_two_kinds_in_turn_go_to_the_code_of_each(folder: Path) -> None:
+    """Numbers in single and in double precision: each keeps its own, and its code is made or found once."""
+    run = code(folder)
     for _ in range(3):
         for letter in "fd":
             x = np.full((1, 2), 0.1, letter)
             assert run(x, 1.0, 1, False) == (float(x.astype("d").sum()), 3, True)
             assert x.dtype.char == letter and (x == np.full((1, 2), 0.1, letter)).all()
-    assert (run.made, run.loaded) == (2, 0)
+    assert (run.made, run.loaded) == (1, 1)
 
 
-def test_a_thread_that_finds_the_code_just_loaded_calls_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_thread_that_finds_the_code_just_loaded_calls_it(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While it looked what its values are another thread has called the same code: numba is not asked."""
-    run, look = code(tmp_path), machine.kind_of
+    run, look = code(folder), machine.kind_of
 
     def late(values: tuple[object, ...]) -> machine.Kind | None:
         kind = look(values)
@@ -91,9 +108,9 @@ def test_a_thread_that_finds_the_code_just_loaded_calls_it(tmp_path: Path, monke
     assert run(np.ones((1, 2)), 1.0, 1, False) == (2.0, 3, True)
 
 
-def test_code_stays_where_it_is_when_who_loaded_it_is_gone(tmp_path: Path) -> None:
+def test_code_stays_where_it_is_when_who_loaded_it_is_gone(folder: Path) -> None:
     """Tables keep addresses of it."""
-    run = code(tmp_path)
+    run = code(folder)
     run(np.ones((1, 2)), 1.0, 1, False)
     (entry,) = run._entries.values()
     assert entry is not None
@@ -110,21 +127,32 @@ def test_what_the_disk_has_no_code_for_is_left_to_numba(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_a_damaged_file_is_made_anew(tmp_path: Path) -> None:
-    """One byte changed, a file cut off, another entirely: compiled again, and put right."""
+DAMAGES = {
+    "one byte changed": lambda whole: whole[:-1] + bytes([whole[-1] ^ 1]),
+    "cut off": lambda whole: whole[: len(whole) // 2],
+    "empty": lambda whole: b"",
+    "another": lambda whole: b"nothing",
+}
+
+
+@pytest.mark.parametrize(
+    "damage", [name if name == "one byte changed" else pytest.param(name, marks=pytest.mark.soak) for name in DAMAGES]
+)
+def test_a_damaged_file_is_made_anew(damage: str, folder: Path) -> None:
+    """Compiled again, and put right; each finds its bytes wrong before it looks at what they are."""
     x = np.ones((2, 2))
-    code(tmp_path)(x, 1.0, 2, False)
-    (file,) = tmp_path.iterdir()
+    (file,) = folder.iterdir()
     whole = file.read_bytes()
-    for damaged in (whole[:-1] + bytes([whole[-1] ^ 1]), whole[: len(whole) // 2], b"", b"nothing"):
-        file.write_bytes(damaged)
-        run = code(tmp_path)
-        assert run(x, 1.0, 2, False) == (4.0, 4, True)
-        assert (run.made, run.loaded) == (1, 0) and file.read_bytes() == whole
+    file.write_bytes(DAMAGES[damage](whole))
+    run = code(folder)
+    assert run(x, 1.0, 2, False) == (4.0, 4, True)
+    assert (run.made, run.loaded) == (1, 0) and file.read_bytes() == whole
 
 
-def test_a_small_cable_relaxes_without_numba_in_the_second_process(tmp_path: Path) -> None:
-    """All of it: reading, compiling, solving and judging a cable imports neither numba nor scipy."""
+@pytest.mark.parametrize("empty", [False, pytest.param(True, marks=pytest.mark.soak)])
+def test_a_small_cable_relaxes_without_numba_in_the_second_process(empty: bool, tmp_path: Path) -> None:
+    """All of it: reading, compiling, solving and judging a cable imports neither numba nor scipy. From the cache of
+    all tests, which the first fills where it has to, and from an empty one."""
     told = (
         "import sys, hookean\n"
         "lines = [[[i, 0, 0], [i + 1, 0, 0]] for i in range(10)]\n"
@@ -134,10 +162,10 @@ def test_a_small_cable_relaxes_without_numba_in_the_second_process(tmp_path: Pat
         "assert result.converged, result.message\n"
         "print(result.particles.tobytes().hex(), [m for m in ('numba', 'scipy') if m in sys.modules])"
     )
-    environment = {**os.environ, "HOOKEAN_CACHE": str(tmp_path)}
+    environment = {**os.environ, "HOOKEAN_CACHE": str(tmp_path)} if empty else None
     first, second = (
         subprocess.run(
-            [sys.executable, "-c", told], env=environment, check=True, capture_output=True, text=True, timeout=120
+            [sys.executable, "-c", told], env=environment, check=True, capture_output=True, text=True, timeout=HANG
         ).stdout.split(" ", 1)
         for _ in range(2)
     )

@@ -8,14 +8,15 @@ import scipy.sparse as sparse
 from scipy.sparse.linalg import spsolve
 
 from hookean import Scene, relax
-from hookean.multigrid.blocks import Blocks
-from hookean.multigrid.gradients import solve
-from hookean.multigrid.hierarchy import Hierarchy
-from hookean.multigrid.tangent import Tangent
+from hookean.linear.block_cg import solve
+from hookean.linear.block_hierarchy import Hierarchy
+from hookean.linear.tangent import Tangent
+from hookean.linear.tangent_blocks import Blocks
+from hookean.running.watch import PATIENCE, Watch
 from hookean.solvers import auto, multilevel, solver
-from hookean.state import State
-from hookean.system import compile
-from hookean.watch import PATIENCE, Watch
+from hookean.stability import nets
+from hookean.system.state import State
+from hookean.system.system import compile
 
 
 def net(side, *, axes="xyz", load=-20.0, factor=0.5, ramp=0.0, extra=()):
@@ -244,6 +245,7 @@ def crossed(side, *, factor=0.9, load=-500.0):
     return spec
 
 
+@pytest.mark.slow
 def test_auto_takes_it_for_a_large_net_and_relaxation_where_another_shape_may_be_lower(monkeypatch):
     """4,096 particles that pull; the same pressed together, which may be at rest in many shapes; and again where
     relaxation would take too long: told so."""
@@ -335,7 +337,7 @@ def test_pulled_springs_have_the_least_energy_and_pressed_ones_perhaps_not():
         springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(4)], "rest_length": length}
         spec = {"particles": [[i, 0, 0] for i in range(5)], "forces": [springs], "anchors": [{"particles": [0, 4]}]}
         system = compile(Scene.read(spec))
-        assert multilevel.pulled(system, system.start()) is multilevel.super_stable(system, system.start()) is known
+        assert nets.pulled(system, system.start()) is nets.super_stable(system, system.start()) is known
 
 
 def test_bodies_that_hang_on_nothing_are_no_trouble():

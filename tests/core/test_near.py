@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from hookean.near import FEW, Few, tree
+from hookean.values.near import FEW, Few, tree
 
 # whole coordinates: distances are roots of whole numbers, which both sides round the same way
 spots = st.lists(st.tuples(*[st.integers(-3, 3)] * 3), min_size=1, max_size=30)
@@ -38,7 +38,7 @@ def test_many_points_are_left_to_scipy():
 
 def test_a_small_scene_of_lines_compiles_without_scipy():
     code = (
-        "import sys; from hookean import Scene; from hookean.system import compile\n"
+        "import sys; from hookean import Scene; from hookean.system.system import compile\n"
         "lines = [[[i, 0, 0], [i + 1, 0, 0]] for i in range(50)]\n"
         "system = compile(Scene(forces=[{'kind': 'springs', 'lines': lines}], anchors=[{'points': [[0, 0, 0]]}]))\n"
         "assert len(system.x) == 51 and list(system.held[0].particles) == [0]\n"

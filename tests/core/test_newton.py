@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from hookean import Result, Scene, relax
-from hookean.stability import _scaled_stiffness
-from hookean.system import compile
+from hookean.stability.time_steps import _scaled_stiffness
+from hookean.system.system import compile
 
 Spec = dict[str, Any]
 SEEDS = range(20 if os.environ.get("HOOKEAN_SOAK") == "1" else 2)

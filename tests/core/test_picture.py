@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from hookean import colours, furniture
 from hookean.errors import InputError
-from hookean.picture import legend, render
-from hookean.result import Result
-from hookean.run import relax
-from hookean.scene import Scene
-from hookean.view import VIEWS, collect, eye_of
+from hookean.pictures import legends
+from hookean.pictures.picture import legend, render
+from hookean.pictures.visible import VIEWS, collect, eye_of
+from hookean.running.result import Result
+from hookean.running.run import relax
+from hookean.scene.scene import Scene
+from hookean.values import colours
 
 SMALL = (480, 360)
 
@@ -101,7 +102,7 @@ def test_legend_ends_are_the_extreme_forces(scene: Scene) -> None:
 def test_the_drawn_bar_ends_where_the_legend_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     seen = []
     ticks = colours.ticks
-    monkeypatch.setattr(furniture, "ticks", lambda *given: seen.append(ticks(*given)) or seen[-1])
+    monkeypatch.setattr(legends, "ticks", lambda *given: seen.append(ticks(*given)) or seen[-1])
     result = relax(cable())
     drawn(result, tmp_path)
     assert (seen[0][0], seen[0][-1]) == legend(result)[:2]
@@ -134,6 +135,7 @@ def test_pull_is_warm_and_push_is_cold(tmp_path: Path) -> None:
     assert pull[0] > pull[2] and push[2] > push[0]
 
 
+@pytest.mark.slow
 def test_bytes_are_the_same_every_time(tmp_path: Path) -> None:
     scene = net(4, mesh=True)
     result = relax(scene)
@@ -167,7 +169,7 @@ def test_slack_springs_are_grey(tmp_path: Path) -> None:
 
 def test_without_any_force_there_is_no_colour_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = {"forces": [{"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]]], "rest_factor": 1.0}]}
-    monkeypatch.setattr(furniture, "ticks", lambda *given: pytest.fail("a bar of no forces"))
+    monkeypatch.setattr(legends, "ticks", lambda *given: pytest.fail("a bar of no forces"))
     result = relax(Scene.read(scene))
     assert legend(result) == (0.0, 0.0, "N")
     assert ink(drawn(result, tmp_path, size=(1600, 1200)), colours.SLACK, near=0.04) > 500

@@ -12,8 +12,8 @@ from scipy.spatial import ConvexHull
 
 from hookean import Scene, relax
 from hookean.forces import Pressure, SoapFilm, Springs
-from hookean.result import Result
-from hookean.system import compile
+from hookean.running.result import Result
+from hookean.system.system import compile
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)
 seeds = st.integers(0, 2**32 - 1)
@@ -182,7 +182,7 @@ def test_a_net_of_uniform_tension_under_small_pressure(n: int, c: float) -> None
 
 def test_pressure_makes_no_particles_and_is_patched() -> None:
     """Vertices that meet no particle are reported, their faces left out; the pressure changes while it runs."""
-    from hookean.simulation import Simulation
+    from hookean.running.simulation import Simulation
 
     x = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]])
     meshes = {"m": {"vertices": [*x, [5, 5, 5]], "faces": [[0, 1, 2], [1, 3, 2]]}}

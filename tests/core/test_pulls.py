@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from hookean import Scene, relax
+from hookean.compiled.dispatch import keep, rows
 from hookean.errors import InputError
 from hookean.forces import PullToCurve, PullToMesh, Unary
-from hookean.kernels import keep, rows
-from hookean.simulation import Simulation
-from hookean.system import compile
+from hookean.running.simulation import Simulation
+from hookean.system.system import compile
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=60, database=None)
 seeds = st.integers(0, 2**32 - 1)

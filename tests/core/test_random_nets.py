@@ -8,7 +8,6 @@ some push, as in slack nets, there are many shapes at rest, and `auto` must not 
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from dataclasses import dataclass
 from functools import cache
@@ -18,16 +17,17 @@ import numpy as np
 import pytest
 
 from hookean import Result, Scene, relax
-from hookean.balance import balance
 from hookean.solvers import solver
-from hookean.stability import _scaled_stiffness
-from hookean.state import State
-from hookean.system import System, compile
+from hookean.stability.time_steps import _scaled_stiffness
+from hookean.system.balance import balance
+from hookean.system.state import State
+from hookean.system.system import System, compile
+from serving import SOAK
 
 from ..laws.evaluator import carried, evaluate
 from .random_nets import FAMILIES, family, random_net
 
-SEEDS = range(200) if os.environ.get("HOOKEAN_SOAK") == "1" else [*range(20), 191]
+SEEDS = range(200) if SOAK else [*range(20), 191]
 METHODS = ["auto", "multilevel"]
 NEGLIGIBLE = 1e-9
 """Part of the largest stiffness that a negative one may have for rounding."""

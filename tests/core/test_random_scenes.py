@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from dataclasses import dataclass
 from typing import Any
@@ -14,11 +13,12 @@ import numpy as np
 import pytest
 
 from hookean import Result, Scene, Status, relax
+from serving import SOAK
 
 from ..laws.evaluator import Evaluated, carried, evaluate
 from ..laws.scenes import FAMILIES, random_scene
 
-COUNT = 500 if os.environ.get("HOOKEAN_SOAK") == "1" else 50
+COUNT = 500 if SOAK else 50
 
 
 @dataclass

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hookean import Scene, Simulation, relax
-from hookean.report import Report, Unmatched
+from hookean.scene.report import Report, Unmatched
 
 ROPE: dict[str, Any] = {
     # particle 0 hangs at particle 1: 10 N / 100 N/m = 0.1 m below where the rope of 1 m has no force

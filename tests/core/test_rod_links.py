@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from hookean import Scene, relax
-from hookean.multigrid.part import cut
-from hookean.simulation import Simulation
-from hookean.system import compile
+from hookean.linear.subsystem import cut
+from hookean.running.simulation import Simulation
+from hookean.system.system import compile
 
 from .rods import RISE, apart, arch, bending, coil, corners_of, rod, several, shaken
 
@@ -46,7 +46,7 @@ def test_corners_are_given_in_any_order_and_direction(closed: bool) -> None:
 @pytest.mark.parametrize("origin", [0.0, -7.0, 1e3])
 def test_what_makes_a_rod_does_not_depend_on_where_it_is_drawn(origin: float) -> None:
     """Corners of segments with lengths that do not fold back make one rod, two links of three corners; beside one that
-    folds back, or that has a segment without length, there are none."""
+    folds back, or that has a segment of zero length, there are no links."""
     straight = np.array([[0, 0, 0], [1, 0, 0], [2, 0.3, 0], [3, 0.1, 0.2], [4, 0, 0]], float)
     folded = straight.copy()
     folded[3] = straight[2] + 0.7 * (straight[1] - straight[2])

@@ -12,7 +12,7 @@ from scipy.optimize import root
 
 from hookean import Scene, relax
 from hookean.solvers import solver
-from hookean.system import System, compile
+from hookean.system.system import System, compile
 
 from .rods import AXIAL, RADIUS, RISE, SLOPE, apart, arch, bending, coil, rod, several, shaken
 
@@ -200,6 +200,7 @@ def kirchhoff_tip(force: np.ndarray) -> np.ndarray:
     return shot(moment, force)[:3] - [1.0, 1.0, 0.0]
 
 
+@pytest.mark.slow
 def test_a_bow_in_large_deflection_is_kirchhoffs_rod_without_twist() -> None:
     """A force of 1.5 EI / R^2 askew at the tip, which moves by 0.8 R: order 2, and 1e-3 R at 40 bars."""
     force = np.array([0.4, -0.5, 1.35])

@@ -27,10 +27,10 @@ from hookean import (
     Units,
     relax,
 )
-from hookean.columns import Model
-from hookean.scene import faults
-from hookean.sweep import Sweep
-from hookean.units import METRES, NEWTONS, SECONDS
+from hookean.running.sweep import Sweep
+from hookean.scene.scene import faults
+from hookean.values.columns import Model
+from hookean.values.units import METRES, NEWTONS, SECONDS
 
 EXAMPLE = {
     "units": {"length": "m", "force": "N", "time": "s"},
@@ -243,9 +243,9 @@ def test_a_unit_is_named_by_what_it_is_made_of():
 
 def test_one_vector_is_one_value_whatever_its_name():
     """A new force's own columns of type Vector or Vectors: three numbers fit any count of elements."""
-    from hookean.columns import Reals, Vector, Vectors
     from hookean.forces.unary import Unary
-    from hookean.weld import Welded, fits
+    from hookean.system.weld import Welded, fits
+    from hookean.values.columns import Reals, Vector, Vectors
 
     class Wind(Unary):
         blow: Vectors | None = None

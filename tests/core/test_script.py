@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hookean import InputError, Scene, Script, Simulation, Status, relax, simulate
-from hookean.scene import Settings
-from hookean.script import between
+from hookean.running.script import between
+from hookean.scene.scene import Settings
 from hookean.solvers import verlet
 from samples import cable
 
@@ -269,7 +269,7 @@ def test_the_docs_name_every_field_of_a_script():
     """docs/scene.md tells of paths, values and drives."""
     from pathlib import Path
 
-    from hookean.script import AnchorPath, Drive, ForcePath
+    from hookean.running.script import AnchorPath, Drive, ForcePath
 
     page = (Path(__file__).parents[2] / "docs" / "scene.md").read_text(encoding="utf-8")
     fields = {name for model in (Script, AnchorPath, ForcePath, Drive) for name in model.model_fields}

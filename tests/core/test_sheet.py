@@ -15,14 +15,14 @@ from hypothesis import strategies as st
 from matplotlib.image import imread
 
 from hookean import Scene, relax
-from hookean.colours import LINES
-from hookean.drawing import Drawing
 from hookean.errors import InputError
-from hookean.layout import furniture
-from hookean.page import Page, _few
-from hookean.picture import legend
-from hookean.sheet import Graph, Panel, sheet
-from hookean.view import collect, eye_of, smooth
+from hookean.pictures import legends
+from hookean.pictures.page import Page, _few
+from hookean.pictures.painter import Drawing
+from hookean.pictures.picture import legend
+from hookean.pictures.sheet import Graph, Panel, sheet
+from hookean.pictures.visible import collect, eye_of, smooth
+from hookean.values.colours import LINES
 
 
 def cable(stiffness: float = 1000.0, **more: Any) -> Scene:
@@ -79,15 +79,15 @@ def near(pixels: np.ndarray, colour: str | tuple[float, ...], within: float = 0.
 def bars(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, float, str, list[float]]]:
     """The legends of forces as they were drawn: their ends, what they stand for, their ticks."""
     found: list[Any] = []
-    bar, ticks = furniture.colour_bar, furniture.ticks
+    bar, ticks = legends.colour_bar, legends.ticks
 
     def record(page: Page, box: Any, scale: Any, words: str = "") -> None:
         marks: list[float] = []
-        monkeypatch.setattr(furniture, "ticks", lambda *given: marks.extend(ticks(*given)) or marks)
+        monkeypatch.setattr(legends, "ticks", lambda *given: marks.extend(ticks(*given)) or marks)
         bar(page, box, scale, words)
         found.append((scale.low, scale.high, words, marks))
 
-    monkeypatch.setattr(furniture, "colour_bar", record)
+    monkeypatch.setattr(legends, "colour_bar", record)
     return found
 
 
@@ -230,6 +230,7 @@ def test_a_panels_length_in_pixels_is_the_same_in_all(tmp_path: Path) -> None:
     assert abs(widths[False][0] - widths[False][1]) <= 10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
 def test_no_panel_is_blank_and_nothing_runs_off_the_edge(count: int, tmp_path: Path) -> None:
     scene, mesh = cable(), film(4)
@@ -269,6 +270,7 @@ def test_equal_input_gives_equal_bytes_and_small_files(tmp_path: Path) -> None:
     assert b"tEXt" not in made[0]
 
 
+@pytest.mark.slow
 @settings(derandomize=True, deadline=None, max_examples=50, database=None)
 @given(st.integers(0, 2**32 - 1))
 def test_a_palette_keeps_white_what_is_kept_and_areas(seed: int) -> None:

@@ -14,7 +14,7 @@ from hookean import Scene, relax
 from hookean.errors import InputError
 from hookean.forces import Block, Shell, Springs, Unary
 from hookean.forces.shell import triangles
-from hookean.system import System, compile
+from hookean.system.system import System, compile
 
 EPS = float(np.finfo(float).eps)
 seeded = settings(derandomize=True, deadline=None, max_examples=25, database=None)

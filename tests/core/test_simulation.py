@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hookean import InputError, Scene, Simulation, relax, simulate
-from hookean.result import Status
+from hookean.running.result import Status
 from samples import cable
 
 

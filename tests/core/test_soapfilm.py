@@ -14,8 +14,8 @@ from scipy.optimize import brentq, fsolve
 from hookean import Scene, relax
 from hookean.forces import SoapFilm
 from hookean.forces.soapfilm import shapes
-from hookean.result import Result, Status
-from hookean.system import compile
+from hookean.running.result import Result, Status
+from hookean.system.system import compile
 
 from .film_meshes import Heights, area, disc, film, inside, patch, scene, slopes, square, thinnest, tube
 
@@ -63,6 +63,7 @@ def neck(half: float) -> float:
     return float(half / brentq(lambda u: np.cosh(u) / u - 1.0 / half, 1e-3, 1.19967864))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["quads", "triangles"])
 def test_scherks_surface_from_a_flat_start(kind: str) -> None:
     """The rim is drawn, all else flat below it: errors of all vertices fall with order 2 (+- 0.15 from n = 20 on).
@@ -184,6 +185,7 @@ def ring_radius(n: int, half: float, start: str) -> float:
     return float(np.linalg.norm(result.particles[number[m // 2], :2], axis=1).mean())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("half", "start"), [(0.60, "cylinder"), (0.65, "cylinder"), (0.66, "cylinder"), (0.6625, "catenoid")]
 )

@@ -10,9 +10,10 @@ import pytest
 
 from hookean import Result, Scene, relax
 from hookean.errors import InputError
-from hookean.solvers import NAMES, solver
-from hookean.stability import stable_time_step
-from hookean.system import System, compile
+from hookean.scene.solver_names import SOLVERS
+from hookean.solvers import solver
+from hookean.stability.time_steps import stable_time_step
+from hookean.system.system import System, compile
 
 Spec = dict[str, Any]
 
@@ -224,7 +225,7 @@ def solved(name: str, method: str) -> Result | None:
 
 def tangent_at(system: System, x: np.ndarray) -> float:
     """Smallest eigenvalue of the tangent on free axes, over its largest."""
-    from hookean.stability import _scaled_stiffness
+    from hookean.stability.time_steps import _scaled_stiffness
 
     state = system.start()
     state.x = x.copy()
@@ -236,13 +237,13 @@ def tangent_at(system: System, x: np.ndarray) -> float:
 def test_there_are_twelve_scenes_and_every_solver_takes_part() -> None:
     """Each solver takes at least two of the scenes; all but force_density (linear) and yoshida (no floor) take all."""
     systems = [compile(Scene.read(f())) for f in SCENES.values()]
-    takes = {method: sum(not solver(method).refuse(system) for system in systems) for method in NAMES}
+    takes = {method: sum(not solver(method).refuse(system) for system in systems) for method in SOLVERS}
     print(takes)
     assert len(SCENES) == 12 and min(takes.values()) >= 2
     assert all(takes[m] == 12 for m in ("auto", "relaxation", "momentum", "verlet", "newton"))
 
 
-@pytest.mark.parametrize("method", [m for m in NAMES if m != "relaxation"])
+@pytest.mark.parametrize("method", [m for m in SOLVERS if m != "relaxation"])
 @pytest.mark.parametrize("name", SCENES)
 def test_two_solvers_find_the_same_energy_and_shape(name: str, method: str) -> None:
     """Energy to 1e-8 of its size; where the tangent is positive definite the shape to 1e-5 of the model's size.

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from hookean import Scene, Simulation, simulate
-from hookean.result import Status
-from hookean.stability import MOST_STEPS, critical_time_step, highest_mode, in_motion, stable_time_step
-from hookean.system import compile
+from hookean.running.in_motion import MOST_STEPS, in_motion
+from hookean.running.result import Status
+from hookean.stability.time_steps import critical_time_step, highest_mode, stable_time_step
+from hookean.system.system import compile
 
 
 def sheet(stiffness: float, diagonals: bool, damping: float, drag: float, **settings: object) -> Scene:

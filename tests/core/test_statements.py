@@ -13,8 +13,8 @@ from scipy.linalg import expm
 
 from chapter_scenes import arc, ball, grid, hooke, hung
 from hookean import Scene, Simulation, relax
-from hookean.catenary import catenary, catenary_of, parameter
-from hookean.system import compile
+from hookean.discretize.catenary import catenary, catenary_of, parameter
+from hookean.system.system import compile
 from samples import cable
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)

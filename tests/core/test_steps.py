@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from io import BytesIO
 from typing import Any
@@ -13,13 +12,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hookean import Scene, Simulation, Status, relax
+from hookean.running.in_motion import in_motion
 from hookean.solvers import solver
-from hookean.stability import in_motion, stable_time_step, time_step_of_all_shapes
-from hookean.system import compile
+from hookean.stability.time_steps import stable_time_step, time_step_of_all_shapes
+from hookean.system.system import compile
+from serving import SOAK
 
 from ..laws.scenes import random_scene
 
-COUNT = 500 if os.environ.get("HOOKEAN_SOAK") == "1" else 60
+COUNT = 500 if SOAK else 30
 CUBE = 2.0 ** (1.0 / 3.0)
 PARTS = {"verlet": (1.0,), "yoshida": (1.0 / (2.0 - CUBE), -CUBE / (2.0 - CUBE), 1.0 / (2.0 - CUBE))}
 
@@ -311,6 +312,7 @@ def in_its_own_steps(seed: int) -> dict[str, Any]:
     return {**spec, "settings": {"floor": floor, "solver": scheme, "drag": float(rng.choice([0.0, 0.1, 1.0]))}}
 
 
+@pytest.mark.slow
 def test_steps_that_are_chosen_never_diverge():
     """Forty frames of each random scene, as it is and made fit to move: none diverges, and none is warned of."""
     for seed in range(COUNT):

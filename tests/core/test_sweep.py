@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean import InputError, Scene, relax
-from hookean.sweep import MOST, Sweep, Table, columns, parameters, solve
+from hookean.running.sweep import MOST, Sweep, Table, columns, parameters, solve
 
 NET: dict[str, Any] = {
     "particles": [[float(i), 0.0, 0.1 * (i % 2)] for i in range(6)],
@@ -104,6 +104,7 @@ def test_counting_a_huge_sweep_costs_nothing() -> None:
         Sweep.read({"settings": dict.fromkeys("abcde", long)})
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(st.lists(patches, min_size=1, max_size=4), st.data())
 def test_a_row_is_the_same_whatever_was_solved_before(several: list[dict[str, Any]], data: st.DataObject) -> None:

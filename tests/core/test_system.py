@@ -7,7 +7,7 @@ import pytest
 
 from hookean import Scene
 from hookean.forces.springs import Springs
-from hookean.system import compile
+from hookean.system.system import compile
 
 
 @pytest.mark.parametrize("exact", [True, False])

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from hookean import Scene, Simulation
-from hookean.result import Status
+from hookean.running.result import Status
 from hookean.solvers import solver
-from hookean.stability import highest_mode, stable_time_step
-from hookean.system import System, compile
+from hookean.stability.time_steps import highest_mode, stable_time_step
+from hookean.system.system import System, compile
 
 LONG = os.environ.get("HOOKEAN_SOAK") == "1"
 

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean import InputError, Scene, relax
-from hookean.system import compile
-from hookean.weld import weld
+from hookean.system.system import compile
+from hookean.system.weld import weld
 
 
 def lines(*ends: tuple[float, float]) -> list[list[list[float]]]:
@@ -321,6 +321,7 @@ def test_a_crowd_of_given_particles_is_welded_to_in_a_moment() -> None:
     assert (compile(Scene(**scene)).groups[0].block.indices == 0).all()
 
 
+@pytest.mark.slow
 def test_many_forces_that_lie_on_each_other_are_reported_with_their_first_pairs() -> None:
     """400 lines 1e-5 apart, 79,800 pairs of forces: ten sentences, and how many more."""
     at = np.linspace(0.0, 1.0, 10)
@@ -335,7 +336,7 @@ def test_the_time_limit_counts_welding(monkeypatch: pytest.MonkeyPatch) -> None:
     """A clock on which welding takes a minute: nothing is left of a limit of 30 s, and enough of one of a day."""
     import time
 
-    from hookean.weld import Welded
+    from hookean.system.weld import Welded
 
     passed, clock, welding = 0.0, time.monotonic, Welded._weld
 

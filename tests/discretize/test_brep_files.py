@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from hookean.discretize import as_mesh, edges, is_trimmed, mesh_faces, mesh_surface, naked_edges, triangles
 from hookean.errors import InputError
-from hookean.mesh import Mesh
+from hookean.values.mesh import Mesh
 
 FILES = [
     "v3_Terrain.3dm",
@@ -69,6 +69,7 @@ def on_faces(mesh_points: np.ndarray, faces: list[Any], u: int, v: int) -> None:
     assert cKDTree(marks).query(mesh_points)[0].max() <= 1e-12 * np.abs(marks).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("u", "v"), [(4, 4), (5, 3)])
 def test_all_133_untrimmed_faces(u: int, v: int, rhino_objects: Any) -> None:
     faces_seen = 0
@@ -172,6 +173,7 @@ def _prism(mesh: Mesh, extrusion: Any) -> float:
     return float(abs(area) * (centre @ plane[:2] + plane[2] - p[:, 2].min()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file", FILES)
 def test_exactly_the_trimmed_faces_without_a_mesh_are_refused(file: str, rhino_objects: Any) -> None:
     refused = {}
@@ -185,6 +187,7 @@ def test_exactly_the_trimmed_faces_without_a_mesh_are_refused(file: str, rhino_o
     assert refused == REFUSED.get(file, {})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file", FILES)
 def test_trimmed_as_the_edges_say(file: str, rhino_objects: Any) -> None:
     """Another way to tell: one loop, its edges on the sides of the domain and as long as those."""

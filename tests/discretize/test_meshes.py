@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import hookean.discretize as hd
 from hookean.errors import InputError
-from hookean.mesh import Mesh
+from hookean.values.mesh import Mesh
 
 few = settings(derandomize=True, deadline=None, max_examples=40)
 size = st.integers(1, 8)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from hookean.discretize import edges, mesh_faces, mesh_surface, naked_edges, triangles
 from hookean.errors import InputError
-from hookean.mesh import Mesh
+from hookean.values.mesh import Mesh
 
 few = settings(derandomize=True, deadline=None, max_examples=25)
 counts = st.integers(3, 12)

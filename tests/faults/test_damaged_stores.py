@@ -1,6 +1,6 @@
 """Damaged stores: what was acknowledged is there, or is named as lost; nothing is lost without a word.
 
-Every claim is checked against a ledger that the test keeps itself. HOOKEAN_SOAK=1 tries a thousand stores.
+Every claim is checked against a ledger that the test keeps itself. `make soak` tries a thousand stores.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from serving import SOAK
 
 from .stores import FILES, HARMS, Ledger, copied, lived
 
-STORES = 1000 if SOAK else 60
+STORES = 1000 if SOAK else 40
 LIVES = 8
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import socket
 import struct
 from collections.abc import Iterator
@@ -18,22 +17,21 @@ import websockets
 
 from hookean_server.sessions.wire import decode
 from server.conftest import Served
-from serving import CABLE, HANG, wait_for
+from serving import CABLE, HANG, SOAK, wait_for
 
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
-CYCLES, WARM = 50 if SOAK else 10, 10
+CYCLES, WARM = 50 if SOAK else 6, 10
 VANISHING = 500 if SOAK else 50
-SLOW = 200 if SOAK else 40
+SLOW = 200 if SOAK else 20
 MIB = 2**20
 
 
 @pytest.fixture(scope="module")
 def running() -> Iterator[Served]:
-    found = Served(workers=1, header_seconds=3.0, body_seconds=3.0)
+    found = Served(workers=1, header_seconds=2.0, body_seconds=2.0)
     found.ready()
     # at once, so that the server's pool of threads, which is bounded and never shrinks, has all it will have
     with ThreadPoolExecutor(WARM) as together:
-        for done in [together.submit(_cycle, found, 1000 + number) for number in range(2 * WARM)]:
+        for done in [together.submit(_cycle, found, 1000 + number) for number in range(2 * WARM if SOAK else WARM)]:
             done.result()
     yield found
     assert found.end()[0] == 0

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 import rhino3dm as _rhino3dm
 
-from hookean.files.archive import scan
-from hookean.files.threedm import Additions, NewLayer, NewObject, Points
-from hookean.mesh import Mesh
+from hookean.files.rhino.archive import scan
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, Points
+from hookean.values.mesh import Mesh
 
 rhino: Any = _rhino3dm
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "rhino"

@@ -16,7 +16,7 @@ from uuid import UUID
 
 import rhino3dm as _rhino3dm
 
-from hookean.files.archive import SETTINGS_TABLE, chunks, scan
+from hookean.files.rhino.archive import SETTINGS_TABLE, chunks, scan
 
 rhino: Any = _rhino3dm
 UNNAMED, CLASS, CLASS_ID, CLASS_DATA, CLASS_END = 0x40008000, 0x00027FFA, 0x0002FFFB, 0x0002FFFC, 0x80027FFF

@@ -12,7 +12,7 @@ import pytest
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
-from hookean.files.archive import MAGIC, OBJECT_TABLE, Archive, scan
+from hookean.files.rhino.archive import MAGIC, OBJECT_TABLE, Archive, scan
 
 rhino: Any = _rhino3dm
 
@@ -51,6 +51,7 @@ def test_records_fill_their_table_in_order(real: Path) -> None:
     assert archive.table(0x1234) is None
 
 
+@pytest.mark.slow
 def test_every_cut_of_a_small_file_is_refused(make: Callable[..., Path]) -> None:
     data = make(8).read_bytes()
     for end in range(len(data)):
@@ -68,6 +69,7 @@ def test_cuts_at_table_borders_are_refused(real: Path) -> None:
             scan(data[:end])
 
 
+@pytest.mark.slow
 def test_flipped_bytes_give_an_archive_or_a_sentence(real: Path) -> None:
     data, chance = real.read_bytes(), random.Random(7)
     outcomes: set[type] = set()

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from hookean import atomic_write
+from hookean.atomic_write import put
 from hookean.errors import InputError
-from hookean.files import threedm_atomic
-from hookean.files.threedm_atomic import put
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="links and processes of POSIX")
 SCENE = '{"particles": [[0,0,0],[1,0,0],[2,0,0]], "anchors": [{"particles": [0,2]}], "forces": ['
@@ -60,13 +60,13 @@ def test_outputs_of_the_command_line_keep_links(tmp_path: Path) -> None:
 
 def test_what_a_killed_process_left_is_deleted_with_the_next_write(tmp_path: Path) -> None:
     """And nothing else: neither files of processes that live, nor of other machines."""
-    code = "import os, sys; from hookean.files import threedm_atomic as a; from pathlib import Path;"
+    code = "import os, sys; from hookean import atomic_write as a; from pathlib import Path;"
     code += "a.put(Path(sys.argv[1]), b'x' * 10, lambda back: os.kill(os.getpid(), 9))"
     target = tmp_path / "a.3dm"
     subprocess.run([sys.executable, "-c", code, str(target)], timeout=300)
     (left,) = tmp_path.iterdir()
     assert left.name.endswith(".hookean")
-    mine = tmp_path / f".{threedm_atomic._process(os.getpid())}-0123456789abcdef.hookean"
+    mine = tmp_path / f".{atomic_write._process(os.getpid())}-0123456789abcdef.hookean"
     other = tmp_path / f".{2**22 + 1}-00000000-0123456789abcdef.hookean"
     mine.touch(), other.touch()
     put(target, b"after", no_check)

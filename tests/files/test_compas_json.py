@@ -15,7 +15,7 @@ from compas.geometry import Line, Point, Pointcloud, Polygon, Polyline, Vector
 from hookean.errors import InputError
 from hookean.files import compas_json
 from hookean.files.documents import plain
-from hookean.scene import Scene
+from hookean.scene.scene import Scene
 
 MESH = "compas.datastructures/Mesh"
 
@@ -214,8 +214,8 @@ def test_the_same_mesh_is_written_the_same() -> None:
 )
 def test_a_carried_document_comes_back_as_what_it_was(thing: Any) -> None:
     """In place where nothing moves, each of its points elsewhere where all is shifted."""
-    from hookean.result import carried
-    from hookean.system import compile
+    from hookean.running.result import carried
+    from hookean.system.system import compile
 
     plain, documents, seen = compas_json.plain_scene({"geometry": [document(thing)], "forces": []})
     assert seen and list(documents) == [0]

@@ -12,8 +12,8 @@ import rhino3dm as _rhino3dm
 from typer.testing import CliRunner
 
 from hookean.cli import app
-from hookean.files.archive import LAYER_TABLE, OBJECT_TABLE, scan
-from hookean.files.threedm import Additions, NewObject, read, write, write_new
+from hookean.files.rhino.archive import LAYER_TABLE, OBJECT_TABLE, scan
+from hookean.files.rhino.threedm import Additions, NewObject, read, write, write_new
 
 from . import nested
 

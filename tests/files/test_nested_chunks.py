@@ -14,8 +14,8 @@ import pytest
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
-from hookean.files.archive import OBJECT_TYPES, chunks, scan
-from hookean.files.threedm import Additions, read, write
+from hookean.files.rhino.archive import OBJECT_TYPES, chunks, scan
+from hookean.files.rhino.threedm import Additions, read, write
 
 from . import nested
 
@@ -158,7 +158,7 @@ def test_types_of_objects_are_those_of_rhino() -> None:
 
 def test_bytes_that_pretend_to_nest_are_read_in_time() -> None:
     """A record of nothing but heads, each claiming the rest: looked at a bounded number of times, whatever it holds."""
-    from hookean.files.checksums import Checksums
+    from hookean.files.rhino.checksums import Checksums
 
     data = b"".join(nested.short(0x4000FACE, 12 * (4999 - i)) for i in range(5000))
     sums = Checksums(data, 8)

@@ -20,11 +20,11 @@ import pytest
 import rhino3dm
 
 from hookean import InputError, Scene, Simulation, relax
-from hookean.example import examples
+from hookean.commands.examples import examples
 from hookean.files import compas_write, embedded, saved
 from hookean.files.readers import read
 from hookean.files.relax_file import open_file, read_scene, relax_file
-from hookean.stability import in_motion
+from hookean.running.in_motion import in_motion
 from hookean_server.sessions.exports import export
 from samples import cable
 
@@ -60,6 +60,7 @@ def scene_in(data: bytes) -> tuple[Scene, tuple[str, ...]]:
     return found.scene, found.warnings
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_opens_again_as_the_same_model(name: str, tmp_path: Path) -> None:
     simulation = edited(FIGURES[name].scene())

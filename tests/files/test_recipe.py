@@ -12,11 +12,12 @@ import pytest
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
-from hookean.files import threedm
-from hookean.files.recipe import parse_recipe, understand
-from hookean.files.recipe_select import terms
-from hookean.files.threedm import Additions, NewLayer, NewObject, Points
-from hookean.mesh import Mesh
+from hookean.files.recipe.recipe import understand
+from hookean.files.recipe.select import terms
+from hookean.files.rhino import threedm
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, Points
+from hookean.scene.text import parse_tables
+from hookean.values.mesh import Mesh
 
 rhino: Any = _rhino3dm
 SQUARE = Mesh(
@@ -263,12 +264,12 @@ def test_a_file_without_units_takes_those_of_the_recipe(tmp_path: Path) -> None:
 
 
 def test_recipes_are_toml_or_json() -> None:
-    toml = parse_recipe('[[forces]]\nkind = "springs"\nlines = "*"\n')
-    assert parse_recipe('{"forces": [{"kind": "springs", "lines": "*"}]}') == toml
+    toml = parse_tables('[[forces]]\nkind = "springs"\nlines = "*"\n')
+    assert parse_tables('{"forces": [{"kind": "springs", "lines": "*"}]}') == toml
     with pytest.raises(InputError, match=r"bridge.toml: not valid TOML"):
-        parse_recipe("[[forces", "bridge.toml")
+        parse_tables("[[forces", "bridge.toml")
     with pytest.raises(InputError, match="not valid JSON"):
-        parse_recipe("{,}")
+        parse_tables("{,}")
 
 
 def test_faults_of_the_scene_keep_their_place(draw: Callable[..., Any]) -> None:
@@ -319,6 +320,7 @@ def _places(value: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     return [at, *(place for key, item in inner for place in _places(item, (*at, key)))]
 
 
+@pytest.mark.slow
 def test_no_odd_value_anywhere_gets_past_as_anything_but_a_sentence(draw: Callable[..., Any]) -> None:
     model = draw(NewObject(LINE, "cable"), NewObject(SQUARE, "net"))
     understand(model, FULL)

@@ -11,10 +11,10 @@ import pytest
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
-from hookean.files import threedm
-from hookean.files.recipe import understand
-from hookean.files.threedm import Additions, NewLayer, NewObject
-from hookean.mesh import Mesh
+from hookean.files.recipe.recipe import understand
+from hookean.files.rhino import threedm
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject
+from hookean.values.mesh import Mesh
 
 rhino: Any = _rhino3dm
 SQUARE = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2, 3]]))

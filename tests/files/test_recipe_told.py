@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from hookean.errors import InputError
-from hookean.files import threedm
-from hookean.files.recipe import parse_recipe, understand
+from hookean.files.recipe.recipe import understand
 from hookean.files.relax_file import relax_file
-from hookean.files.threedm import Additions, NewLayer, NewObject
-from hookean.mesh import Mesh
+from hookean.files.rhino import threedm
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject
+from hookean.scene.text import parse_tables
+from hookean.values.mesh import Mesh
 
 LINE = np.array([[0.0, 0, 0], [10, 0, 0]])
 SQUARE = Mesh(np.array([[2.0 * i, 4.0 * j, 0.5 * i * j] for i in range(2) for j in range(2)]), np.array([[0, 2, 3, 1]]))
@@ -34,7 +35,7 @@ def draw(tmp_path: Path) -> Callable[..., Path]:
 
 def refused(path: Path, recipe: str | dict[str, Any]) -> str:
     with pytest.raises(InputError) as caught:
-        understand(threedm.read(path), parse_recipe(recipe, "r.toml") if isinstance(recipe, str) else recipe)
+        understand(threedm.read(path), parse_tables(recipe, "r.toml") if isinstance(recipe, str) else recipe)
     return str(caught.value)
 
 
@@ -59,7 +60,7 @@ def test_springs_stretched_absurdly_tell_the_size_and_the_units(draw: Callable[.
 
 def test_explain_tells_size_units_and_names(draw: Callable[..., Path]):
     path = draw(NewObject(SQUARE, "net", "sail"), unit="Millimeters")
-    recipe = parse_recipe('[[forces]]\nkind = "springs"\nmesh = "layer:net"', "r")
+    recipe = parse_tables('[[forces]]\nkind = "springs"\nmesh = "layer:net"', "r")
     lines = understand(threedm.read(path), recipe).lines
     assert "size: 2 x 4 x 0.5 mm; stiffness and loads must fit it" in lines
     assert "no units in the recipe: its lengths are mm, its forces N, stiffness N/mm" in lines
@@ -165,4 +166,4 @@ def test_tables_that_mean_something_else(draw: Callable[..., Path], recipe: str,
 
 def test_a_text_that_is_no_recipe_is_told_by_its_name():
     with pytest.raises(InputError, match=r"README\.md: is no TOML or JSON; give a file that ends in \.toml or \.json"):
-        parse_recipe("# hookean\n\nform finding", "README.md")
+        parse_tables("# hookean\n\nform finding", "README.md")

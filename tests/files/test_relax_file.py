@@ -16,18 +16,18 @@ import rhino3dm as _rhino3dm
 
 from hookean import Scene
 from hookean import relax as relax_scene
-from hookean.colours import Scale
 from hookean.errors import InputError
-from hookean.files import recipe as recipes
-from hookean.files import tables, threedm
-from hookean.files.archive import scan
-from hookean.files.recipe_output import Palette
+from hookean.files import tables
+from hookean.files.recipe.output import Palette
 from hookean.files.relax_file import FileResult, LimitsError, explain_file, relax_file, report_json
-from hookean.files.threedm import Additions, NewObject
-from hookean.mesh import Mesh
-from hookean.picture import legend
-from hookean.result import Status
-from hookean.system import compile
+from hookean.files.rhino import threedm
+from hookean.files.rhino.archive import scan
+from hookean.files.rhino.threedm import Additions, NewObject
+from hookean.pictures.picture import legend
+from hookean.running.result import Status
+from hookean.system.system import compile
+from hookean.values.colours import Scale
+from hookean.values.mesh import Mesh
 
 rhino: Any = _rhino3dm
 CABLE = """
@@ -223,6 +223,7 @@ def test_own_output_relaxes_to_the_same_file(cable: Path, tmp_path: Path) -> Non
     assert third.read_bytes() == first.read_bytes()
 
 
+@pytest.mark.slow
 def test_each_real_file_keeps_its_objects(real: Path, tmp_path: Path) -> None:
     """Surfaces are meshed and held at their naked vertices, curves divided; the old records stay as they are."""
     out = tmp_path / "out.3dm"
@@ -243,6 +244,7 @@ def test_each_real_file_keeps_its_objects(real: Path, tmp_path: Path) -> None:
     assert (relaxed == 0) == (real.stem in closed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stem", ["v7_my_brep", "v7_my_mesh", "v7_rhino_logo_nurbs"])
 def test_closed_bodies_have_no_naked_vertices_and_relax_without(stem: str, tmp_path: Path) -> None:
     source, out = named(stem), tmp_path / "out.3dm"
@@ -254,6 +256,7 @@ def test_closed_bodies_have_no_naked_vertices_and_relax_without(stem: str, tmp_p
     assert intact(source, out)
 
 
+@pytest.mark.slow
 def test_trimmed_faces_are_refused_where_selected_and_left_out_otherwise() -> None:
     source = named("v7_my_trimmed_surface")
     with pytest.raises(InputError, match=r"Brep \(51696a5b.*trimmed"):
@@ -466,12 +469,6 @@ def test_json_that_is_no_scene_is_refused(tmp_path: Path, text: str) -> None:
     with pytest.raises(InputError, match=r"scene\.json"):
         relax_file(source, tmp_path / "out.json")
     assert not (tmp_path / "out.json").exists()
-
-
-def test_the_service_finds_relax_file_beside_recipes() -> None:
-    assert recipes.relax_file is relax_file and recipes.FileResult is FileResult
-    with pytest.raises(AttributeError):
-        _ = recipes.nothing
 
 
 def test_a_mesh_tells_the_range_of_its_elements_in_the_colours_of_the_picture(tmp_path: Path) -> None:

@@ -10,10 +10,10 @@ import pytest
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
-from hookean.files.archive import LAYER_TABLE, OBJECT_TABLE, scan
-from hookean.files.splice import splice, without_history
-from hookean.files.threedm_build import Additions, carrier, plan
-from hookean.files.threedm_read import parse
+from hookean.files.rhino.archive import LAYER_TABLE, OBJECT_TABLE, scan
+from hookean.files.rhino.build import Additions, carrier, plan
+from hookean.files.rhino.read import parse
+from hookean.files.rhino.splice import splice, without_history
 
 rhino: Any = _rhino3dm
 

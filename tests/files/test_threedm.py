@@ -16,9 +16,9 @@ import pytest
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
-from hookean.files.archive import scan
-from hookean.files.splice import splice
-from hookean.files.threedm import Additions, Model, expand, read, write
+from hookean.files.rhino.archive import scan
+from hookean.files.rhino.splice import splice
+from hookean.files.rhino.threedm import Additions, Model, expand, read, write
 
 rhino: Any = _rhino3dm
 Make = Callable[..., Path]
@@ -437,9 +437,9 @@ def test_a_failure_leaves_the_old_target(
         raise OSError(28, "No space left on device")
 
     if step == "check":
-        monkeypatch.setattr("hookean.files.threedm._check_spliced", fail)
+        monkeypatch.setattr("hookean.files.rhino.threedm._check_spliced", fail)
     else:
-        monkeypatch.setattr(f"hookean.files.threedm_atomic.os.{step}", fail)
+        monkeypatch.setattr(f"hookean.atomic_write.os.{step}", fail)
     with pytest.raises(InputError, match="No space left"):
         write(path, target, additions)
     assert target.read_bytes() == b"the old result"
@@ -456,7 +456,7 @@ def test_a_copy_that_lacks_an_object_is_not_kept(
     def short(*args: Any, **options: Any) -> bytes:
         return splice(*args, **{**options, "drop_objects": (0,)})
 
-    monkeypatch.setattr("hookean.files.threedm.splice", short)
+    monkeypatch.setattr("hookean.files.rhino.threedm.splice", short)
     with pytest.raises(InputError, match="objects of the source differ"):
         write(make(8), tmp_path / "out.3dm", additions)
     assert not (tmp_path / "out.3dm").exists()

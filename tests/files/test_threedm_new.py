@@ -11,8 +11,8 @@ import pytest
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
-from hookean.files.threedm import Additions, NewLayer, NewObject, Points, read, write, write_new
-from hookean.mesh import Mesh
+from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, Points, read, write, write_new
+from hookean.values.mesh import Mesh
 
 rhino: Any = _rhino3dm
 

@@ -18,9 +18,10 @@ import numpy as np
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
-from hookean.files.archive import scan
-from hookean.files.threedm_read import parse
-from hookean_server.workers import _limit_memory, ended, limited
+from hookean.files.rhino.archive import scan
+from hookean.files.rhino.read import parse
+from hookean_server.workers.deadline import ended, limited
+from hookean_server.workers.memory import limit_memory
 
 rhino: Any = _rhino3dm
 REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "rhino"
@@ -255,7 +256,7 @@ class Reader:
 
 
 def _read_all(connection: Connection, seconds: float) -> None:
-    _limit_memory(MEMORY)
+    limit_memory(MEMORY)
     with suppress(EOFError):
         while True:
             data = connection.recv_bytes()

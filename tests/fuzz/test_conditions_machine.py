@@ -1,29 +1,28 @@
 """Two clients with conditional requests agree with a simple model of sessions, whatever they ask for in which order and
 whichever start of the service answers.
 
-One in 80 of 2,000 runs in `make test`; HOOKEAN_SOAK=1 all.
+Ten of 2,000 runs in `make test`, all in `make soak`.
 """
 
 from __future__ import annotations
 
 import itertools
 import signal
-import tempfile
 from copy import deepcopy
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar
 
 import httpx
-from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 
 from server.conftest import Served
 from server.test_races import at_once
 from serving import CABLE, SOAK
 
-RUNS, STEPS = (2000, 20) if SOAK else (25, 12)
+from .machines import agrees_with_its_model
+
+RUNS, STEPS = (2000, 20) if SOAK else (10, 12)
 WISHES = 60  # for a new start of the server until one is granted
 
 KEYS = st.sampled_from(("x", "y"))
@@ -235,21 +234,4 @@ class Conditional(RuleBasedStateMachine):
 
 
 def test_two_clients_with_conditions_agree_with_their_model() -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        Conditional.state = str(Path(folder) / "sessions.db")
-        try:
-            run_state_machine_as_test(
-                Conditional,
-                settings=settings(
-                    max_examples=RUNS,
-                    stateful_step_count=STEPS,
-                    deadline=None,
-                    database=None,
-                    phases=[Phase.generate, Phase.shrink],
-                    suppress_health_check=list(HealthCheck),
-                ),
-            )
-        finally:
-            if Conditional.served is not None:
-                Conditional.served.end()
-                Conditional.served = None
+    agrees_with_its_model(Conditional, RUNS, STEPS)

@@ -1,29 +1,26 @@
 """Sessions agree with a simple model of them, whatever is asked of them and whichever process is killed in between.
 
-A twentieth of 500 runs in `make test`; HOOKEAN_SOAK=1 all.
+Eight of 500 runs in `make test`, all in `make soak`.
 """
 
 from __future__ import annotations
 
 import itertools
-import os
 import signal
-import tempfile
 from copy import deepcopy
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, ClassVar
 
 import psutil
-from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, initialize, invariant, multiple, rule
 
 from server.conftest import Served
-from serving import CABLE
+from serving import CABLE, SOAK
 
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
-RUNS, STEPS = (500, 30) if SOAK else (25, 12)
+from .machines import agrees_with_its_model
+
+RUNS, STEPS = (500, 30) if SOAK else (8, 12)
 WISHES = 25  # for a new start of the server until one is granted
 
 LOADS = st.integers(-6, -1).map(float)
@@ -231,23 +228,4 @@ class Sessions(RuleBasedStateMachine):
 
 
 def test_sessions_agree_with_their_model() -> None:
-    from hypothesis.stateful import run_state_machine_as_test
-
-    with tempfile.TemporaryDirectory() as folder:
-        Sessions.state = str(Path(folder) / "sessions.db")
-        try:
-            run_state_machine_as_test(
-                Sessions,
-                settings=settings(
-                    max_examples=RUNS,
-                    stateful_step_count=STEPS,
-                    deadline=None,
-                    database=None,
-                    phases=[Phase.generate, Phase.shrink],
-                    suppress_health_check=list(HealthCheck),
-                ),
-            )
-        finally:
-            if Sessions.served is not None:
-                Sessions.served.end()
-                Sessions.served = None
+    agrees_with_its_model(Sessions, RUNS, STEPS)

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from hookean import kernels
+from hookean.compiled import dispatch
 from hookean.forces import KINDS, Force
 from hookean.forces.base import PLACES, Block
 from hookean.forces.bend import Bend
 from hookean.forces.springs import Springs
-from hookean.scene import Scene
-from hookean.system import System, compile
+from hookean.scene.scene import Scene
+from hookean.system.system import System, compile
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Case:
 
     def run(self, function: Any, role: str) -> Any:
         """The function as compiled machine code, or as Python."""
-        return function if self.plain else kernels.compiled(function, role)
+        return function if self.plain else dispatch.compiled(function, role)
 
     def force(
         self, x: np.ndarray, v: np.ndarray | None = None, memory: np.ndarray | None = None

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hookean import kernels
+from hookean.compiled import dispatch
 
 from .cases import Case
 
@@ -253,7 +253,7 @@ def allocates_nothing_that_grows(case: Case, rng: np.random.Generator) -> None:
         nrt.memsys_enable_stats()
     b = case.block
     longer = type(b)(*(np.ascontiguousarray(np.concatenate([a] * 4)) for a in (b.indices, b.parameters, b.memory)))
-    kernel, counts = case.kernel if case.plain else kernels.dispatcher(case.kernel, "force"), []
+    kernel, counts = case.kernel if case.plain else dispatch.dispatcher(case.kernel, "force"), []
     for block in (b, longer):
         x = case.moved(rng)
         memory, v, f, w = block.memory.copy(), np.zeros_like(x), np.zeros_like(x), np.zeros(len(x))

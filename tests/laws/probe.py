@@ -9,30 +9,42 @@ from typing import Any
 
 import numpy as np
 
-from hookean import Scene, kernels
+from hookean import Scene
+from hookean.compiled import dispatch
 from hookean.forces import KINDS
-from hookean.run import relax_state
+from hookean.running.run import relax_state
 from hookean.solvers import solver
-from hookean.stability import stable_time_step
-from hookean.state import State
-from hookean.system import System, compile
+from hookean.stability.time_steps import stable_time_step
+from hookean.system.state import State
+from hookean.system.system import System, compile
 
 from .scenes import FAMILIES, Spec, random_scene
 
 LOOPS = ("relaxation", "momentum", "verlet")
 
 
-def cache() -> dict[str, list[int]]:
-    """For every compiled function that the examples of all forces use: how often its code was on disk, and was not."""
+def watched() -> dict[str, Any]:
+    """Every compiled function that is asked for from now on, by its name."""
     seen: dict[str, Any] = {}
-    original = kernels.compiled
+    original = dispatch.compiled
 
-    def watched(function: Any, role: str | None = None) -> Any:
+    def noted(function: Any, role: str | None = None) -> Any:
         found = original(function, role)
         seen[f"{function.__module__}.{function.__qualname__}"] = found
         return found
 
-    kernels.compiled = watched  # type: ignore[assignment]
+    dispatch.compiled = noted  # type: ignore[assignment]
+    return seen
+
+
+def counted(seen: dict[str, Any]) -> dict[str, list[int]]:
+    """For each of these functions: how often its code was on disk, and was not."""
+    return {name: [found.loaded, found.made] for name, found in seen.items()}
+
+
+def cache() -> dict[str, list[int]]:
+    """What is counted of every compiled function that the examples of all forces use."""
+    seen = watched()
     from .cases import example_system  # compiles the examples of all forces
 
     for kind in KINDS:
@@ -46,11 +58,13 @@ def cache() -> dict[str, list[int]]:
         system.support(state, np.zeros_like(state.x))
         for group, memory in zip(system.groups, state.memory, strict=True):
             system.stiffness_blocks(group, state, memory)
-    return {name: [found.loaded, found.made] for name, found in seen.items()}
+    return counted(seen)
 
 
-def energy() -> dict[str, float]:
-    """Energy of one spring stretched by one, from its kernel, and where one relaxation step takes its end."""
+def energy() -> dict[str, Any]:
+    """Energy of one spring stretched by one, from its kernel, where one relaxation step takes its end, and what is
+    counted of the functions that this takes."""
+    seen = watched()
     scene = Scene(
         particles=[[0, 0, 0], [1, 0, 0]],
         forces=[{"kind": "springs", "particles": [[0, 1]], "stiffness": 100.0, "rest_length": 0.0}],
@@ -63,12 +77,7 @@ def energy() -> dict[str, float]:
     method = solver("relaxation")
     method.start(system, state)
     method.advance(system, state, 1, 0.0)
-    calls = [kernels.compiled(system.groups[0].cls.kernel, "force")]
-    return {
-        "energy": float(energies.sum()),
-        "moved": float(state.x[1, 0]),
-        "hits": sum(c.loaded for c in calls),
-    }
+    return {"energy": float(energies.sum()), "moved": float(state.x[1, 0]), "functions": counted(seen)}
 
 
 def digest(array: np.ndarray) -> str:

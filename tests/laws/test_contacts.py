@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hookean import kernels
+from hookean.compiled import dispatch
 from hookean.forces import KINDS
 from hookean.forces.floor import Floor
-from hookean.system import compile
+from hookean.system.system import compile
 
 from .cases import scene_of
 from .laws import guarded
@@ -51,7 +51,7 @@ def supported(parameters: np.ndarray, rng: np.random.Generator, dt: float, run: 
     f, v = f * free, v * free
     mass, carried = rng.uniform(0.5, 2.0, n), np.zeros((n, 3))
     told = {"f": f.copy(), "v": v.copy(), "x": x.copy(), "free": free}
-    hook = run or kernels.compiled(Floor.support, "support")
+    hook = run or dispatch.compiled(Floor.support, "support")
     hook(x, v, f, carried, free, mass, dt, parameters)
     return {**told, "x_after": x, "f_after": f, "v_after": v, "carried": carried, "normal": normal}
 
@@ -65,7 +65,7 @@ def test_what_is_carried_is_what_was_taken(kind: str, seed: int, dt: float) -> N
     rng = np.random.default_rng(seed)
     if CONTACTS[kind].support is None:
         return
-    hook = kernels.compiled(CONTACTS[kind].support, "support")
+    hook = dispatch.compiled(CONTACTS[kind].support, "support")
     told = supported(plane(rng) if kind == "floor" else table(kind), rng, dt, hook)
     assert np.abs(told["f_after"] - told["f"] - told["carried"] * told["free"]).max() <= 1e-13
     assert (told["x_after"] == told["x"]).all()
@@ -121,7 +121,7 @@ def dropped(parameters: np.ndarray, rng: np.random.Generator, dt: float, run: An
     v = v_before + 0.5 * dt * acceleration
     x = x_before + dt * v
     missed = x.copy()
-    hook = run or kernels.compiled(Floor.impact, "impact")
+    hook = run or dispatch.compiled(Floor.impact, "impact")
     hook(x_before, v_before, acceleration, x, v, free, dt, parameters)
     return {"x": x, "v": v, "v_before": v_before, "missed": missed, "x_before": x_before, "a": acceleration}
 
@@ -195,9 +195,9 @@ def test_degenerate_contacts_stay_finite(kind: str, where: str, speed: float, dt
     for free in (np.ones((4, 3)), np.zeros((4, 3)), np.tile([1.0, 1.0, 0.0], (4, 1))):
         y, u, f, carried = x + dt * v, v.copy(), -x, np.zeros((4, 3))
         if cls.impact is not None:
-            kernels.compiled(cls.impact, "impact")(x, v, a, y, u, free, dt, parameters)
+            dispatch.compiled(cls.impact, "impact")(x, v, a, y, u, free, dt, parameters)
         if cls.support is not None:
-            kernels.compiled(cls.support, "support")(y, u, f, carried, free, np.ones(4), dt, parameters)
+            dispatch.compiled(cls.support, "support")(y, u, f, carried, free, np.ones(4), dt, parameters)
         assert all(np.isfinite(array).all() for array in (y, u, f, carried))
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from hookean import Scene
 from hookean.solvers import solver
-from hookean.state import State
-from hookean.system import System, compile
+from hookean.system.state import State
+from hookean.system.system import System, compile
 
 from .probe import digest, hashes, prepared
 from .scenes import FAMILIES, random_scene
@@ -19,6 +19,7 @@ from .test_cache import probe
 SOLVERS = ("verlet", "yoshida", "relaxation", "momentum")
 
 
+@pytest.mark.slow
 def test_fresh_processes_and_thread_counts_give_the_same_bits() -> None:
     """SHA-256 of shapes after relaxing, momentum steps and 200 Verlet steps: here, there, with 1 or 2 threads."""
     here = hashes()

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hookean.columns import Model
 from hookean.forces import KINDS, Force
-from hookean.scene import Scene
+from hookean.scene.scene import Scene
+from hookean.values.columns import Model
 
 from .cases import scene_of
 

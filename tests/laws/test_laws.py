@@ -10,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean.forces import KINDS
+from serving import SOAK
 
 from . import laws
 from .cases import KERNELS, Case, case_of, identity, resting
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=200, database=None)
-FEWER = settings(derandomize=True, deadline=None, max_examples=50, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=200 if SOAK else 100, database=None)
+FEWER = settings(derandomize=True, deadline=None, max_examples=50 if SOAK else 25, database=None)
 
 seeds = st.integers(0, 2**32 - 1)
 amounts = st.floats(0.01, 0.15)

@@ -7,13 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hookean import Scene, kernels
+from hookean import Scene
+from hookean.compiled import dispatch
 from hookean.forces import KINDS, Block
 from hookean.forces.shell_edges import angle_of
 from hookean.forces.springs import SEVERAL
-from hookean.lean import Desk, lean
 from hookean.solvers import solver
-from hookean.system import System, compile
+from hookean.system.packing import Desk, lean
+from hookean.system.system import System, compile
 
 from .cases import example_system
 
@@ -59,7 +60,7 @@ def test_lean_forces_are_the_forces(name: str, damped: bool, seed: int) -> None:
     own = lean(system, state, damped=damped)
     x, v, f = Desk().lay(len(state.x), state.x, state.v, own.load)
     for kernel, arrays in own.calls[1]:
-        kernels.compiled(kernel, "force")(x, v, *arrays, f, np.zeros(len(x)))
+        dispatch.compiled(kernel, "force")(x, v, *arrays, f, np.zeros(len(x)))
     drag = 30.0 * np.abs(state.v).max() * len(system.groups[0].block.indices) if damped else 0.0
     size = w.max() * np.abs(state.x).max() + np.abs(expected).max() + drag
     assert np.abs(f[:, :3] - expected).max() <= 16.0 * EPS * size
@@ -153,7 +154,7 @@ def test_a_patched_shell_is_packed_anew() -> None:
         expected, w, _ = system.evaluate(state)
         x, f = Desk().lay(len(state.x), state.x, None)
         ((kernel, arrays),) = lean(system, state, damped=True).calls[1]
-        kernels.compiled(kernel, "force")(x, x, *arrays, f, np.zeros(len(x)))
+        dispatch.compiled(kernel, "force")(x, x, *arrays, f, np.zeros(len(x)))
         assert np.abs(f[:, :3] - expected).max() <= 16.0 * EPS * w.max() * np.abs(state.x).max()
 
 
@@ -188,7 +189,7 @@ def test_a_shell_as_a_whole_is_the_sum_of_its_elements(name: str, seed: int, par
     state = system.start()
     state.x += part * system.size * rng.uniform(-1.0, 1.0, state.x.shape)
     (group,) = system.groups
-    block, kernel = group.block, kernels.compiled(group.cls.kernel, "force")
+    block, kernel = group.block, dispatch.compiled(group.cls.kernel, "force")
     f, w, (energy,) = system.evaluate(state)
     expected, most = np.zeros_like(f), np.zeros_like(w)
     summed = kernel(state.x, 0.0 * f, block.indices, block.parameters, state.memory[0], expected, most)
@@ -210,7 +211,7 @@ def test_some_triangles_of_a_shell_bend_as_they_did_among_all(kept: list[bool]) 
     state.memory = [group.block.memory]
     f, w, (energy,) = system.evaluate(state)
     expected, most = np.zeros_like(f), np.zeros_like(w)
-    kernel = kernels.compiled(group.cls.kernel, "force")
+    kernel = dispatch.compiled(group.cls.kernel, "force")
     summed = kernel(state.x, 0.0 * f, group.block.indices, group.block.parameters, state.memory[0], expected, most)
     size = most.max() * np.abs(state.x).max() + np.abs(expected).max()
     assert np.abs(f - expected).max() <= 32.0 * EPS * size

@@ -10,7 +10,7 @@ from typing import Any
 from hypothesis import Phase, settings
 
 import hookean
-from hookean import kernels
+from hookean.compiled import dispatch
 
 CACHE = Path(os.environ["HOOKEAN_CACHE"])
 REACHED = os.environ["HOOKEAN_REACHED"].split()
@@ -27,4 +27,4 @@ def cache_folder(function: Callable[..., Any]) -> Path:
     return CACHE / ("reached" if function.__module__ in REACHED else "kept")
 
 
-kernels.cache_folder = cache_folder  # type: ignore[assignment]
+dispatch.cache_folder = cache_folder  # type: ignore[assignment]

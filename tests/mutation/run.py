@@ -23,7 +23,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -33,10 +32,10 @@ from typing import Any
 
 import libcst as cst
 from mutmut.mutation.mutators import mutation_operators, operator_arg_removal, operator_assignment, operator_string
+from table import ROOT, TABLE, modules
 
-ROOT = Path(__file__).parents[2]
 CORE = ROOT / "core" / "hookean"
-TABLE = tomllib.loads(Path(__file__).with_name("table.toml").read_text(encoding="utf-8"))
+MODULES = modules()
 KNOWN = {(known["place"], known["before"], known["after"]) for known in TABLE["survivors"]}
 OPERATORS = [(kind, made) for kind, made in mutation_operators if made not in (operator_string, operator_assignment)]
 SLOWEST = 300.0  # seconds that the tests of one mutant may last, many times what any needs
@@ -116,7 +115,7 @@ def reached(module: str) -> set[str]:
     """Names of the modules whose machine code may hold something of a module, by their imports (see `cache_folder`)."""
     found: set[str] = set()
     new = {_dotted(CORE / module)}
-    inlined = [path for folder in ("forces", "solvers", "multigrid") for path in (CORE / folder).glob("*.py")]
+    inlined = [path for folder in ("films", "forces", "linear", "solvers") for path in (CORE / folder).glob("*.py")]
     while not new <= found:
         found |= new
         new = {_dotted(path) for path in inlined if found & set(_imports(path))}
@@ -162,7 +161,7 @@ class Bench:
             "HOOKEAN_REACHED": " ".join(sorted(reached)),
         }
         running = subprocess.Popen(
-            [*command, *TABLE["modules"][module]["tests"]], cwd=ROOT, env={**os.environ, **own},
+            [*command, *MODULES[module]["tests"]], cwd=ROOT, env={**os.environ, **own},
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
         )  # fmt: skip
         try:
@@ -180,11 +179,11 @@ def main(modules: list[str]) -> int:
     total, new = Counter[str](), 0
     with tempfile.TemporaryDirectory(prefix="hookean-mutants-") as folder:
         bench = Bench(Path(folder))
-        for module in modules or TABLE["modules"]:
+        for module in modules or MODULES:
             if bench.test(module, set()) != "survived":
                 raise SystemExit(f"{module}: its tests fail without a mutant: {TABLE['modules'][module]['tests']}")
             begun, outcomes = time.monotonic(), Counter[str]()
-            for mutant in mutants(module, TABLE["modules"][module]["mutants"]):
+            for mutant in mutants(module, MODULES[module]["mutants"]):
                 outcome = bench.outcome(mutant)
                 if outcome == "survived" and mutant.known:
                     outcome = "survived with a reason"

@@ -9,7 +9,6 @@ import secrets
 import signal
 import socket
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -19,6 +18,7 @@ import httpx
 import psutil
 import pytest
 
+import forking
 from serving import HANG, wait_for
 
 
@@ -37,27 +37,25 @@ def endless(seconds: float = 60.0) -> dict[str, Any]:
     }
 
 
-PATIENT = f"from hookean_server import ending; ending.LONGEST = {2 * HANG};"
+PATIENT = f"from hookean_server.lifecycle import ending; ending.LONGEST = {2 * HANG};"
 """For a server whose end is never cut short: it ends by itself, or hangs for the test to see."""
 
 
 class Served:
-    """One running server; `first` is code that its process runs before anything else."""
+    """One running server; `first` is code that its process runs before anything else; `fresh`: in a new interpreter."""
 
-    def __init__(self, first: str = "", **settings: Any) -> None:
+    def __init__(self, first: str = "", *, fresh: bool = False, **settings: Any) -> None:
         settings.setdefault("token", secrets.token_urlsafe(32))
         self.token: str = settings["token"]
         self.known = {"authorization": f"Bearer {self.token}"}
         self.head = f"Authorization: Bearer {self.token}\r\n"  # for requests written by hand
         code = first + (
-            "import sys; from hookean_server.main import serve; from hookean_server.settings import Settings;"
+            "import sys; from hookean_server.lifecycle.main import serve; from hookean_server.settings import Settings;"
             f"sys.exit(serve(port=0, settings=Settings(**{settings!r})))"
         )
         # a pipe that nobody reads would hold the server up once it is full
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=self._log, text=True
-        )
+        self.process = forking.process(code, [], dict(os.environ), subprocess.PIPE, self._log, fresh)
         assert self.process.stdout is not None
         self.said = self.process.stdout.readline()
         found = re.search(r"http://127\.0\.0\.1:(\d+)", self.said)
@@ -128,7 +126,7 @@ def asked(served: Served, scene: dict[str, Any], path: str = "/v1/relax") -> Ite
 
 @pytest.fixture(scope="session")
 def served() -> Iterator[Served]:
-    found = Served()
+    found = Served(fresh=True)  # one at least that no test helps to start
     yield found.ready()
     found.end()
 

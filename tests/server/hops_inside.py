@@ -11,13 +11,14 @@ from typing import Any
 
 import httpx
 
-from hookean_server import hops, routes_hops
 from hookean_server.app import create_app
-from hookean_server.hops_model import Function
-from hookean_server.pool import Job, Reply
+from hookean_server.hops import functions as hops
+from hookean_server.hops import routes as routes_hops
+from hookean_server.hops.model import Function
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
-from hookean_server.tasks import perform
+from hookean_server.workers.pool import Job, Reply
+from hookean_server.workers.registry import perform
 
 ADDRESS = "http://127.0.0.1:8765"
 

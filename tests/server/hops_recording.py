@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from hookean.errors import InputError
-from hookean_server.hops_model import Function, Parameter, item
+from hookean_server.hops.model import Function, Parameter, item
 
 TREE = {"least": -1, "most": -1}
 BOTH = (

@@ -13,13 +13,15 @@ import httpx
 import numpy as np
 import pytest
 
-from hookean.example import examples, find
+from hookean.commands.examples import examples, find
 from serving import CABLE
 
 from .conftest import Served, problem
 from .test_opening import LINE, POLYLINE, SHEET
 
 NAMES = [example.name for example in examples()]
+SOME = NAMES[1::5]
+OTHERS = [name for name in NAMES if name not in SOME]
 FILES: dict[str, tuple[str, bytes]] = {
     "sheet": ("sheet.obj", SHEET.encode()),
     "lines": ("lines.json", json.dumps([LINE, POLYLINE]).encode()),
@@ -59,7 +61,7 @@ def edited(client: httpx.Client, address: str, **edit: Any) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("what", [*NAMES, *FILES])
+@pytest.mark.parametrize("what", [*SOME, *(pytest.param(name, marks=pytest.mark.soak) for name in OTHERS), *FILES])
 def test_a_load_and_self_weight_are_added_to_any_scene(client: httpx.Client, what: str) -> None:
     address = opened(client, what)
     try:

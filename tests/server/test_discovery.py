@@ -20,9 +20,10 @@ import httpx
 import psutil
 import pytest
 
-from hookean_server import discovery, ending
-from hookean_server.discovery import Found, Held, Lock, find
-from hookean_server.ending import Activity
+import forking
+from hookean_server.lifecycle import discovery, ending
+from hookean_server.lifecycle.discovery import Found, Held, Lock, find
+from hookean_server.lifecycle.ending import Activity
 from serving import CABLE, HANG, SOAK, Home, living, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
@@ -194,7 +195,7 @@ def test_the_python_that_started_it_first_is_recorded(tmp_path: Path) -> None:
 
 def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
     code = (
-        "import sys, time; from pathlib import Path; from hookean_server.discovery import Lock;"
+        "import sys, time; from pathlib import Path; from hookean_server.lifecycle.discovery import Lock;"
         "held = Lock(Path(sys.argv[1])); print('held', flush=True); time.sleep(600)"
     )
     path = tmp_path / "lock"
@@ -213,10 +214,10 @@ def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
 def test_two_servers_do_not_share_one_file_of_sessions(home: Home) -> None:
     home.serve()
     code = (
-        "import sys; from hookean_server.main import serve; from hookean_server.settings import Settings;"
+        "import sys; from hookean_server.lifecycle.main import serve; from hookean_server.settings import Settings;"
         f"sys.exit(serve(port=0, settings=Settings(state={str(home.folder / 'sessions.db')!r})))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG, check=False)
+    done = forking.run(code)
     assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
     assert "Another hookean server keeps its sessions in" in done.stderr
 

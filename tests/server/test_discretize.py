@@ -13,10 +13,10 @@ import rhino3dm
 from compas.datastructures import Mesh
 from compas.geometry import Line, Polygon, Polyline
 
-from hookean.catenary import catenary
-from hookean.discretize import curves, surfaces
-from hookean_server.operations import OPERATIONS
-from hookean_server.schemas import EXAMPLES
+from hookean.discretize import curves, meshing
+from hookean.discretize.catenary import catenary
+from hookean_server.http.schemas import EXAMPLES
+from hookean_server.workers.discretize_task import OPERATIONS
 
 from .conftest import problem
 
@@ -77,7 +77,7 @@ def test_curves_as_compas_and_rhino(client: httpx.Client) -> None:
 def test_a_worker_that_decoded_rhino_geometry_is_replaced(client: httpx.Client) -> None:
     before = client.get("/v1/health").json()["workers"]["restarts"]
     answer = client.post("/v1/discretize/mesh_surface", json={"surface": sphere().Encode(), "u": 6, "v": 5})
-    wanted = surfaces.mesh_surface(sphere(), 6, 5)
+    wanted = meshing.mesh_surface(sphere(), 6, 5)
     assert answer.json()["mesh"]["faces"] == wanted.faces.tolist()
     assert np.allclose(answer.json()["mesh"]["vertices"], wanted.vertices, atol=1e-12)
     assert client.post("/v1/discretize/length", json={"curve": [[0, 0, 0], [1, 0, 0]]}).json() == {"length": 1.0}
@@ -114,7 +114,7 @@ def test_nurbs_forms_are_the_geometry_itself(client: httpx.Client) -> None:
         "knots_v": list(ball.KnotsV),
     }
     found = client.post("/v1/discretize/mesh_surface", json={"surface": surface, "u": 6, "v": 5}).json()["mesh"]
-    wanted = surfaces.mesh_surface(ball, 6, 5)
+    wanted = meshing.mesh_surface(ball, 6, 5)
     assert found["faces"] == wanted.faces.tolist() and np.allclose(found["vertices"], wanted.vertices, atol=1e-13)
 
 

@@ -12,9 +12,9 @@ from urllib.parse import unquote
 import pytest
 from starlette.routing import Route, WebSocketRoute
 
-from hookean_server import routes_about
-from hookean_server.access import Access, of
 from hookean_server.app import create_app
+from hookean_server.http.access import Access, of
+from hookean_server.routes import about as routes_about
 from serving import HANG
 
 from .conftest import Served

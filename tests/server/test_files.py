@@ -11,8 +11,8 @@ import httpx
 import pytest
 import rhino3dm
 
-from hookean.files.recipe import relax_file
-from hookean_server.claimed import NAMES, warned
+from hookean.files.relax_file import relax_file
+from hookean_server.http.claimed import NAMES, warned
 from serving import CABLE, wait_for
 
 from .conftest import Served, problem

@@ -6,7 +6,7 @@ import httpx
 import pytest
 
 from hookean import Scene
-from hookean.example import examples
+from hookean.commands.examples import examples
 
 from .conftest import problem
 

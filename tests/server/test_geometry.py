@@ -13,8 +13,9 @@ import rhino3dm
 
 from fuzz import damage
 from hookean.discretize.breps import mesh_faces
-from hookean.files import threedm, threedm_plain
-from hookean_server.routes_geometry import KINDS
+from hookean.files.rhino import plain as threedm_plain
+from hookean.files.rhino import threedm
+from hookean_server.routes.geometry import KINDS
 
 from .conftest import problem
 

@@ -19,10 +19,10 @@ import pytest
 from starlette.types import Message
 
 from hookean_server.app import create_app
-from hookean_server.limits import BodyLimit
-from hookean_server.refusals import Problems
+from hookean_server.http.limits import BodyLimit
+from hookean_server.http.refusals import Problems
+from hookean_server.http.tokens import Unfit, chosen
 from hookean_server.settings import Settings
-from hookean_server.tokens import Unfit, chosen
 from serving import CABLE, HANG, wait_for
 
 from .conftest import Served, problem

@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hookean import Scene, relax
-from hookean_server.hops import FUNCTIONS
+from hookean_server.hops.functions import FUNCTIONS
 from serving import CABLE, HANG
 
 from .conftest import Served

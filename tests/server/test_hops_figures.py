@@ -1,10 +1,9 @@
 """The chapter's figures as functions of Hops: the numbers their folders are held to, in answers that Grasshopper's
-component can use. Those that take long in full with HOOKEAN_SOAK=1."""
+component can use. Those that take long in full in `make soak`."""
 
 from __future__ import annotations
 
 import functools
-import os
 from collections.abc import Callable
 from typing import Any
 
@@ -12,13 +11,13 @@ import numpy as np
 import pytest
 import rhino3dm
 
-from hookean.example import find
-from hookean_server.hops import FUNCTIONS
+from hookean.commands.examples import find
+from hookean_server.hops.functions import FUNCTIONS
+from serving import SOAK
 
 from .hops_canvas import Component, Solved
 from .hops_inside import Service
 
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 SERVICE = Service()
 LINE = [(0.0, 0.0, 0.0), (10.0, 0.0, 0.0)]
 EIGHT = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0), (3, 3, 0), (7, 3, 0), (7, 7, 0), (3, 7, 0)]
@@ -239,7 +238,7 @@ def test_a_net_and_a_film_of_any_size_tend_to_the_areas_of_figure_9_28() -> None
 
 def test_every_figure_of_the_gallery_is_a_function() -> None:
     """Each folder has a case, each function of a figure too; as does the catenary."""
-    from hookean.example import examples
+    from hookean.commands.examples import examples
 
     folders = {find(folder).folder for _, _, folder, _ in [*CASES, *LONG]} | {find("9.28").folder}
     assert folders == {example.folder for example in examples() if example.original}
@@ -276,7 +275,7 @@ def unbounded(param: Any) -> Any:
 
 def test_what_the_clock_ends_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     """It would be kept for ever, and differ from machine to machine."""
-    monkeypatch.setattr("hookean_server.hops.LONGEST", 0.0)
+    monkeypatch.setattr("hookean_server.hops.functions.LONGEST", 0.0)
     for name, given in (("membrane", {"Divisions": 60}), ("falling_sphere", {"Shell": 0.0})):
         answer = SERVICE.call("POST", "/solve", component(name).request(given))
         assert answer.status_code == 504

@@ -191,7 +191,7 @@ def test_the_model_of_the_component_refuses_what_the_component_cannot_use(theirs
 def test_the_sample_definition_fits_descriptions_of_ours() -> None:
     """Hops_Example.gh: its components would keep their parameters if our functions stood behind their addresses."""
     from hookean_canvas import archive
-    from hookean_server.hops_model import Function, item
+    from hookean_server.hops.model import Function, item
 
     path = DATA / "Hops_Example.gh"
     if not path.exists():

@@ -1,11 +1,10 @@
 """Whatever trees Hops sends, of any paths, types and counts, with right and with wrong data: every answer is one that
 its component can use, and every description one that it can become. A tenth of 600 trees in `make test`;
-HOOKEAN_SOAK=1 all."""
+`make soak` all."""
 
 from __future__ import annotations
 
 import json
-import os
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -19,14 +18,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hookean.discretize.meshes import as_mesh
-from hookean_server.hops import FUNCTIONS
-from hookean_server.operations import OPERATIONS
+from hookean_server.hops.functions import FUNCTIONS
+from hookean_server.workers.discretize_task import OPERATIONS
+from serving import SOAK
 
 from .hops_canvas import Component, goo, listed, sent
 from .hops_inside import Service, functions
 from .hops_recording import OURS
 
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 TREES = 600 if SOAK else 60
 LASTING = {"ribbon", "hypar_net", "chains_between_frames", "bridge_skin", "falling_sphere"}
 

@@ -17,13 +17,13 @@ import httpx
 import jsonschema
 import pytest
 
-from hookean_server.ending import Activity
 from hookean_server.jobs import rows, tables
 from hookean_server.jobs.manager import Jobs
 from hookean_server.jobs.runner import Live
-from hookean_server.pool import Pool
+from hookean_server.lifecycle.ending import Activity
 from hookean_server.settings import Settings
 from hookean_server.store import Store
+from hookean_server.workers.pool import Pool
 from serving import CABLE, HANG, wait_for
 
 from .conftest import PATIENT, Served, problem

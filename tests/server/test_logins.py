@@ -15,8 +15,8 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from hookean_server import tokens
-from hookean_server.tokens import CODE_LIFE, CODES, LIFE, LOGINS, RENEWED, Tokens
+from hookean_server.http import tokens
+from hookean_server.http.tokens import CODE_LIFE, CODES, LIFE, LOGINS, RENEWED, Tokens
 from serving import CABLE, HANG, Home, wait_for
 
 from .conftest import Served, problem
@@ -127,7 +127,7 @@ def test_the_one_longest_unused_makes_room(now: list[float]) -> None:
 
 def test_a_page_gets_a_new_cookie_while_it_goes_on() -> None:
     """Over a socket: a server whose cookies are renewed at once sends another one that lets in as well."""
-    served = Served(f"from hookean_server import tokens; tokens.RENEWED = -1.0; tokens.LIFE = {LIFE};", workers=1)
+    served = Served(f"from hookean_server.http import tokens; tokens.RENEWED = -1.0; tokens.LIFE = {LIFE};", workers=1)
     try:
         first = served.client.post("/v1/login").headers["set-cookie"]
         assert f"Max-Age={int(LIFE)}" in first and "HttpOnly" in first and "SameSite=Strict" in first

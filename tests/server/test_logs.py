@@ -13,7 +13,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from hookean_server.logs import JsonLines, short_hash
+from hookean_server.http.logs import JsonLines, short_hash
 from serving import CABLE, HANG, wait_for
 
 from .conftest import PATIENT, Served

@@ -124,7 +124,7 @@ def test_health_says_who_it_is(client: httpx.Client) -> None:
 
 
 def test_the_catalogue_of_forces(client: httpx.Client) -> None:
-    from hookean.catalogue import catalogue
+    from hookean.scene.catalogue import catalogue
 
     answer = client.get("/v1/forces")
     assert answer.json()["forces"] == json.loads(json.dumps(catalogue()))

@@ -11,7 +11,7 @@ from typing import Any
 import httpx
 import pytest
 
-from hookean.example import find
+from hookean.commands.examples import find
 from serving import CABLE
 
 from .conftest import Served, problem

@@ -12,9 +12,9 @@ import httpx
 import pytest
 
 from hookean_server.app import create_app
-from hookean_server.operations import OPERATIONS
 from hookean_server.problems import CATALOGUE
 from hookean_server.settings import Settings
+from hookean_server.workers.discretize_task import OPERATIONS
 from serving import CABLE, HANG
 
 from .conftest import Served, problem

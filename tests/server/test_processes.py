@@ -19,7 +19,8 @@ import httpx
 import psutil
 import pytest
 
-from hookean_server.ports import owner
+import forking
+from hookean_server.lifecycle.ports import owner
 from serving import CABLE, HANG, wait_for
 
 from .conftest import PATIENT, Served, asked, computing, endless, problem
@@ -27,6 +28,7 @@ from .conftest import PATIENT, Served, asked, computing, endless, problem
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 JSON = {"content-type": "application/json"}
 NEVER = 10 * HANG
+MODULE = "import runpy; runpy.run_module('hookean_server', run_name='__main__')"
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +136,7 @@ def test_a_suspended_worker_whose_client_leaves_is_killed(strict: Served) -> Non
 
 
 def test_killing_a_worker_in_the_middle_of_a_solve(alone: Served) -> None:
-    for _ in range(3):
+    for _ in range(2):
         worker = alone.ready().workers()[0]
         running = post_later(alone, endless())
         computing(worker)
@@ -227,7 +229,7 @@ def test_a_connection_is_kept_longer_than_clients_keep_it(served: Served) -> Non
 )
 def test_a_clean_end(what: str, number: int) -> None:
     """It ends by itself: nothing cuts it short here."""
-    served = Served(PATIENT, workers=2)
+    served = Served(PATIENT, fresh=what == "starting", workers=2)
     running = None
     if what != "starting":
         served.ready()
@@ -301,7 +303,9 @@ def test_ctrl_c_reaches_the_whole_group() -> None:
     assert process.returncode == 0 and said == ""
 
 
-@pytest.mark.parametrize("seconds", [0.0, 0.05, 0.15, 0.3, 1.0])
+@pytest.mark.parametrize(
+    "seconds", [0.0, 0.15, *(pytest.param(late, marks=pytest.mark.soak) for late in (0.05, 0.3, 1.0))]
+)
 def test_ctrl_c_soon_after_the_start(seconds: float) -> None:
     """While the fork server starts and warms up too: nothing said, exit code 0, no process left."""
     process, _ = started()
@@ -323,9 +327,7 @@ def test_it_says_where_it_is_and_what_to_try(served: Served) -> None:
 
 
 def test_a_taken_port_is_named_with_its_owner(served: Served) -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "hookean_server", str(served.port)], capture_output=True, text=True, timeout=30
-    )
+    done = forking.run(MODULE, str(served.port))
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.count("\n") == 1
     assert f"Port {served.port} is taken" in done.stderr and f"(process {served.process.pid})" in done.stderr
@@ -342,7 +344,5 @@ def test_the_owner_of_a_port_without_psutil(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_port_that_is_none() -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "hookean_server", "99999"], capture_output=True, text=True, timeout=HANG
-    )
+    done = forking.run(MODULE, "99999")
     assert done.returncode == 2 and "Traceback" not in done.stderr

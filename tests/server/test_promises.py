@@ -1,4 +1,4 @@
-"""The page of promises is true to the letter: each line names tests that there are."""
+"""Each line of the page of promises names existing tests."""
 
 from __future__ import annotations
 

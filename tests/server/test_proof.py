@@ -25,8 +25,8 @@ import pytest
 
 import hookean_client
 from hookean_client import finding
-from hookean_server import discovery
-from hookean_server.discovery import Distrusted, Found, ask, check, find, proven
+from hookean_server.lifecycle import discovery
+from hookean_server.lifecycle.discovery import Distrusted, Found, ask, check, find, proven
 from serving import HANG, Home
 
 from .conftest import Served, problem
@@ -254,7 +254,7 @@ def test_a_proof_that_was_fetched_at_another_address_is_worth_nothing(tmp_path: 
 
 
 def test_a_stranger_who_trickles_holds_nobody_up(home: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A byte now and then, for as long as somebody listens: whoever looks for a server has a time for the whole."""
+    """A byte now and then, for as long as the client listens: finding a server has a deadline for the whole."""
     like = find(home.folder)
     assert like is not None
     monkeypatch.setattr(discovery, "ANSWER", 1.0)

@@ -85,7 +85,7 @@ def test_of_branches_to_one_key_at_once_one_is_made(client: httpx.Client) -> Non
 
 
 def test_a_branch_and_a_scene_for_one_key_make_one_session(client: httpx.Client) -> None:
-    """The scene comes second, on the branch, or the branch is refused: never are both told that they made it."""
+    """The scene comes second, on the branch, or the branch is refused: both answers never report a new session."""
     put(client, "a")()
     longer = {**CABLE, "particles": [*CABLE["particles"], [12, 0, 0]]}
     for _ in range(10):

@@ -15,7 +15,7 @@ from compas.datastructures import Graph, Mesh
 from compas.geometry import Pointcloud
 
 from hookean import Scene, relax
-from hookean_server.schemas import EXAMPLES
+from hookean_server.http.schemas import EXAMPLES
 from serving import CABLE
 
 from .conftest import problem

@@ -16,10 +16,10 @@ from typer.testing import CliRunner
 
 from hookean import InputError, Scene, relax
 from hookean.cli import app
-from hookean.example import find
+from hookean.commands.examples import find
 from hookean.files.readers import READERS, Source, endings, read, reader
 from hookean.files.relax_file import open_file
-from hookean.stability import in_motion
+from hookean.running.in_motion import in_motion
 from serving import CABLE
 
 from .conftest import problem

@@ -11,15 +11,14 @@ import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import httpx
 import psutil
 import pytest
 import websockets
 
-from hookean_server.ending import LONGEST
-from serving import CABLE, HANG, SWING, Home, hears, living, wait_for
+from hookean_server.lifecycle.ending import LONGEST
+from serving import CABLE, HANG, SWING, Home, living, wait_for
 
 from .conftest import PATIENT, endless, problem
 
@@ -147,15 +146,13 @@ def hanging(home: Home, first: str = "") -> subprocess.Popen[str]:
     code = (
         f"{first}\n"
         "import asyncio, sys\n"
-        "from hookean_server import command\n"
+        "from hookean_server.lifecycle import command\n"
         "from hookean_server.sessions.manager import Manager\n"
         "async def hangs(self): await asyncio.sleep(3600)\n"
         "Manager.close = hangs\n"
         "sys.exit(command.run(command.Options(port=0)))\n"
     )
-    pipes: Any = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    process = subprocess.Popen([sys.executable, "-c", code], env=home.environment, preexec_fn=hears, **pipes)
-    home.started.append(process)
+    process: subprocess.Popen[str] = home.run(code)
     wait_for(lambda: home.told)
     return process
 

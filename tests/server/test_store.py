@@ -16,6 +16,7 @@ from typing import Any
 import httpx
 import pytest
 
+import forking
 from hookean_server import store as module
 from hookean_server.jobs import rows as job_rows
 from hookean_server.keeping import backups, database, layout
@@ -154,9 +155,9 @@ def test_a_later_store_is_refused_and_left_as_it_is(opened: Callable[..., Store]
     given = path.read_bytes()
     with pytest.raises(Refused, match="later version"):
         Store(path).start()
-    code = "import sys; from hookean_server.main import serve; from hookean_server.settings import Settings;"
+    code = "import sys; from hookean_server.lifecycle.main import serve; from hookean_server.settings import Settings;"
     code += f"sys.exit(serve(port=0, settings=Settings(state={str(path)!r})))"
-    served = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300)
+    served = forking.run(code)
     assert served.returncode == 2 and "later version" in served.stderr and "Traceback" not in served.stderr
     assert path.read_bytes() == given
     assert {entry.name for entry in tmp_path.iterdir()} <= {"sessions.db", "sessions.db.lock"}
@@ -317,8 +318,7 @@ def test_a_file_that_is_deleted_in_use_is_written_again(how: str, opened: Callab
 
 def command(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "HOOKEAN_STATE": str(folder)}
-    line = [sys.executable, "-m", "hookean.cli", "store", *words]
-    return subprocess.run(line, env=environment, capture_output=True, text=True, timeout=300)
+    return forking.run(forking.COMMAND, "store", *words, environment=environment)
 
 
 def test_the_commands_of_a_store(opened: Callable[..., Store], tmp_path: Path) -> None:
@@ -389,6 +389,5 @@ def test_the_quota_over_http(tmp_path: Path) -> None:
 
 def test_a_quota_that_is_no_number_is_refused(tmp_path: Path) -> None:
     environment = {**os.environ, "HOOKEAN_STATE": str(tmp_path), "HOOKEAN_QUOTA": "8 GB"}
-    line = [sys.executable, "-m", "hookean.cli", "serve", "--port", "0"]
-    done = subprocess.run(line, env=environment, capture_output=True, text=True, timeout=300)
+    done = forking.run(forking.COMMAND, "serve", "--port", "0", environment=environment)
     assert done.returncode == 2 and "HOOKEAN_QUOTA" in done.stderr and "Traceback" not in done.stderr

@@ -19,6 +19,7 @@ from urllib.parse import parse_qs, unquote, urlsplit
 import httpx
 import pytest
 
+import forking
 from serving import CABLE, HANG, Home, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
@@ -39,9 +40,7 @@ def home(tmp_path: Path) -> Iterator[Home]:
 
 def begun(home: Home, *words: str) -> subprocess.Popen[str]:
     """`hookean studio`, which goes on where it serves itself."""
-    command = [sys.executable, "-m", "hookean.cli", "studio", *words]
-    process = subprocess.Popen(command, env=home.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    home.started.append(process)
+    process: subprocess.Popen[str] = home.run(forking.COMMAND, "studio", *words)
     return process
 
 
@@ -119,7 +118,7 @@ def test_a_second_user_finds_nothing_in_the_list_of_processes() -> None:
         pytest.skip("takes root, who can be another user, and /proc")
     folder = Path(tempfile.mkdtemp(prefix="hookean-studio-"))
     folder.chmod(0o755)
-    home = Home(folder / "state")
+    home = Home(folder / "state", fresh=True)  # with the arguments of its own
     browser = folder / "browser.py"
     browser.write_text(
         "import pathlib, sys, time\npathlib.Path(sys.argv[0]).with_name('seen').write_text(sys.argv[1])\n"

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from hookean import Scene, Simulation
-from hookean_server import leftovers
-from hookean_server.budget import DEBT, RATE, Budget
+from hookean_server.keeping.budget import DEBT, RATE, Budget
+from hookean_server.lifecycle import leftovers
 from hookean_server.sessions import folding, parts, rows, upkeep
 from hookean_server.sessions import manager as managing
 from hookean_server.sessions.live import Live
@@ -73,7 +73,7 @@ def state_of(count: int) -> int:
 def test_playing_writes_within_its_budget(particles: int, sessions: int, most: float, tmp_path: Path) -> None:
     """Sessions that play, by a clock of the test: what the process writes to its files, log and manifest included, is
     at most 20 MB a minute at 10,000 particles, however many play, and 50 MB at 490,000. All of them get stored.
-    With HOOKEAN_SOAK=1 it is a day."""
+    In `make soak` it is a day."""
     each = state_of(2500) * particles // 2500
     minutes = min(MINUTES, 120) if particles > 100_000 else MINUTES
     folder = tempfile.mkdtemp(dir="/dev/shm" if os.access("/dev/shm", os.W_OK) else tmp_path)
@@ -144,7 +144,7 @@ def test_shapes_at_rest_are_stored_ahead_of_the_budget_but_not_without_end() -> 
 
 
 def test_a_session_that_is_read_or_watched_is_in_use(monkeypatch: pytest.MonkeyPatch) -> None:
-    """GET, watching and exports are use, of a session that sleeps, too; listing all is none."""
+    """GET, watching and exports count as use, also of a session that sleeps; listing does not."""
     now = [1000.0]
     monkeypatch.setattr(managing.time, "monotonic", lambda: now[0])
 

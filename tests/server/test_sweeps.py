@@ -6,7 +6,6 @@ import asyncio
 import csv
 import io
 import json
-import os
 import signal
 import sqlite3
 import threading
@@ -24,12 +23,10 @@ from hookean_server.jobs.runner import Live, Pending, Runner
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 from hookean_server.store import Store
-from serving import CABLE, wait_for
+from serving import CABLE, SOAK, wait_for
 
 from .conftest import Served, problem
 from .jobbing import LONG, NET, end_all, ended, events, job_workers, parsed, post, product, rows_of, sweep, table
-
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 
 
 @pytest.fixture(scope="module")
@@ -150,7 +147,7 @@ def test_faults_of_a_request(jobs: httpx.Client, request_: Any, slug: str, point
 
 
 def test_a_sweep_larger_than_allowed_is_refused() -> None:
-    from hookean_server.tasks import perform
+    from hookean_server.workers.registry import perform
 
     body = json.dumps(sweep(10, 10)).encode()
     head, _ = perform({"task": "job", "options": {"items": 99}}, body, lambda: False)

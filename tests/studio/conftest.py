@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from .browser import FLAGS, Studio, context
+from .browser import FLAGS, LAPTOP, PHONE, Studio, context
 from .service import Service
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -26,13 +27,25 @@ def chromium() -> str:
     return CHROMIUM
 
 
-@pytest.fixture(scope="module")  # while it is open, Playwright keeps the loop of this thread from tests of other files
-def browser(chromium: str) -> Iterator[Any]:
+@pytest.fixture(scope="session")
+def launched(chromium: str) -> Iterator[tuple[Any, asyncio.AbstractEventLoop]]:
+    """One browser for all tests, and the loop that Playwright keeps running in this thread."""
     playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
     with playwright.sync_playwright() as driver:
+        loop = asyncio.get_running_loop()
         found = driver.chromium.launch(executable_path=chromium, args=FLAGS)
-        yield found
+        yield found, loop
+        asyncio._set_running_loop(loop)
         found.close()
+
+
+@pytest.fixture
+def browser(launched: tuple[Any, asyncio.AbstractEventLoop]) -> Iterator[Any]:
+    """The browser; tests of other files have the thread without the loop."""
+    found, loop = launched
+    asyncio._set_running_loop(loop)
+    yield found
+    asyncio._set_running_loop(None)
 
 
 @pytest.fixture(scope="session")
@@ -42,17 +55,46 @@ def service(tmp_path_factory: pytest.TempPathFactory, chromium: str) -> Iterator
     found.end()
 
 
-@pytest.fixture
-def open_studio(browser: Any, service: Service, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Opened]:
-    """Opens the page in browsers of different people, or of one with other eyes."""
-    opened: list[Studio] = []
+@pytest.fixture(scope="session")
+def people() -> dict[bool, Any]:
+    """Browsers of somebody who is logged in at the service, with fingers (True) or with a mouse, once there are such.
+    Scripts that were compiled for one page are there for the next."""
+    return {}
 
-    def opening(at: Service = service, login: bool = True, **options: Any) -> Studio:
-        made = Studio(context(browser, **options).new_page(), at)
+
+def known(people: dict[bool, Any], browser: Any, service: Service, fingers: bool) -> Any:
+    """An empty page of one of them, without what an earlier one kept."""
+    if fingers not in people:
+        people[fingers] = context(browser, has_touch=fingers)
+        first = Studio(people[fingers].new_page(), service)
+        first.start()
+        first.page.close()
+    people[fingers].clear_permissions()
+    page = people[fingers].new_page()
+    stored = {"origin": service.url, "storageTypes": "local_storage"}
+    people[fingers].new_cdp_session(page).send("Storage.clearDataForOrigin", stored)
+    return page
+
+
+@pytest.fixture
+def open_studio(
+    browser: Any, service: Service, people: dict[bool, Any], request: pytest.FixtureRequest, tmp_path: Path
+) -> Iterator[Opened]:
+    """Opens empty pages: of one who is logged in, with any eyes, or in a browser of its own, of another person."""
+    opened: list[Studio] = []
+    own: list[Any] = []
+
+    def opening(
+        size: dict[str, int] = LAPTOP, theme: str = "light", at: Service | None = None, alone: bool = False
+    ) -> Studio:
+        if alone or at:
+            own.append(context(browser))
+        page = own[-1].new_page() if alone or at else known(people, browser, service, fingers=size is PHONE)
+        page.set_viewport_size(size)
+        page.emulate_media(color_scheme=theme)
+        made = Studio(page, at or service)
         made.watch()
         opened.append(made)
-        if login:
-            made.start()
         return made
 
     yield opening
@@ -62,16 +104,28 @@ def open_studio(browser: Any, service: Service, request: pytest.FixtureRequest, 
             picture = tmp_path / f"{request.node.name}-{number}.png"
             studio.page.screenshot(path=picture)
             print(f"what was seen last: {picture}\n" + "\n".join(studio.unexpected()))
-        studio.page.context.close()
+        studio.page.close()
+    for made in own:
+        made.close()
+    for session in service.summaries():
+        if session["playing"]:  # or it plays on beside the next test
+            service.act(session["key"], "pause")
     wrong = [said for studio in opened for said in studio.unexpected()]
     if not failed:
         assert not wrong, wrong
 
 
 @pytest.fixture
-def studio(open_studio: Opened) -> Studio:
-    """The start page, logged in, as on a laptop."""
+def tab(open_studio: Opened) -> Studio:
+    """An empty page of one who is logged in, as on a laptop."""
     return open_studio()
+
+
+@pytest.fixture
+def studio(tab: Studio) -> Studio:
+    """The start page."""
+    tab.start()
+    return tab
 
 
 @pytest.hookimpl(wrapper=True)

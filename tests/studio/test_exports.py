@@ -21,16 +21,16 @@ FIGURE = "9.24-membrane"
 
 
 @pytest.fixture
-def membrane(studio: Studio) -> Studio:
+def membrane(tab: Studio) -> Studio:
     """The membrane at rest, as drawn."""
-    service = studio.service
+    service = tab.service
     if FIGURE not in [session["key"] for session in service.summaries()]:
         service.put(FIGURE, service.example(FIGURE))
         service.act(FIGURE, "play?fast=true")
         service.at_rest(FIGURE)
-    studio.open(FIGURE)
-    studio.rests_at(service.particles(FIGURE))
-    return studio
+    tab.open(FIGURE)
+    tab.rests_at(service.particles(FIGURE))
+    return tab
 
 
 def taken(studio: Studio, button: str, ending: str) -> Path:
@@ -115,7 +115,8 @@ def test_the_link_shows_the_same_scene(membrane: Studio, open_studio: Opened):
     membrane.page.get_by_text("The link is in the clipboard").wait_for()
     link = membrane.page.evaluate("() => navigator.clipboard.readText()")
     assert membrane.key in link and membrane.service.token not in link
-    other = Studio(membrane.page.context.new_page(), membrane.service)
+    other = open_studio()
+    assert other.page.context == membrane.page.context
     other.page.goto(link)
     other.drawing()
     other.rests_at(membrane.particles(), 1e-6)

@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
+
+from serving import SOAK
 
 from .browser import Studio, Wire
 from .service import equilibrium
 
 CABLE = "9.4-cable"
+
+
+@pytest.fixture
+def cable(tab: Studio, request: pytest.FixtureRequest) -> Studio:
+    """The figure in a session of this test."""
+    tab.service.put(request.node.name, tab.service.example(CABLE))
+    tab.open(request.node.name)
+    return tab
 
 
 def test_an_anchor_is_dragged_and_the_form_follows(studio: Studio):
@@ -49,81 +60,81 @@ WATCHED = """() => {
 }"""
 
 
-def test_what_is_drawn_can_be_taken_at_any_moment(studio: Studio):
+def test_what_is_drawn_can_be_taken_at_any_moment(cable: Studio):
     """While anchors and loads are read anew after an edit too: a press on nothing would turn the view instead."""
-    key = studio.choose(CABLE)
-    studio.press("Play")
-    studio.page.evaluate(WATCHED)
-    for _ in range(3):
-        studio.drag(0, 60, 40)
-        studio.settled()
-        studio.press("Undo")
-        studio.until(lambda: studio.service.summary(key)["undo"] == 0)
-    assert studio.page.evaluate("() => (clearTimeout(window.watching), window.missing)") == 0
+    key = cable.key
+    cable.press("Play")
+    cable.page.evaluate(WATCHED)
+    for _ in range(3 if SOAK else 1):
+        cable.drag(0, 60, 40)
+        cable.settled()
+        cable.press("Undo")
+        cable.until(lambda: cable.service.summary(key)["undo"] == 0)
+    assert cable.page.evaluate("() => (clearTimeout(window.watching), window.missing)") == 0
 
 
-def test_pause_step_undo_redo_and_reset(studio: Studio):
+def test_pause_step_undo_redo_and_reset(cable: Studio):
     """Each does in the service what its name says, and the page shows it."""
-    key, service = studio.choose(CABLE), studio.service
+    key, service = cable.key, cable.service
     start = np.array(service.client.get(f"/v1/sessions/{key}/topology").json()["start"])
-    studio.press("Play")
-    studio.until(lambda: service.summary(key)["playing"])
-    studio.until(lambda: np.abs(studio.particles() - start).max() > 1e-3, what="motion")
-    studio.press("Pause")
-    studio.until(lambda: not service.summary(key)["playing"])
+    cable.press("Play")
+    cable.until(lambda: service.summary(key)["playing"])
+    cable.until(lambda: np.abs(cable.particles() - start).max() > 1e-3, what="motion")
+    cable.press("Pause")
+    cable.until(lambda: not service.summary(key)["playing"])
     paused = service.summary(key)["iteration"]
-    studio.rests_at(service.particles(key))
-    studio.press("Step")
-    studio.until(lambda: service.summary(key)["iteration"] > paused)
-    studio.rests_at(service.particles(key))
+    cable.rests_at(service.particles(key))
+    cable.press("Step")
+    cable.until(lambda: service.summary(key)["iteration"] > paused)
+    cable.rests_at(service.particles(key))
     stepped = service.summary(key)["iteration"]
-    studio.page.wait_for_timeout(300)
+    cable.page.wait_for_timeout(300)
     assert service.summary(key)["iteration"] == stepped
 
     ends = service.anchors(key)
-    studio.drag(0, 60, 40)
-    studio.settled()
+    cable.drag(0, 60, 40)
+    cable.settled()
     moved = service.anchors(key)
     assert moved != ends
-    studio.press("Undo")
-    studio.until(lambda: service.anchors(key) == ends)
-    studio.press("Redo")
-    studio.until(lambda: service.anchors(key) == moved)
-    studio.press("Pause")
-    studio.press("Reset")
-    studio.until(lambda: service.summary(key)["iteration"] == 0)
-    studio.rests_at(service.particles(key))
+    cable.press("Undo")
+    cable.until(lambda: service.anchors(key) == ends)
+    cable.press("Redo")
+    cable.until(lambda: service.anchors(key) == moved)
+    cable.press("Pause")
+    cable.press("Reset")
+    cable.until(lambda: service.summary(key)["iteration"] == 0)
+    cable.rests_at(service.particles(key))
 
 
-def test_a_pause_holds_though_an_edit_overtakes_its_answer(studio: Studio):
+def test_a_pause_holds_though_an_edit_overtakes_its_answer(cable: Studio):
     """What is still on its way of a drag, or is typed quickly, does not set going what a hand has just stopped."""
-    key, service, page = studio.choose(CABLE), studio.service, studio.page
-    wire = Wire(studio)
-    studio.press("Play")
-    studio.until(lambda: service.summary(key)["playing"])
+    key, service, page = cable.key, cable.service, cable.page
+    wire = Wire(cable)
+    cable.press("Play")
+    cable.until(lambda: service.summary(key)["playing"])
     page.wait_for_function("() => document.querySelector('[aria-pressed=true]')?.textContent === 'Play'")
     revision = service.summary(key)["revision"]
     wire.keep()
-    studio.press("Pause")
+    cable.press("Pause")
     page.get_by_label("Drag").first.fill("0.25")
     page.keyboard.press("Enter")
-    studio.until(lambda: service.summary(key)["revision"] > revision)
+    cable.until(lambda: service.summary(key)["revision"] > revision)
     wire.give()
-    studio.settled()
+    cable.settled()
     assert not service.summary(key)["playing"]
 
 
-def test_the_same_picture_after_loading_anew(studio: Studio):
+def test_the_same_picture_after_loading_anew(cable: Studio):
     """The page holds no state: what it shows is what the service has."""
-    key = studio.choose(CABLE)
-    studio.press("To rest")
-    studio.until(lambda: studio.service.summary(key)["status"] == "converged")
-    studio.rests_at(studio.service.particles(key))
-    drawn, places = studio.particles(), []
+    key = cable.key
+    cable.press("To rest")
+    cable.until(lambda: cable.service.summary(key)["status"] == "converged")
+    cable.rests_at(cable.service.particles(key))
+    drawn, places = cable.particles(), []
     for _ in range(2):
-        studio.page.reload()
-        studio.drawing()
-        assert studio.key == key
-        studio.rests_at(drawn, 1e-12)
-        places.append([studio.place(particle) for particle in range(11)])
+        cable.page.reload()
+        cable.drawing()
+        assert cable.key == key
+        cable.rests_at(drawn, 1e-12)
+        places.append([cable.place(0), *map(cable.seen, range(1, 11))])
     assert np.abs(np.subtract(*places)).max() < 0.01

@@ -42,7 +42,7 @@ MESH = {
 
 def session(open_studio: Opened, scene: dict[str, Any], name: str, size: dict[str, int] = LAPTOP) -> Studio:
     """A session of a scene, paused at its start."""
-    studio = open_studio(viewport=size)
+    studio = open_studio(size)
     studio.service.put(name, scene)
     studio.open(name)
     return studio
@@ -51,7 +51,8 @@ def session(open_studio: Opened, scene: dict[str, Any], name: str, size: dict[st
 @SIZES
 def test_a_refusal_covers_nothing_on_the_start_page(open_studio: Opened, size: dict[str, int]) -> None:
     """Also where the page was scrolled; Esc closes it."""
-    studio = open_studio(viewport=size)
+    studio = open_studio(size)
+    studio.start()
     studio.allowed.append("422")
     page = studio.page
     page.get_by_role("button", name="Open a file").wait_for()

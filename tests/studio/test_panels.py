@@ -21,15 +21,15 @@ NAMED = {
 
 
 @pytest.fixture
-def cable(studio: Studio, request: pytest.FixtureRequest) -> Studio:
+def cable(tab: Studio, request: pytest.FixtureRequest) -> Studio:
     """A cable at rest, in a session of this test."""
     key = re.sub(r"\W+", "-", request.node.name)
-    studio.service.put(key, NAMED)
-    studio.service.act(key, "play?fast=true")
-    studio.service.at_rest(key)
-    studio.open(key)
-    studio.rests_at(equilibrium(NAMED))
-    return studio
+    tab.service.put(key, NAMED)
+    tab.service.act(key, "play?fast=true")
+    tab.service.at_rest(key)
+    tab.open(key)
+    tab.rests_at(equilibrium(NAMED))
+    return tab
 
 
 @pytest.mark.parametrize(
@@ -140,17 +140,17 @@ def test_a_locked_axis_keeps_the_others(cable: Studio):
     assert held[0][:2] == pytest.approx(before[:2], abs=1e-9) and held[0][2] > before[2] + 0.1
 
 
-def test_a_warning_of_the_report_is_seen_with_its_particles(studio: Studio):
+def test_a_warning_of_the_report_is_seen_with_its_particles(tab: Studio):
     """A loaded particle that nothing holds is named in a sentence; choosing that brings it into view, ringed in red."""
     loose = {**CABLE, "particles": [*CABLE["particles"], [20.0, 0.0, 0.0]]}
     loose["forces"] = [CABLE["forces"][0], {**CABLE["forces"][1], "particles": [0, 1, 2, 3, 4, 5, 6]}]
-    studio.service.put("loose", loose)
-    studio.open("loose")
-    page = studio.page
+    tab.service.put("loose", loose)
+    tab.open("loose")
+    page = tab.page
     warning = page.get_by_role("list", name="Warnings").get_by_role("button", name="particle 6")
     assert "no spring" in warning.inner_text()
     warning.click()
-    x, y = studio.place(6)
+    x, y = tab.place(6)
     box = page.locator("canvas").first.bounding_box()
     assert box is not None
     assert box["x"] < x < box["x"] + box["width"] and box["y"] < y < box["y"] + box["height"]

@@ -88,10 +88,11 @@ STACKED = """() => {
 def shown(open_studio: Opened, where: str, size: dict[str, int], theme: str) -> Studio:
     """The start page with more sessions than it has room for, or a session in which all panels are open, something is
     picked and something warned of."""
-    studio = open_studio(viewport=size, color_scheme=theme, has_touch=size is PHONE)
+    studio = open_studio(size, theme)
     if where == "start":
         for number in range(9):
             studio.service.put(f"listed{number}", CABLE)
+        studio.start()
         studio.page.get_by_text("listed8").wait_for()
         studio.page.get_by_role("heading", name="Figures").wait_for()
         studio.page.locator("img").first.wait_for()

@@ -12,15 +12,16 @@ from serving import SOAK
 from .browser import Studio, net
 
 SECONDS = 7200.0 if SOAK else 0.0
-SIDE = 100
-DRAGS = 100 if SOAK else 8
+SIDE = 100 if SOAK else 50
+DRAGS = 100 if SOAK else 5
+WARM = 3 if SOAK else 1
 """In one life of the page; then it is loaded anew."""
 FRAME = 4 * (3 * SIDE**2 + 2 * SIDE * (SIDE - 1) + 3 * 4)
 """Bytes of one frame's numbers: positions, forces of springs, reactions."""
-KEPT = (20 if SOAK else 14) * FRAME
+KEPT = 20 * FRAME if SOAK else 1.5e6
 """Bytes that a life may grow by: for code that is compiled while it runs (1.6 MB by the hundredth drag, nothing after),
-a minute of charts and the text of a scene on its way (1.4 MB). A drag has some 25 frames: two left behind by each, in a
-long life one by each fifth, are more."""
+a minute of charts and the text of a scene on its way (1.4 MB). A drag has some 25 frames: one in a hundred, in
+a short life one in four, left behind are more."""
 
 CONTEXTS = """() => {
     window.contexts = 0;
@@ -44,7 +45,7 @@ class Weight:
         """Bytes of scripts and of their arrays, the least of some seconds, for messages on their way come and go;
         counts of nodes, listeners and drawing contexts."""
         used = []
-        for _ in range(8):
+        for _ in range(8 if SOAK else 3):
             self.devtools.send("HeapProfiler.collectGarbage")
             heap: dict[str, Any] = self.devtools.send("Runtime.getHeapUsage")
             used.append(heap["usedSize"] + heap.get("backingStorageSize", 0))
@@ -58,9 +59,9 @@ class Weight:
         }
 
 
-def test_drags_pauses_and_reloads_leave_nothing_behind(studio: Studio, capsys: pytest.CaptureFixture[str]):
+def test_drags_pauses_and_reloads_leave_nothing_behind(tab: Studio, capsys: pytest.CaptureFixture[str]):
     """Memory within the bound, no nodes or listeners for each drag, one drawing context."""
-    page, service = studio.page, studio.service
+    studio, page, service = tab, tab.page, tab.service
     page.add_init_script(f"({CONTEXTS})()")
     scene = net(SIDE)
     scene["settings"]["drag"] = 0.5  # else each jump of the anchor stays in the net, until it flies across the picture
@@ -72,7 +73,7 @@ def test_drags_pauses_and_reloads_leave_nothing_behind(studio: Studio, capsys: p
     while time.monotonic() < until or len(lives) < 2:
         page.reload()
         studio.drawing()
-        for _ in range(3):  # what is made once is made
+        for _ in range(WARM):  # what is made once is made
             played_dragged_paused(studio)
         first = weight.now()
         for _ in range(DRAGS):

@@ -39,8 +39,10 @@ def drop(studio: Studio, name: str, content: bytes) -> None:
 # who is let in
 
 
-def test_the_token_logs_in_once_and_leaves_the_address(studio: Studio):
+def test_the_token_logs_in_once_and_leaves_the_address(open_studio: Opened):
     """Neither address nor history keeps the token; the cookie cannot be read by scripts; a reload needs no token."""
+    studio = open_studio(alone=True)
+    studio.start()
     page, token = studio.page, studio.service.token
     page.get_by_role("heading", name="Figures").wait_for()
     assert token not in page.url and token not in page.content()
@@ -51,7 +53,7 @@ def test_the_token_logs_in_once_and_leaves_the_address(studio: Studio):
 
 def test_who_has_no_token_is_told_what_to_do(open_studio: Opened):
     """The door says which command prints the address; a wrong token is refused in a sentence, the right one let in."""
-    studio = open_studio(login=False)
+    studio = open_studio(alone=True)
     studio.allowed = ["401"]
     page = studio.page
     page.goto(studio.service.url)
@@ -67,7 +69,7 @@ def test_who_has_no_token_is_told_what_to_do(open_studio: Opened):
 def test_the_command_lets_a_browser_in(open_studio: Opened, tmp_path: Path):
     """The file that `hookean studio` gives a browser leads it to the page, logged in; then the file is gone, and the
     address and the history have no code."""
-    studio = open_studio(login=False)
+    studio = open_studio(alone=True)
     page, seen, stub = studio.page, tmp_path / "seen", tmp_path / "browser.py"
     stub.write_text(f"import pathlib, sys\npathlib.Path({str(seen)!r}).write_text(sys.argv[1])\n")
     state = {"HOOKEAN_STATE": str(studio.service.folder / "state"), "BROWSER": f"{sys.executable} {stub} %s"}
@@ -84,7 +86,7 @@ def test_the_command_lets_a_browser_in(open_studio: Opened, tmp_path: Path):
 
 def test_a_link_needs_a_login_of_its_own(open_studio: Opened):
     """The link to a session holds no secret: in another browser it leads to the door."""
-    studio = open_studio(login=False)
+    studio = open_studio(alone=True)
     studio.allowed = ["401"]
     studio.service.put("linked", CABLE)
     studio.page.goto(f"{studio.service.url}/#s=linked")
@@ -181,6 +183,7 @@ def test_what_the_store_lost_is_named(open_studio: Opened, tmp_path: Path):
                 file.unlink()
         service.start()
         studio = open_studio(at=service)
+        studio.start()
         told = studio.page.get_by_role("status", name="The store")
         told.wait_for()
         assert "The roof" in told.inner_text() and "damaged-" in told.inner_text()

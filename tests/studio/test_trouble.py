@@ -30,7 +30,8 @@ def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, morta
     cookie, so that the page asks to be let in, and is there again, on the same revision, once any page of this browser
     was; what was edited before is there, what is edited after arrives."""
     mortal.put("cable", CABLE)
-    studio = open_studio(mortal)
+    studio = open_studio(at=mortal)
+    studio.start()
     studio.allowed = GONE
     studio.open("cable")
     studio.press("To rest")
@@ -64,23 +65,24 @@ def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, morta
     studio.rests_at(truth)
 
 
-def test_a_session_that_is_forgotten_elsewhere_is_told_to_be_gone(studio: Studio):
-    studio.allowed = ["404", "WebSocket"]
-    studio.service.put("short-lived", CABLE)
-    studio.open("short-lived")
-    studio.service.client.delete("/v1/sessions/short-lived")
-    studio.page.get_by_text("Gone", exact=True).wait_for()
+def test_a_session_that_is_forgotten_elsewhere_is_told_to_be_gone(tab: Studio):
+    tab.allowed = ["404", "WebSocket"]
+    tab.service.put("short-lived", CABLE)
+    tab.open("short-lived")
+    tab.service.client.delete("/v1/sessions/short-lived")
+    tab.page.get_by_text("Gone", exact=True).wait_for()
 
 
-def test_a_link_to_no_session_says_so(studio: Studio):
-    studio.allowed = ["404", "WebSocket"]
-    studio.page.goto(f"{studio.service.url}/#s=never-made")
-    studio.page.get_by_text("Gone", exact=True).wait_for()
+def test_a_link_to_no_session_says_so(tab: Studio):
+    tab.allowed = ["404", "WebSocket"]
+    tab.page.goto(f"{tab.service.url}/#s=never-made")
+    tab.page.get_by_text("Gone", exact=True).wait_for()
 
 
 def test_two_people_edit_one_session(open_studio: Opened):
     """Each sees what the other did; at the end both show the same, and that is what the service has."""
-    one, other = open_studio(), open_studio()
+    one, other = open_studio(), open_studio(alone=True)
+    other.start()
     service = one.service
     service.put("shared", CABLE)
     one.open("shared")
@@ -101,49 +103,49 @@ def test_two_people_edit_one_session(open_studio: Opened):
     other.rests_at(rest)
 
 
-def test_grasshopper_gives_the_session_another_scene(studio: Studio):
+def test_grasshopper_gives_the_session_another_scene(tab: Studio):
     """A scene with other particles under the same key: the page shows it, and nothing of the one before."""
-    studio.service.put("redrawn", CABLE)
-    studio.open("redrawn")
+    tab.service.put("redrawn", CABLE)
+    tab.open("redrawn")
     longer = {**CABLE, "particles": [*CABLE["particles"], [12.0, 0.0, 0.0]]}
     longer["forces"] = [{**CABLE["forces"][0], "particles": [[i, i + 1] for i in range(6)]}, CABLE["forces"][1]]
     longer["anchors"] = [{"particles": [0, 6]}]
-    studio.service.put("redrawn", longer)
-    studio.until(lambda: len(studio.particles()) == 7)
-    studio.press("To rest")
-    studio.rests_at(equilibrium(longer))
+    tab.service.put("redrawn", longer)
+    tab.until(lambda: len(tab.particles()) == 7)
+    tab.press("To rest")
+    tab.rests_at(equilibrium(longer))
 
 
-def test_what_is_done_before_the_service_greets_again_is_done(studio: Studio):
+def test_what_is_done_before_the_service_greets_again_is_done(tab: Studio):
     """An anchor is dragged when the connection is there again, and the service's greeting still on its way: the edit
     counts, and the form goes on to its equilibrium."""
-    service = studio.service
+    service = tab.service
     service.put("greeted", CABLE)
-    studio.open("greeted")
-    wire = Wire(studio)
-    studio.press("To rest")
-    studio.until(lambda: service.summary("greeted")["status"] == "converged")
-    studio.settled()
+    tab.open("greeted")
+    wire = Wire(tab)
+    tab.press("To rest")
+    tab.until(lambda: service.summary("greeted")["status"] == "converged")
+    tab.settled()
     revision = service.summary("greeted")["revision"]
     wire.keep()
     wire.cut()
-    studio.until(lambda: len(wire.sockets) == 2 and wire.kept)
-    studio.drag(0, 40, 30, steps=1)
-    studio.until(lambda: service.summary("greeted")["revision"] > revision)
+    tab.until(lambda: len(wire.sockets) == 2 and wire.kept)
+    tab.drag(0, 40, 30, steps=1)
+    tab.until(lambda: service.summary("greeted")["revision"] > revision)
     wire.give()
-    studio.until(lambda: service.summary("greeted")["status"] == "converged")
+    tab.until(lambda: service.summary("greeted")["status"] == "converged")
 
 
-def test_a_frame_that_cannot_be_read_is_told_of(studio: Studio):
+def test_a_frame_that_cannot_be_read_is_told_of(tab: Studio):
     """Also while a drag is under way, whose edits are told the same: the page shows nothing that it has not read."""
-    service, page = studio.service, studio.page
+    service, page = tab.service, tab.page
     service.put("broken", CABLE)
-    studio.open("broken")
-    wire = Wire(studio)
+    tab.open("broken")
+    wire = Wire(tab)
     revision = service.summary("broken")["revision"]
     wire.keep()
-    studio.drag(0, 40, 30)
-    studio.until(lambda: service.summary("broken")["revision"] > revision)
+    tab.drag(0, 40, 30)
+    tab.until(lambda: service.summary("broken")["revision"] > revision)
     wire.sockets[-1].send(b"no frame")
     page.get_by_text("Not readable").wait_for()
     told = page.get_by_text("a frame that is shorter than its header")

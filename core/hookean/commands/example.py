@@ -4,25 +4,54 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from hookean.commands import outputs
+from hookean.commands import command, outputs
 from hookean.commands.relax import bad, check_picture
 from hookean.errors import InputError
 
 if TYPE_CHECKING:
-    from hookean.example import Example, Outcome
+    from hookean.commands.examples import Example, Outcome
 
 FULFILLED, MISSED, BAD_INPUT = 0, 1, 2
 
 
+app = command.new()
+
+
+@app.command()
+def example(
+    figure: Annotated[
+        str | None, typer.Argument(help="Figure or name, such as 9.11, or the folder of a copy; without it a list")
+    ] = None,
+    picture: Annotated[str | None, typer.Option(metavar="PATH", help="Draw it to this .png file or folder/")] = None,
+    copy: Annotated[
+        str | None, typer.Option(metavar="FOLDER", help="Copy it to this new folder, or into one that is there")
+    ] = None,
+    all_to: Annotated[
+        Path | None, typer.Option("--figures", help="Run and draw all, a folder for each in this one")
+    ] = None,
+) -> None:
+    """List the figures of the chapter that hookean implements, or run one and check its numbers.
+
+    Exits with 0 if all numbers are as expected, 1 if one is not, 2 for bad input. A copy may give other numbers: they
+    are printed beside those it had.
+    """
+    if all_to is not None:
+        raise typer.Exit(figures(all_to))
+    if figure is None and picture is None and copy is None:
+        raise typer.Exit(listing())
+    raise typer.Exit(run(figure, picture, copy))
+
+
 def listing() -> int:
     """All examples in a table; one line each where it goes to a file or a pipe."""
-    from hookean.example import examples
+    from rich.console import Console
+    from rich.table import Table
+
+    from hookean.commands.examples import examples
 
     rows = [(", ".join(e.expected.figures), e.name, e.expected.title) for e in examples()]
     console = Console()
@@ -42,7 +71,7 @@ def listing() -> int:
 def run(wanted: str | None, picture: str | None, copy: str | None) -> int:
     """Run an example, or a copy of one that was changed: its numbers beside those expected; 1 where one of an example
     that was not changed is off."""
-    from hookean.example import find
+    from hookean.commands.examples import find
 
     try:
         if wanted is None:
@@ -93,7 +122,7 @@ def _told(example: Example, outcome: Outcome) -> int:
 def figures(target: Path) -> int:
     """Run all examples, check their numbers, draw each to `target/NAME/picture.png` and write the gallery; 1 where a
     number is off."""
-    from hookean.example import examples, gallery
+    from hookean.commands.examples import examples, gallery
 
     missed = 0
     known = examples()

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 from typing import Any
 
-from hookean.catalogue import catalogue
+import typer
+
+from hookean.commands import command
+
+app = command.new()
+
+
+@app.command()
+def forces() -> None:
+    """List all forces with their formulas, columns, defaults and units."""
+    typer.echo(text())
 
 
 def text() -> str:
     """For each force its kind, formula and summary, and a line for each field: name, meaning, default, choices."""
+    from hookean.scene.catalogue import catalogue
+
     return "\n\n".join("\n".join(_force(entry)) for entry in catalogue())
 
 

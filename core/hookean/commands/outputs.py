@@ -28,7 +28,7 @@ def place(given: str | None, source: Path, ending: str, *, many: bool = False) -
 
 def check(targets: Iterable[Path | None], sources: Iterable[Path | None]) -> None:
     """InputError where a target is no possible file, is one of the sources, or another target."""
-    from hookean.files.threedm_atomic import check_target
+    from hookean.atomic_write import check_target
 
     read, seen = [source for source in sources if source is not None], set[Path]()
     for target in targets:

@@ -8,11 +8,11 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hookean.commands import outputs
+from hookean.commands import command, outputs
 from hookean.errors import InputError
 
 if TYPE_CHECKING:
@@ -25,17 +25,35 @@ SHOW_AFTER = 0.5  # seconds of solving before a progress line appears
 
 @dataclass(frozen=True)
 class Options:
-    """What the command was given."""
+    """Relax files: cables, nets and membranes go to equilibrium. The input is never changed.
 
-    files: list[Path]
-    output: str | None  # this and the next three as typed: a slash at the end says folder
-    recipe: Path | None
-    explain: bool
-    report: str | None
-    csv: str | None
-    picture: str | None
-    check: Path | None
-    quiet: bool
+    Exits with 0 if all converged, 1 if a limit is exceeded, 2 for bad input, 3 where there is no equilibrium.
+
+    Without a recipe, the names of layers (springs, cables, membrane, anchors, loads, floor, geometry) and the user text
+    of objects (stiffness, rest_factor, divide, load, axes ...) define the model; without such layers curves become
+    springs and meshes membranes, held at loose ends and naked vertices. Numbers are in m, N and s.
+    --explain prints how each file is read. Folders to write to are made; where there are many files, or with a slash
+    at its end, a path is a folder, and the files in it are named as their input.
+    """
+
+    files: Annotated[list[Path], typer.Argument(help=".3dm, .obj, .json or .npz files")]
+    output: Annotated[
+        str | None,
+        typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file to write, or a folder/"),
+    ] = None
+    recipe: Annotated[
+        Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
+    ] = None
+    explain: Annotated[bool, typer.Option("--explain", help="Print how the files are read; solve nothing")] = False
+    report: Annotated[
+        str | None, typer.Option(metavar="PATH", help="Everything as JSON; a file or folder/, as for the next two")
+    ] = None
+    csv: Annotated[str | None, typer.Option(metavar="PATH", help="A row for each element and reaction")] = None
+    picture: Annotated[str | None, typer.Option(metavar="PATH", help="A picture (PNG) of the result")] = None
+    check: Annotated[Path | None, typer.Option(help="Limits (TOML, JSON) of force, strain, displacement, reaction")] = (
+        None
+    )
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only what is wrong")] = False
 
 
 @dataclass(frozen=True)
@@ -78,8 +96,8 @@ def run(options: Options) -> int:
 
 
 def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] | None, str], quiet: bool) -> int:
+    from hookean.atomic_write import put
     from hookean.files.relax_file import LimitsError, relax_file, report_json
-    from hookean.files.threedm_atomic import put
 
     fault: InputError | None = None
     with _progress(job.source.name, quiet) as progress:
@@ -95,7 +113,7 @@ def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] 
     if job.csv is not None:
         put(job.csv, found.csv.encode(), lambda back: None)
     if job.picture is not None:
-        from hookean.picture import render
+        from hookean.pictures.picture import render
 
         render(found.result, job.picture, scene=found.scene, title=job.source.stem)
     tell(job.source, [*found.warnings, *forgotten(job.source, recipe)])
@@ -235,3 +253,6 @@ def _progress(name: str, quiet: bool) -> Iterator[Callable[[int, float], None] |
     finally:
         if shown:
             line.stop()
+
+
+app = command.taking(Options, run)

@@ -8,39 +8,54 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 
-from hookean import cells
-from hookean.commands import outputs
-from hookean.commands import relax as command
+from hookean.commands import outputs, relax
+from hookean.commands.command import taking
 from hookean.errors import InputError
+from hookean.files import cells
 
 if TYPE_CHECKING:
     from hookean.files.readers import Source
     from hookean.files.relax_file import FileResult
-    from hookean.result import Result
-    from hookean.simulation import Simulation
+    from hookean.running.result import Result
+    from hookean.running.simulation import Simulation
 
-ENDED, BAD_INPUT, RESTLESS, STOPPED = command.CONVERGED, command.BAD_INPUT, command.NOT_CONVERGED, command.STOPPED
+ENDED, BAD_INPUT, RESTLESS, STOPPED = relax.CONVERGED, relax.BAD_INPUT, relax.NOT_CONVERGED, relax.STOPPED
 SHAPES = 4  # drawn over each other, at most twice as many: more would crowd the legend
 
 
 @dataclass(frozen=True)
 class Options:
-    """What the command was given; `csv` and `stream` may be `-`, outputs end in a slash for a folder."""
+    """Run a file in motion: it bounces, anchors move, loads change. The input is never changed.
 
-    source: Path
-    recipe: Path | None
-    script: Path | None
-    stream: str | None
-    frames: int | None
-    csv: str | None
-    picture: str | None
-    output: str | None
-    quiet: bool
+    Ends at rest, after --frames, or with the stream; exits with 0 then, with 2 for bad input, with 3 if it diverged or
+    never came to rest, with 130 after Ctrl-C. The frames until then are written in each case.
+    """
+
+    source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json or .npz file")]
+    recipe: Annotated[
+        Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
+    ] = None
+    script: Annotated[
+        Path | None, typer.Option(help="Paths of anchors and forces, and drives (TOML, JSON), in the scene's units")
+    ] = None
+    stream: Annotated[str | None, typer.Option(help="Values over time for the drives (CSV); - is standard input")] = (
+        None
+    )
+    frames: Annotated[int | None, typer.Option(help="Stop after so many frames", min=0)] = None
+    csv: Annotated[
+        str | None, typer.Option(metavar="PATH", help="A row for each frame, as it comes; - is standard output")
+    ] = None
+    picture: Annotated[
+        str | None, typer.Option(metavar="PATH", help="A picture (PNG) of the frames over each other")
+    ] = None
+    output: Annotated[
+        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file for the last shape")
+    ] = None
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only what is wrong")] = False
 
 
 @dataclass(frozen=True)
@@ -91,9 +106,9 @@ def run(options: Options) -> int:
                     fault, code = error, BAD_INPUT
             if seen.result is not None:
                 _conclude(options, to, read, running, seen, code)
-        return command.bad(fault) if fault is not None else code
+        return relax.bad(fault) if fault is not None else code
     except InputError as error:
-        return command.bad(error)
+        return relax.bad(error)
     except KeyboardInterrupt:
         typer.echo(f"hookean: {options.source.name}: stopped, nothing written", err=True)
         return STOPPED
@@ -109,7 +124,7 @@ def _targets(options: Options) -> _Targets:
         outputs.place(None if options.csv == "-" else options.csv, source, ".csv"),
     )
     stream = None if options.stream in (None, "-") else Path(str(options.stream))
-    command.check_picture(to.picture)
+    relax.check_picture(to.picture)
     outputs.check(to.files, (source, options.recipe, options.script, stream))
     check_output(to.output, source, folder=False)
     return to
@@ -117,14 +132,14 @@ def _targets(options: Options) -> _Targets:
 
 def _ready(options: Options) -> tuple[Source, Simulation]:
     from hookean.files.readers import about
-    from hookean.files.recipe import parse_recipe
-    from hookean.files.recipe_check import check_script
+    from hookean.files.recipe.check import check_script
     from hookean.files.relax_file import open_file
-    from hookean.script import Script
-    from hookean.simulation import Simulation
-    from hookean.system import compile
+    from hookean.running.script import Script
+    from hookean.running.simulation import Simulation
+    from hookean.scene.text import parse_tables
+    from hookean.system.system import compile
 
-    recipe = None if options.recipe is None else command.text_of(options.recipe)
+    recipe = None if options.recipe is None else relax.text_of(options.recipe)
     name = str(options.recipe) if options.recipe is not None else ""
     read = open_file(options.source, recipe, name)
     with about(name or options.source.name):
@@ -133,9 +148,9 @@ def _ready(options: Options) -> tuple[Source, Simulation]:
         return read, read.simulation
     if options.script is None:
         return read, Simulation(read.scene, None, options.stream)
-    text = command.text_of(options.script)
+    text = relax.text_of(options.script)
     with about(str(options.script)):
-        check_script(parse_recipe(text, str(options.script)))
+        check_script(parse_tables(text, str(options.script)))
     script = Script.read(text, str(options.script))
     with about(str(options.script)):
         return read, Simulation(read.scene, script, options.stream)
@@ -168,6 +183,8 @@ def _heading(result: Result) -> list[Any]:
 
 
 def _row(result: Result, running: Simulation) -> list[Any]:
+    import numpy as np
+
     moved = np.linalg.norm(result.particles - running.system.x, axis=1).max(initial=0.0)
     reactions = np.asarray(result.reactions["force"]).reshape(-1, 3)
     numbers = [
@@ -179,6 +196,8 @@ def _row(result: Result, running: Simulation) -> list[Any]:
 
 def _forces(result: Result) -> list[tuple[str, str, float]]:
     """Name, unit and largest force (or moment) of each force that has one; tension +, compression -."""
+    import numpy as np
+
     from hookean.forces import KINDS
 
     found: list[tuple[str, str, float]] = []
@@ -225,7 +244,7 @@ def _conclude(options: Options, to: _Targets, read: Source, running: Simulation,
     assert result is not None
     found = conclude(read, options.source, running.system, result, to.output)
     if to.picture is not None:
-        from hookean.sheet import Panel, sheet
+        from hookean.pictures.sheet import Panel, sheet
 
         frames = {f"{time:.4g} {result.units.time}": x for time, x in seen.shapes if time < result.time}
         sheet([Panel(result, read.scene, frames=frames)], to.picture, title=options.source.stem)
@@ -234,7 +253,7 @@ def _conclude(options: Options, to: _Targets, read: Source, running: Simulation,
 
 def _tell(options: Options, to: _Targets, found: FileResult, seen: _Seen, code: int) -> None:
     result, name = found.result, options.source.name
-    command.tell(options.source, [*found.warnings, *command.forgotten(options.source, options.recipe)])
+    relax.tell(options.source, [*found.warnings, *relax.forgotten(options.source, options.recipe)])
     how = {STOPPED: "stopped", RESTLESS: "not at rest", BAD_INPUT: "broken off"}.get(code, "")
     said = f"{seen.frames} frames, {result.time:.6g} {result.units.time}. {result.message}"
     if how:
@@ -243,5 +262,8 @@ def _tell(options: Options, to: _Targets, found: FileResult, seen: _Seen, code: 
         aside = options.csv == "-"  # which has standard output to itself
         written = ", ".join(str(target) for target in to.files if target is not None)
         typer.echo(f"{name}: {said}{f' -> {written}' if written else ''}", err=aside)
-        for line in command.summary(found):
+        for line in relax.summary(found):
             typer.echo(f"  {line}", err=aside)
+
+
+app = taking(Options, run)

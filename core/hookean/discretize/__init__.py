@@ -35,11 +35,11 @@ if TYPE_CHECKING:
     from hookean.discretize.meshes import triangles as triangles
     from hookean.discretize.meshes import vertices as vertices
     from hookean.discretize.meshes import weld as weld
+    from hookean.discretize.meshing import mesh_surface as mesh_surface
     from hookean.discretize.nurbs import NurbsCurve as NurbsCurve
     from hookean.discretize.nurbs import NurbsSurface as NurbsSurface
     from hookean.discretize.nurbs import nurbs_curve as nurbs_curve
     from hookean.discretize.nurbs import nurbs_surface as nurbs_surface
-    from hookean.discretize.surfaces import mesh_surface as mesh_surface
     from hookean.discretize.warpweft import threads as threads
     from hookean.discretize.warpweft import warp_weft as warp_weft
 
@@ -51,7 +51,7 @@ _NAMES = {
     "meshes": "as_mesh boundary clothed_vertices corners diagonals edges join naked_edges naked_vertices on_boundary "
     "triangles vertices weld",
     "nurbs": "NurbsCurve NurbsSurface nurbs_curve nurbs_surface",
-    "surfaces": "mesh_surface",
+    "meshing": "mesh_surface",
     "warpweft": "threads warp_weft",
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from hookean.discretize import seams
 from hookean.discretize.meshes import as_mesh, join, tidy_faces, weld
-from hookean.discretize.surfaces import compact, counts, grid_faces, mesh_surface, sample
+from hookean.discretize.surfaces import compact, counts, grid_faces, mesh_grid, sample
 from hookean.discretize.triangulate import plane_coordinates, triangulate
 from hookean.errors import InputError
-from hookean.mesh import Mesh
+from hookean.values.mesh import Mesh
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -47,7 +47,7 @@ def mesh_faces(geometry: Any, u: int, v: int, name: str = "") -> Mesh:
     if hasattr(geometry, "Faces") and hasattr(geometry, "Edges"):
         return _mesh_brep([geometry.Faces[i] for i in range(len(geometry.Faces))], geometry.Edges, u, v, pointer)
     if hasattr(geometry, "IsoCurve") or hasattr(geometry, "domain_u"):
-        return mesh_surface(geometry, u, v)
+        return mesh_grid(geometry, u, v)
     raise InputError(pointer, f"{type(geometry).__name__} has no faces; give a Brep, BrepFace, Extrusion or surface")
 
 

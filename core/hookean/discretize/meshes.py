@@ -1,6 +1,6 @@
 """What a mesh is made of: edges, boundary, corners, warp and weft, diagonals, triangles.
 
-Every function takes a `hookean.mesh.Mesh`, a rhino3dm Mesh, a COMPAS Mesh or a pair (vertices, faces).
+Every function takes a `hookean.values.mesh.Mesh`, a rhino3dm Mesh, a COMPAS Mesh or a pair (vertices, faces).
 Edges are vertex pairs `(m, 2)`, the lower index first, in order of first appearance round the faces;
 `as_mesh(mesh).vertices[edges(mesh)]` are the lines.
 """
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from hookean.discretize.duplicates import unique_points
 from hookean.discretize.triangulate import newell, plane_coordinates, triangulate
 from hookean.errors import InputError
-from hookean.mesh import Mesh
+from hookean.values.mesh import Mesh
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

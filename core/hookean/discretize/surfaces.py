@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hookean.discretize.meshes import tidy_faces
 from hookean.errors import InputError
-from hookean.mesh import Mesh
+from hookean.values.mesh import Mesh
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -17,22 +17,8 @@ Index = NDArray[np.int64]
 _SAME = 1e-6  # points nearer than this, relative to the surface's size, are one
 
 
-def mesh_surface(surface: Any, u: int, v: int) -> Mesh:
-    """A surface as a mesh of u by v quads, at even steps over its two parameter domains.
-
-    Vertex (i, j) is S(u0 + i (u1 - u0) / u, v0 + j (v1 - v0) / v), numbered with j fastest; face (i, j)
-    runs i j, i+1 j, i+1 j+1, i j+1, so that its normal is S_u x S_v and its first side runs along u.
-    A side collapsed to a point (the pole of a sphere) becomes one vertex and its quads triangles
-    `(a, b, c, c)` with c the pole; a closed surface is welded along its seam.
-
-    Takes a rhino3dm or COMPAS surface or a `NurbsSurface`; a Brep, BrepFace or Extrusion goes to `mesh_faces`. Raises
-    InputError where a count is not a whole number >= 1 (>= 3 round a closed direction), a point is not
-    finite or the surface has no size.
-    """
-    if any(hasattr(surface, part) for part in ("Faces", "OuterLoop", "ProfileCount")):
-        from hookean.discretize.breps import mesh_faces
-
-        return mesh_faces(surface, u, v)
+def mesh_grid(surface: Any, u: int, v: int) -> Mesh:
+    """A surface as a mesh of u by v quads (see `mesh_surface`, which takes Breps, too)."""
     grid = sample(surface, *counts(u, v))
     ids = merged_ids(grid)
     mesh = compact(grid.reshape(-1, 3), ids.ravel(), grid_faces(ids))

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from hookean.files import compas_json, embedded
 
 if TYPE_CHECKING:
-    from hookean.scene import Scene
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.scene.scene import Scene
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 SHAPE = "hookean-shape"
 CHANGED = "the document was changed after hookean wrote it: it is read as drawn, not as the scene stored in it"

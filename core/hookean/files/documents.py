@@ -57,7 +57,7 @@ def _drawn(entries: list[Any], why: tuple[str, ...] = (), *, alone: bool = False
     """Documents as drawn."""
     # what draws loads rhino3dm, which scenes need not
     from hookean.files.drawn import Drawn, tables_of
-    from hookean.files.recipe_select import count, listed
+    from hookean.files.recipe.select import count, listed
 
     found = Drawn()
     other: list[str] = []
@@ -75,7 +75,7 @@ def _drawn(entries: list[Any], why: tuple[str, ...] = (), *, alone: bool = False
 
 def _add(drawn: Drawn, document: Document, entry: Any, pointer: str, other: list[str]) -> None:
     from hookean.discretize.meshes import as_mesh
-    from hookean.files.recipe_select import count
+    from hookean.files.recipe.select import count
 
     if document.kind == "mesh":
         sides = sum(len(face) > 4 for face in document.faces)

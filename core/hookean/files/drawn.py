@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from hookean.discretize.duplicates import unique_points
 from hookean.discretize.meshes import edges, naked_vertices, tidy_faces
 from hookean.errors import InputError
-from hookean.mesh import Mesh
-from hookean.units import METRES
+from hookean.values.mesh import Mesh
+from hookean.values.units import METRES
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

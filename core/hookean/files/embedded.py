@@ -12,10 +12,10 @@ import zlib
 from typing import TYPE_CHECKING, Any
 
 from hookean.errors import InputError
-from hookean.files.scene_json import parse
+from hookean.scene.text import parse
 
 if TYPE_CHECKING:
-    from hookean.scene import Scene
+    from hookean.scene.scene import Scene
 
 KEY = "hookean-scene"
 LARGEST = 512 * 2**20  # bytes of a scene in its canonical form

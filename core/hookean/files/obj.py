@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.system import System
+from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 LACKS = (

@@ -15,13 +15,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.columns import LARGEST
 from hookean.discretize.meshes import as_mesh
 from hookean.discretize.triangulate import newell, plane_coordinates, triangulate
 from hookean.errors import InputError
 from hookean.files.drawn import Drawn
-from hookean.files.recipe_select import count
-from hookean.units import METRES
+from hookean.files.recipe.select import count
+from hookean.values.columns import LARGEST
+from hookean.values.units import METRES
 
 NOT_TAKEN = {
     **dict.fromkeys(("vn",), "normals"),

@@ -17,10 +17,10 @@ from hookean.errors import InputError, refuse_pointer
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hookean.files.recipe_build import Built
-    from hookean.files.threedm_model import Model
-    from hookean.scene import Scene
-    from hookean.simulation import Simulation
+    from hookean.files.recipe.build import Built
+    from hookean.files.rhino.model import Model
+    from hookean.running.simulation import Simulation
+    from hookean.scene.scene import Scene
 
 MODEL = b"3D Geometry File Format"
 Recipe = tuple[str, str]
@@ -93,7 +93,7 @@ def read(data: bytes, name: str = "", recipe: Recipe | None = None, *, called: s
 
 def read_path(path: Path, recipe: Recipe | None = None) -> Source:
     """What the file at `path` holds; faults are called by its name. Raises InputError, also where it cannot be read."""
-    from hookean.files.threedm_atomic import read_bytes
+    from hookean.atomic_write import read_bytes
 
     name = path.name or str(path)
     if path.suffix.lower() == ".toml":
@@ -118,10 +118,11 @@ def about(name: str, source: str = "") -> Iterator[None]:
 def _threedm(data: bytes, called: str, recipe: Recipe | None) -> Source:
     # loads rhino3dm, which other files need not
     from hookean.files import embedded
-    from hookean.files.recipe import parse_recipe, understand
-    from hookean.files.threedm_read import parse
+    from hookean.files.recipe.recipe import understand
+    from hookean.files.rhino.read import parse
+    from hookean.scene.text import parse_tables
 
-    tables = None if recipe is None else parse_recipe(recipe[0], recipe[1] or "recipe")
+    tables = None if recipe is None else parse_tables(recipe[0], recipe[1] or "recipe")
     model = parse(data, called or "the file").model
     with about(called if recipe is None else recipe[1], called):
         understood = understand(model, tables)
@@ -142,8 +143,8 @@ def _threedm(data: bytes, called: str, recipe: Recipe | None) -> Source:
 def _stored(model: Model, called: str) -> Source:
     """The scene that hookean stored in a .3dm file in which nothing is drawn but its results."""
     from hookean.files import embedded
-    from hookean.scene import Scene
-    from hookean.units import METRES
+    from hookean.scene.scene import Scene
+    from hookean.values.units import METRES
 
     with about(called):
         scene = Scene.read(embedded.unpacked(model.text[embedded.KEY], ""))
@@ -157,7 +158,7 @@ def _stored(model: Model, called: str) -> Source:
 def _obj(data: bytes, called: str, recipe: Recipe | None) -> Source:
     from hookean.files import obj_read
     from hookean.files.drawn import tables_of
-    from hookean.scene import Scene
+    from hookean.scene.scene import Scene
 
     with about(called):
         tables, warnings, unheld = tables_of(obj_read.read(data))
@@ -167,8 +168,8 @@ def _obj(data: bytes, called: str, recipe: Recipe | None) -> Source:
 
 def _json(data: bytes, called: str, recipe: Recipe | None) -> Source:
     from hookean.files.documents import plain
-    from hookean.files.scene_json import parse
-    from hookean.scene import Scene
+    from hookean.scene.scene import Scene
+    from hookean.scene.text import parse
 
     value = parse(data, called or "/")
     with about(called):

@@ -1,7 +1,7 @@
 """Relax a file into a file: what the command line and the service share.
 
-All files that `readers` reads: `.3dm` files by a recipe or by convention (see `hookean.files.recipe`), OBJ, scenes and
-COMPAS documents in JSON, saved simulations. A .3dm file written for anything but a drawing holds the scene, too.
+All files that `readers` reads: `.3dm` files by a recipe or by convention (see `recipe.recipe`), OBJ, scenes and COMPAS
+documents in JSON, saved simulations. A .3dm file written for anything but a drawing holds the scene, too.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hookean.claims import document_text
+from hookean.atomic_write import check_target, put
 from hookean.errors import InputError
 from hookean.files import embedded, obj, tables
 from hookean.files.readers import Recipe, Source, about, read_path
-from hookean.files.threedm_atomic import check_target, put
-from hookean.scene import Scene
+from hookean.running.claims import document_text
+from hookean.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from hookean.files.recipe_build import Built
-    from hookean.result import Result
-    from hookean.system import System
+    from hookean.files.recipe.build import Built
+    from hookean.running.result import Result
+    from hookean.system.system import System
 
 WRITTEN = (".3dm", ".json", ".obj")
 """Endings of files that results are written to."""
@@ -103,7 +103,7 @@ def explained(
     source: Path, recipe_text: str | None = None, recipe_name: str = ""
 ) -> tuple[list[str], InputError | None]:
     """How a file would be read, with what a person should know of its scene, and the error if that cannot be solved."""
-    from hookean.system import compile
+    from hookean.system.system import compile
 
     read = read_path(source, _recipe(recipe_text, recipe_name))
     if read.nothing:
@@ -141,9 +141,9 @@ def relax_file(
     Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written; LimitsError,
     with everything written, where limits name what the file does not have.
     """
-    from hookean.run import bounded, relax_state
+    from hookean.running.run import bounded, relax_state
     from hookean.solvers import solver
-    from hookean.system import compile
+    from hookean.system.system import compile
 
     check_output(target, source)
     with reading or contextlib.nullcontext():
@@ -187,7 +187,7 @@ def conclude(
     limits_name: str = "limits",
 ) -> FileResult:
     """A result as `relax_file` gives it, written to `target` and held to limits: of a system that `read` describes."""
-    from hookean.result import Status
+    from hookean.running.result import Status
 
     parts = tables.sections(system, result, read.built)
     found = FileResult(
@@ -216,7 +216,7 @@ def _doubled(parts: list[tables.Section]) -> list[str]:
         if part.internal and part.particles.shape[1] == 2:
             twice = len(part.particles) - len(np.unique(np.sort(part.particles, axis=1), axis=0))
             if twice:
-                from hookean.files.recipe_select import count
+                from hookean.files.recipe.select import count
 
                 join, pull = ("joins", "pulls") if twice == 1 else ("join", "pull")
                 elements = count(twice, "element")
@@ -258,9 +258,9 @@ def _write(
         said = document_text(found.result, found.warnings)
         put(target, obj.text(system, found.result.particles, system.start().free, said).encode(), lambda back: None)
         return
-    from hookean.files import threedm
-    from hookean.files.recipe_drawing import UNIT_NAMES
-    from hookean.files.recipe_output import additions
+    from hookean.files.recipe.drawing import UNIT_NAMES
+    from hookean.files.recipe.output import additions
+    from hookean.files.rhino import threedm
 
     added, refused = additions(system, found.result, parts, read.built, read.unit, read.factor)
     found.unwritten = refused

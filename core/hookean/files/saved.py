@@ -6,7 +6,7 @@ import io
 import zipfile
 
 from hookean.errors import InputError
-from hookean.simulation import Simulation
+from hookean.running.simulation import Simulation
 
 BEGINS = b"PK\x03\x04"
 

@@ -28,16 +28,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from hookean import cells
 from hookean.errors import InputError
-from hookean.result import Result
-from hookean.system import System
-from hookean.units import Units
+from hookean.files import cells
+from hookean.running.result import Result
+from hookean.system.system import System
+from hookean.values.units import Units
 
 if TYPE_CHECKING:  # what reads models loads rhino3dm
-    from hookean.files.recipe_build import Built
-    from hookean.files.recipe_drawing import Item
-    from hookean.files.recipe_shapes import Shape
+    from hookean.files.recipe.build import Built
+    from hookean.files.recipe.drawing import Item
+    from hookean.files.recipe.shapes import Shape
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -227,9 +227,9 @@ def per_object(parts: Sequence[Section], units: Units) -> list[Row]:
 
 def read_limits(text: str, name: str = "limits") -> dict[str, Any]:
     """Limits from TOML or JSON text; InputError where it is neither or names an unknown limit."""
-    from hookean.files.recipe import parse_recipe
+    from hookean.scene.text import parse_tables
 
-    limits = parse_recipe(text, name)
+    limits = parse_tables(text, name)
     _known(limits, f"{name} ", (*LIMITS, "units", *_SCOPES))
     for scope in _SCOPES:
         tables = limits.get(scope, {})
@@ -280,7 +280,7 @@ def exceeded(
 def _mask(part: Section, scope: str, key: str) -> NDArray[np.bool_]:
     count = len(part.particles)
     if scope == "layer":
-        from hookean.files.recipe_select import on_layer
+        from hookean.files.recipe.select import on_layer
 
         good = [on_layer(item.layer, key) for item in part.items]
         return np.array([o >= 0 and good[o] for o in part.owner.tolist()], dtype=bool).reshape(count)
@@ -292,7 +292,7 @@ def _mask(part: Section, scope: str, key: str) -> NDArray[np.bool_]:
 
 
 def _there(parts: Sequence[Section], scope: str) -> str:
-    from hookean.files.recipe_select import listed
+    from hookean.files.recipe.select import listed
 
     if scope == "layer":
         return listed(part.items[o].layer for part in parts for o in np.unique(part.owner) if o >= 0)

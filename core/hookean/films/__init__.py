@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
+from hookean.compiled import dispatch
 from hookean.films.frames import keep_what_counts, lay_frames
 from hookean.films.kinds import EDGE, SLIDING, WHOLE, WITHIN, edges_of, fans_of, kinds_of, sheets_of
 from hookean.films.proportions import conduct, find_torn
 from hookean.forces.soapfilm import SoapFilm, halves
 
 if TYPE_CHECKING:
-    from hookean.system import System
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -76,7 +76,7 @@ class Films:
         Where nothing is left out these are x, y, z and the free ones of them.
         """
         axes, counts, room = np.empty((len(x), 3, 3)), np.empty((len(x), 3)), np.empty((len(x), 5))
-        kernels.compiled(lay_frames)(
+        dispatch.compiled(lay_frames)(
             x, free, self.corners, self.signs, self.kind, self.ends, room, axes, counts
         )  # fmt: skip
         return axes, counts
@@ -84,7 +84,7 @@ class Films:
     def across(self, x: Floats, free: Floats, f: Floats) -> None:
         """Take from forces `f` (n, 3) what does not count, in place."""
         axes, counts = self.frames(x, free)
-        kernels.compiled(keep_what_counts)(axes, counts, self.kind, f)
+        dispatch.compiled(keep_what_counts)(axes, counts, self.kind, f)
 
     def along(self, x: Floats, free: Floats, vectors: Floats) -> Floats:
         """The part of vectors (n, 3) that does not count: motions that leave the films where they are."""
@@ -99,7 +99,7 @@ class Films:
         inside = (self.kind == WITHIN) & (free > 0.0).all(axis=1)
         found = np.zeros(self.sheet.max(initial=-1) + 1, bool)
         room = np.empty((len(x), 6))
-        kernels.compiled(find_torn)(x, self.corners, self.signs, inside, self.sheet, room, found)
+        dispatch.compiled(find_torn)(x, self.corners, self.signs, inside, self.sheet, room, found)
         return np.asarray(found[self.sheet])
 
     def conductances(self, x: Floats, equal: Flags | None = None) -> Floats:
@@ -107,5 +107,5 @@ class Films:
         triangles of equal sides where `equal` (m,)."""
         blocks = np.empty((len(self.corners), 3, 3))
         flags = np.zeros(len(blocks), bool) if equal is None else equal
-        kernels.compiled(conduct)(x, self._block.indices, self._block.parameters, flags, blocks)
+        dispatch.compiled(conduct)(x, self._block.indices, self._block.parameters, flags, blocks)
         return blocks

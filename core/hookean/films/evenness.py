@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.compiled.marks import device
 from hookean.films.frames import TURN, along_edge, within
 from hookean.forces.soapfilm import EVEN, SLIVER, SoapFilm
-from hookean.kernels import device
 
 if TYPE_CHECKING:
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

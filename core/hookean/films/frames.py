@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from hookean.compiled.marks import device
 from hookean.forces.soapfilm import plane
-from hookean.kernels import device
 
 FOLDED = 0.1  # part of the areas around a particle below which their sum is no normal
 STEEP = 0.02  # part of a normal on the free axes below which motion on these leaves the film where it is

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from hookean.system import System
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

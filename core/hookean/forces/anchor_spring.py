@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.columns import IndexRows, NonNegatives, Points
-from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Places
+from hookean.values.columns import IndexRows, NonNegatives, Points
+from hookean.values.fields import Field, Maybe
 
 
 def anchor_spring_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
-from hookean.columns import Model, fault
-from hookean.fields import Field
+from hookean.values.columns import Model, fault
+from hookean.values.fields import Field
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -107,6 +107,7 @@ class Force(Model):
     everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
     shared: ClassVar[tuple[str, ...]] = ()  # columns of the force as a whole, not one row for each element
+    solid: ClassVar[bool] = True  # something lies between the particles of an element, which others may touch
     is_film: ClassVar[bool] = False  # has no stiffness along itself
     on_film: ClassVar[OnFilm] = "whole"
     # columns of a result with their unit: length, force, moment, angle or none

@@ -7,9 +7,8 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
-from hookean.columns import IndexRows, NonNegatives, PointRows
-from hookean.fields import Field, Maybe
+from hookean.compiled import dispatch
+from hookean.compiled.marks import device
 from hookean.forces import rod_links, rod_spins, rod_tangent
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.rod_bound import ROOM, bound_chain
@@ -27,7 +26,8 @@ from hookean.forces.rod_chain import (
     single,
 )  # fmt: skip
 from hookean.forces.rod_frames import turn_angles, turn_vectors
-from hookean.kernels import device
+from hookean.values.columns import IndexRows, NonNegatives, PointRows
+from hookean.values.fields import Field, Maybe
 
 Sections = Literal["tied", "free"]
 
@@ -189,7 +189,7 @@ class Bend(Force):
     @classmethod
     def brace(cls, block: Block, held: NDArray[np.bool_]) -> None:
         """An end of a rod at a held particle does not spin."""
-        kernels.compiled(rod_links.hold)(block.indices, block.parameters, held)
+        dispatch.compiled(rod_links.hold)(block.indices, block.parameters, held)
 
     @classmethod
     def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats, Floats]:
@@ -253,5 +253,5 @@ class Bend(Force):
 def recorded(block: Block, x: Floats) -> Floats:
     """What `rod_chain.record` finds of each corner (m, 5)."""
     found, f = np.zeros((len(block.indices), 5)), np.zeros((len(x), 3))
-    kernels.compiled(record)(x, block.indices, block.parameters, np.zeros(ROOM), f, f[:, 0].copy(), found)
+    dispatch.compiled(record)(x, block.indices, block.parameters, np.zeros(ROOM), f, f[:, 0].copy(), found)
     return found

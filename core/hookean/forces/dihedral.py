@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.kernels import device
+from hookean.compiled.marks import device
 
 Floats = NDArray[np.float64]
 

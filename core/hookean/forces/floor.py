@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import model_validator
 
-from hookean.columns import Vector, fault
-from hookean.fields import Field
 from hookean.forces.base import Block, Floats, Force, Places
+from hookean.values.columns import Vector, fault
+from hookean.values.fields import Field
 
 
 def floor_impact(x_before, v_before, acceleration, x, v, free, dt, parameters):  # type: ignore[no-untyped-def]

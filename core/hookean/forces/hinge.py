@@ -6,10 +6,10 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.columns import IndexRows, NonNegatives, PointRows, Reals
-from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Places
 from hookean.forces.dihedral import fold, fold_angles, wrapped
+from hookean.values.columns import IndexRows, NonNegatives, PointRows, Reals
+from hookean.values.fields import Field, Maybe
 
 
 def hinge_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]

@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.fields import Field
 from hookean.forces.base import Block, Floats, Force, OnFilm, Places
 from hookean.forces.soapfilm import halves
+from hookean.values.fields import Field
 
 
 def pressure_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]

@@ -7,10 +7,10 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from hookean.columns import IndexRows, NonNegatives, Points, fault
-from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, OnFilm, Places
 from hookean.forces.pull_to_mesh import away, pull_hessian, pull_kernel, pulls, tree
+from hookean.values.columns import IndexRows, NonNegatives, Points, fault
+from hookean.values.fields import Field, Maybe
 
 
 class PullToCurve(Force):

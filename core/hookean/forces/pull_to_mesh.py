@@ -7,11 +7,12 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from hookean.columns import Faces, IndexRows, NonNegatives, Points, fault
+from hookean.compiled.dispatch import keep, rows
+from hookean.compiled.marks import device
 from hookean.errors import InputError
-from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places
-from hookean.kernels import device, keep, rows
+from hookean.values.columns import Faces, IndexRows, NonNegatives, Points, fault
+from hookean.values.fields import Field, Maybe
 
 WIDTH = 10  # columns of a tree's table
 LEAF = 4  # triangles in a leaf

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from hookean.compiled.marks import device
 from hookean.forces.rod_chain import (
     CLOSED,
     END,
@@ -32,7 +33,6 @@ from hookean.forces.rod_chain import (
     ways,
 )  # fmt: skip
 from hookean.forces.rod_frames import corner, dot, mix
-from hookean.kernels import device
 
 SUM, MOST, CURVED, RESTED, STIFFEST, LOOP, WEIGHED, ROOM = 0, 1, 2, 3, 4, 5, 8, 9  # what `weigh` finds
 

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from hookean.compiled.marks import device
 from hookean.forces.rod_frames import FOLD, angle_from, aside, carried, corner, cross, dot, mix, slopes, square_to
-from hookean.kernels import device
 
 # columns of parameters; from TURN on they are those of a whole chain, in its first row
 STIFFNESS, REST, FACTOR, SIDE, NEXT, PLACE, SHARE, TURN, START, END, HELD = 0, 1, 2, 3, 5, 6, 7, 8, 9, 12, 15

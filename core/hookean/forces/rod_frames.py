@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from hookean.compiled.marks import device
 from hookean.forces.base import Floats, Ints, lengths
-from hookean.kernels import device
 
 FOLD = 1e-9
 """1 + s.t below which a corner is folded back: what is carried across it has no direction to speak of."""

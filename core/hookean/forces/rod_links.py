@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
+from hookean.compiled import dispatch
+from hookean.compiled.marks import device
 from hookean.forces.base import Floats, Ints
 from hookean.forces.rod_chain import (
     ALONE,
@@ -33,7 +34,6 @@ from hookean.forces.rod_chain import (
     follower,
 )  # fmt: skip
 from hookean.forces.rod_frames import FOLD, angle_from, carried, corner, cross, dot, square_to
-from hookean.kernels import device
 
 BENT = 1e-6  # turn [rad] from which on a corner is drawn to a side, and a rest angle asks for one
 
@@ -42,8 +42,8 @@ def link(x: Floats, corners: Ints, table: Floats) -> None:
     """Write into the parameters of `corners` (m, 3) which of them make chains, and how these are drawn at `x`."""
     partner = _partners(corners, _bends(x, corners))
     x, corners = x.copy(), corners.copy()  # a scene's own arrays are not for writing, and machine code asks for that
-    kernels.compiled(string)(partner, corners[:, ::2].copy(), corners[:, 1].copy(), table)
-    kernels.compiled(draw)(x, corners, table)
+    dispatch.compiled(string)(partner, corners[:, ::2].copy(), corners[:, 1].copy(), table)
+    dispatch.compiled(draw)(x, corners, table)
 
 
 def hold(corners, table, held):  # type: ignore[no-untyped-def]
@@ -64,7 +64,7 @@ def whole_chains(table: Floats, rows: Ints) -> Ints:
     """The rows given, and all others of their chains, sorted."""
     chosen = np.zeros(len(table), np.bool_)
     chosen[rows] = True
-    kernels.compiled(complete)(table, chosen)
+    dispatch.compiled(complete)(table, chosen)
     return np.flatnonzero(chosen)
 
 

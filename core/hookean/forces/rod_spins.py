@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from hookean import kernels
+from hookean.compiled import dispatch
 from hookean.forces.base import Block, Floats, Force, Ints, lengths
 from hookean.forces.rod_chain import CLOSED, END, HELD, PLACE, SHARE, START, STIFFNESS
 from hookean.forces.rod_frames import turn_angles
@@ -41,7 +41,7 @@ def gather(block: Block, found: Floats, x: Floats, node: int) -> Block:
     """
     p = block.parameters
     rows, lasts = np.empty(len(found), np.int64), np.zeros(len(found), np.bool_)
-    count = kernels.compiled(string_out)(p, rows, lasts)
+    count = dispatch.compiled(string_out)(p, rows, lasts)
     rows, lasts = rows[:count], lasts[:count]
     begins = np.flatnonzero(np.concatenate([[True], lasts[:-1]]))
     chain: Ints = np.cumsum(lasts) - lasts  # of each corner
@@ -86,7 +86,7 @@ def tangent(indices: Ints, parameters: Floats, x: Floats) -> Floats:
     count, node = len(indices), np.arange(3).reshape(1, 3)
     own, spins, crossed = np.zeros((count, 1, 9, 9)), *np.zeros((2, count, 1, 9))
     sizes, opening, closing = np.zeros((count, 1)), np.zeros((count, 9)), np.zeros((count, 9))
-    kernels.compiled(differ)(x, indices, node, parameters, own, spins, crossed, sizes, opening, closing)
+    dispatch.compiled(differ)(x, indices, node, parameters, own, spins, crossed, sizes, opening, closing)
     unit = 1.0 / parameters[:, UNIT]
     whole, carried, held, even = np.zeros((count, SIZE, SIZE)), *np.zeros((3, count, SIZE))
     whole[:, :9, :9] = own[:, 0]

@@ -15,7 +15,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
+from hookean.compiled import dispatch
+from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints
 from hookean.forces.rod_chain import (
     CLOSED,
@@ -31,7 +32,6 @@ from hookean.forces.rod_chain import (
     spin_slope,
 )  # fmt: skip
 from hookean.forces.rod_frames import aside, corner, cross, dot, mix, slopes
-from hookean.kernels import device
 
 SHORTEST, ENTRIES = 32, 9_000_000  # corners of a piece if need be; all pieces together have about so many entries
 STEP = 1e-6  # of differences, by the size of a corner
@@ -54,7 +54,7 @@ def gather(block: Block, found: Floats) -> list[tuple[type[Force], Block]]:
     A closed chain in one piece has as many particles as corners.
     """
     rows, lasts = np.empty(len(found), np.int64), np.zeros(len(found), np.bool_)
-    count = kernels.compiled(string_out)(block.parameters, rows, lasts)
+    count = dispatch.compiled(string_out)(block.parameters, rows, lasts)
     rows, cut = rows[:count], np.flatnonzero(lasts[:count]) + 1
     longest = max(SHORTEST, ENTRIES // (9 * max(count, 1)))
     by_size: dict[tuple[int, bool], list[tuple[Ints, bool, bool]]] = {}
@@ -112,7 +112,7 @@ def tangent(indices: Ints, parameters: Floats, x: Floats) -> Floats:
     nodes = (np.arange(size)[:, None] + np.arange(3) - (particles == size)) % particles
     own, spins, crossed = (np.zeros((count, size, 9, 9)), *np.zeros((2, count, size, 9)))
     sizes, opening, closing = np.zeros((count, size)), np.zeros((count, 9)), np.zeros((count, 9))
-    kernels.compiled(differ)(x, indices, nodes, parameters, own, spins, crossed, sizes, opening, closing)
+    dispatch.compiled(differ)(x, indices, nodes, parameters, own, spins, crossed, sizes, opening, closing)
     at = (3 * nodes[:, :, None] + np.arange(3)).reshape(size, 9)
     whole, phase, cross = (np.zeros((count, n, 3 * particles)) for n in (3 * particles, size, size))
     spin = np.zeros((count, 3 * particles))

@@ -7,10 +7,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import model_validator
 
-from hookean.columns import IndexRows, Lines, Points, Reals, Vector, fault
-from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, OnFilm, Places
 from hookean.forces.unary import unary_kernel
+from hookean.values.columns import IndexRows, Lines, Points, Reals, Vector, fault
+from hookean.values.fields import Field, Maybe
 
 
 class SelfWeight(Force):

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
-from hookean.fields import Field
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.dihedral import SLIVER, fold, fold_angles, wrapped
 from hookean.forces.shell_edges import Plan, bend, places
+from hookean.values.fields import Field
 
 Complex = NDArray[np.complex128]
 

@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 
+from hookean.compiled.marks import device
 from hookean.forces.base import Floats, Ints
 from hookean.forces.dihedral import SLIVER, slopes
-from hookean.kernels import device
 
 HEAD, EDGE_WORDS, FACE_WORDS = 3, 5, 3
 # of an edge: cosine and sine of the rest angle; -1 if its second triangle is turned over; what its own fold and those

@@ -6,10 +6,10 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean import kernels
-from hookean.fields import Field
+from hookean.compiled import dispatch
+from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places
-from hookean.kernels import device
+from hookean.values.fields import Field
 
 SLIVER = 1e-8
 """Triangles lower than this part of their size have no plane to speak of, and no film force."""
@@ -230,7 +230,7 @@ def shapes(x: Floats, corners: Ints) -> tuple[Floats, Floats]:
     """Areas (m,) [length^2] and quality (m,) of triangles: 4 sqrt(3) area / sum of squared edges, 1 where edges are
     equal, and 0 without area."""
     area, quality = np.empty(len(corners)), np.empty(len(corners))
-    kernels.compiled(measure)(x, corners, area, quality)
+    dispatch.compiled(measure)(x, corners, area, quality)
     return area, quality
 
 

@@ -6,11 +6,11 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean import kernels
-from hookean.columns import IndexRows, Lines, NonNegatives
-from hookean.fields import Field, Maybe
+from hookean.compiled import dispatch
+from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
-from hookean.kernels import device
+from hookean.values.columns import IndexRows, Lines, NonNegatives
+from hookean.values.fields import Field, Maybe
 
 Edges = Literal["all", "warp", "weft", "naked", "diagonals", "diagonals_one", "diagonals_other"]
 
@@ -277,7 +277,7 @@ class Springs(Force):
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length [length], force [force; tension +] and strain (l - L0)/L0 [-; 0 for rest length 0]."""
         length, force, strain = np.empty((3, len(block.indices)))
-        kernels.compiled(springs_measures)(
+        dispatch.compiled(springs_measures)(
             x, block.indices, block.parameters, block.memory, element_forces, length, force, strain
         )
         return {"length": length, "force": force, "strain": strain}

@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.columns import IndexRows, Points, Vectors
-from hookean.fields import Field, Maybe
 from hookean.forces.base import Block, Floats, Force, OnFilm, Places
+from hookean.values.columns import IndexRows, Points, Vectors
+from hookean.values.fields import Field, Maybe
 
 
 def unary_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]

@@ -1,17 +1,10 @@
-"""All solvers, found by walking this folder: a file here named after its solver has a class `Method`."""
+"""All solvers, each a file here with a class `Method`, named after the file."""
 
 from __future__ import annotations
 
 import importlib
-import pkgutil
 
 from hookean.solvers.base import Solver
-
-NAMES: tuple[str, ...] = (
-    "auto",
-    *(m.name for m in pkgutil.iter_modules(__path__) if m.name not in ("auto", "base") and m.name[0] != "_"),
-)
-"""What `settings.solver` may be."""
 
 
 def solver(name: str) -> Solver:
@@ -21,4 +14,4 @@ def solver(name: str) -> Solver:
     return found
 
 
-__all__ = ["NAMES", "Solver", "solver"]
+__all__ = ["Solver", "solver"]

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from hookean.kernels import device
-from hookean.solvers._profile import factor, solve
+from hookean.compiled.marks import device
+from hookean.linear.profile_cholesky import factor, solve
 
 BEGIN = 60  # factors of 4 between tensions that all springs could share
 HALVES = 10  # of a step

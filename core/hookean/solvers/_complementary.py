@@ -24,18 +24,18 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
+from hookean.compiled import dispatch
 from hookean.forces.anchor_spring import AnchorSpring
 from hookean.forces.springs import Springs
 from hookean.forces.unary import unary_kernel
+from hookean.linear.profile_cholesky import fits, order
 from hookean.solvers._climb import begin, onward, polish
-from hookean.solvers._profile import fits, order
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
-    from hookean.balance import Balance
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.system.balance import Balance
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -93,10 +93,10 @@ class Method(Solver):
         tangent, step = np.empty(9 * starts[-1] - 3 * len(moving)), np.empty((len(moving), 3))
         # what all springs are thought to bear at first
         tension = float(np.abs(pull).sum()) or 0.01 * float((net.k * net.rest).mean())
-        if not kernels.compiled(begin)(x, q, gap, *given, tension):
+        if not dispatch.compiled(begin)(x, q, gap, *given, tension):
             return 0
         for done in range(1, min(count, STEPS) + 1):
-            moved = kernels.compiled(onward)(x, q, gap, *given, tangent)
+            moved = dispatch.compiled(onward)(x, q, gap, *given, tangent)
             if moved == np.inf:
                 break
             if moved > near:
@@ -105,7 +105,7 @@ class Method(Solver):
                 break  # something is slack, and has no definite place
             self.near = state.x.copy()
             self.near[moving] = x[: len(moving)]
-            if kernels.compiled(polish)(x, *given, tangent, goal, FINE * near, step):
+            if dispatch.compiled(polish)(x, *given, tangent, goal, FINE * near, step):
                 state.x[moving] = x[: len(moving)]
                 state.iteration += done
                 self._moving, self._step = moving, step
@@ -154,7 +154,7 @@ def _net(system: System, state: State, ground: Floats, pull: Floats) -> Net | No
         return None
     springs = groups[0].indices, groups[0].parameters
     particles = np.empty(len(ground), np.int64)
-    free = kernels.compiled(chains)(state.free, *springs, ground, pull, CHAINS, particles)
+    free = dispatch.compiled(chains)(state.free, *springs, ground, pull, CHAINS, particles)
     if not free:
         return None
     net = _numbered(free, particles, springs)
@@ -172,7 +172,7 @@ def _numbered(free: int, particles: Ints, springs: tuple[Ints, Floats]) -> Net:
     """The net in this order of the particles."""
     count = len(springs[0])
     net = Net(particles, np.empty((count, 2), np.int64), np.empty(count), np.empty(count), np.arange(free))
-    some = kernels.compiled(number)(*springs, particles, net.ends, net.k, net.rest, net.first)
+    some = dispatch.compiled(number)(*springs, particles, net.ends, net.k, net.rest, net.first)
     return Net(particles, net.ends[:some], net.k[:some], net.rest[:some], net.first)
 
 

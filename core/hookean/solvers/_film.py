@@ -20,15 +20,15 @@ from numpy.typing import NDArray
 from hookean.films import WHOLE
 from hookean.forces.base import lengths
 from hookean.forces.soapfilm import shapes
-from hookean.solvers._across import Across, across
+from hookean.linear.film_tangent import Across, across
 from hookean.solvers._spread import Spread
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
-    from hookean.balance import Balance
-    from hookean.factor import Factor
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.linear.sparse_factors import Factor
+    from hookean.system.balance import Balance
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
-from hookean.factor import Factors
+from hookean.compiled import dispatch
 from hookean.films import SLIDING
 from hookean.forces.base import lengths
 from hookean.forces.soapfilm import SoapFilm
+from hookean.linear.sparse_factors import Factors
 
 if TYPE_CHECKING:
     from hookean.films import Films
-    from hookean.state import State
-    from hookean.system import Group, System
+    from hookean.system.state import State
+    from hookean.system.system import Group, System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -51,7 +51,7 @@ class Spread:
         moved as they are `led` (n, 3); None where nothing holds the film."""
         index = self._group.block.indices
         left = self._others(system, state)
-        kernels.compiled(pull)(index, blocks, state.x if led is None else state.x + led, left)
+        dispatch.compiled(pull)(index, blocks, state.x if led is None else state.x + led, left)
         moved = np.zeros_like(state.x)
         for part in self._parts:
             solution = part.solve(blocks, left)
@@ -93,7 +93,7 @@ class Spread:
         """What forces other than those of films put (n, 3) on particles of films alone, of what counts."""
         f, _, _ = system.evaluate(state)
         own, block = np.zeros_like(f), self._group.block
-        force = kernels.compiled(SoapFilm.kernel, "force")
+        force = dispatch.compiled(SoapFilm.kernel, "force")
         force(state.x, np.zeros_like(f), block.indices, block.parameters, block.memory, own, np.zeros(len(f)))
         f -= own
         self.films.across(state.x, state.free, f)

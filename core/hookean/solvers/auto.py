@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hookean.balance import Balance, balance
 from hookean.solvers import _complementary, _film, force_density, multilevel, newton, relaxation
 from hookean.solvers.base import Floats, Solver
+from hookean.stability import nets
+from hookean.system.balance import Balance, balance
 
 if TYPE_CHECKING:
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 # a tangent larger than this costs more to factor than the relaxation it saves
 LARGEST_NEWTON = 60_000  # unknowns
@@ -74,7 +75,7 @@ class Method(Solver):
         self._prepared = True
         entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if not g.cls.constant)
         self._small = 3 * len(state.x) <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS
-        self._levels = len(state.x) >= LEAST_MULTILEVEL and multilevel.suits(system)
+        self._levels = len(state.x) >= LEAST_MULTILEVEL and nets.suits(system)
         self._films = len(state.x) <= LARGEST_FILM and not self._film.refuse(system)
         if self._levels:
             self._start = state.copy()
@@ -144,10 +145,8 @@ class Method(Solver):
         done = self._multilevel.advance(system, state, min(count, self._multilevel.longest), goal)
         self.work += self._multilevel.work - work
         found = balance(system, state).met(system.scene.settings.tolerance)  # as the run is judged
-        pulled = found and multilevel.pulled(system, state)
-        self._multilevel.certain = (
-            found and not pulled and len(state.x) < MANY and multilevel.super_stable(system, state)
-        )
+        pulled = found and nets.pulled(system, state)
+        self._multilevel.certain = found and not pulled and len(state.x) < MANY and nets.super_stable(system, state)
         if found and len(state.x) >= MANY:
             self.remark = "" if pulled else CREASED
         elif found and not pulled and not self._multilevel.certain:

@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
-from hookean.balance import ROUNDING
+from hookean.compiled import dispatch
 from hookean.forces.anchor_spring import AnchorSpring
 from hookean.forces.springs import Springs
 from hookean.solvers.base import Solver
+from hookean.system.balance import ROUNDING
 
 if TYPE_CHECKING:
-    from hookean.balance import Balance
-    from hookean.solvers._front import Factor
-    from hookean.solvers._gradients import Hierarchy
-    from hookean.solvers._laplacian import Laplacian
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.linear.front_cholesky import Factor
+    from hookean.linear.laplacian import Laplacian
+    from hookean.linear.scalar_cg import Hierarchy
+    from hookean.system.balance import Balance
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -111,26 +111,27 @@ class Solved:
     @classmethod
     def of(cls, system: System, free: Floats, axes: Ints, f: Floats, x: Floats) -> Solved | None:
         """Add K^-1 f to x (n, 3); None where that was not possible."""
-        from hookean.solvers import _laplacian
+        from hookean.linear import laplacian as _laplacian
 
         self = cls(*_laplacian.laplacian(system, free), axes)
         b = self._rows(f)
         largest = max(float(x.max()), -float(x.min()))
         if not self._solve(b, largest):
             return None
-        kernels.compiled(_laplacian.put)(self.particles, axes, b, x)
+        dispatch.compiled(_laplacian.put)(self.particles, axes, b, x)
         return self
 
     def _rows(self, f: Floats) -> Floats:
-        from hookean.solvers import _laplacian
+        from hookean.linear import laplacian as _laplacian
 
         b = np.empty((len(self.particles), 4))
-        kernels.compiled(_laplacian.take)(self.particles, self.axes, f, b)
+        dispatch.compiled(_laplacian.take)(self.particles, self.axes, f, b)
         return b
 
     def _solve(self, b: Floats, largest: float) -> bool:
         """Replace b (rows, 4) by the solution, by a front where that is quick; whether that was possible."""
-        from hookean.solvers import _front, _gradients
+        from hookean.linear import front_cholesky as _front
+        from hookean.linear import scalar_cg as _gradients
 
         net = self.net
         way = _front.front(net, QUICK * len(b))
@@ -152,11 +153,11 @@ class Solved:
 
     def correct(self, f: Floats, moved: Floats) -> None:
         """Add about K^-1 f to `moved` (n, 3): a cycle is right within a factor of 2."""
-        from hookean.solvers import _laplacian
+        from hookean.linear import laplacian as _laplacian
 
         b = self._rows(f)
         if self.factor is not None:
             self.factor.solve(b, b)
         elif self.hierarchy is not None:
             b = self.hierarchy.cycle(b)[0]
-        kernels.compiled(_laplacian.put)(self.particles, self.axes, b, moved)
+        dispatch.compiled(_laplacian.put)(self.particles, self.axes, b, moved)

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hookean import kernels
-from hookean.kernels import forces, impacts, supports
-from hookean.lean import contacts, lean
+from hookean.compiled import dispatch
+from hookean.compiled.dispatch import forces, impacts, supports
 from hookean.solvers.base import Solver
+from hookean.system.packing import contacts, lean
 
 if TYPE_CHECKING:
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 
 def momentum_loop(  # type: ignore[no-untyped-def]
@@ -75,7 +75,7 @@ class Method(Solver):
         still, f, carried = (np.zeros_like(state.x) for _ in range(3))
         w = np.zeros(len(state.x))
         own = lean(system, state, damped=False)
-        done = kernels.compiled(momentum_loop)(
+        done = dispatch.compiled(momentum_loop)(
             own.full, *contacts(system), state.x, state.v, state.free, own.load, still, f, w, system.mass, carried,
             system.load_count, count, goal,
         )  # fmt: skip

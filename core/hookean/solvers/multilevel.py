@@ -20,16 +20,16 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean import kernels
+from hookean.compiled import dispatch
 from hookean.forces.base import lengths
 from hookean.solvers import relaxation
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
-    from hookean.balance import Balance
-    from hookean.multigrid.tangent import Tangent
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.linear.tangent import Tangent
+    from hookean.system.balance import Balance
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 
@@ -50,8 +50,6 @@ SMOOTHING = 100  # passes over all springs that relaxation may take between Newt
 LONGEST = 5000  # iterations of a local one
 ROUNDS = 12  # turns without half the largest force, after which all particles relax
 BURST = 250_000  # particles times Newton steps in one go
-CERTAIN = 1e9  # multiplications that it may take to find whether a shape is the lowest
-FEW = 1e-3  # so few push where supports are points, and have no room to buckle
 
 
 class Method(Solver):
@@ -151,7 +149,7 @@ class Method(Solver):
 
     def _smooth(self, system: System, state: State, forces: Floats, turned: Floats, goal: float) -> None:
         """Relax what creases; all particles, from the next iteration on, where that is many or has not helped."""
-        from hookean.multigrid.part import cut, widened
+        from hookean.linear.subsystem import cut, widened
 
         blocks = self._readied(system, state).blocks
         size = lengths(forces)
@@ -185,7 +183,7 @@ class Method(Solver):
 
     def _readied(self, system: System, state: State) -> Tangent:
         if self.tangent is None:
-            from hookean.multigrid.tangent import Tangent
+            from hookean.linear.tangent import Tangent
 
             self.tangent = Tangent(system, state)
         return self.tangent
@@ -249,7 +247,7 @@ class Step:
     def _judge(self) -> Judged:
         self.work += 1.0
         f, _, energies = self.system.evaluate(self.state)
-        largest: float = kernels.compiled(leave)(f, self.state.free)
+        largest: float = dispatch.compiled(leave)(f, self.state.free)
         return Judged(float(energies.sum()), ROUNDING * float(np.abs(energies).sum()), f, largest)
 
     def _direction(self, forces: Floats) -> Floats | None:
@@ -309,57 +307,3 @@ def leave(f, free):  # type: ignore[no-untyped-def]
         if square > largest or np.isnan(square):
             largest = square
     return np.sqrt(largest)
-
-
-def suits(system: System) -> bool:
-    """Whether a system is of plain springs and constant loads alone, whose shape of least energy can be told."""
-    from hookean.forces.springs import Springs
-
-    plain = False
-    for group in system.groups:
-        if group.cls is Springs:
-            plain = not (group.block.parameters[:, 4:] != 0.0).any()
-        elif not group.cls.constant:
-            return False
-    return plain and not system.contacts
-
-
-def pulled(system: System, state: State) -> bool:
-    """Whether all springs pull, but for a few at supports."""
-    return bool((_densities(system, state)[1] < 0.0).mean() <= FEW)
-
-
-def super_stable(system: System, state: State) -> bool:
-    """Whether the force densities of a shape of plain springs are positive definite, where that is quick to find out:
-    then it is the shape of least energy, and its tangent positive definite.
-
-    With s the squares of the lengths, k (sqrt(s) - L0)^2 / 2 is convex in s: the energy is nowhere below the quadratic
-    form of the force densities q = k (1 - L0 / l), which has its minimum at the shape where it is positive definite:
-    always where all springs pull.
-    Source: Connelly, Rigidity and energy, Inventiones mathematicae 66 (1982) 11.
-    """
-    from hookean.solvers import _front
-    from hookean.solvers._laplacian import form
-
-    pairs, density = _densities(system, state)
-    net, rows = form(pairs, density[:, None], state.moving.astype(np.float64), np.zeros(len(state.x)))
-    if len(rows) < np.count_nonzero(state.moving):
-        return False
-    way = _front.front(net, CERTAIN)
-    return way is not None and way.held and _front.Factor(net, way).sound
-
-
-def _densities(system: System, state: State) -> tuple[NDArray[np.int64], Floats]:
-    """Ends (m, 2) and force densities (m,) of all springs; none of other forces."""
-    from hookean.forces.springs import Springs
-
-    pairs, found = [np.zeros((0, 2), np.int64)], [np.zeros(0)]
-    for group, memory in zip(system.groups, state.memory, strict=True):
-        if group.cls is Springs:
-            index, p = group.block.indices, group.block.parameters
-            d = state.x.take(index[:, 1], axis=0) - state.x.take(index[:, 0], axis=0)
-            length = np.sqrt(np.einsum("ij,ij->i", d, d))
-            rest = p[:, 2] * p[:, 3] + memory[:, 0]
-            pairs.append(index)
-            found.append(p[:, 0] * (1.0 - rest / np.where(length > 0.0, length, 1.0)))
-    return np.concatenate(pairs), np.concatenate(found)

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.solvers._across import patterned
-from hookean.solvers._pattern import Pattern
+from hookean.linear.film_tangent import patterned
+from hookean.linear.pattern import Pattern
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 

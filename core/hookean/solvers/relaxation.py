@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hookean import kernels
-from hookean.kernels import device, forces, impacts, supports
-from hookean.lean import Desk, contacts, lean
+from hookean.compiled import dispatch
+from hookean.compiled.dispatch import forces, impacts, supports
+from hookean.compiled.marks import device
 from hookean.solvers.base import Solver
+from hookean.system.packing import Desk, contacts, lean
 
 if TYPE_CHECKING:
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 # a unit step is stable while mass > w / 4 (w bounds the stiffness of a particle); a tenth more for safety
 MASS = 0.275
@@ -146,7 +147,7 @@ class Method(Solver):
             n, state.x, state.v, state.free, own.load, None, None, None
         )
         mass = state.scratch["mass"]
-        done = kernels.compiled(relaxation_loop)(
+        done = dispatch.compiled(relaxation_loop)(
             own.full, own.packed, *contacts(system), x, v, free, load, still, f, np.zeros(n), mass, 1.0 / mass, carried,
             state.scratch["clock"], count, goal,
         )  # fmt: skip

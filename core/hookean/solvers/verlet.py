@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hookean import kernels, stability
-from hookean.kernels import device, forces, impacts, notes, supports
-from hookean.lean import Desk, Lean, Seen, contacts, lean
+from hookean.compiled import dispatch
+from hookean.compiled.dispatch import forces, impacts, notes, supports
+from hookean.compiled.marks import device
 from hookean.solvers.base import Solver
+from hookean.stability import time_steps
+from hookean.system.packing import Desk, Lean, Seen, contacts, lean
 
 if TYPE_CHECKING:
-    from hookean.state import State
-    from hookean.system import System
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 
 @device
@@ -167,9 +169,9 @@ def verlet_loop(  # type: ignore[no-untyped-def]
 class Method(Solver):
     """Velocity Verlet; what classic Kangaroo does, and what bounces.
 
-    With `divide_steps` a step is divided into equal parts that hold (see `stability.parts`); how many is kept in
+    With `divide_steps` a step is divided into equal parts that hold (see `time_steps.parts`); how many is kept in
     `state.scratch`; a watched run takes more where they feed energy into the motion. A step that needs more than
-    `stability.most_parts` covers less time.
+    `time_steps.most_parts` covers less time.
     """
 
     name: ClassVar[str] = "verlet"
@@ -185,26 +187,26 @@ class Method(Solver):
     def parts(self, system: System, state: State) -> int:
         """In how many parts a time step is divided."""
         if "parts" not in state.scratch:
-            state.scratch["parts"] = np.array([stability.parts(system, state, self.limit)])
+            state.scratch["parts"] = np.array([time_steps.parts(system, state, self.limit)])
         return int(state.scratch["parts"][0])
 
     def covers(self, system: System, state: State) -> float:
         """The time that a step takes: the scene's time step, or less where it needs too many parts."""
         parts, step = self.parts(system, state), system.scene.settings.time_step
-        return step * min(1.0, stability.most_parts(system) / parts)
+        return step * min(1.0, time_steps.most_parts(system) / parts)
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Exactly `count` time steps; physical time does not stop early."""
         if count < 1:
             return 0
         n, step = len(state.x), system.scene.settings.time_step
-        same = self._seen.same(system, state) and self._own is not None and kernels.same(self._free, state.free)
+        same = self._seen.same(system, state) and self._own is not None and dispatch.same(self._free, state.free)
         if not same or self._own is None:
             self._own = lean(system, state, damped=True)
             self._tables = (self._own.quiet, self._own.lively, *contacts(system), _noted(system, state))
             self._free = state.free.copy()
         parts = self.parts(system, state)
-        steps = step / parts * np.tile(self.weights, min(parts, stability.most_parts(system)))
+        steps = step / parts * np.tile(self.weights, min(parts, time_steps.most_parts(system)))
         touching, lively = bool(system.contacts), len(self._own.lively) > 0
         rows, new = self._desk.keep(n, 6 + lively + 6 * touching)
         x, v, pull, load, base, seen, *rest = rows
@@ -214,7 +216,7 @@ class Method(Solver):
         free, *others = rest or [pull, *[raw] * 5]  # asked for by contacts alone
         if new or not same:
             load[:, :3] = self._own.load
-        kernels.compiled(verlet_loop)(
+        dispatch.compiled(verlet_loop)(
             *self._tables, state.x, state.v, state.free, system.mass, x, v, free, pull, load, raw, base, np.zeros(n),
             *others, seen, system.drag, steps, touching, same and not new, count,
         )  # fmt: skip
@@ -228,7 +230,7 @@ class Method(Solver):
 
 def _noted(system: System, state: State) -> Any:
     """Table of what elements remember at the end of a step."""
-    return kernels.table(
+    return dispatch.table(
         "remember",
         [
             (g.cls.end_of_step, (g.block.indices, g.block.parameters, memory))

@@ -11,10 +11,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from hookean.solvers import verlet
-from hookean.solvers.base import Limit
+from hookean.stability.limit import Limit
 
 if TYPE_CHECKING:
-    from hookean.system import System
+    from hookean.system.system import System
 
 _OUTER = 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from hookean.sweep import Sweep
-from hookean_server.openapi import problems
-from hookean_server.schemas import EXAMPLES, SCHEMAS
+from hookean.running.sweep import Sweep
+from hookean_server.http.openapi import problems
+from hookean_server.http.schemas import EXAMPLES, SCHEMAS
 
 STATUSES = ["waiting", "running", "cancelling", "done", "failed", "cancelled"]
 _NUMBER = {"type": "number"}

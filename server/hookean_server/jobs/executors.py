@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from hookean_server.pool import Job, Pool
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
+from hookean_server.workers.pool import Job, Pool
 
 NICE = 10  # how far jobs give way to requests and sessions
 NOTICE = 1.5  # seconds a worker may take to notice that its job is cancelled

@@ -17,10 +17,10 @@ from hookean_server.jobs import rows
 from hookean_server.jobs.cluster import Cluster
 from hookean_server.jobs.executors import Executor, Local
 from hookean_server.jobs.runner import PROGRESS, Live, Runner
-from hookean_server.pool import Job, Pool
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 from hookean_server.store import Store
+from hookean_server.workers.pool import Job, Pool
 
 log = logging.getLogger("hookean.jobs")
 TICK = 15.0  # seconds between looks at what to forget

@@ -9,12 +9,12 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Header, Path, Query, Request
 from starlette.responses import Response, StreamingResponse
 
-from hookean_server.handling import answered, read_json
+from hookean_server.http.handling import answered, read_json
 from hookean_server.jobs import description, rows, tables
 from hookean_server.jobs.manager import Jobs, summary
 from hookean_server.jobs.runner import Live
-from hookean_server.pool import Job, Reply
 from hookean_server.problems import Problem
+from hookean_server.workers.pool import Job, Reply
 
 router = APIRouter(tags=["jobs"])
 

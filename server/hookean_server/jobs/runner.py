@@ -12,10 +12,10 @@ from typing import Any
 
 from hookean_server.jobs import rows, work
 from hookean_server.jobs.executors import NOTICE, Executor, Local
-from hookean_server.pool import Job
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 from hookean_server.store import Store
+from hookean_server.workers.pool import Job
 
 TRIES = 3
 LARGEST = 500  # items in a batch

@@ -9,7 +9,7 @@ import json
 from collections.abc import AsyncIterator
 from typing import Any
 
-from hookean import cells
+from hookean.files import cells
 from hookean_server.jobs import rows
 from hookean_server.jobs.manager import Jobs, summary
 from hookean_server.jobs.runner import Live

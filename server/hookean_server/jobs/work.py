@@ -19,21 +19,21 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from hookean.balance import balance
 from hookean.errors import InputError
 from hookean.files.documents import plain
-from hookean.files.scene_json import parse
-from hookean.patch import Patch, apply
-from hookean.result import Result, Status, gather
-from hookean.run import bounded, relax_state
-from hookean.scene import Scene, faults
+from hookean.running.patch import Patch, apply
+from hookean.running.result import Result, Status, gather
+from hookean.running.run import bounded, relax_state
+from hookean.running.sweep import Sweep, Table, columns, figures, parameters
+from hookean.scene.scene import Scene, faults
+from hookean.scene.text import parse
 from hookean.solvers import Solver, solver
-from hookean.state import State
-from hookean.sweep import Sweep, Table, columns, figures, parameters
-from hookean.system import System, compile
-from hookean_server import answers
+from hookean.system.balance import balance
+from hookean.system.state import State
+from hookean.system.system import System, compile
+from hookean_server.http import answers
 from hookean_server.problems import faulty
-from hookean_server.tasks import Cancelled, Done
+from hookean_server.workers.task import Cancelled, Done
 
 log = logging.getLogger("hookean.worker")
 

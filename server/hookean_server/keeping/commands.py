@@ -7,12 +7,33 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
+from typing import Annotated
 
-from hookean_server.discovery import Held, Lock
+import typer
+
+from hookean.commands.command import new
 from hookean_server.keeping import backups, manifest
 from hookean_server.keeping.opening import Broken, inspect, open_store, refuse_later, reports
+from hookean_server.lifecycle.discovery import SESSIONS, Held, Lock, folder
 
 RUNS = "A hookean server uses this store; stop it first with: hookean serve --stop"
+
+
+app = new()
+
+
+@app.command()
+def store(
+    action: Annotated[str, typer.Argument(help="check, salvage, backup or compact")],
+    target: Annotated[Path | None, typer.Argument(help="Of backup: the file to write; of the others: none")] = None,
+) -> None:
+    """Look after the file in which the service keeps sessions and jobs.
+
+    check: is it whole, and what was lost from it? salvage: repair it, keeping a copy. backup: copy it to a file, while
+    the service runs or not. compact: give unused space back. Exits with 0 if all is well, 1 if something is damaged or
+    lost, 2 where the action is not possible. HOOKEAN_STATE moves the folder of the file.
+    """
+    raise typer.Exit(run(action, folder() / SESSIONS, target))
 
 
 def run(action: str, path: Path, target: Path | None) -> int:

@@ -94,7 +94,7 @@ def place(path: Path) -> Path:
 
 
 def read(path: Path) -> Read | None:
-    """The manifest in a file; None where there is no file. Lines that are damaged are left out."""
+    """The manifest in a file; None if the file does not exist. Damaged lines are left out."""
     try:
         data = path.read_bytes()
     except FileNotFoundError:
@@ -227,7 +227,7 @@ class Manifest:
         self._live = self._size
 
     def _go_on(self) -> None:
-        """Append to the file that is there, after its last whole line. Raises OSError where there is none."""
+        """Append to the existing file, after its last whole line. Raises OSError if the file does not exist."""
         data = self.path.read_bytes()
         self._size = self._live = data.rfind(b"\n") + 1
         if not data:

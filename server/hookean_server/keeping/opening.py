@@ -39,7 +39,7 @@ class Refused(OSError):
 
 
 class Broken(Exception):
-    """A store that is not as it was written; the sentence says what was found first."""
+    """A damaged store; the sentence has the first damage that was found."""
 
 
 @dataclass(frozen=True)
@@ -296,7 +296,7 @@ def _report(values: dict[str, Any]) -> Report:
 
 
 def _log(report: Report) -> None:
-    """Of losses the log has the number only: names are for who may read the sessions."""
+    """The log has only the number of losses: names are for clients that may read the sessions."""
     log.error("%s It has %d losses, which `hookean store check` names.", report.head, len(report.losses))
 
 

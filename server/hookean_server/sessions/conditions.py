@@ -29,7 +29,7 @@ class Conditions:
 
     match: list[str] | str | None = None
     none_match: list[str] | str | None = None
-    unread: bool = False  # an If-None-Match that is no list of tags
+    unread: bool = False  # an If-None-Match that is not a list of tags
 
     def check(self, live: Live | None) -> int | None:
         """Raise `stale-revision` where a change of a session, or of none, must not be made.

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from hookean.files import obj
-from hookean.simulation import Simulation
-from hookean_server import answers, leftovers
+from hookean.running.simulation import Simulation
+from hookean_server.http import answers
+from hookean_server.lifecycle import leftovers
 from hookean_server.sessions import parts
 
 LACKS = {
@@ -117,7 +118,7 @@ def _threedm(simulation: Simulation) -> tuple[bytes, list[str]]:
 
 
 def _obj(simulation: Simulation, arrays: str) -> bytes:
-    from hookean.claims import document_text
+    from hookean.running.claims import document_text
 
     result = simulation.result()
     said = document_text(result, result.report.sentences())

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 
-from hookean.history import LONGEST
+from hookean.running.history import LONGEST
 from hookean_server.sessions.parts import EDITS
 
 
 def foldable(edits: list[bytes]) -> int:
     """How many edits from the first may become part of the base, so that what is left leads to the same history.
 
-    Follows `hookean.history.History` by numbers: each entry is the number of the edit that made it. What is left must
+    Follows `running.history.History` by numbers: each entry is the number of the edit that made it. What is left must
     make all entries that are there in the end, and all that its own undos and redos use.
     """
     before: list[int] = []

@@ -17,7 +17,7 @@ from fastapi import APIRouter
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from hookean.errors import InputError
-from hookean.files.scene_json import parse
+from hookean.scene.text import parse
 from hookean_server.problems import Problem
 from hookean_server.sessions.live import Live, summary
 from hookean_server.sessions.manager import Manager

@@ -8,7 +8,6 @@ It may be killed any time: what is acknowledged is in the store, progress in a c
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import signal
@@ -18,16 +17,13 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
-from pydantic import ValidationError
-
-from hookean.errors import InputError
-from hookean.result import Status
-from hookean.scene import faults
-from hookean.simulation import Simulation
-from hookean_server.problems import Problem, faulty
+from hookean.running.result import Status
+from hookean.running.simulation import Simulation
+from hookean_server.problems import Problem
 from hookean_server.sessions import parts, wire
 from hookean_server.sessions.folding import foldable
 from hookean_server.sessions.resting import Resting
+from hookean_server.workers import channel
 
 log = logging.getLogger("hookean.session")
 
@@ -45,11 +41,12 @@ Reply = tuple[dict[str, Any], bytes]
 
 def host(connection: Connection, memory: int, forked: bool) -> None:
     """Serve one session until the server closes its end, dies or kills us."""
-    from hookean_server.workers import _die_with_parent, _limit_memory, keep_pages
+    from hookean_server.workers.memory import keep_pages, limit_memory
+    from hookean_server.workers.process import _die_with_parent
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _die_with_parent(forked)
-    _limit_memory(memory)
+    limit_memory(memory)
     keep_pages()
     with suppress(EOFError, OSError):
         Host(connection).run()
@@ -115,8 +112,7 @@ class Host:
         return max(0.0, float(wait))
 
     def _take(self) -> None:
-        head = json.loads(self.connection.recv_bytes())
-        body = self.connection.recv_bytes()
+        head, body = channel.receive(self.connection)
         if head["do"] == "credit":
             self.credit = 1
             return
@@ -146,21 +142,9 @@ class Host:
                 raise Problem("stale-revision", f"{self._stale(head)}; read it and edit again.")
             action: Callable[[dict[str, Any], bytes], Reply | None] = getattr(self, f"do_{head['do']}")
             return action(head, body)
-        except Problem as problem:
-            return _failed(problem), b""
-        except InputError as error:
-            return _failed(faulty(head.get("slug", "invalid-input"), list(error.faults))), b""
-        except ValidationError as error:
-            return _failed(faulty("invalid-scene", faults(error))), b""
-        except RecursionError:
-            return _failed(faulty("invalid-scene", [InputError("/", "nested too deeply")])), b""
-        except UnicodeError:
-            return _failed(faulty("invalid-scene", [InputError("/", "a text has characters that are no Unicode")])), b""
-        except MemoryError:
-            return _failed(Problem("too-large", "This needs more memory than one session may use.")), b""
-        except Exception:
-            log.exception("%s failed", head["do"])
-            return _failed(Problem("internal", "The session failed on this input; the log tells more.")), b""
+        except Exception as error:
+            slug = head.get("slug", "invalid-input")
+            return channel.problem_of(error, slug, head["do"], log, scene="invalid-scene").to_wire(), b""
 
     def _stale(self, head: dict[str, Any]) -> str:
         """Why a command is for another revision than this one; "" where it is not."""
@@ -399,9 +383,4 @@ class Host:
         return self.simulation
 
     def _send(self, head: dict[str, Any], body: bytes) -> None:
-        self.connection.send_bytes(json.dumps(head).encode())
-        self.connection.send_bytes(body)
-
-
-def _failed(problem: Problem) -> dict[str, Any]:
-    return {"problem": problem.slug, "detail": problem.detail, "errors": problem.errors, "headers": problem.headers}
+        channel.send(self.connection, head, body)

@@ -11,7 +11,7 @@ from collections.abc import Coroutine
 from contextlib import suppress
 from typing import Any
 
-from hookean_server.logs import short_hash
+from hookean_server.http.logs import short_hash
 from hookean_server.problems import Problem
 from hookean_server.sessions import rows, upkeep
 from hookean_server.sessions.conditions import Conditions, stale
@@ -373,7 +373,7 @@ class Manager(Register):
             process.kill()
 
     def drop(self, live: Live) -> None:
-        """A session is not in the store any more: its process ends, its watchers hear of it."""
+        """A session is no longer in the store: its process ends, and its watchers are notified."""
         self.forget(live)
         self.end(live)
         live.tell()

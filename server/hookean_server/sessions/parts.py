@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from hookean.errors import InputError
 from hookean.files import saved as saved_file
 from hookean.files.documents import plain
-from hookean.files.scene_json import parse
-from hookean.patch import Patch, Undo
-from hookean.result import Status, kinetic
-from hookean.scene import Scene
-from hookean.simulation import Simulation
-from hookean.state import State
-from hookean.system import hold
+from hookean.running.patch import Patch, Undo
+from hookean.running.result import Status, kinetic
+from hookean.running.simulation import Simulation
+from hookean.scene.scene import Scene
+from hookean.scene.text import parse
+from hookean.system.state import State
+from hookean.system.system import hold
 from hookean_server.sessions.wire import Shown
 
 EDITS = ("undo", "redo", "reset")

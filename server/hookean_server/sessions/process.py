@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import itertools
-import json
 import queue
 import threading
 from collections.abc import Callable
@@ -15,9 +14,10 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from hookean_server.pool import FORKED, context
 from hookean_server.problems import Problem
 from hookean_server.sessions.host import host
+from hookean_server.workers import channel
+from hookean_server.workers.pool import FORKED, context
 
 Event = Callable[[dict[str, Any], bytes], None]
 
@@ -55,7 +55,7 @@ class SessionProcess:
 
     @classmethod
     async def begun(cls, memory: int, on_event: Event) -> SessionProcess:
-        """A process, started beside the event loop; where whoever wants it is cancelled meanwhile, it is ended."""
+        """A process, started beside the event loop; it is ended if the caller is cancelled meanwhile."""
         starting = asyncio.ensure_future(asyncio.to_thread(cls, memory, on_event))
         try:
             return await asyncio.shield(starting)
@@ -80,9 +80,8 @@ class SessionProcess:
             self._waiting.pop(number, None)
         if answer is GONE:
             raise Gone
-        if "problem" in answer:
-            errors = [(p, d) for p, d in answer["errors"]]
-            raise Problem(answer["problem"], answer["detail"], errors, answer["headers"])
+        if (problem := Problem.from_wire(answer)) is not None:
+            raise problem
         return answer, data
 
     def credit(self) -> None:
@@ -114,14 +113,12 @@ class SessionProcess:
         """Send what is asked for, in its order; a process that hangs blocks this thread only."""
         with suppress(OSError, ValueError):
             while (order := self._orders.get()) is not None:
-                connection.send_bytes(json.dumps(order[0]).encode())
-                connection.send_bytes(order[1])
+                channel.send(connection, *order)
 
     def _listen(self, connection: Connection) -> None:
         with suppress(OSError, EOFError, ValueError):
             while True:
-                head = json.loads(connection.recv_bytes())
-                body = connection.recv_bytes()
+                head, body = channel.receive(connection)
                 if "id" not in head:
                     self.on_event(head, body)
                 elif (future := self._waiting.get(head["id"])) is not None:

@@ -1,7 +1,7 @@
 """The keys of sessions: which sessions there are, which are being made, which have been deleted.
 
-A session is one creation under a key. Whoever waits for it holds the object, never the key alone, and finds out that it
-was deleted even where another one has its key by then.
+A session is one creation under a key. Callers that wait for it hold the object, never the key alone,
+and find out that it was deleted even if another one has its key by then.
 """
 
 from __future__ import annotations

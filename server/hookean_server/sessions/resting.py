@@ -13,9 +13,9 @@ from copy import copy
 import numpy as np
 
 from hookean.errors import InputError
-from hookean.result import Result, Status
-from hookean.run import relax_state
-from hookean.simulation import Simulation
+from hookean.running.result import Result, Status
+from hookean.running.run import relax_state
+from hookean.running.simulation import Simulation
 from hookean.solvers import solver
 
 log = logging.getLogger("hookean.session")

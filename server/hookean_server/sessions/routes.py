@@ -10,9 +10,9 @@ from urllib.parse import quote
 from fastapi import APIRouter, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from hookean_server import claimed, openapi
-from hookean_server.handling import read_json, uploaded_scene
-from hookean_server.limits import media_type
+from hookean_server.http import claimed, openapi
+from hookean_server.http.handling import read_json, uploaded_scene
+from hookean_server.http.limits import media_type
 from hookean_server.sessions.conditions import Conditions, When
 from hookean_server.sessions.exports import FORMATS
 from hookean_server.sessions.live import Live, summary

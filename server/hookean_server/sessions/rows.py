@@ -126,7 +126,7 @@ class Stored:
 
 
 def load(key: str) -> Work:
-    """A session; None where there is none. Raises an error of the store where a row is not as it was written."""
+    """A session; None if it does not exist. Raises an error of the store if a row is not as it was written."""
 
     def work(db: Database) -> Stored | None:
         row = db.execute("SELECT revision FROM sessions WHERE key = ?", (key,)).fetchone()

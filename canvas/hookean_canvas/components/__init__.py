@@ -1,0 +1,1 @@
+"""Components built from their bundles: icons, scripts, user objects, packages."""

@@ -1,0 +1,1 @@
+"""Definitions written: objects, wires, and where they stand."""

@@ -1,0 +1,1 @@
+"""Archives shown, checked and drawn."""

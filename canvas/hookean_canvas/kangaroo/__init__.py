@@ -1,0 +1,1 @@
+"""Definitions made for Kangaroo as definitions for hookean."""

@@ -1,0 +1,154 @@
+"""Decides what of Kangaroo in a definition is swapped for ours: whole systems, and tools; and has it swapped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from uuid import UUID
+
+from hookean.errors import InputError
+from hookean_canvas.archive import Chunk
+from hookean_canvas.archive.guids import CLUSTER
+from hookean_canvas.archive.parts import Part, inputs, outputs, parts, sources
+from hookean_canvas.kangaroo import make
+from hookean_canvas.kangaroo.ids import Known, hidden, key, libraries, recognised
+from hookean_canvas.kangaroo.report import Report
+from hookean_canvas.kangaroo.roles import Role, called, reason, role
+from hookean_canvas.kangaroo.space import Space
+from hookean_canvas.kangaroo.streams import Streams, sound
+from hookean_canvas.kangaroo.swap import FLOATING, Swapping, connect, names_of, ports_of
+from hookean_canvas.kangaroo.systems import System, Systems
+from hookean_canvas.kangaroo.table import Swap, swap_of
+
+
+class Importing:
+    """One definition on its way; `root` is changed in place."""
+
+    def __init__(self, root: Chunk, report: Report) -> None:
+        definition = root.chunk("Definition")
+        objects = definition.chunk("DefinitionObjects") if definition is not None else None
+        if definition is None or objects is None:
+            raise InputError(report.name, "this is no Grasshopper definition; give a .gh or .ghx file")
+        sound(root, report.name)
+        self.root, self.objects, self.report = root, objects, report
+        self.libraries = libraries(definition)
+        self.known = {id(part.chunk): self._recognised(part) for part in parts(root)}
+        self.streams = Streams(root)
+        self.plan: dict[int, Swap] = {}
+        self.stays: dict[int, str] = {}
+        self.systems = Systems(root, self.streams, self.known, self._why_not)
+        self.space = Space(root)
+        self.renamed: dict[UUID, UUID] = {}
+        self.because: dict[UUID, str] = {}  # why wires into an input, or out of an output, are gone
+        self.doubles: list[tuple[UUID, UUID]] = []  # an output of Kangaroo's, and a second one that goes with it
+
+    def _recognised(self, part: Part) -> Known | None:
+        """What of Kangaroo an object is; some classic components are clusters of others."""
+        known = recognised(part.chunk, self.libraries)
+        if known is None and part.guid == CLUSTER and part.container is not None:
+            named = Known("classic", str(part.container.value("Name", default="")))
+            inside = hidden(part.chunk, self.libraries) or ""
+            return named if swap_of(named) and "holds" in inside else None
+        return known
+
+    def run(self) -> None:
+        """Swap every system that can be swapped whole; say what cannot, and why."""
+        found = self.streams.parts
+        self.report.objects = len(found)
+        self.report.kangaroo = sum(known is not None for known in self.known.values())
+        self._decide()
+        for part in found:
+            known = self.known[id(part.chunk)]
+            if known and id(part.chunk) in self.plan:
+                Swapping(self, part, known, self.plan[id(part.chunk)]).run()
+            elif known:
+                self.report.stays.append((called(part, known), self.stays.get(id(part.chunk)) or reason(known)))
+        for part in found:
+            inside = hidden(part.chunk, self.libraries) if self.known[id(part.chunk)] is None else None
+            if inside:
+                self.report.stays.append((part.label, inside))
+        self._wire_doubles()
+
+    def _decide(self) -> None:
+        """Which components are swapped: those of systems that are whole, and tools of no system that stays."""
+        report, systems = self.report, self.systems
+        kept: set[UUID] = set()
+        for system in systems.found:
+            report.solvers += len(system.solvers)
+            if system.blocks:
+                report.stays += [line for line in system.foreign if line not in report.stays]
+                kept |= {one for solver in system.solvers for one in self.streams.all_above(solver)}
+            else:
+                report.whole += len(system.solvers)
+            name = " and ".join(dict.fromkeys(solver.label for solver in system.solvers))
+            for part in (*system.solvers, *system.goals):
+                if system.blocks:
+                    self.stays[id(part.chunk)] = self._because(part, system, name)
+                else:
+                    self._plan(part)
+        self.stays |= {
+            id(part.chunk): f"{why}; a goal is translated with its solver" for part, why in systems.orphans()
+        }
+        for part in self.streams.parts:
+            known = self.known[id(part.chunk)]
+            if known and role(known) is Role.TOOL and id(part.chunk) not in self.stays:
+                if part.id in kept and isinstance(self._swap(part, known), Swap):
+                    self.stays[id(part.chunk)] = "a tool for geometry; it stays with the system that it feeds"
+                else:
+                    self._plan(part)
+
+    def _because(self, part: Part, system: System, name: str) -> str:
+        """Why a component of a system stays: a reason of its own, or that of the system."""
+        known = self.known[id(part.chunk)]
+        why = self._why_not(part, known) if known else None
+        if why is not None:
+            return why
+        if all(part.chunk is not solver.chunk for solver in system.solvers):
+            return f"it stays with {name}"
+        return f"it stays with all its goals, because of {', '.join(system.blocks)}"
+
+    def _plan(self, part: Part) -> None:
+        known = self.known[id(part.chunk)]
+        swap = self._swap(part, known) if known else None
+        if isinstance(swap, Swap):
+            self.plan[id(part.chunk)] = swap
+
+    def _why_not(self, part: Part, known: Known) -> str | None:
+        found = self._swap(part, known)
+        return found if isinstance(found, str) else None
+
+    def _swap(self, part: Part, known: Known) -> Swap | str:
+        """The swap of a component, or why there is none."""
+        swap = swap_of(known)
+        given = {key(name): port for port in ports_of(part) for name in names_of(port)}
+        if swap is None or not set(swap.needs) <= given.keys():
+            return reason(known)
+        if part.container is None or not (inputs(part.container) or swap.pieces[0].bundle == "*nothing"):
+            return "it has no input or no output; the file is damaged"
+        if not outputs(part.container):
+            return "it has no input or no output; the file is damaged"
+        for name, why in swap.unless.items():
+            if name in given and (sources(given[name]) or make.stored(given[name])):
+                return why
+        for piece in swap.pieces:
+            if piece.bundle not in FLOATING:
+                try:
+                    make.recipe(piece.bundle)
+                except InputError:
+                    return f"hookean has no component {piece.bundle}"
+        return swap
+
+    def swapped(self, wanted: str, among: Sequence[Part]) -> Iterator[tuple[Part, Known]]:
+        """Components among some that are swapped for pieces of a kind."""
+        for part in among:
+            known, swap = self.known[id(part.chunk)], self.plan.get(id(part.chunk))
+            if known and swap and any(piece.bundle == wanted for piece in swap.pieces):
+                yield part, known
+
+    def _wire_doubles(self) -> None:
+        """Where a component became two, what took its output takes both."""
+        for old, new in self.doubles:
+            for part in parts(self.root):
+                for port in ports_of(part):
+                    wired = sources(port)
+                    if old in wired:
+                        connect(port, [*wired, new])

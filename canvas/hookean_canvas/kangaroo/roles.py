@@ -1,0 +1,98 @@
+"""What the components of Kangaroo are for: solvers, goals and tools; and why some of them have no counterpart."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from hookean_canvas.archive.parts import Part
+from hookean_canvas.kangaroo.ids import COMPONENTS, Known, key
+from hookean_canvas.kangaroo.table import CLASSIC, SECOND
+
+
+class Role(Enum):
+    """A solver; a goal (a force, settings, what is shown) for one; a tool, which works alone."""
+
+    SOLVER = "solver"
+    GOAL = "goal"
+    TOOL = "tool"
+
+
+_SOLVER_NAMES = "kangaroophysics zombiekangaroo solver bouncysolver zombiesolver stepsolver soft&hardsolver"
+_TOOL_NAMES = """
+bipartite byparent checkerboard combine&clean corners diagonalize facefaceoffset foldangle hingepoints
+interconnectpoints meshcorners meshdirection meshmachine meshmap meshturn multipipe nakedvertices planarity
+planarityanalysis planaritydisplay quaddivide reciprocal refine refinestrips remesh remeshbycolour
+removeduplicatelines removeduplicatepts simple simpleremesh splitatcorners stripper tangentcircles triremesh
+unroller vertexneighbours warpweft counter sequence trail wave
+"""
+_SOLVERS, _TOOLS = frozenset(_SOLVER_NAMES.split()), frozenset(_TOOL_NAMES.split())
+
+_PURE = "geometry without mechanics (equal, planar, parallel, tangent ...) is not here"
+_COLLIDE = "collisions other than floors are not here"
+_PURE_NAMES = """
+planarize equallength equalangle equalize equalizeangles align direction lengthratio lengthsnap anglesnap
+cyclicquad tangentincircles conicalize developablize isothermic coplanar colinear cospherical cocircular
+polygonarea g2 transform coincident mirror translationlock
+"""
+_COLLIDE_NAMES = """
+collide2d collider curvecollide curvepointcollide imagecircles softbodycollide solidpointcollide spherecollide
+solidplanecollide rigidbody rigidbodycollide rigidpointset floorfriction collidemesh collidesurf
+"""
+REASONS: dict[str, str] = {
+    "fd": "hookean takes the force density itself: Springs with rest length 0",
+    "constanttension": "for the same tension everywhere use SoapFilm; Springs with rest length 0 pull with k x length",
+    "clamplength": "Springs with lower_cutoff at their rest length are a cable; upper_cutoff a strut",
+    "plasticlength": "Springs with plasticity, which is a part of the rest length and not a distance",
+    "dynamicweight1d": "Self Weight takes a weight per length, of the start length",
+    "areaweight": "Self Weight takes a total or a weight per length",
+    "tangentialsmooth": "SoapFilm keeps its triangles even by itself",
+    "smooth": "smoothing is not here",
+    "soapfilm": "connect a mesh to SoapFilm",
+    "pressure": "connect a mesh to Pressure",
+    "wind": "wind is not here; Pressure acts along the normals",
+    "volume": "gas volumes are not here; Pressure is",
+    "onplane": "Anchors with axes hold in x, y or z; Pull To Mesh pulls to a flat mesh",
+    "particle": "masses and first velocities are fields of a scene; the canvas has no component for them",
+    "beam": "beams of six degrees of freedom are not here",
+    "support": "supports of six degrees of freedom are not here",
+    **dict.fromkeys(_PURE_NAMES.split(), _PURE),
+    **dict.fromkeys(_COLLIDE_NAMES.split(), _COLLIDE),
+    "counter": "a tool; the Engine's iterations count, too",
+    "sequence": "a tool; the service keeps the frames of a run",
+    "meshcorners": "a tool for geometry that gives corners round the boundary; Mesh Corners here gives them by the"
+    " numbers of the vertices, which would mix up lists that go with them",
+}
+"""Why a component has no counterpart, or what to use instead."""
+_KNOWN = {key(known.name) for known in COMPONENTS.values()} | {*CLASSIC, *SECOND, *REASONS}
+
+
+def role(known: Known, stream: bool = False) -> Role:
+    """What a component is for; one that no table knows is a goal where goals come from (`stream`), else a tool."""
+    name = key(known.name)
+    if name in _SOLVERS:
+        return Role.SOLVER
+    if name in _TOOLS:
+        return Role.TOOL
+    return Role.GOAL if stream or name in _KNOWN else Role.TOOL
+
+
+def reason(known: Known) -> str:
+    """Why a component of Kangaroo stays as it is."""
+    if key(known.name) not in _TOOLS:
+        return REASONS.get(key(known.name), "it has no counterpart")
+    why = REASONS.get(key(known.name), "a tool for geometry")
+    return f"{why}; it stays on" + (
+        ", as it comes with Rhino" if known.generation == "second" else " and needs Kangaroo"
+    )
+
+
+def called(part: Part, known: Known) -> str:
+    """A component of Kangaroo as a person finds it: its name, and its nickname where that is another."""
+    label = part.label
+    return known.name if key(label) in usual(known) else f"{known.name} ({label})"
+
+
+def usual(known: Known) -> set[str]:
+    """Nicknames that Kangaroo gives by itself."""
+    short = {"springsfromline": "springs", "unaryforce": "uforce", "kangaroophysics": "kangaroo", "soapfilm": "sg"}
+    return {key(known.name), short.get(key(known.name), ""), "tsmooth", "mc", "nv"}

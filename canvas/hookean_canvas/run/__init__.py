@@ -1,0 +1,1 @@
+"""Definitions run without Grasshopper: stand-ins, data trees, scripts."""

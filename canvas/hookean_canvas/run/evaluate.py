@@ -1,0 +1,399 @@
+"""A canvas without Grasshopper: reads a definition and evaluates it, scripts and all, against a live server.
+
+Objects are solved in the order of their wires. Data is matched as Grasshopper matches it (`trees`). The code of script
+components is what the file holds; it runs in this process, with stand-ins for Rhino, Grasshopper and ghenv, and
+rhino3dm as Rhino.Geometry. Solutions that a component schedules are run until nothing is scheduled any more.
+
+A toggle that feeds an input called reset is pressed as a person presses it: True first, then False.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+from uuid import UUID
+
+import rhino3dm
+
+from hookean.errors import InputError
+from hookean_canvas.archive.guids import (
+    BOOLEAN_TOGGLE,
+    BUTTON,
+    NUMBER_SLIDER,
+    PANEL,
+    PARAM_VIEWER,
+    RELAY,
+    TIMER,
+    VALUE_LIST,
+)
+from hookean_canvas.archive.parts import given as typed
+from hookean_canvas.run import stand_in as untyped
+from hookean_canvas.run.graph import Graph, Node, Port, Unread
+from hookean_canvas.run.natives import NATIVES, PARAMETERS, Native, Unfit, as_kind
+from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
+from hookean_canvas.run.trees import ITEM, LIST, TREE, Run, Tree, modified, runs
+
+stand_in: Any = untyped
+VALUES = (NUMBER_SLIDER, BOOLEAN_TOGGLE, PANEL, VALUE_LIST, BUTTON, RELAY, PARAM_VIEWER, TIMER)
+LONGEST_WAIT = 1.0  # s between scheduled solutions, however long one asks to wait
+
+
+@dataclass
+class Message:
+    """What a component says: its name, `error`, `warning` or `remark`, and the sentence."""
+
+    component: str
+    level: str
+    text: str
+
+
+@dataclass
+class Outcome:
+    """What a run came to: `panels` fed by wires, by their names; messages; whether all is at rest."""
+
+    panels: dict[str, Tree]
+    messages: list[Message]
+    solutions: int
+    at_rest: bool
+    notes: list[str] = field(default_factory=list)
+
+
+class Canvas:
+    """A definition ready to run; `settings` are values of sliders, toggles, panels and value lists by their names."""
+
+    def __init__(self, graph: Graph, settings: Mapping[str, str] | None = None) -> None:
+        self.graph = graph
+        self._order = graph.ordered()
+        _known(graph)
+        self._document = stand_in.Document(path=str(graph.file) if graph.file else None, identity=str(graph.id))
+        self._set = _settings(graph, settings or {})
+        self._pressed = [node for node in _resets(graph) if node.id not in self._set]
+        self._results: dict[UUID, Tree] = {}
+        self._messages: dict[UUID, list[Message]] = {}
+        self._scripts: dict[UUID, Script] = {}
+        self._solutions = 0
+        with _standing():
+            for node in graph.nodes:
+                code = code_of(node) if node.guid in SCRIPTS else None
+                if code is not None:
+                    self._scripts[node.id] = Script(node, code, self._document)
+        self._connect()
+
+    def run(self, seconds: float = 120.0, solutions: int = 20_000) -> Outcome:
+        """Press what resets, then solve until nothing is scheduled, for at most so long and so often."""
+        until = time.monotonic() + seconds
+        with _standing():
+            at_rest = True
+            for state in (True, False) if self._pressed else (None,):
+                for node in self._pressed:
+                    self._set[node.id] = bool(state)
+                at_rest = self._settle(None if self._solutions == 0 else self._pressed, until, solutions)
+        messages = [message for node in self._order for message in self._messages.get(node.id, [])]
+        panels: dict[str, Tree] = {}
+        for node in self._order:
+            if node.guid == PANEL and node.inputs[0].sources:
+                if node.label in panels:
+                    raise InputError(node.label, "two panels have this name; give each its own")
+                panels[node.label] = self._results[node.id]
+        return Outcome(panels, messages, self._solutions, at_rest)
+
+    def _connect(self) -> None:
+        """Give each stand-in component the objects behind its wires, as ghenv.Component.Params shows them."""
+        owners = self.graph.owners()
+        for script in self._scripts.values():
+            for given, port in zip(script.component.Params.Input, script.node.inputs, strict=True):
+                given.InstanceGuid = str(port.id)
+                for source in port.sources:
+                    if source in owners:
+                        behind = stand_in.Parameter(owners[source][1].nickname)
+                        behind.InstanceGuid = str(source)
+                        given.Sources.append(behind)
+
+    def _settle(self, expired: Sequence[Node] | None, until: float, solutions: int) -> bool:
+        """Solve what is expired (None: all), and what is scheduled after that; whether it came to rest in time."""
+        self._solve(expired)
+        while self._document.scheduled:
+            if time.monotonic() > until or self._solutions >= solutions:
+                return False
+            waiting, self._document.scheduled[:] = list(self._document.scheduled), []
+            time.sleep(min(LONGEST_WAIT, min(wait for wait, _ in waiting) / 1000.0))
+            for script in self._scripts.values():
+                script.component.expired = 0
+            for _, callback in waiting:
+                if callback is not None:
+                    self._call(callback)
+            again = [script.node for script in self._scripts.values() if script.component.expired]
+            self._solve(again)
+        return True
+
+    def _call(self, callback: Any) -> None:
+        """What a component scheduled; InputError where it raises, as Grasshopper's solution ends there."""
+        try:
+            callback(self._document)
+        except (Exception, SystemExit) as error:
+            raise InputError("a scheduled solution", f"{type(error).__name__}: {error}") from None
+
+    def _solve(self, expired: Sequence[Node] | None) -> None:
+        """One solution: the expired objects and all that depend on them."""
+        self._solutions += 1
+        stale = {node.id for node in (self._order if expired is None else expired)}
+        after: dict[UUID, list[UUID]] = {}
+        for start, _, end, _ in self.graph.wires():
+            after.setdefault(start.id, []).append(end.id)
+        waiting = list(stale)
+        while waiting:
+            for key in after.get(waiting.pop(), ()):
+                if key not in stale:
+                    stale.add(key)
+                    waiting.append(key)
+        for node in self._order:
+            if node.id in stale:
+                self._messages[node.id] = []
+                self._evaluate(node)
+
+    def _evaluate(self, node: Node) -> None:
+        for port in node.outputs:
+            self._results[port.id] = Tree()
+        if node.locked:
+            return
+        if node.floating:
+            self._results[node.id] = self._floating(node)
+        elif node.guid in NATIVES:
+            self._native(node, NATIVES[node.guid])
+        else:
+            self._script(node, self._scripts[node.id])
+
+    def _given(self, port: Port) -> Tree:
+        """The data that reaches an input, by wires or its own, after its modifiers."""
+        found = Tree()
+        for source in port.sources:
+            found.take(self._results.get(source, Tree()))
+        if not port.sources and port.data is not None:
+            found.take(port.data)
+        return modified(found, port.mapping, port.reverse, port.simplify)
+
+    def _floating(self, node: Node) -> Tree:
+        port = node.inputs[0]
+        value = self._set.get(node.id)
+        if value is not None:
+            return Tree.of([value])
+        if not port.sources and node.guid in _OWN:
+            return Tree.of(_OWN[node.guid](node))
+        found = self._given(port)
+        return self._cast(node, port, PARAMETERS[node.guid][1], found) if node.guid in PARAMETERS else found
+
+    def _native(self, node: Node, native: Native) -> None:
+        given: list[tuple[int, Tree]] = []
+        for port, wanted in zip(node.inputs, native.inputs, strict=True):
+            tree = self._cast(node, port, wanted.kind, self._given(port))
+            if not tree:
+                self._say(node, "warning", f"Input parameter {port.nickname} failed to collect data")
+                return
+            given.append((wanted.access, tree))
+        for run in runs(given):
+            if any(value is None and access == ITEM for value, (access, _) in zip(run.values, given, strict=True)):
+                continue  # an item that is null, or an empty branch
+            try:
+                found: Sequence[Any] = native.run(*run.values)
+            except Unfit as error:
+                self._say(node, "error", str(error))
+                continue
+            nested = any(access == ITEM for access, _ in given)
+            for port, result, value in zip(node.outputs, native.outputs, found, strict=True):
+                path = (*run.path, run.number) if result.access == LIST and nested else run.path
+                self._results[port.id].add(path, value if result.access == LIST else [value])
+
+    def _script(self, node: Node, script: Script) -> None:
+        del script.component.messages[:]
+        for wired in script.component.Params.Input:
+            for source in wired.Sources:
+                source.VolatileData = handed(self._results[UUID(source.InstanceGuid)])
+        script.component.RunCount = 0
+        given: list[tuple[int, Tree]] = []
+        for port in node.inputs:
+            tree = self._hinted(node, port, self._given(port))
+            if not tree and not port.optional:
+                self._say(node, "warning", f"Input parameter {port.nickname} failed to collect data")
+                return
+            given.append((port.access, tree))
+        for run in runs(given):
+            script.component.RunCount += 1
+            self._keep(node, run, script.run(run.values), nested=any(access == ITEM for access, _ in given))
+        for level, text in script.component.messages:
+            self._say(node, str(level).lower(), text)
+
+    def _keep(self, node: Node, run: Run, values: Sequence[Any], nested: bool) -> None:
+        """What a script gave, in the trees of its outputs."""
+        for port, value in zip(node.outputs, values, strict=True):
+            tree = tree_of(value)
+            if tree is not None:
+                self._results[port.id].take(tree)
+            elif isinstance(value, (list, tuple)):
+                self._results[port.id].add((*run.path, run.number) if nested else run.path, list(value))
+            elif value is not None:
+                self._results[port.id].add(run.path, [value])
+
+    def _cast(self, node: Node, port: Port, kind: str, tree: Tree) -> Tree:
+        return self._converted(node, port, tree, lambda value: as_kind(kind, value))
+
+    def _hinted(self, node: Node, port: Port, tree: Tree) -> Tree:
+        return self._converted(node, port, tree, lambda value: hinted(port.hint, value))
+
+    def _converted(self, node: Node, port: Port, tree: Tree, convert: Any) -> Tree:
+        found = Tree()
+        for path, values in tree.branches():
+            found[path] = []
+            for value in values:
+                try:
+                    found[path].append(convert(value))
+                except Unfit as error:
+                    found[path].append(None)
+                    self._say(node, "error", f"{port.nickname}: {error}")
+        return found
+
+    def _say(self, node: Node, level: str, text: str) -> None:
+        self._messages[node.id].append(Message(node.label, level, text))
+
+
+class _standing:
+    """Rhino and Grasshopper in sys.modules are stand-ins, as long as this lasts."""
+
+    def __enter__(self) -> None:
+        self._canvas: Any = stand_in.Canvas(geometry=rhino3dm)
+        self._canvas.install()
+
+    def __exit__(self, *_: object) -> None:
+        self._canvas.remove()
+
+
+def _known(graph: Graph) -> None:
+    """InputError that names every object that cannot be run, and stored data that cannot be read."""
+    where = str(graph.file or graph.name)
+    if graph.damage:
+        raise InputError(where, f"the file is damaged: {'; '.join(graph.damage)}")
+    unknown = []
+    for node in graph.nodes:
+        unknown += [f"{node.label} ({node.name}{why})" for why in [_strange(node)] if why]
+        for port in node.inputs:
+            odd = [value for value in (port.data or Tree()).values_in_order() if isinstance(value, Unread)]
+            if odd:
+                unknown.append(f"data stored in {node.label}, {port.nickname}: {', '.join(odd[0].items)}")
+    if unknown:
+        said = "these objects have no stand-in: " if len(unknown) > 1 else "this object has no stand-in: "
+        raise InputError(where, said + "; ".join(unknown))
+
+
+def _strange(node: Node) -> str:
+    """Why an object has no stand-in, as words that follow its name; empty where it has one."""
+    if node.guid in SCRIPTS:
+        return "" if code_of(node) is not None else ": its code is not Python"
+    if node.guid in NATIVES:
+        of = NATIVES[node.guid]
+        held, usual = (f"{len(one.inputs)} inputs and {len(one.outputs)} outputs" for one in (node, of))
+        return "" if held == usual else f" with {held}, not {usual}"
+    if node.guid in PARAMETERS or node.guid in VALUES:
+        return "" if node.floating else " with inputs or outputs of its own"
+    return f", {node.guid}"
+
+
+def _resets(graph: Graph) -> list[Node]:
+    """Toggles that feed an input called reset."""
+    found: dict[UUID, Node] = {}
+    for start, _, _, port in graph.wires():
+        if start.guid == BOOLEAN_TOGGLE and port.nickname.strip("_").lower() == "reset":
+            found[start.id] = start
+    return list(found.values())
+
+
+def _settings(graph: Graph, given: Mapping[str, str]) -> dict[UUID, Any]:
+    """Values given by name, by the objects that have them; InputError for a name or value that does not fit."""
+    found: dict[UUID, Any] = {}
+    settable = [
+        n
+        for n in graph.nodes
+        if n.guid in (NUMBER_SLIDER, BOOLEAN_TOGGLE, VALUE_LIST, PANEL) and not n.inputs[0].sources
+    ]
+    settable = [n for n in settable if n.nickname]
+    for name, text in given.items():
+        nodes = [node for node in settable if node.nickname == name]
+        if not nodes:
+            known = ", ".join(sorted(node.nickname for node in settable))
+            raise InputError(name, f"nothing that can be set has this name; there are {known}")
+        for node in nodes:
+            found[node.id] = _set_value(node, text)
+    return found
+
+
+def _set_value(node: Node, text: str) -> Any:
+    if node.guid == PANEL:
+        return text
+    if node.guid == VALUE_LIST:
+        items = [c for c in node.container.chunks if c.name == "ListItem"]
+        names = {typed(c, "Name", ""): typed(c, "Expression", "") for c in items}
+        if text not in names:
+            raise InputError(node.nickname, f"{text} is none of its choices {', '.join(names)}")
+        return _expression(names[text])
+    try:
+        value = as_kind("boolean" if node.guid == BOOLEAN_TOGGLE else "number", text)
+    except Unfit:
+        raise InputError(
+            node.nickname, f"{text} is no {'truth; give True or False' if node.guid == BOOLEAN_TOGGLE else 'number'}"
+        ) from None
+    slider = node.container.chunk("Slider")
+    if slider is not None:
+        low, high = typed(slider, "Min", -math.inf), typed(slider, "Max", math.inf)
+        if not low <= value <= high:
+            raise InputError(node.nickname, f"{text} is outside the slider, which goes from {low:g} to {high:g}")
+        return _slid(slider, value)
+    return value
+
+
+def _slid(slider: Any, value: float) -> float | int:
+    digits, whole = typed(slider, "Digits", 0), typed(slider, "Interval", 0)
+    return round(value) if whole and math.isfinite(value) else round(float(value), digits)
+
+
+def _expression(text: str) -> Any:
+    """The value of an item of a value list: a text in quotes, a truth or a number."""
+    text = text.strip()
+    if len(text) > 1 and text[0] == text[-1] == '"':
+        return text[1:-1]
+    if text.lower() in ("true", "false"):
+        return text.lower() == "true"
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    return int(number) if number.is_integer() and "." not in text else number
+
+
+def _slider_value(node: Node) -> list[Any]:
+    slider = node.container.chunk("Slider")
+    return [] if slider is None else [_slid(slider, typed(slider, "Value", 0.0))]
+
+
+def _list_value(node: Node) -> list[Any]:
+    items = [chunk for chunk in node.container.chunks if chunk.name == "ListItem"]
+    return [_expression(typed(chunk, "Expression", "")) for chunk in items if typed(chunk, "Selected", False)]
+
+
+def _panel_value(node: Node) -> list[Any]:
+    text = typed(node.container, "UserText", "")
+    if not typed(node.container.chunk("PanelProperties"), "Multiline", True):
+        return text.splitlines()
+    return [text] if text else []
+
+
+_OWN: dict[UUID, Callable[[Node], list[Any]]] = {
+    NUMBER_SLIDER: _slider_value,
+    BOOLEAN_TOGGLE: lambda node: [typed(node.container, "ToggleValue", False)],
+    VALUE_LIST: _list_value,
+    PANEL: _panel_value,
+    BUTTON: lambda _: [False],
+}
+"""What an object has by itself, where no wire reaches it."""
+
+__all__ = ["TREE", "Canvas", "Message", "Outcome"]

@@ -1,0 +1,256 @@
+"""A definition as a graph: objects with their inputs, outputs and wires, read from an archive."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+from hookean.errors import InputError
+from hookean_canvas import archive
+from hookean_canvas.archive import Chunk, Type
+from hookean_canvas.archive import parts as chunks
+from hookean_canvas.archive.guids import GROUP, SCRIBBLE
+from hookean_canvas.archive.parts import SCRIPTS, Part, Rectangle, bounds_of, given, sources
+from hookean_canvas.run.trees import Tree, path_of
+
+
+@dataclass
+class Port:
+    """An input, an output, or a whole floating parameter. `sources` are ids of ports; `data` is persistent data."""
+
+    id: UUID
+    name: str
+    nickname: str
+    access: int = 0
+    optional: bool = False
+    sources: list[UUID] = field(default_factory=list)
+    mapping: int = 0
+    reverse: bool = False
+    simplify: bool = False
+    hint: UUID | None = None
+    data: Tree | None = None
+    faint: bool = False
+
+
+@dataclass
+class Node:
+    """An object on the canvas. A floating one (slider, panel, parameter) has one port, which is both in and out."""
+
+    id: UUID
+    guid: UUID
+    name: str
+    nickname: str
+    container: Chunk
+    inputs: list[Port]
+    outputs: list[Port]
+    bounds: Rectangle | None = None
+    locked: bool = False
+
+    @property
+    def floating(self) -> bool:
+        """Whether it is a parameter and no component."""
+        return len(self.inputs) == len(self.outputs) == 1 and self.inputs[0] is self.outputs[0]
+
+    @property
+    def label(self) -> str:
+        """What a person reads on it: the nickname, or the name."""
+        return self.nickname or self.name
+
+
+@dataclass
+class Group:
+    """Objects and other groups with a coloured border and a title."""
+
+    id: UUID
+    title: str
+    members: list[UUID]
+    colour: tuple[int, int, int, int]
+
+
+@dataclass
+class Graph:
+    """A definition. `id` is the document's, `file` where it was read; `damage`: a sentence for each object that lacks
+    what Grasshopper needs to read it. Such an object has an id made of its number, or is left out."""
+
+    id: UUID
+    name: str
+    description: str
+    nodes: list[Node]
+    groups: list[Group]
+    file: Path | None = None
+    damage: list[str] = field(default_factory=list)
+
+    def owners(self) -> dict[UUID, tuple[Node, Port]]:
+        """The object and the port behind each id that a wire can come from."""
+        return {port.id: (node, port) for node in self.nodes for port in node.outputs}
+
+    def wires(self) -> Iterator[tuple[Node, Port, Node, Port]]:
+        """Every wire: object and output it leaves, object and input it enters; those that lead nowhere are left out."""
+        owners = self.owners()
+        for node in self.nodes:
+            for port in node.inputs:
+                for source in port.sources:
+                    if source in owners:
+                        yield (*owners[source], node, port)
+
+    def ordered(self) -> list[Node]:
+        """Objects so that each comes after those that feed it.
+
+        InputError where wires run in a circle, or two objects have one id.
+        """
+        twice = [node.label for node, count in zip(self.nodes, self._times(), strict=True) if count > 1]
+        if twice:
+            raise InputError(
+                "ids", f"{', '.join(twice)} have one InstanceGuid; delete all but one and place them again"
+            )
+        feeds: dict[UUID, list[Node]] = {}
+        missing = {node.id: 0 for node in self.nodes}
+        for start, _, end, _ in self.wires():
+            feeds.setdefault(start.id, []).append(end)
+            missing[end.id] += 1
+        ready = [node for node in self.nodes if not missing[node.id]]
+        for node in ready:  # grows on the way
+            for after in feeds.get(node.id, ()):
+                missing[after.id] -= 1
+                if not missing[after.id]:
+                    ready.append(after)
+        if len(ready) < len(self.nodes):
+            circle = ", ".join(sorted(node.label for node in self.nodes if missing[node.id]))
+            raise InputError("wires", f"they run in a circle through {circle}; take one of them away")
+        return ready
+
+    def _times(self) -> list[int]:
+        """How often the id of each object is there."""
+        often = Counter(node.id for node in self.nodes)
+        return [often[node.id] for node in self.nodes]
+
+
+def read(path: Path) -> Graph:
+    """The definition in a .ghx or .gh file; InputError if it is not a definition."""
+    return parse(archive.read_bytes(path), path)
+
+
+def parse(data: bytes, path: Path) -> Graph:
+    """The definition in the bytes of the file `path`; InputError if it is not a definition."""
+    found = of(archive.parse(data, str(path)), str(path))
+    found.file = Path(path).resolve()
+    return found
+
+
+def of(root: Chunk, where: str = "definition") -> Graph:
+    """The definition in an archive."""
+    definition = root.chunk("Definition")
+    objects = definition.chunk("DefinitionObjects") if definition is not None else None
+    if definition is None or objects is None:
+        raise InputError(where, "this is no Grasshopper definition; give a .ghx or .gh file")
+    header = definition.chunk("DocumentHeader")
+    properties = definition.chunk("DefinitionProperties")
+    graph = Graph(
+        id=given(header, "DocumentID", UUID(int=0)),
+        name=given(properties, "Name", ""),
+        description=given(properties, "Description", ""),
+        nodes=[],
+        groups=[],
+    )
+    for number, part in enumerate(chunks.parts(root)):
+        told = f"object {number} ({part.label})"
+        if part.container is None or part.guid is None:
+            graph.damage.append(f"{told} has no {'Container' if part.container is None else 'GUID'}")
+        elif part.guid == GROUP:
+            graph.groups.append(_group(part.container))
+        elif part.guid != SCRIBBLE:
+            node = _node(part.guid, part, part.container, UUID(int=number))
+            graph.nodes.append(node)
+            if part.id is None:
+                graph.damage.append(f"{told} has no InstanceGuid")
+            nameless = [port.nickname for port in (*node.inputs, *node.outputs) if port.id.int == 0]
+            graph.damage += [f"{told}: {nickname or 'an input or output'} has no InstanceGuid" for nickname in nameless]
+    return graph
+
+
+def _group(container: Chunk) -> Group:
+    items = sorted((item for item in container.items if item.name == "ID"), key=lambda item: item.index)
+    members = [item.value for item in items if isinstance(item.value, UUID)]
+    colour = container.item("Colour")
+    rgb = colour.value if colour is not None and colour.type is Type.DRAWING_COLOR else (255, 150, 150, 150)
+    return Group(given(container, "InstanceGuid", UUID(int=0)), given(container, "NickName", ""), members, rgb)
+
+
+def _node(guid: UUID, part: Part, container: Chunk, instead: UUID) -> Node:
+    """An object; one without inputs and outputs that is no script is a parameter, such as a timer."""
+    inputs, outputs = ([port(one) for one in side(container)] for side in (chunks.inputs, chunks.outputs))
+    if chunks.is_floating(container) or not (inputs or outputs or guid in SCRIPTS):
+        inputs = outputs = [port(container)]
+        inputs[0].id = part.id or instead
+    return Node(
+        id=part.id or instead,
+        guid=guid,
+        name=given(container, "Name", part.name),
+        nickname=given(container, "NickName", ""),
+        container=container,
+        inputs=inputs,
+        outputs=outputs,
+        bounds=bounds_of(container),
+        locked=given(container, "Locked", False),
+    )
+
+
+def port(chunk: Chunk) -> Port:
+    """The parameter that a chunk describes; what is missing, or of another type, is as if never set."""
+    access, mapping = given(chunk, "ScriptParamAccess", given(chunk, "Access", 0)), given(chunk, "Mapping", 0)
+    data, hint = chunk.chunk("PersistentData"), chunk.value("TypeHintID")
+    return Port(
+        id=given(chunk, "InstanceGuid", UUID(int=0)),
+        name=given(chunk, "Name", ""),
+        nickname=given(chunk, "NickName", ""),
+        access=access if access in (0, 1, 2) else 0,
+        optional=given(chunk, "Optional", False),
+        sources=sources(chunk),
+        mapping=mapping if mapping in (0, 1, 2) else 0,
+        reverse=given(chunk, "ReverseData", False),
+        simplify=given(chunk, "SimplifyData", False),
+        hint=hint if isinstance(hint, UUID) else None,
+        data=_persistent(data) if data is not None else None,
+        faint=given(chunk, "WireDisplay", 0) != 0,
+    )
+
+
+def _persistent(chunk: Chunk) -> Tree:
+    tree = Tree()
+    for branch in chunk.chunks:
+        values = [_stored(item) for item in branch.chunks]
+        try:
+            tree.add(path_of(given(branch, "Path", "{0}")), values)
+        except ValueError:
+            tree.add((branch.index,), [Unread(["Path"])])
+    return tree
+
+
+def _stored(chunk: Chunk) -> Any:
+    """A stored value: a number, text, a truth or the coordinates of a point or vector; anything else is Unread."""
+    for name, kinds in _KINDS.items():
+        item = chunk.item(name)
+        if item is not None and item.type in kinds:
+            return item.value
+    return Unread([item.name for item in chunk.items])
+
+
+_KINDS = {
+    "number": (Type.INT32, Type.INT64, Type.SINGLE, Type.DOUBLE),
+    "string": (Type.STRING,),
+    "boolean": (Type.BOOL,),
+    "Coordinate": (Type.POINT3D,),
+    "vector": (Type.POINT3D,),
+}
+"""Under which names values are stored, and as which types."""
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A stored value of a kind that is not read; `items` are the names under which it is stored."""
+
+    items: list[str]

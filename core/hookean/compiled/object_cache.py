@@ -1,0 +1,182 @@
+"""Machine code without its compiler: what numba compiled once, later processes load from disk without numba.
+
+Importing numba and its tables takes longer than most solves. So the object code of a compiled function is put on disk,
+with an entry that takes all arguments as one row of numbers; llvmlite alone loads and calls it. The file's name holds
+a digest of all that the code depends on: every source it may inline (in the folder's name), numba, llvmlite, the
+processor and its abilities, numba's settings, the types of the arguments. Where there is no such file, or a damaged
+one, numba compiles; numba runs, too, what cannot be stored (see `object_code`).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import importlib.util
+import json
+import os
+import struct
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hookean.compiled.abi import DIFFERS, Kind, helpers, letters, readable
+
+
+class Compiled:
+    """A function as machine code. `dispatcher` makes numba's; `kind` is what it takes, None: whatever it is given."""
+
+    def __init__(self, name: str, folder: Path, dispatcher: Callable[[], Any], kind: Kind | None) -> None:
+        self.name, self.folder, self.dispatcher, self.kind = name, folder, dispatcher, kind
+        self.loaded = self.made = 0  # how many were found on disk, and how many were not
+        self._entries: dict[Kind, Entry | None] = {}
+        self._called: tuple[Entry, ...] = ()
+
+    def __call__(self, *values: Any) -> Any:
+        for entry in self._called:  # quicker than looking what values are
+            if (found := entry(values)) is not UNFIT:
+                return found
+        kind = kind_of(values)
+        if kind is not None and (self.kind is None or kind == self.kind):
+            new = self.entry(kind, values)
+            if new is not None:
+                if new not in self._called:
+                    self._called = (*self._called, new)
+                if (found := new(values)) is not UNFIT:
+                    return found
+        return self.dispatcher()(*values)
+
+    def entry(self, kind: Kind, values: tuple[Any, ...] = ()) -> Entry | None:
+        """The code for arguments of a kind, such as `values`; None where only numba can run it."""
+        if kind in self._entries:
+            return self._entries[kind]
+        path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
+        found = _load(path, kind)
+        if found is not None:
+            self.loaded += 1
+        else:
+            self.made += 1
+            with suppress(Exception):  # whatever hinders it, numba has made the function and runs it
+                from hookean.compiled.object_code import emit
+
+                _store(path, emit(self.dispatcher(), kind, values if self.kind is None else ()))
+                found = _load(path, kind)
+        self._entries[kind] = found
+        return found
+
+
+def kind_of(values: tuple[Any, ...]) -> Kind | None:
+    """The kind of arguments; None where there is one that is for numba."""
+    kinds: list[Any] = []
+    for value in values:
+        if type(value) is np.ndarray and value.flags.carray and value.dtype.isnative:
+            kinds.append((value.dtype.char, value.ndim))
+        elif (scalar := SCALARS.get(type(value))) is not None:
+            kinds.append(scalar)
+        else:
+            return None
+    return tuple(kinds)
+
+
+ENGINES: list[Any] = []  # never freed: others keep addresses of their code
+SCALARS: dict[type, type] = {float: float, np.float64: float, int: int, bool: bool}
+UNFIT = object()
+
+
+class Entry:
+    """Code from a file, called with a row of numbers: where numpy's types are, the arguments (of arrays, where they
+    are), and room for what it returns. The code itself looks whether arrays are what it takes."""
+
+    def __init__(self, path: Path, kind: Kind) -> None:
+        head, _, code = path.read_bytes().partition(b"\n")
+        told = json.loads(head)
+        if hashlib.sha256(code).hexdigest() != told["digest"]:
+            raise ValueError("damaged")
+        self.kinds = tuple(np.ndarray if isinstance(one, tuple) else one for one in kind)
+        self.numbers = [place for place, one in enumerate(self.kinds) if one is not np.ndarray]
+        self.head = [id(np.ndarray), *(id(np.dtype(letter)) for letter in letters(kind))]
+        self.end = len(self.head) + len(kind)
+        self.returned = struct.Struct(f"={told['result']}")
+        numbers = "".join("d" if one is float else "q" for one in self.kinds)
+        self.row = struct.Struct(f"={len(self.head)}q{numbers}{self.returned.size}x")
+        binding = _llvm()
+        target = binding.Target.from_default_triple().create_target_machine(codemodel="jitdefault", jit=True)
+        self.engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
+        self.engine.add_object_file(binding.ObjectFileRef.from_data(code))
+        self.engine.finalize_object()
+        ENGINES.append(self.engine)
+        where = self.engine.get_function_address("hookean_entry")
+        native = self.engine.get_function_address("hookean_native")
+        if not where or not native:
+            raise ValueError("no entry")
+        self.call = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(where)
+        self.address: int = ctypes.c_int64.from_address(native).value  # for numba's own way of calling
+
+    def __call__(self, values: tuple[Any, ...]) -> Any:
+        """What the code returns; UNFIT where it does not take these values."""
+        if tuple(map(type, values)) != self.kinds and tuple(map(_plain, values)) != self.kinds:
+            return UNFIT
+        numbers: list[Any] = list(map(id, values))
+        for place in self.numbers:
+            numbers[place] = values[place]
+        try:
+            row = self.row.pack(*self.head, *numbers)  # bytes of nobody else's: the code may write at their end
+        except struct.error:  # an integer of more than 64 bits
+            return UNFIT
+        ended = self.call(row)
+        if ended == DIFFERS:
+            return UNFIT
+        if ended:
+            raise MemoryError("compiled code got no memory")
+        found = self.returned.unpack_from(row, 8 * self.end)
+        return found[0] if len(found) == 1 else found or None
+
+
+def _plain(value: Any) -> type | None:
+    """The type that a value has in a row of numbers; None where it has none."""
+    return np.ndarray if type(value) is np.ndarray else SCALARS.get(type(value))
+
+
+def _load(path: Path, kind: Kind) -> Entry | None:
+    """The code in a file, or None if the file is missing or damaged."""
+    with suppress(Exception):
+        if path.exists() and readable():
+            return Entry(path, kind)
+    return None
+
+
+def _store(path: Path, data: bytes) -> None:
+    """Put a file where other processes find it whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+        file.write(data)
+    os.replace(file.name, path)
+
+
+@cache
+def surroundings() -> str:
+    """Digest of what machine code depends on besides sources: compiler, processor, settings."""
+    binding = _llvm()
+    told = [binding.get_default_triple(), binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()]
+    told += [f"{k}={v}" for k, v in sorted(os.environ.items()) if k.startswith("NUMBA_")]
+    digest = hashlib.sha256("\n".join(told).encode())
+    for package in ("numba", "llvmlite"):  # their versions, without importing numba
+        found = importlib.util.find_spec(package)
+        assert found is not None and found.origin is not None
+        digest.update(Path(found.origin).with_name("_version.py").read_bytes())
+    return digest.hexdigest()
+
+
+@cache
+def _llvm() -> Any:
+    from llvmlite import binding
+
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    for name, address in helpers().items():
+        binding.add_symbol(name, address)
+    return binding

@@ -1,0 +1,1 @@
+"""Recipes: what the objects of a .3dm file stand for."""

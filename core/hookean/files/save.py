@@ -1,0 +1,69 @@
+"""A result written to a file by the ending of its name, and a scene read from one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hookean.atomic_write import put
+from hookean.errors import InputError
+from hookean.running.result import Result
+from hookean.scene.scene import Scene
+from hookean.system.system import compile
+
+ENDINGS = ".3dm, .json, .obj, .csv or .png"
+
+
+def save(result: Result, path: str | os.PathLike[str]) -> list[str]:
+    """Write a result to a file: .3dm and .obj with its shape, .json with everything, .csv with a row for each element
+    and reaction, .png with a picture. Returns sentences on what the file does not hold.
+
+    Raises InputError for another ending, for a result without its scene, or where the file cannot be written.
+    """
+    target = Path(path)
+    ending = target.suffix.lower()
+    if ending not in ENDINGS.replace(",", "").split():
+        raise InputError(target.name or str(path), f"has an unknown ending; end the name in {ENDINGS}")
+    if ending == ".png":
+        from hookean.pictures.picture import render
+
+        render(result, target, scene=result.scene)
+        return []
+    if result.scene is None:
+        raise InputError("result", "has no scene, which files are written with; save a result of relax or simulate")
+    from hookean.files.readers import Source
+    from hookean.files.relax_file import check_output, conclude
+
+    check_output(None if ending == ".csv" else target, Path("result.json"))
+    read = Source(result.scene, [], unit=str(result.units.length))
+    table = ending == ".csv"
+    found = conclude(read, Path("result"), compile(result.scene), result, None if table else target)
+    if table:
+        put(target, found.csv.encode(), lambda back: None)
+    return found.unwritten
+
+
+def open(path: str | os.PathLike[str], recipe: str | os.PathLike[str] | Mapping[str, Any] | None = None) -> Scene:
+    """The scene in a .3dm, .obj, .json or .npz file; of a .3dm by a recipe: a file, its text (TOML or JSON) or its
+    tables; without one by layer names. Raises InputError where the file or the recipe has a fault."""
+    from hookean.files.readers import read_path
+
+    if isinstance(recipe, Mapping):
+        import json
+
+        return read_path(Path(path), (json.dumps(recipe), "recipe")).scene
+    if recipe is None:
+        return read_path(Path(path)).scene
+    text = os.fspath(recipe)
+    if "\n" in text or "=" in text or text.lstrip().startswith("{"):
+        return read_path(Path(path), (text, "recipe")).scene
+    from hookean.atomic_write import read_bytes
+
+    place = Path(text)
+    try:
+        text = read_bytes(place, place.name).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(place.name, "is not text in UTF-8; save it so") from None
+    return read_path(Path(path), (text, place.name)).scene

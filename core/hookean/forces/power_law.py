@@ -1,0 +1,136 @@
+"""Power law: pairs of particles that attract or repel each other by a power of their distance."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import field_validator
+
+from hookean.compiled.marks import device
+from hookean.forces.base import Block, Floats, Force, Places, lengths
+from hookean.values.columns import IndexRows, Lines, Reals, fault
+from hookean.values.fields import Field, Maybe
+
+STEEPEST = 9.0  # exponent: more would overflow where particles nearly meet
+NEAREST = 1e-20  # distance from which a pair acts
+
+
+@device
+def pair(x: Any, indices: Any, parameters: Any, e: Any) -> Any:
+    """Of one pair: its distance, the vector between its particles, and whether it acts at this distance."""
+    dx = x[indices[e, 1], 0] - x[indices[e, 0], 0]
+    dy = x[indices[e, 1], 1] - x[indices[e, 0], 1]
+    dz = x[indices[e, 1], 2] - x[indices[e, 0], 2]
+    length = np.sqrt(dx * dx + dy * dy + dz * dz)
+    cutoff = parameters[e, 2]
+    acts = length > NEAREST and (cutoff == 0.0 or (length < cutoff if cutoff > 0.0 else length > -cutoff))
+    return length, dx, dy, dz, acts
+
+
+@device
+def potential(strength: Any, power: Any, length: Any) -> Any:
+    """The integral of -S d^n."""
+    if power == -1.0:
+        return -strength * np.log(length)
+    return -strength * length ** (power + 1.0) / (power + 1.0)
+
+
+def power_law_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    for e in range(indices.shape[0]):
+        a, b = indices[e, 0], indices[e, 1]
+        strength, power, cutoff = parameters[e, 0], parameters[e, 1], np.abs(parameters[e, 2])
+        length, dx, dy, dz, acts = pair(x, indices, parameters, e)
+        if not acts:
+            continue
+        push = strength * length ** (power - 1.0)  # by distance
+        stiffness = 2.0 * np.abs(push) * max(1.0, np.abs(power))
+        w[a] += stiffness
+        w[b] += stiffness
+        energy += potential(strength, power, length) - (potential(strength, power, cutoff) if cutoff > 0.0 else 0.0)
+        dx *= push
+        dy *= push
+        dz *= push
+        f[a, 0] -= dx
+        f[a, 1] -= dy
+        f[a, 2] -= dz
+        f[b, 0] += dx
+        f[b, 1] += dy
+        f[b, 2] += dz
+    return energy
+
+
+def power_law_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    d = np.zeros(3)
+    for e in range(indices.shape[0]):
+        length, d[0], d[1], d[2], acts = pair(x, indices, parameters, e)
+        across = -parameters[e, 0] * length ** (parameters[e, 1] - 1.0) if acts else 0.0
+        along = across * parameters[e, 1]
+        square = length * length if acts else 1.0
+        for i in range(3):
+            for j in range(3):
+                entry = (along - across) * d[i] * d[j] / square + (across if i == j else 0.0)
+                blocks[e, i, j] = entry
+                blocks[e, 3 + i, 3 + j] = entry
+                blocks[e, i, 3 + j] = -entry
+                blocks[e, 3 + i, j] = -entry
+
+
+class PowerLaw(Force):
+    """Pairs that repel each other by a power of their distance, F = S d^n; with a negative strength they attract.
+
+    Energy -S d^(n+1) / (n+1), or -S ln d where n = -1. n = -2 is gravity or electric charge, n = 0 a constant force,
+    n = 1 a spring of rest length 0 (S = -k). A positive cutoff lets a pair act below this distance only, a negative one
+    above it only; there the force ends at once, and the energy is 0. Pairs nearer
+    than 1e-20 do not act.
+    """
+
+    kind: Literal["power_law"] = "power_law"
+    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
+    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
+    strength: Reals = Field(default=1.0, description="S [force/length^n]; positive: they repel each other")
+    exponent: Reals = Field(default=-2.0, description="n [-]")
+    cutoff: Reals = Field(
+        default=0.0, description="Acts below this distance only, if negative above it [length]; 0: always"
+    )
+
+    formula: ClassVar[str] = "E = -S d^(n+1)/(n + 1)"
+    arity: ClassVar[int] = 2
+    solid: ClassVar[bool] = False
+    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
+    kernel: ClassVar[Any] = staticmethod(power_law_kernel)
+    hessian: ClassVar[Any] = staticmethod(power_law_hessian)
+
+    @field_validator("exponent")
+    @classmethod
+    def _not_too_steep(cls, exponent: float | Floats) -> float | Floats:
+        values = np.ravel(exponent)
+        steep = values[np.abs(values) > STEEPEST]
+        if len(steep):
+            raise fault(f"{steep[0]:g} given; exponents from -{STEEPEST:g} to {STEEPEST:g} allowed")
+        return exponent
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: strength, exponent, cutoff."""
+        index = places.elements(self)
+        return Block.of(index, strength=self.strength, exponent=self.exponent, cutoff=self.cutoff)
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Distance [length] and force [force; attraction +, repulsion -]."""
+        apart = x[block.indices[:, 1]] - x[block.indices[:, 0]]
+        length = lengths(apart)
+        along = (apart * element_forces[:, 0]).sum(axis=1)
+        return {"length": length, "force": along / np.where(length > 0.0, length, 1.0)}
+
+    @classmethod
+    def example(cls) -> tuple[PowerLaw, Floats]:
+        """Four pairs on four particles: gravity, charge, a logarithm, and a cutoff above which it acts."""
+        x = np.array([[0.0, 0.1, 0.0], [1.0, 0.0, 0.2], [0.3, 1.1, -0.1], [0.2, 0.4, 0.9]])
+        pairs = cls(
+            particles=[[0, 1], [1, 2], [2, 3], [3, 0]],
+            strength=[-20.0, 5.0, 3.0, -2.0],
+            exponent=[-2.0, -2.0, -1.0, 1.5],
+            cutoff=[0.0, 3.0, 0.0, -0.2],
+        )
+        return pairs, x

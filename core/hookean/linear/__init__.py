@@ -1,0 +1,1 @@
+"""Sparse linear algebra: tangents, factors, aggregation, hierarchies, conjugate gradients."""

@@ -1,0 +1,144 @@
+"""A hierarchy of ever coarser nets, gathered by a weighted graph alone: the same P serves all three axes, and whatever
+values the pattern has.
+
+Source: Vanek, Mandel, Brezina, "Algebraic multigrid by smoothed aggregation", Computing 56 (1996) 179.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.compiled import dispatch
+from hookean.linear import block_kernels as sums
+from hookean.linear.aggregation import Floats, Ints, Sparse, gathered, laplacian, turned
+
+SMALLEST = 60  # rows of blocks that are solved directly
+MOST = 20  # levels
+FULLEST = 3.0  # blocks of all levels for each of the finest
+
+
+class Level:
+    """One net of the hierarchy: its pattern (see `Blocks`), its values now, and the way to the next coarser one."""
+
+    def __init__(self, starts: Ints, columns: Ints) -> None:
+        n = len(starts) - 1
+        self.starts, self.columns = starts, columns
+        self.values: Floats = np.zeros((0, 9))
+        above = np.ones(len(columns), dtype=bool)
+        above[starts[:-1]] = False
+        places = np.flatnonzero(above).astype(np.int32)
+        rest: Ints = columns[above]
+        before: Ints = (starts - np.arange(n + 1)).astype(np.int32)
+        low = turned((before, rest, places), n)
+        self.high: tuple[Any, ...] = (before, rest, np.zeros((len(places), 12), np.float32))
+        self.low: tuple[Any, ...] = (*low[:2], np.zeros((len(places), 12), np.float32))
+        self.mirror: Ints = low[2]
+        self.inverse = np.zeros((n, 12), np.float32)
+        self.b, self.x = np.zeros((n, 4), np.float32), np.zeros((n, 4), np.float32)
+        self.prolong: tuple[Any, ...] = ()
+        self.products: tuple[Any, ...] = ()
+
+    def to(self, p: Sparse, coarser: Level) -> None:
+        """Know the way to the next coarser level."""
+        self.prolong = p
+        count = len(coarser.starts) - 1
+        pattern = (self.starts, self.columns, *self.low[:2], self.mirror, *p, *turned(p, count))
+        pattern += (coarser.starts, coarser.columns, np.zeros(count, np.int32))
+        find = dispatch.compiled(sums.find_products)
+        ends = np.zeros(2 * len(coarser.columns) + 1, np.int32)
+        find(*pattern, ends[1:], np.zeros(0, np.int32), np.zeros(0))
+        size = int(np.cumsum(ends, out=ends)[-1])
+        self.products = ends[:-1], np.zeros(size, np.int32), np.zeros(size)
+        find(*pattern, *self.products)
+        coarser.values = np.zeros((len(coarser.columns), 9))
+
+    def coarsen(self, coarser: Level) -> None:
+        """Work out the values of the next coarser level."""
+        dispatch.compiled(sums.coarsen)(self.values, *self.products, coarser.values)
+
+    def lighten(self, scale: float) -> bool:
+        """Make what a cycle works on of the values; False if a diagonal block is not positive definite."""
+        lighten = dispatch.compiled(sums.lighten)
+        whole = (self.starts, self.columns, self.values, self.mirror, scale)
+        return bool(lighten(*whole, self.high[2], self.low[2], self.inverse))
+
+
+class Hierarchy:
+    """All levels over a pattern of blocks; `alive` (n,) tells which of its particles may move."""
+
+    def __init__(self, starts: Ints, columns: Ints, weights: Floats, alive: NDArray[np.bool_]) -> None:
+        self.levels = [Level(starts, columns)]
+        finest = self.levels[0]
+        graph = laplacian(starts, columns, (*finest.low[:2], finest.mirror), weights)
+        while len(graph[0]) - 1 > SMALLEST and len(self.levels) < MOST and self.fill_work <= FULLEST:
+            held = graph[2][np.repeat(np.arange(len(alive)), np.diff(graph[0])) == graph[1]]
+            alive = alive & (held > 1e-12 * held.max(initial=0.0))  # the others hang on nothing
+            found = gathered(graph, alive, len(self.levels) - 1)
+            if found is None:
+                break
+            p, graph = found
+            self.levels.append(Level(*_above(graph)))
+            self.levels[-2].to(p, self.levels[-1])
+            alive = np.ones(len(graph[0]) - 1, dtype=bool)
+        self.factor: Floats = np.zeros((0, 0))
+
+    @property
+    def fill_work(self) -> float:
+        """Blocks of all levels for each of the finest."""
+        return sum(len(level.columns) for level in self.levels) / len(self.levels[0].columns)
+
+    @property
+    def cycle_work(self) -> float:
+        """Passes over the finest blocks that one cycle is worth."""
+        return 2.0 * self.fill_work
+
+    @property
+    def coarse(self) -> bool:
+        """Whether the coarsest level is small enough to be solved; not where the graph does not gather well."""
+        return len(self.levels[-1].starts) - 1 <= SMALLEST
+
+    def fill(self, values: Floats) -> bool:
+        """Take the values (k, 9) of the finest level, work out the others; False if not positive definite."""
+        self.levels[0].values = values
+        for level, coarser in zip(self.levels, self.levels[1:], strict=False):
+            level.coarsen(coarser)
+        largest = float(values.max(initial=0.0))
+        scale = 1.0 / largest if largest > 0.0 else 1.0  # so that single precision has room
+        return all(level.lighten(scale) for level in self.levels) and self._factor(scale)
+
+    def _factor(self, scale: float) -> bool:
+        """Factor the coarsest level; False if it is not positive definite."""
+        last = self.levels[-1]
+        n = len(last.starts) - 1
+        self.factor = np.zeros((3 * n, 3 * n))
+        dispatch.compiled(sums.spell_out)(last.starts, last.columns, last.values, scale, self.factor)
+        return bool(dispatch.compiled(sums.factor)(self.factor))
+
+    def cycle(self, b: Floats) -> NDArray[np.float32]:
+        """About A^-1 b (n, 4) by one symmetric V cycle, to a factor; the array is used again by the next one."""
+        return self._cycle(0, b)
+
+    def _cycle(self, number: int, b: Any) -> NDArray[np.float32]:
+        level = self.levels[number]
+        if number == len(self.levels) - 1:
+            dispatch.compiled(sums.solve_factored)(self.factor, b, np.zeros(3 * len(b)), level.x)
+            return level.x
+        coarser = self.levels[number + 1]
+        whole = (*level.high, *level.low, level.inverse, b, level.x, *level.prolong)
+        dispatch.compiled(sums.descend)(*whole, coarser.b)
+        dispatch.compiled(sums.ascend)(*whole, self._cycle(number + 1, coarser.b))
+        return level.x
+
+
+def _above(matrix: Sparse) -> tuple[Ints, Ints]:
+    """The pattern of a matrix on and above its diagonal."""
+    starts, columns, _ = matrix
+    n = len(starts) - 1
+    rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(starts))
+    kept = columns >= rows
+    found = np.zeros(n + 1, np.int32)
+    np.cumsum(np.bincount(rows[kept], minlength=n), out=found[1:])
+    return found, columns[kept]

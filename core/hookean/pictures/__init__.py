@@ -1,0 +1,1 @@
+"""Results drawn: pictures, sheets of pictures, legends and charts."""

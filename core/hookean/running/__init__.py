@@ -1,0 +1,1 @@
+"""Scenes relaxed and moved through time: runs, their results, patches, scripts and streams."""

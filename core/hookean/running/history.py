@@ -1,0 +1,69 @@
+"""History: what patches of a running system replaced, so that they can be taken back and made again.
+
+A `Setup` is everything a patch may set: the scene as patched (whose arrays are shared, never copied) and the anchors.
+Where the particles are, is not part of it: taking a patch back is an edit, and the form follows it as any other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from hookean.errors import InputError
+from hookean.running.patch import retune
+from hookean.scene.scene import Scene
+from hookean.system.state import State
+from hookean.system.system import Held, System
+from hookean.system.wiring import Wiring
+
+LONGEST = 100  # edits that can be taken back
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A scene with its forces and settings, what the forces were compiled to, and the anchors, at one moment."""
+
+    scene: Scene
+    held: tuple[Held, ...]
+    wiring: Wiring
+
+    @classmethod
+    def of(cls, system: System) -> Setup:
+        """The present setup of a system; patches replace anchors and never write into them."""
+        return cls(system.scene, tuple(system.held), Wiring.of(system))
+
+    def put_back(self, system: System, state: State) -> None:
+        """Make this the setup of the system again; raises its revision."""
+        self.wiring.put_into(system, state)
+        retune(system, state, self.scene, list(self.held))
+
+
+@dataclass
+class History:
+    """Setups before each edit, the latest last, and those that were taken back."""
+
+    before: list[Setup] = field(default_factory=list)
+    after: list[Setup] = field(default_factory=list)
+    gesture: str = ""
+
+    def note(self, setup: Setup, gesture: str) -> None:
+        """An edit follows this setup. Edits of one gesture, such as the drag of an anchor, are taken back as one."""
+        if not gesture or gesture != self.gesture:
+            self.before.append(setup)
+            del self.before[:-LONGEST]
+        self.gesture = gesture
+        self.after.clear()
+
+    def undo(self, system: System, state: State) -> None:
+        """Take the last edit back; InputError where there is none."""
+        self._move(self.before, self.after, system, state, "taken back")
+
+    def redo(self, system: System, state: State) -> None:
+        """Make the edit again that was taken back last; InputError where there is none."""
+        self._move(self.after, self.before, system, state, "made again")
+
+    def _move(self, source: list[Setup], target: list[Setup], system: System, state: State, verb: str) -> None:
+        if not source:
+            raise InputError("", f"there is no edit that could be {verb}")
+        target.append(Setup.of(system))
+        source.pop().put_back(system, state)
+        self.gesture = ""

@@ -1,0 +1,276 @@
+"""Patches: what may change while a system runs. Anchors, loads, stiffness, rest lengths, settings, which forces act on
+its particles; never the particles themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import StrictInt, StrictStr, ValidationError, model_validator
+
+from hookean.errors import InputError
+from hookean.forces.base import PLACES
+from hookean.scene.scene import Anchor, AnyForce, Scene, Settings, first_fault
+from hookean.system.state import State
+from hookean.system.system import Floats, Group, Held, Part, System, hold
+from hookean.system.wiring import Wiring, rewire, with_forces
+from hookean.values.columns import Indices, Model, Points, Vector, fault
+from hookean.values.fields import Field, Maybe, Parts
+
+Ints = NDArray[np.int64]
+
+
+class Move(Model):
+    """An anchor moved, by its name or its number in the scene: to targets, or as a whole by a shift."""
+
+    anchor: StrictStr | StrictInt = Field(description="Name or number of an anchor")
+    targets: Maybe[Points] = Field(default=None, description="Where its particles go [length], one each")
+    shift: Maybe[Vector] = Field(default=None, description="How far from where the scene holds them [length]")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        if (self.targets is None) == (self.shift is None):
+            raise fault("give exactly one of targets, shift")
+        return self
+
+
+class Patch(Model):
+    """One edit of a running system; everything in it lands together, or nothing does.
+
+    `pin` holds particles, where they are or at targets (one that an anchor holds on the same axes stays with it, unless
+    the pin has a name); `release` frees them; `move` retargets anchors; `forces` maps a force's name or number to new
+    values of its columns; `settings` to new settings. `remove` takes forces away and `add` puts others behind the last
+    one, on particles that are there already; names and numbers of forces are those before the patch.
+    """
+
+    pin: Parts[Anchor] = Field(default=(), description="Particles to hold from now on")
+    release: Indices = Field(default=np.zeros(0, np.int64), description="Particles to free")
+    move: Parts[Move] = Field(default=(), description="Anchors to move")
+    forces: dict[str, dict[str, Any]] = Field(default={}, description="New values by force and column")
+    settings: dict[str, Any] = Field(default={}, description="New values of settings")
+    add: Parts[AnyForce] = Field(default=(), description="Forces to add; their particles are those that run")
+    remove: tuple[StrictStr | StrictInt, ...] = Field(default=(), description="Names or numbers of forces to remove")
+
+    @property
+    def rewires(self) -> bool:
+        """Whether forces come or go."""
+        return bool(self.add or self.remove)
+
+    @classmethod
+    def read(cls, value: Any) -> Patch:
+        """A patch from a dict; InputError with a pointer and one sentence."""
+        if isinstance(value, Patch):
+            return value
+        try:
+            return cls.model_validate(value)
+        except ValidationError as error:
+            raise first_fault(error) from None
+
+
+class Undo:
+    """Everything a patch may change, as it was before."""
+
+    def __init__(self, system: System, state: State) -> None:
+        self.scene, self.drag, self.held = system.scene, system.drag, system.held
+        self._wiring = Wiring.of(system)
+        self._state = state.copy()
+        self._groups = [
+            (group.block.parameters.copy(), [part.force for part in group.parts])
+            for group in system.groups + system.contacts
+        ]
+
+    def put_back(self, system: System, state: State) -> None:
+        """Undo the patch."""
+        system.scene, system.drag, system.held = self.scene, self.drag, self.held
+        self._wiring.put_into(system, state)
+        for group, (parameters, forces) in zip(system.groups + system.contacts, self._groups, strict=True):
+            group.block.parameters[:] = parameters
+            for part, force in zip(group.parts, forces, strict=True):
+                part.force = force
+        for name, value in vars(self._state).items():
+            setattr(state, name, value)
+
+
+def apply(system: System, state: State, patch: Patch) -> None:
+    """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Undo`)."""
+    held = _held(system, state, patch)
+    forces = changed_forces(system.scene, patch.forces)
+    scene = _with(system.scene, forces).replaced(settings=_settings(system, patch))
+    if patch.rewires:
+        removed = [_numbered(system.scene, wanted, f"/remove/{i}") for i, wanted in enumerate(patch.remove)]
+        scene = with_forces(system, scene, patch.add, removed)
+        rewire(system, state, scene, added=len(patch.add))
+    retune(system, state, scene, held)
+
+
+def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None:
+    """Give a running system other parameters, settings and anchors; raises its revision. `scene` has the system's
+    own places and elements; InputError where not, and then parts of it may have landed (see `Undo`)."""
+    system.held = held
+    _put_forces(system, scene)
+    system.drag = scene.settings.drag
+    state.free[:] = 1.0
+    for anchor in held:
+        hold(state, anchor)
+    system.put_outside(state)
+    state.force_scale = np.zeros(0)  # that of other parameters
+    state.revision += 1
+
+
+def lead_forces(system: System, forces: Mapping[int, Any]) -> None:
+    """Give a running system changed forces, by number; its revision stays."""
+    _put_forces(system, _with(system.scene, forces))
+
+
+def _with(scene: Scene, forces: Mapping[int, Any]) -> Scene:
+    return scene.replaced(forces=tuple(forces.get(i, f) for i, f in enumerate(scene.forces)))
+
+
+def _put_forces(system: System, scene: Scene) -> None:
+    for group in system.groups + system.contacts:
+        for part in group.parts:
+            if part.number >= 0 and scene.forces[part.number] is not part.force:
+                part.force = scene.forces[part.number]
+                group.block.parameters[part.rows] = _rows(system, group, part)
+    system.brace()
+    system.scene = scene
+
+
+def _rows(system: System, group: Group, part: Part) -> Floats:
+    """Parameters of a changed force for the elements it had; InputError if it has others now."""
+    fresh = system.places.recompile(part.number, part.force)
+    met = (fresh.indices >= 0).all(axis=1)
+    indices, parameters = fresh.indices[met], fresh.parameters[met]
+    if not np.array_equal(indices, group.block.indices[part.rows]):
+        raise InputError(f"/forces/{part.number}", "this changes which particles it acts on; send a new scene")
+    return parameters
+
+
+def _held(system: System, state: State, patch: Patch) -> list[Held]:
+    """The anchors after the patch: moved, thinned by releases, joined by pins."""
+    held = [Held(h.number, h.particles, h.targets.copy(), h.free, h.name) for h in system.held]
+    for i, move in enumerate(patch.move):
+        anchor = named(held, move.anchor, f"/move/{i}/anchor")
+        if move.shift is not None:
+            anchor.targets = home(system, anchor, f"/move/{i}/shift") + move.shift
+        elif move.targets is not None and len(move.targets) == len(anchor.particles):
+            anchor.targets = np.array(move.targets)
+        elif move.targets is not None:
+            raise InputError(
+                f"/move/{i}/targets",
+                f"{len(move.targets)} targets for {len(anchor.particles)} particles; give one for each",
+            )
+    _exist(patch.release, len(state.x), "/release")
+    for h in held:
+        _thin(h, patch.release)
+    for i, pin in enumerate(patch.pin):
+        if pin.particles is None:
+            raise InputError(f"/pin/{i}", "a running system pins particles by number; give particles")
+        _exist(pin.particles, len(state.x), f"/pin/{i}/particles")
+        targets = state.x[pin.particles] if pin.targets is None else np.array(pin.targets)
+        free = np.array([0.0 if axis in pin.axes else 1.0 for axis in "xyz"])
+        new = np.ones(len(pin.particles), bool)
+        for h in held:
+            if (free == h.free).all() and not pin.name:
+                new &= ~_lead(h, np.array(pin.particles), targets)
+            elif (free <= h.free).all():  # the pin holds all that this one held
+                _thin(h, pin.particles)
+        if new.any() or pin.name:
+            held.append(Held(-1, np.array(pin.particles)[new], np.ascontiguousarray(targets[new]), free, pin.name))
+    return [h for h in held if h.number >= 0 or len(h.particles)]
+
+
+def _lead(anchor: Held, particles: Ints, targets: Floats) -> NDArray[np.bool_]:
+    """Give those of the particles that an anchor holds their targets; which of them it holds."""
+    if not len(anchor.particles):
+        return np.zeros(len(particles), bool)
+    order = np.argsort(anchor.particles)
+    place = np.searchsorted(anchor.particles, particles, sorter=order)
+    rows = order[np.minimum(place, len(order) - 1)]
+    met: NDArray[np.bool_] = anchor.particles[rows] == particles
+    anchor.targets[rows[met]] = targets[met]
+    return met
+
+
+def _thin(anchor: Held, particles: Any) -> None:
+    stays = ~np.isin(anchor.particles, particles)
+    anchor.particles, anchor.targets = anchor.particles[stays], np.ascontiguousarray(anchor.targets[stays])
+
+
+def home(system: System, held: Held, pointer: str) -> Floats:
+    """Where the scene holds an anchor's particles (n, 3) [length]; InputError for one that the scene does not have."""
+    if held.number < 0:
+        raise InputError(pointer, "this anchor was pinned while running and has no place in the scene; give targets")
+    anchor = system.scene.anchors[held.number]
+    if anchor.targets is None:
+        return system.x[held.particles]
+    at = anchor.particles
+    if at is None:
+        at = system.places.meet(np.asarray(anchor.points))
+    rows = {int(particle): row for row, particle in enumerate(at)}
+    return np.asarray(anchor.targets)[[rows[int(particle)] for particle in held.particles]]
+
+
+def named(held: list[Held], wanted: str | int, pointer: str) -> Held:
+    """The one anchor of a name or number."""
+    found = [h for h in held if (h.name == wanted and wanted != "") or (h.number == wanted and h.number >= 0)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise InputError(pointer, f"{len(found)} anchors are called {wanted!r}; say which by number")
+    names = ", ".join(repr(h.name) for h in held if h.name)
+    numbers = ", ".join(str(h.number) for h in held if h.number >= 0)
+    raise InputError(pointer, f"{wanted!r} is no anchor; there are {names or 'no names'}, numbers {numbers or 'none'}")
+
+
+def _exist(particles: Any, count: int, pointer: str) -> None:
+    if len(particles) and int(np.max(particles)) >= count:
+        place = int(np.argmax(particles))
+        given = int(particles[place])
+        raise InputError(f"{pointer}/{place}", f"particle {given} does not exist; there are {count}, counted from 0")
+
+
+def changed_forces(scene: Scene, given_values: Mapping[str, Mapping[str, Any]]) -> dict[int, Any]:
+    """Forces by number with new values of columns, validated as if they had been given so at first."""
+    changed: dict[int, Any] = {}
+    for key, values in given_values.items():
+        number = _numbered(scene, key, f"/forces/{key}")
+        fixed = [n for n in values if n in (*PLACES, "kind", "edges")]
+        if fixed:
+            raise InputError(f"/forces/{key}/{fixed[0]}", "cannot change while it runs; send the changed scene anew")
+        old = changed.get(number, scene.forces[number])
+        given = {n: getattr(old, n) for n in old.model_fields_set}
+        try:
+            changed[number] = type(old).model_validate({**given, **values})
+        except ValidationError as error:
+            fault = first_fault(error)
+            raise InputError(f"/forces/{key}{fault.pointer}", fault.sentence) from None
+    return changed
+
+
+def _numbered(scene: Scene, wanted: str | int, pointer: str) -> int:
+    """The number of the one force of a name or number; a name that is a number counts as one where no force has it."""
+    key = str(wanted)
+    named = [i for i, f in enumerate(scene.forces) if f.name == wanted and key]
+    if len(named) > 1:
+        raise InputError(pointer, f"{len(named)} forces have this name; say which by number")
+    number = named[0] if named else int(key) if key.isascii() and key.isdigit() else -1
+    if not 0 <= number < len(scene.forces):
+        names = ", ".join(repr(f.name) for f in scene.forces if f.name) or "no names"
+        raise InputError(pointer, f"no force of this name or number; there are {names} and {len(scene.forces)} forces")
+    return number
+
+
+def _settings(system: System, patch: Patch) -> Settings:
+    old = system.scene.settings
+    for name in patch.settings:
+        if name == "floor":
+            raise InputError("/settings/floor", "cannot change while it runs; send the changed scene anew")
+    kept = {n: getattr(old, n) for n in old.model_fields_set}
+    try:
+        return Settings.model_validate({**kept, **Settings.changes(patch.settings)})
+    except ValidationError as error:
+        fault = first_fault(error)
+        raise InputError(f"/settings{fault.pointer}", fault.sentence) from None

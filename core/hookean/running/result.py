@@ -1,0 +1,353 @@
+"""Result: what a person gets back. Every array in the scene's units, failure a value with a sentence."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import asdict, dataclass, field, replace
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.errors import InputError
+from hookean.forces import KINDS
+from hookean.scene.report import Report
+from hookean.scene.scene import Scene
+from hookean.stability.equilibrium import Equilibrium, Stability, unknown
+from hookean.system.balance import LOADED, OUT, Balance
+from hookean.system.state import State
+from hookean.system.system import System
+from hookean.values import html
+from hookean.values.units import Units
+
+if TYPE_CHECKING:
+    from hookean.pictures.picture import Picture
+
+Floats = NDArray[np.float64]
+
+SMALL = (600, 450)  # pixels of the picture beside a summary
+
+
+class Status(StrEnum):
+    """How a run stands or ended."""
+
+    RUNNING = "running"
+    CONVERGED = "converged"
+    STALLED = "stalled"
+    DIVERGED = "diverged"
+    MAX_ITERATIONS = "max_iterations"
+    TIME_LIMIT = "time_limit"
+    CANCELLED = "cancelled"
+
+
+@dataclass(repr=False)
+class Result:
+    """A shape and what holds it, of a `scene`. Notebooks show its summary and a picture.
+
+    `particles` (n, 3) [length]; `forces` one dict of columns for each force of the scene (springs: length, force,
+    strain), `reactions` the particles of anchors and the force (k, 3) [force] the anchors put on them; `contacts` the
+    same for floors. Reactions + contacts + loads = 0. `energy` by kind and in total [force length].
+    """
+
+    status: Status
+    message: str
+    particles: Floats
+    geometry: list[dict[str, Any]]
+    forces: list[dict[str, Any]]
+    reactions: dict[str, Any]
+    contacts: dict[str, Any]
+    components: dict[str, Any]
+    residual: float
+    rounding_floor: float
+    out_of_balance: float
+    stability: Stability
+    stability_reason: str
+    soft_particle: int | None
+    soft_modes: int | None
+    position_error: float | None
+    position_reason: str
+    energy: dict[str, float]
+    iterations: int
+    time: float
+    solver: str
+    report: Report
+    units: Units = field(default_factory=Units)
+    scene: Scene | None = field(default=None, repr=False)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the shape is in equilibrium within the tolerance, or as near as float64 can tell."""
+        return self.status is Status.CONVERGED
+
+    def force(self, name: str) -> dict[str, Any]:
+        """The columns of the first force of this name or kind; KeyError, with what there is, if there is none."""
+        for columns in self.forces:
+            if name in (columns["name"], columns["kind"]):
+                return columns
+        known = ", ".join(repr(columns["name"] or columns["kind"]) for columns in self.forces) or "none"
+        raise KeyError(f"no force is called {name!r}; there are {known}")
+
+    def summary(self) -> list[str]:
+        """A few lines for a person: how many particles, the range of every column of force, the reactions."""
+        lines = [f"{len(self.particles)} particles"]
+        for entry in self.forces:
+            title = f"{entry['name']} ({entry['kind']})" if entry["name"] else entry["kind"]
+            column = next((c for c in ("force", "moment") if np.size(entry.get(c, ()))), None)
+            if column is None:
+                continue
+            values = np.asarray(entry[column])
+            sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+            unit = self.units.of(KINDS[entry["kind"]].outputs[column])
+            lines.append(f"{title}: {len(sizes)} elements, {column} {sizes.min():.4g} to {sizes.max():.4g} {unit}")
+        reactions = np.asarray(self.reactions["force"]).reshape(-1, 3)
+        if len(reactions):
+            largest = np.linalg.norm(reactions, axis=1).max()
+            together = reactions.sum(axis=0)
+            total = ", ".join(f"{c:.4g}" for c in np.where(np.abs(together) > 1e-9 * largest, together, 0.0))
+            unit = self.units.force
+            lines.append(f"{len(reactions)} reactions: largest {largest:.4g} {unit}, together ({total}) {unit}")
+        return lines
+
+    def __repr__(self) -> str:
+        return "\n".join([f"Result: {self.status}. {self.message}", *(f"  {line}" for line in self.summary())])
+
+    def _repr_html_(self) -> str:
+        title, *lines = repr(self).splitlines()
+        return html.summary(title, lines, self.plot(size=SMALL).png)
+
+    def plot(
+        self,
+        *,
+        title: str = "",
+        size: tuple[int, int] = (1200, 900),
+        view: str | tuple[float, float] | None = None,
+    ) -> Picture:
+        """A picture of the result, as `render` draws it, for a notebook or `save`. `view` is front, right, top,
+        isometric or the two angles (azimuth, elevation) of the eye [degrees]. Raises InputError where the view or size
+        makes no sense."""
+        import hookean
+
+        return hookean.picture(self, title=title, size=size, view=view)
+
+    def table(self, name: str) -> list[dict[str, Any]]:
+        """A row for each element of the first force of this name or kind: its particles, then its columns, with their
+        units in their names; vectors are three columns. `pandas.DataFrame` and `polars.DataFrame` take the rows.
+        Raises InputError, with the forces there are, if no force is called this."""
+        try:
+            entry = self.force(name)
+        except KeyError as error:
+            raise InputError("name", str(error.args[0])) from None
+        columns: dict[str, Any] = {}
+        particles = np.asarray(entry.get("particles", ())).reshape(-1, max(1, np.shape(entry.get("particles", ()))[-1]))
+        for corner in range(particles.shape[1]):
+            columns["particle" if particles.shape[1] == 1 else f"particle {corner + 1}"] = particles[:, corner]
+        for column, dimension in KINDS[entry["kind"]].outputs.items():
+            unit = self.units.of(dimension) if dimension else "-"
+            columns.update(_named(column, unit, np.asarray(entry.get(column, ()))))
+        rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+        return [dict(zip(columns, row, strict=True)) for row in rows]
+
+    def save(self, path: str | os.PathLike[str]) -> list[str]:
+        """Write the result to a .3dm, .json, .obj, .csv or .png file, by the ending of `path`; sentences on what the
+        file does not hold. Raises InputError for another ending, or where the file cannot be written."""
+        import hookean
+
+        return hookean.save(self, path)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain lists and numbers, by the names of the HTTP answer."""
+        report = {
+            "merged": self.report.merged,
+            "unmatched": [
+                {
+                    "pointer": u.pointer,
+                    "name": u.name,
+                    "point": list(u.point),
+                    "nearest": u.nearest if u.nearest >= 0 else None,
+                    "distance": u.distance if u.nearest >= 0 else None,
+                    "message": u.sentence,
+                }
+                for u in self.report.unmatched
+            ],
+            "missed": [{**asdict(m), "point": list(m.point), "message": m.warning} for m in self.report.missed],
+            "warnings": list(self.report.warnings),
+        }
+        return {
+            "status": str(self.status),
+            "message": self.message,
+            "particles": self.particles.tolist(),
+            "geometry": plain(self.geometry),
+            "forces": plain(self.forces),
+            "reactions": plain(self.reactions),
+            "contacts": plain(self.contacts),
+            "components": {**plain(self.components), "position_error": _known(self.components["position_error"])},
+            "residual": self.residual,
+            "rounding_floor": self.rounding_floor,
+            "out_of_balance": self.out_of_balance,
+            "stability": str(self.stability),
+            "stability_reason": self.stability_reason,
+            "soft_particle": self.soft_particle,
+            "soft_modes": self.soft_modes,
+            "position_error": self.position_error,
+            "position_reason": self.position_reason,
+            "energy": self.energy,
+            "iterations": self.iterations,
+            "time": self.time,
+            "solver": self.solver,
+            "report": report,
+            "units": self.units.model_dump(),
+        }
+
+
+def _named(column: str, unit: str, values: Any) -> dict[str, Any]:
+    """A column by its name and unit; one of vectors as three."""
+    if values.ndim == 2:
+        return {f"{column} {axis} [{unit}]": values[:, i] for i, axis in enumerate("xyz")}
+    return {f"{column} [{unit}]": values}
+
+
+def _known(values: Floats) -> list[float | None]:
+    """Numbers, None where one is not known."""
+    return [None if np.isnan(value) else float(value) for value in values]
+
+
+def plain(value: Any) -> Any:
+    """Arrays as lists, all the way down."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, dict):
+        return {k: plain(v) for k, v in value.items()}
+    return [plain(v) for v in value] if isinstance(value, list | tuple) else value
+
+
+def gather(
+    system: System,
+    state: State,
+    found: Balance,
+    rest: Equilibrium | None,
+    status: Status,
+    message: str,
+    solver: str,
+    *,
+    moving: bool,
+) -> Result:
+    """Collect a result from a state, its balance and, of a shape at rest, what is known of that."""
+    report = system.report
+    rest = rest or unknown("the shape is not at rest")
+    energy: dict[str, float] = {}
+    for group, value in zip(system.groups, found.energies, strict=True):
+        kind = str(group.cls.model_fields["kind"].default)
+        energy[kind] = energy.get(kind, 0.0) + float(value)
+    energy["kinetic"] = kinetic(system, state) if moving else 0.0
+    energy["total"] = sum(energy.values())
+    return Result(
+        status=status,
+        message=message,
+        particles=state.x.copy(),
+        geometry=carried(system, state),
+        forces=_measures(system, state),
+        reactions=_reactions(system, state, found),
+        contacts=_contacts(found),
+        components=_components(found, rest),
+        residual=found.residual,
+        rounding_floor=found.floor,
+        out_of_balance=found.out_of_balance,
+        stability=rest.stability,
+        stability_reason=rest.stability_reason,
+        soft_particle=rest.soft_particle,
+        soft_modes=rest.soft_modes,
+        position_error=rest.position_error,
+        position_reason=rest.position_reason,
+        energy=energy,
+        iterations=state.iteration,
+        time=state.time,
+        solver=solver,
+        report=replace(report, unmatched=list(report.unmatched), warnings=list(report.warnings)),
+        units=system.scene.units,
+        scene=system.scene,
+    )
+
+
+def kinetic(system: System, state: State) -> float:
+    """Kinetic energy [force length] of what is free to move."""
+    return 0.5 * float(system.mass @ np.einsum("ij,ij,ij->i", state.v, state.v, state.free))
+
+
+def carried(system: System, state: State) -> list[dict[str, Any]]:
+    """The scene's geometry where its particles are now; points that ride on none stay."""
+    moved = []
+    for item, particles in zip(system.scene.geometry, system.carried, strict=True):
+        if item.mesh is not None:
+            start = system.scene.meshes[item.mesh].vertices
+        elif item.particles is not None:
+            start = system.x[item.particles]
+        else:
+            start = np.asarray(item.points if item.points is not None else item.lines).reshape(-1, 3)
+        points = np.where((particles >= 0)[:, None], state.x[np.maximum(particles, 0)], start)
+        entry: dict[str, Any] = {"name": item.name, "kind": item.kind}
+        if item.kind == "mesh":
+            entry.update(vertices=points, faces=system.scene.meshes[str(item.mesh)].faces)
+        elif item.kind == "lines":
+            entry.update(lines=points.reshape(-1, 2, 3))
+        else:
+            entry.update(points=points)
+            if item.kind == "curve":
+                entry.update(degree=item.degree, knots=item.knots, weights=item.weights)
+        moved.append(entry)
+    return moved
+
+
+def _measures(system: System, state: State) -> list[dict[str, Any]]:
+    """Columns of every force of the scene, in its order; a floor has none."""
+    entries: list[dict[str, Any]] = [
+        {"kind": str(type(f).model_fields["kind"].default), "name": f.name} for f in system.scene.forces
+    ]
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        forces = system.element_forces(group, state, memory)
+        for part in group.parts:
+            block = group.of(part)
+            block.memory = memory[part.rows]
+            columns = part.force.measure(block, state.x, forces[part.rows])
+            entries[part.number].update(particles=block.indices, **columns)
+    return entries
+
+
+def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
+    held = np.flatnonzero(_any(state.free == 0))
+    names = dict.fromkeys(held.tolist(), "")
+    for anchor in system.held:
+        names.update(dict.fromkeys(anchor.particles.tolist(), anchor.name))
+    return {"particles": held, "force": found.reactions[held], "names": [names[p] for p in held.tolist()]}
+
+
+COMPONENTS = (
+    "first_particle", "particles", "supported", "loaded", "force_scale", "out_of_balance", "residual",
+    "rounding_floor", "position_error",
+)  # fmt: skip
+
+
+def _components(found: Balance, rest: Equilibrium) -> dict[str, Any]:
+    """Columns of the connected components, where there is more than one that something acts on."""
+    parts, loaded = found.components, found.found[:, LOADED] > 0.0
+    acting = np.flatnonzero(parts.joined | loaded) if len(parts.first) > 1 else parts.first
+    if len(acting) < 2:
+        return dict.fromkeys(COMPONENTS, np.zeros(0))
+    counts = np.bincount(parts.label[parts.label >= 0], minlength=len(parts.first))
+    errors = rest.position_errors if rest.position_errors is not None else np.full(len(parts.first), np.nan)
+    columns = (
+        parts.first, counts, parts.supported, loaded, found.scales, found.found[:, OUT], found.residuals,
+        found.floors, errors,
+    )  # fmt: skip
+    return {name: column[acting] for name, column in zip(COMPONENTS, columns, strict=True)}
+
+
+def _contacts(found: Balance) -> dict[str, Any]:
+    touching = np.flatnonzero(_any(found.contact != 0))
+    return {"particles": touching, "force": found.contact[touching]}
+
+
+def _any(rows: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which rows (n, 3) have something."""
+    x, y, z = rows.T
+    return np.asarray(x | y | z)

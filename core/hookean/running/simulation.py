@@ -1,0 +1,422 @@
+"""Simulation: a live system, frame by frame, patched while it runs, saved and resumed bit for bit."""
+
+from __future__ import annotations
+
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.errors import InputError
+from hookean.running.history import History, Setup
+from hookean.running.patch import Patch, Undo, apply
+from hookean.running.result import Result, Status, carried, gather, kinetic
+from hookean.running.run import Progress, relax_state
+from hookean.running.saving import anchor_of, no_simulation, opened
+from hookean.running.script import Playing, Script
+from hookean.running.stream import Stream
+from hookean.running.watch import Watch, seldom
+from hookean.scene.scene import Scene
+from hookean.solvers import solver
+from hookean.stability import time_steps
+from hookean.system.addressed import edited_scene
+from hookean.system.balance import Balance, balance
+from hookean.system.state import State
+from hookean.system.system import compile, hold
+
+OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
+
+_DAMAGED = (zipfile.BadZipFile, zlib.error)
+
+Floats = NDArray[np.float64]
+Source = Stream | str | Path | Iterable[str]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a client sees of a running simulation: positions (n, 3) [length], time [time], energies [force length]."""
+
+    particles: Floats
+    geometry: list[dict[str, object]]
+    time: float
+    iteration: int
+    revision: int
+    residual: float
+    status: Status
+    message: str
+
+
+def simulate(
+    scene: Scene,
+    frames: int | None = None,
+    *,
+    script: Script | Mapping[str, Any] | str | None = None,
+    stream: Source | None = None,
+) -> Iterator[Frame]:
+    """Frames of a scene in motion, `sub_iterations` steps apart, bouncing included; ends at rest, after `frames` or
+    with the frame in which the stream ends. A script that still moves something keeps it running.
+
+    The first frame is the start. The scene's solver, or `verlet` where that is `auto`.
+    """
+    running = Simulation(scene, script, stream)
+    yield running.frame()
+    shown = 0
+    while running.status is Status.RUNNING and not running.over and (frames is None or shown < frames):
+        running.step()
+        shown += 1
+        yield running.frame()
+
+
+class Simulation:
+    """A running system: stepped frame by frame, patched while it runs, saved and resumed bit for bit.
+
+    A `script` (see `running.script`) leads anchors and columns of forces through time, a `stream` (path, `-` for
+    standard input, lines of CSV) gives the values of its drives. They need a solver of physical time.
+    """
+
+    def __init__(
+        self, scene: Scene, script: Script | Mapping[str, Any] | str | None = None, stream: Source | None = None
+    ) -> None:
+        self.system = compile(scene)
+        self._playing: Playing | None = None
+        if script is not None or stream is not None:
+            self._playing = Playing(Script.read({} if script is None else script), stream, self.system)
+        self.state = self.system.start()
+        self.history = History()
+        self._begin(start=True)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as patches have left it, with anchors as they were given; see `edited_scene`."""
+        return self.system.scene
+
+    def edited_scene(self) -> Scene:
+        """The scene as patches have left it, anchors included: moved, released, and those pinned while it ran. Its
+        particles start where they did."""
+        return edited_scene(self.system)
+
+    @property
+    def over(self) -> bool:
+        """Whether the stream that drives it has ended."""
+        return self._playing is not None and self._playing.over
+
+    @property
+    def driven(self) -> bool:
+        """Whether a script or stream still has something to do."""
+        return self._playing is not None and not self._playing.finished
+
+    def _begin(self, *, start: bool, warn: bool = True) -> None:
+        """Take up the scene's solver; `start` lets it forget what it did before."""
+        name = self.scene.settings.solver
+        self.solver = solver("verlet" if name == "auto" else name)
+        refusal = self.solver.refuse(self.system)
+        if self._playing is not None and not self.solver.physical:
+            refusal = f"{name} knows no time, and a script does; use verlet, yoshida or auto"
+        if refusal:
+            raise InputError("/settings/solver", refusal)
+        if warn:
+            self._warn()
+        if start:
+            self.solver.start(self.system, self.state)
+        self._watch = Watch(self.system, self.state, self.solver)
+        self._judged()
+        self.status = Status.RUNNING
+        self._said = ""
+        self._note()
+
+    def _judged(self) -> None:
+        """The goal of what follows, kept with the state so that a resumed run stops where this one does."""
+        self._seen: Balance | None = self._watch.found
+        if not self.solver.physical:
+            self.state.scratch["goal"] = np.array([self._watch.goal])
+
+    def _warn(self) -> None:
+        """Report a time step that is too long for the present shape."""
+        warnings = self.system.report.warnings
+        warnings[:] = [w for w in warnings if not w.startswith("/settings/time_step")]
+        if self.solver.physical and (said := time_steps.warning(self.system, self.state, self.solver)):
+            warnings.append(said)
+        self._noted: list[str] = []
+
+    def _note(self) -> None:
+        """Report what the last look found out about the steps that were taken."""
+        notes, warnings = self._watch.notes if self.status is Status.RUNNING else [], self.system.report.warnings
+        if notes != self._noted:
+            warnings[:] = [w for w in warnings if w not in self._noted] + notes
+            self._noted = list(notes)
+
+    def step(self, frames: int = 1) -> Status:
+        """Advance by whole frames of `sub_iterations` steps; a diverged step restores the last good state."""
+        for _ in range(frames):
+            self.iterate(self.scene.settings.sub_iterations)
+            if self.status is not Status.RUNNING:
+                break
+        return self.status
+
+    def iterate(self, count: int) -> Status:
+        """Advance by at most `count` iterations of the solver, and judge where that led."""
+        while True:
+            self.advance(count)
+            status, count = self.look(), self._watch.back
+            if not count:
+                return status
+
+    def play(self, count: int) -> Status:
+        """Advance by `count` iterations, or a few more, of a run that ends where it is at rest.
+
+        It is judged at iterations that follow from the system alone: the states are the same however it is divided
+        into calls, whatever is read between.
+        """
+        until, together = self.state.iteration + count, self.solver.together
+        every = together or min(seldom(self.system), OFTEN * self.scene.settings.sub_iterations)
+        while self.status is Status.RUNNING and self.state.iteration < until:
+            before = self.state.iteration
+            due = together or every - before % every
+            several = due if together else min(due, until - before)
+            self.advance(several)
+            done = self.state.iteration - before
+            if several == due or done < several:
+                self.look()
+            if not done:
+                break
+        return self.status
+
+    def advance(self, count: int) -> None:
+        """Advance by at most `count` iterations of the solver; `look` judges where that led."""
+        if self.status is Status.DIVERGED:
+            return
+        self._seen = None
+        playing = self._playing
+        while count and playing is not None and not playing.finished:
+            step = self.solver.covers(self.system, self.state)
+            if playing.before(self.system, self.state, step):
+                self._warn()
+                self.state.scratch.pop("parts", None)
+                step = self.solver.covers(self.system, self.state)
+                playing.before(self.system, self.state, step)
+            several = min(count, playing.quiet(self.state.time, step))
+            self.solver.advance(self.system, self.state, several, 0.0)
+            playing.after(self.system, self.state)
+            count -= several
+        if count:
+            goal = 0.0 if self.solver.physical else float(self.state.scratch["goal"][0])
+            self.solver.advance(self.system, self.state, count, goal)
+
+    def look(self) -> Status:
+        """Judge the state as it is now; one that diverged goes back to the last good one. `balance`,
+        `message` and `frame()` change nothing."""
+        if self.status is Status.DIVERGED:
+            return self.status
+        self.status = self._watch.look(self.system, self.state, driven=self.driven)
+        self._said = ""
+        if self.status is Status.CONVERGED and self.driven:
+            self.status = Status.RUNNING  # at rest, but not for long
+        if self.status is Status.CONVERGED:
+            self.status = self._watch.onward(self.system, self.state)
+        if self.status is Status.DIVERGED:
+            revision, self.state = self.state.revision, self._watch.good.copy()
+            self.state.revision = revision  # the shape goes back, not the count of patches
+        elif self.status is Status.CONVERGED and not self.solver.physical:
+            self._watch.remember(self.system, self.state)
+        elif self.status in (Status.STALLED, Status.MAX_ITERATIONS, Status.TIME_LIMIT):
+            self.status = Status.RUNNING  # somebody is watching; they decide when to stop
+        self._judged()
+        self._note()
+        return self.status
+
+    @property
+    def finite(self) -> bool:
+        """Whether all positions and velocities are finite."""
+        return bool(np.isfinite(self.state.x).all() and np.isfinite(self.state.v).all())
+
+    @property
+    def balance(self) -> Balance:
+        """How far the shape is from equilibrium now."""
+        if self._seen is None:
+            self._seen = self._balance()
+        return self._seen
+
+    def _balance(self) -> Balance:
+        """The balance of the present state, which stays as it is: judging notes the scale of forces."""
+        return balance(self.system, replace(self.state))
+
+    @property
+    def energy(self) -> float | None:
+        """Of all forces and of motion now [force length]; None where a force, such as pressure, has none."""
+        if not all(group.cls.conservative for group in self.system.groups):
+            return None
+        moving = kinetic(self.system, self.state) if self.solver.physical else 0.0
+        return float(self.balance.energies.sum()) + moving
+
+    @property
+    def message(self) -> str:
+        """How it stands, in a sentence."""
+        if self.status is Status.RUNNING:
+            found, unit = self.balance, self.scene.units.force
+            said = f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance."
+            return " ".join([said, *(f"{note}." for note in self._watch.notes)])
+        return self._said or self._watch.sentence(self.system, self.status)
+
+    def frame(self) -> Frame:
+        """The state as a client sees it."""
+        return Frame(
+            self.state.x.copy(),
+            carried(self.system, self.state),
+            self.state.time,
+            self.state.iteration,
+            self.state.revision,
+            self.balance.residual,
+            self.status,
+            self.message,
+        )
+
+    def result(self) -> Result:
+        """Everything about the present state; warnings name a time step that is too long for it."""
+        known = [w for w in self.system.report.warnings if w not in self._noted]
+        if self.status is Status.RUNNING and not any(w.startswith("/settings/time_step") for w in known):
+            self._warn()
+            self._note()
+        found, moving = self._balance(), self.solver.physical
+        rest = self._watch.rest if self.status is Status.CONVERGED else None
+        return gather(self.system, self.state, found, rest, self.status, self.message, self.solver.name, moving=moving)
+
+    def relax(self, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Result:
+        """Go to equilibrium from here with the scene's solver (auto: relaxation and Newton)."""
+        result = relax_state(self.system, self.state, solver(self.scene.settings.solver), progress, cancelled)
+        self.arrive(self.state, result.status, result.message)
+        return result
+
+    def arrive(self, state: State, status: Status = Status.RUNNING, message: str = "") -> None:
+        """Go on from `state`, a shape of this system that a relaxation reached, and how that run ended."""
+        self.state = state
+        self._begin(start=True, warn=False)
+        self.status, self._said = status, message
+
+    def patch(self, edit: Patch | Mapping[str, Any], *, gesture: str = "") -> int:
+        """Change anchors, loads, stiffness, rest lengths, settings or which forces act while it runs; returns the new
+        revision.
+
+        Edits of one `gesture`, such as the drag of an anchor, are taken back as one. InputError names what does not
+        fit, and nothing has changed then.
+        """
+        edit = Patch.read(edit)
+        if edit.remove and self._playing is not None:
+            raise InputError("/remove", "a script leads forces by their numbers; forces are removed without one only")
+        setup = Setup.of(self.system)
+        # a moved anchor stiffens or quickens nothing by itself
+        warn = bool(edit.forces or edit.settings or len(edit.release) or edit.rewires)
+        revision = self._changed(lambda: apply(self.system, self.state, edit), warn=warn)
+        self.history.note(setup, gesture)
+        return revision
+
+    def undo(self) -> int:
+        """Take the last patch back; returns the new revision. The form follows, as after any patch. InputError where
+        there is none."""
+        return self._changed(lambda: self.history.undo(self.system, self.state))
+
+    def redo(self) -> int:
+        """Make the patch again that was taken back last; InputError where there is none."""
+        return self._changed(lambda: self.history.redo(self.system, self.state))
+
+    def _changed(self, change: Callable[[], None], *, warn: bool = True) -> int:
+        """Make a change that lands whole or not at all; the new revision."""
+        undo, before = Undo(self.system, self.state), self.solver
+        try:
+            change()
+            self.state.scratch.pop("energy", None)  # a change may add to it
+            if warn:
+                self.state.scratch.pop("parts", None)
+            same = self.scene.settings.solver == undo.scene.settings.solver
+            if not same or self.status is Status.DIVERGED:
+                self.state.v[:] = 0.0  # what one solver calls velocity means nothing to another, or it flew apart
+            self._begin(start=not (same and before.physical), warn=warn)
+        except InputError:
+            undo.put_back(self.system, self.state)
+            self.solver = before
+            raise
+        return self.state.revision
+
+    def succeed(self, scene: Scene) -> Simulation:
+        """A simulation of another scene that goes on from here: particles that start where one of this scene starts
+        (within the weld tolerance) are where that one is now, with its velocity. Anchors are those of the new scene,
+        its forces remember nothing yet."""
+        from scipy.spatial import cKDTree
+
+        new = Simulation(scene)
+        apart, same = cKDTree(self.system.x).query(new.system.x)
+        known = apart <= scene.weld_tolerance
+        new.state.x[known], new.state.v[known] = self.state.x[same[known]], self.state.v[same[known]]
+        for anchor in new.system.held:
+            hold(new.state, anchor)
+        new.system.put_outside(new.state)
+        new.state.revision = self.state.revision + 1
+        new._begin(start=True)
+        return new
+
+    def take_up(self, state: State, status: Status) -> None:
+        """Go on from a state that `State.of` read back; its anchors are those of the system. ValueError where it is
+        the state of another system."""
+        if not state.fits(self.state):
+            raise ValueError("a state of another system")
+        goal, scale = state.scratch.get("goal"), state.force_scale
+        self.state = state
+        self._begin(start=False, warn=False)
+        self.state.force_scale = scale  # of what was judged; this was only looked at
+        if goal is not None and not self.solver.physical:
+            self.state.scratch["goal"] = goal
+        self.status = status
+
+    def save(self, path: str | Path | IO[bytes]) -> None:
+        """Everything about this simulation in one .npz file: the scene, the state and the anchors as they are now. Its
+        history of patches is not in it."""
+        arrays = self.state.arrays()
+        for i, anchor in enumerate(self.system.held):
+            arrays[f"held_{i}"] = np.column_stack([anchor.particles, anchor.targets])
+            arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free])
+        names = {f"name_{i}": np.array(anchor.name) for i, anchor in enumerate(self.system.held)}
+        texts = {"scene": np.array(self.scene.canonical), "status": np.array(str(self.status)), **names}
+        if self._playing is not None:
+            texts["script"] = np.array(self._playing.script.model_dump_json())
+            texts["finished"] = np.array(self._playing.finished)
+        with opened(path, "wb") as file:
+            np.savez(file, allow_pickle=False, **texts, **arrays)
+
+    @classmethod
+    def load(cls, path: str | Path | IO[bytes], stream: Source | None = None) -> Simulation:
+        """The simulation that `save` wrote; it goes on bit for bit, with its stream given anew from the first row.
+        InputError where the file is not one."""
+        try:
+            with opened(path, "rb") as source, np.load(source, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            script = str(arrays.pop("script")) if "script" in arrays else None
+            finished = bool(arrays.pop("finished", False))
+            loaded = cls(Scene.read(str(arrays.pop("scene"))), script, stream)
+            status = Status(str(arrays.pop("status")))
+            count = sum(name.startswith("held_") for name in arrays)
+            loaded.system.held = [anchor_of(arrays, i, loaded.system) for i in range(count)]
+            loaded.system.brace()
+            loaded.take_up(State.of(arrays), status)
+        except InputError as error:
+            if stream is not None or error.pointer == "/drives":
+                raise
+            raise no_simulation(path) from None
+        except (OSError, KeyError, ValueError, IndexError, TypeError, EOFError, NotImplementedError, *_DAMAGED):
+            raise no_simulation(path) from None
+        if loaded._playing is not None:
+            loaded._playing.finished = finished  # what patches moved after its end stays moved
+        return loaded
+
+    def reset(self) -> None:
+        """Back to the start positions; anchors keep the particles they were given, and their present targets, or
+        those of their script at its start. InputError for a stream that cannot be read again."""
+        revision = self.state.revision
+        if self._playing is not None:
+            self._playing.rewind(self.system)
+        self.state = self.system.start()
+        self.state.revision = revision
+        self._begin(start=True)

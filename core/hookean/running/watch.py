@@ -1,0 +1,364 @@
+"""Watching a run: judges it between bursts of iterations, and says when it is over and why."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from hookean.compiled import dispatch
+from hookean.films.endings import Endings
+from hookean.running.heating import FAR, accept, cool, flown, gained, heated
+from hookean.running.result import Status
+from hookean.running.trial import trial
+from hookean.solvers import Solver
+from hookean.stability import time_steps
+from hookean.stability.equilibrium import Equilibrium, Stability, assess, excess, leave
+from hookean.system.balance import ALONG, Balance, balance
+from hookean.system.state import State
+from hookean.system.system import System
+
+UTMOST = 10**12  # parts of a step that is far too long
+FIRST_LOOK = 25  # iterations before the first look at the balance; later looks come at growing distances
+LEAVES = 20  # unstable equilibria that a run leaves
+TRIES = 5  # tighter tolerances that a run takes without half the position error
+BEYOND = 100.0  # sizes of the model that a load may move its particle by, before it is called too large
+PATIENCE = 20_000  # iterations without a better residual before a run counts as stalled, on top of those spent
+
+
+def seldom(system: System) -> int:
+    """Iterations from look to look that cost little beside them: about 50 ms of springs."""
+    cheap = 8_000_000 // (sum(g.block.indices.size for g in system.groups) + 4_000)
+    if system.films is not None:
+        cheap = 0  # looked at often, so that the last good shape is a late one
+    return max(FIRST_LOOK, cheap)
+
+
+class Watch:
+    """Looks at a run between bursts of iterations and says when it is over."""
+
+    def __init__(self, system: System, state: State, method: Solver) -> None:
+        self.method = method
+        self.settings = system.scene.settings
+        self.tolerance = self.settings.tolerance  # of the residual; tighter where the shape is to be known better
+        self.rest: Equilibrium | None = None  # what is known of the equilibrium that was found
+        self._left, self._tries, self._least = 0, 0, np.inf
+        self.started = time.monotonic()
+        self.first = self.last = state.iteration
+        self.best, self.best_at = np.inf, state.iteration
+        self.good = state.copy()
+        self.found: Balance = balance(system, state)
+        self.size = system.size
+        self.top, self.top_found = self.good, self.found  # of the best residual
+        self.back = 0  # iterations that the last look took back
+        self.origin, self.driven = self.good, False
+        self.fault, self.lost = "", -1  # what is not sane, and the particle
+        self.flew = False  # it moved too far, and no time step is to blame
+        self._advised = ""
+        self.collapse = ""
+        self.films = Endings(physical=method.physical) if system.films is not None else None
+        self._exploding(system, state, self.found, driven=False)  # notes the energy of the start
+        # on the steps of a motion: how far they may be trusted; those of a run that is resumed are known
+        self.notes = self._noted(system, state) if "parts" in state.scratch else []
+
+    @property
+    def goal(self) -> float:
+        """The out-of-balance force [force] that meets the tolerance."""
+        return self.found.goal(self.tolerance)
+
+    def burst(self, system: System, state: State) -> int:
+        """Iterations until the next look: about 50 ms of springs, or a twenty-fifth of those done."""
+        spent = state.iteration - self.first
+        due = min(max(seldom(system), spent // 25), self.method.longest, self.settings.max_iterations - spent)
+        return max(1, due)
+
+    def look(
+        self, system: System, state: State, *, idle: bool = False, known: bool = False, driven: bool = False
+    ) -> Status:
+        """Judge the state as it is now; `known` says that it is the one this began with, `driven` that a script moves
+        it."""
+        self.last, self.rest, self.back = state.iteration, None, 0
+        self.driven, self.flew, self._advised = driven, False, ""
+        if not self._sane(system, state):
+            return self._burst(system, state, driven=driven)
+        if self._collapsed(system, state, known=known):
+            return self._fallen(system)
+        found = self.found if known else balance(system, state)
+        if self._exploding(system, state, found, driven=driven) and not self._cooled(system, state, found):
+            return self._burst(system, state, driven=driven)
+        self.found = found
+        self.notes = self._noted(system, state)
+        if self.method.anew > self.best_at:  # what the other way had reached is no measure of this one
+            self.best, self.best_at = np.inf, self.method.anew
+        if not known:
+            self.good = state.copy()
+        if self.found.residual < self.best:
+            self.best, self.best_at = self.found.residual, state.iteration
+            self.top, self.top_found = self.good, self.found
+        if self.found.still(self.tolerance) and self._resting(system, state):
+            return Status.CONVERGED if self.found.met(self.tolerance) else Status.STALLED
+        stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
+        if idle or (stuck and not self.method.physical):  # what swings may swing for long
+            return Status.STALLED
+        if state.iteration - self.first >= self.settings.max_iterations:
+            return Status.MAX_ITERATIONS
+        limit = self.settings.time_limit
+        if limit is not None and time.monotonic() - self.started > limit:
+            return Status.TIME_LIMIT
+        return Status.RUNNING
+
+    def onward(self, system: System, state: State) -> Status:
+        """What follows from equilibrium: RUNNING where the solver leaves one that is unstable, or goes on until the
+        shape is known to the position tolerance; else CONVERGED, or STALLED where neither can be had."""
+        rest = self.rest = assess(system, state, self.found, self.method)
+        leaves = self.method.leaves and not self.settings.allow_unstable and self._left < LEAVES
+        if leaves and rest.stability is Stability.UNSTABLE and leave(system, state, rest):
+            self._left += 1
+            self.tolerance *= 0.1  # near an instability forces are small long before rest
+            self.method.depart(system, state)
+            self.found, self.rest = balance(system, state), None
+            return self._again(state)
+        much = excess(system, state, self.found, rest) if self.method.refines else 0.0
+        if much <= 1.0 or self.found.beyond == 0.0:
+            return Status.CONVERGED  # as well as it is asked for, or as rounding allows
+        self._tries = 0 if much < 0.5 * self._least else self._tries + 1
+        self._least = min(self._least, much)
+        if self._tries > TRIES:
+            return Status.STALLED
+        self.tolerance = min(self.tolerance, self.found.beyond) * min(0.3, 0.3 / much)
+        return self._again(state)
+
+    def _again(self, state: State) -> Status:
+        """Go on from a shape that met the last tolerance, or nearly."""
+        self.best, self.best_at = np.inf, state.iteration
+        self.method.sharpen(state)
+        return Status.RUNNING
+
+    def remember(self, system: System, state: State) -> None:
+        """Let elements take note of a shape at rest; those that yield have another energy then."""
+        system.remember(state)
+        if system.yields:
+            self.found = replace(self.found, energies=system.evaluate(state)[2])
+
+    def _exploding(self, system: System, state: State, found: Balance, *, driven: bool) -> bool:
+        """Whether time steps are too long for the motion; else say which particle and force."""
+        particle = heated(system, state, self.method, found, driven=driven) if self.method.physical else None
+        if particle is not None:
+            self.fault = f"particle {particle}{_owner(system, particle)}"
+        return particle is not None
+
+    def _noted(self, system: System, state: State) -> list[str]:
+        if not self.method.physical:
+            return []
+        slow = time_steps.slowed(system, self.method.parts(system, state))
+        return [note for note in (slow, gained(system, state, self.method, self.found, driven=self.driven)) if note]
+
+    def _burst(self, system: System, state: State, *, driven: bool) -> Status:
+        """What follows where a motion has exploded: where its time steps may be divided, back to the last good state
+        with twice as many parts; but what drives a motion does not go back."""
+        dividing = self.method.physical and self.settings.divide_steps and not driven
+        self.flew = (
+            self.method.physical and self.lost >= 0 and flown(system, state, self.found, self.lost, driven=driven)
+        )
+        parts = 2 * self.method.parts(system, state)
+        known = all(group.cls.conservative for group in system.groups)  # energies show whether a step is too long
+        if not dividing or self.flew or parts > (UTMOST if known else time_steps.often(system, self.good, self.method)):
+            return self._fallen(system)
+        good = self.good.copy()
+        self.back = state.iteration - good.iteration
+        state.x, state.v, state.memory = good.x, good.v, good.memory
+        state.time, state.iteration = good.time, good.iteration
+        state.scratch["parts"] = np.array([parts])
+        accept(system, state, self.found)
+        self.lost = -1
+        return Status.RUNNING
+
+    def _cooled(self, system: System, state: State, found: Balance) -> bool:
+        """Whether steps are divided so often already that what they still add is of the forces' making, which jump
+        where elements collapse: it is taken out of the motion."""
+        parts = self.method.parts(system, state)
+        if (
+            not self.settings.divide_steps
+            or self.driven
+            or 2 * parts <= time_steps.often(system, self.good, self.method)
+        ):
+            return False
+        cool(system, state, found)
+        return True
+
+    def _fallen(self, system: System) -> Status:
+        """The end of a run that diverged; the last good shape of films is one that can be a film."""
+        if self.films is not None and self.films.good is not None:
+            self.good, self.found = self.films.good, balance(system, self.films.good)
+        return Status.DIVERGED
+
+    def _collapsed(self, system: System, state: State, *, known: bool) -> bool:
+        """Whether films are no longer a valid shape, or have no equilibrium to begin with."""
+        if self.films is not None:
+            self.collapse = self.films.begin(system, state) if known else self.films.look(system, state)
+        return bool(self.collapse)
+
+    def _resting(self, system: System, state: State) -> bool:
+        """In physical time a shape may pass through balance at full speed: then it has not arrived."""
+        if not self.method.physical:
+            return True
+        found, label = self.found, self.found.components.label
+        moving = system.mass * (state.v**2 * state.free).sum(axis=1)
+        moving = np.bincount(label[label >= 0], moving[label >= 0], len(found.scales))
+        return bool((moving <= (self.tolerance + found.floors) * found.scales * self.size).all())
+
+    def _sane(self, system: System, state: State) -> bool:
+        """Finite, and not a hundred thousand times the model's size away; else say which particle and force."""
+        if dispatch.compiled(within)(state.x, state.v, system.x, state.free, FAR * self.size):
+            return True
+        away = np.abs(state.x - system.x) * state.free
+        bad = ~np.isfinite(state.x).all(axis=1) | ~np.isfinite(state.v).all(axis=1)
+        if not bad.any():
+            bad = away.max(axis=1) > FAR * self.size
+        particle = int(np.argmax(bad))
+        others = int(np.count_nonzero(bad)) - 1
+        # where many are lost at once, the forces of the first in number need not be the cause
+        also = f" and {others} other{'s' * (others > 1)}" if others else _owner(system, particle)
+        self.fault = f"particle {particle}{also}"
+        self.lost = particle
+        return False
+
+    def sentence(self, system: System, status: Status) -> str:
+        """What to tell a person of a run that ended with `status`."""
+        found, unit = self.found, system.scene.units.force
+        left = f"residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance"
+        spent = self.last - self.first
+        if status is Status.CONVERGED:
+            rounding = " (the rounding floor)" if found.residual > self.settings.tolerance else ""
+            return f"In equilibrium after {spent} iterations: {left}{rounding}.{_caveat(self.rest)}"
+        if status is Status.DIVERGED and self.collapse:
+            return f"Collapsed after {spent} iterations; the last good shape is returned. {self.collapse}."
+        if status is Status.DIVERGED:
+            where = f" after {spent} iterations at {self.fault}" if self.fault else ""  # a state taken up knows no more
+            return f"Diverged{where}; the last good shape is returned. {self._advice(system)}."
+        if status is Status.STALLED:
+            return f"Stalled after {spent} iterations at particle {found.worst}: {left}. {self._obstacle(system)}."
+        if status is Status.CANCELLED:
+            return f"Cancelled after {spent} iterations: {left}."
+        if status is Status.TIME_LIMIT:
+            return f"Out of time ({self.settings.time_limit:g} s) after {spent} iterations: {left}. Raise time_limit."
+        advice = _adrift(system, found) or "Raise max_iterations"
+        return f"Not in equilibrium after {spent} iterations: {left}. {advice}."
+
+    def _advice(self, system: System) -> str:
+        """What to do about a run that diverged."""
+        if not self._advised:
+            self._advised = self._blame(system)
+        return self._advised
+
+    def _blame(self, system: System) -> str:
+        if self.method.physical and not self.settings.divide_steps and not self.flew:
+            held = (0.0, 0.0) if self.driven else trial(system, self.origin, self.good, self.method, type(self))
+            return time_steps.too_long(system, self.good, self.method, held)
+        part = self.found.components.label[self.lost] if self.lost >= 0 else -1
+        if self.flew and part >= 0 and not self.found.components.supported[part]:
+            return f"Nothing supports {_called(system, self.found, part)}: add anchors"
+        if said := _adrift(system, self.found):
+            return said
+        if part >= 0 and not self.found.components.supported[part]:
+            return f"Nothing supports {_called(system, self.found, part)}: add anchors"
+        if said := _overloaded(system, self.good, self.size):
+            return said
+        if self.method.physical:
+            return (
+                "The forces grow without bound there, and no time step holds: add damping, more mass, or less stiffness"
+            )
+        other = "" if self.method.name == "auto" else "use auto, "
+        return (
+            f"The solver {self.method.name} found no equilibrium from here: {other}see that every part is held along "
+            "all axes on which it is loaded, or lower the loads"
+        )
+
+    def _obstacle(self, system: System) -> str:
+        """Why a run stalled."""
+        if said := _adrift(system, self.found):
+            return said
+        if len(self.found.coarse):
+            part = int(self.found.coarse[0])
+            return (
+                f"Rounding alone leaves a residual of {self.found.floors[part]:.1g} in "
+                f"{_called(system, self.found, part)}: stiffness or coordinates are too large there for these forces. "
+                "Move the model to the origin, or lower the stiffness"
+            )
+        if self.rest is not None and self.rest.position_error is not None:
+            error, unit = self.rest.position_error, system.scene.units.length
+            return (
+                f"Forces balance, but one more exact step would still move a particle by {error:.2g} {unit}, more than "
+                "position_tolerance allows: the structure is close to an instability. Stiffen it, or raise "
+                "position_tolerance"
+            )
+        return (
+            "Common causes: springs at their cutoff, unsupported loads, a shape near snap-through. Check that "
+            "particle, or raise the tolerance"
+        )
+
+
+def within(x, v, start, free, far):  # type: ignore[no-untyped-def]
+    """Whether all speeds are finite, and no free axis is farther than `far` from the start."""
+    for i in range(x.shape[0]):
+        for c in range(3):
+            if not (np.isfinite(v[i, c]) and abs(x[i, c] - start[i, c]) * free[i, c] <= far):
+                return False
+    return True
+
+
+def _caveat(rest: Equilibrium | None) -> str:
+    """What a person must know of an equilibrium."""
+    if rest is None or rest.stability not in (Stability.UNSTABLE, Stability.MECHANISM):
+        return ""
+    most = f"; particle {rest.soft_particle} moves most" if rest.soft_particle is not None else ""
+    kind = "It is unstable" if rest.stability is Stability.UNSTABLE else "It is a mechanism"
+    return f" {kind}: {rest.stability_reason}{most}."
+
+
+def _overloaded(system: System, state: State, size: float) -> str:
+    """Which load is too large for what holds it: one that would move its particle by many times the model's size."""
+    loads = np.sqrt((system.evaluate(state, only="load")[0] ** 2 * state.free).sum(axis=1))
+    reach = loads / np.maximum(system.evaluate(state)[1], 1e-300)
+    particle = int(np.argmax(reach))
+    if reach[particle] <= BEYOND * size:
+        return ""
+    force, units = _owner(system, particle, role="load"), system.scene.units
+    return (
+        f"The load of {loads[particle]:.3g} {units.force} on particle {particle}{force} is too large for the stiffness "
+        f"of what holds it, which would stretch by {reach[particle]:.2g} {units.length}: lower the load, or raise the "
+        "stiffness"
+    )
+
+
+def _adrift(system: System, found: Balance) -> str:
+    """Which components carry loads that nothing supports; empty where there are none."""
+    if not len(found.adrift):
+        return ""
+    part = int(found.adrift[0])
+    more = f" (and {len(found.adrift) - 1} more such parts)" if len(found.adrift) > 1 else ""
+    load = float(np.abs(found.found[part, ALONG]).max())
+    called = _called(system, found, part)
+    count = int(np.count_nonzero(found.components.label == part))
+    carry, them = ("carries", "it") if count == 1 and not more else ("carry", "them")
+    unit = system.scene.units.force
+    return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
+
+
+def _called(system: System, found: Balance, part: int) -> str:
+    """A component in words."""
+    count = int(np.count_nonzero(found.components.label == part))
+    particle = int(found.components.first[part])
+    called = f"particle {particle}{_owner(system, particle)}"
+    return called if count == 1 else f"the {count} particles connected with {called}"
+
+
+def _owner(system: System, particle: int, *, role: str = "") -> str:
+    """The first force of a role, or of all but loads, with an element at a particle: " (of /forces/3, springs)"."""
+    for group in system.groups:
+        hit = (group.block.indices == particle).any(axis=1)
+        for part in group.parts:
+            if hit[part.rows].any() and (group.cls.role == role if role else group.cls.role != "load"):
+                return f" (of /forces/{part.number}, {group.cls.model_fields['kind'].default})"
+    return ""

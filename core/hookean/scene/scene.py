@@ -1,0 +1,403 @@
+"""Scene: everything a person describes. Frozen, validated, with a canonical form and a digest."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import json
+import re
+from collections.abc import Mapping
+from types import UnionType
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, get_args, get_origin
+
+import numpy as np
+from pydantic import ValidationError, field_validator, model_validator
+
+from hookean.errors import InputError, several
+from hookean.forces import KINDS, Force
+from hookean.forces.floor import Floor
+from hookean.scene.solver_names import SOLVERS
+from hookean.scene.text import parse
+from hookean.values import html
+from hookean.values.columns import (
+    Faces,
+    Indices,
+    Lines,
+    Model,
+    NonNegatives,
+    Points,
+    Positives,
+    fault,
+)
+from hookean.values.fields import Field, Maybe, Named, Part, Parts, Switch
+from hookean.values.units import Units
+
+if TYPE_CHECKING:
+    AnyForce = Force
+else:
+    AnyForce = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
+
+
+class MeshData(Model):
+    """A mesh of the scene, shared by name: vertices `(n, 3)` [length] and faces of three or four vertices."""
+
+    vertices: Points = Field(description="Coordinates [length]")
+    faces: Faces = Field(description="Three or four vertices each, counted from 0")
+
+    @model_validator(mode="after")
+    def _faces_exist(self) -> Self:
+        beyond = self.faces >= len(self.vertices)
+        if beyond.any():
+            row, column = np.argwhere(beyond)[0]
+            given = self.faces[row, column]
+            raise fault(
+                f"vertex {given} does not exist; the mesh has {len(self.vertices)}, counted from 0",
+                f"/faces/{row}/{column}",
+            )
+        return self
+
+
+class Anchor(Model):
+    """Particles that are held exactly, on all or some axes, where they are or at targets.
+
+    An anchor never moves unless it is moved; its reaction is reported. For a soft one see `anchor_spring`.
+    """
+
+    name: str = Field(default="", description="Name under which reactions list this anchor")
+    particles: Maybe[Indices] = Field(default=None, description="Held particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of held particles")
+    targets: Maybe[Points] = Field(default=None, description="Where to hold them [length]; none: where they are")
+    axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = Field(default="xyz", description="Held directions")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        if (self.particles is None) == (self.points is None):
+            raise fault("give exactly one of particles, points")
+        count = len(self.particles if self.particles is not None else self.points)  # type: ignore[arg-type]
+        if self.targets is not None and len(self.targets) != count:
+            raise fault(f"{len(self.targets)} targets for {count} particles; give one for each", "/targets")
+        return self
+
+
+Anchors = Anchor
+"""The same: one anchor may hold many particles."""
+
+
+class Geometry(Model):
+    """Geometry that rides along: each of its points that meets a particle moves with it.
+
+    `points`, `polyline` and `curve` (control points of a NURBS curve) take points or particles; `lines` takes lines or
+    pairs; `mesh` the name of one of the scene's meshes.
+    """
+
+    name: str = Field(default="", description="Name under which results list this geometry")
+    kind: Literal["points", "lines", "polyline", "curve", "mesh"] = Field(description="What it is")
+    particles: Maybe[Indices] = Field(default=None, description="Particles it goes through (lines: start, end, ...)")
+    points: Maybe[Points] = Field(default=None, description="Coordinates [length]")
+    lines: Maybe[Lines] = Field(default=None, description="Straight lines [length]")
+    mesh: str | None = Field(default=None, description="Name of one of the scene's meshes")
+    degree: int = Field(default=3, ge=1, le=11, description="Degree of a curve [-]")
+    knots: tuple[float, ...] | None = Field(default=None, description="Knots, as Rhino counts them; none: uniform")
+    weights: Maybe[NonNegatives] = Field(default=None, description="Weights of a curve's control points [-]")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        given = [f for f in ("particles", "points", "lines", "mesh") if getattr(self, f) is not None]
+        allowed = {"lines": ["lines", "particles"], "mesh": ["mesh"]}.get(self.kind, ["points", "particles"])
+        if len(given) != 1 or given[0] not in allowed:
+            raise fault(f"{' and '.join(given) or 'nothing'} given; {self.kind} takes one of {', '.join(allowed)}")
+        if self.kind == "lines" and self.particles is not None and len(self.particles) % 2:
+            raise fault("lines take an even number of particles: start, end, start, end", "/particles")
+        return self
+
+
+class Settings(Model):
+    """How to solve. Defaults of time stepping are classic Kangaroo's."""
+
+    solver: Literal[SOLVERS] = Field(default="auto", description="Which solver; auto picks one and says which")  # type: ignore[valid-type]
+    tolerance: float = Field(default=1e-6, ge=0, le=1, description="Largest residual of a converged shape [-]")
+    position_tolerance: float | None = Field(
+        default=1e-6, ge=0, le=1, description="Largest position error / model size that auto accepts [-]; null: any"
+    )
+    allow_unstable: bool = Field(default=False, description="Keep unstable equilibria, which auto and newton leave")
+    max_iterations: int = Field(default=100_000, ge=0, le=10**9, description="Stop after so many iterations")
+    time_limit: float | None = Field(default=None, ge=0, description="Stop after so many seconds of computing [s]")
+    time_step: float = Field(default=0.01, gt=0, description="Step of physical time [time]")
+    divide_steps: bool = Field(
+        default=True,
+        description="Take steps that are too long in parts; false where time_step is given and this is not",
+    )
+    sub_iterations: int = Field(default=20, ge=1, le=100_000, description="Time steps in a frame")
+    drag: float = Field(default=1.0, ge=0, description="Viscous drag on every particle [force time/length]")
+    floor: Switch[Floor] = Field(default=None, description="A floor: {} or true is the XY plane")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _who_chose(cls, value: Any) -> Any:
+        if not isinstance(value, Mapping) or "divide_steps" in value:
+            return value
+        return {**value, "divide_steps": "time_step" not in value}
+
+    @classmethod
+    def changes(cls, given: Mapping[str, Any]) -> dict[str, Any]:
+        """What changes with the given values: a step that is given is not divided, unless that is given too."""
+        return {"divide_steps": False, **given} if "time_step" in given else dict(given)
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """As of any part of a scene; see `changes`."""
+        return super().model_copy(update=self.changes(update or {}), deep=deep)
+
+    @field_validator("floor", mode="before")
+    @classmethod
+    def _short_floor(cls, value: Any) -> Any:
+        if value is True:
+            return {}
+        return None if value is False else value
+
+
+class Scene(Model):
+    """Particles, forces, anchors, carried geometry and settings; the same in Python and in JSON.
+
+    Forces and anchors refer to particles by index (`particles`), by coordinates (`points`, `lines`) that are welded
+    within `weld_tolerance`, or to a named mesh. `Scene(...)` and `Scene.read` raise InputError with the place of the
+    first fault and one sentence; pydantic's `model_validate` raises ValidationError with all of them.
+    """
+
+    units: Part[Units] = Field(default=Units(), description="Units of all numbers")
+    weld_tolerance: float = Field(default=0.001, ge=0, description="Coordinates this near are one particle [length]")
+    strict: bool = Field(
+        default=True, description="Anchors and loads that meet no particle are errors; false: warnings"
+    )
+    particles: Points = Field(
+        default=np.zeros((0, 3)), description="Start positions [length]; never merged or renumbered"
+    )
+    masses: Positives = Field(default=1.0, description="Mass of given particles [force time^2/length]; welded ones: 1")
+    velocities: Maybe[Points] = Field(default=None, description="Start velocities [length/time], one for each particle")
+    meshes: Named[MeshData] = Field(default={}, description="Meshes by name")
+    forces: Parts[AnyForce] = Field(default=(), description="What acts on the particles")
+    anchors: Parts[Anchor] = Field(default=(), description="Particles that are held")
+    geometry: Parts[Geometry] = Field(default=(), description="Geometry that rides along")
+    settings: Part[Settings] = Field(default=Settings(), description="How to solve")
+
+    @classmethod
+    def read(cls, value: Any) -> Scene:
+        """A scene from a dict, or from JSON text or bytes; InputError with a pointer and one sentence."""
+        if isinstance(value, str | bytes | bytearray):
+            value = parse(value)
+        try:
+            return cls.model_validate(value)
+        except ValidationError as error:
+            raise first_fault(error) from None
+
+    def __repr__(self) -> str:
+        return "\n".join(["Scene", *(f"  {line}" for line in self.summary())])
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        title, *lines = repr(self).splitlines()
+        return html.summary(title, lines)
+
+    def summary(self) -> list[str]:
+        """A few lines for a person: its particles, forces, anchors, solver and units."""
+        forces = [f"{f.name} ({_called(type(f))})" if f.name else _called(type(f)) for f in self.forces]
+        units = self.units
+        return [
+            f"particles: {len(self.particles)} given; points within {self.weld_tolerance:g} {units.length} become one",
+            f"forces: {', '.join(forces) or 'none'}",
+            f"anchors: {len(self.anchors)}, meshes: {len(self.meshes)}, geometry carried: {len(self.geometry)}",
+            f"solver: {self.settings.solver}, tolerance {self.settings.tolerance:g} [-]",
+            f"units: {units.length}, {units.force}, {units.time}",
+        ]
+
+    @property
+    def canonical(self) -> str:
+        """The scene as JSON with sorted keys and without white space: equal scenes, equal text."""
+        return json.dumps(self.model_dump(mode="json"), sort_keys=True, separators=(",", ":"))
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the canonical form."""
+        return hashlib.sha256(self.canonical.encode()).hexdigest()
+
+    @model_validator(mode="after")
+    def _references_exist(self) -> Self:
+        count = len(self.particles)
+        for group, items in (("forces", self.forces), ("anchors", self.anchors), ("geometry", self.geometry)):
+            for i, item in enumerate(items):
+                _particles_exist(getattr(item, "particles", None), count, f"/{group}/{i}/particles")
+                mesh = getattr(item, "mesh", None)
+                if mesh is not None and mesh not in self.meshes:
+                    known = ", ".join(repr(name) for name in self.meshes) or "none"
+                    raise fault(f"mesh {mesh!r} does not exist; the scene has {known}", f"/{group}/{i}/mesh")
+        if self.velocities is not None and len(self.velocities) != count:
+            raise fault(f"{len(self.velocities)} velocities for {count} particles; give one for each", "/velocities")
+        if isinstance(self.masses, np.ndarray) and len(self.masses) != count:
+            raise fault(f"{len(self.masses)} masses for {count} particles; give one value or one for each", "/masses")
+        return self
+
+
+def _particles_exist(indices: Any, count: int, pointer: str) -> None:
+    if indices is None or not (indices >= count).any():
+        return
+    spot = np.argwhere(indices >= count)[0]
+    given = int(indices[tuple(spot)])
+    raise fault(
+        f"particle {given} does not exist; the scene gives {count}, counted from 0",
+        pointer + "".join(f"/{i}" for i in spot),
+    )
+
+
+def faults(error: ValidationError) -> list[InputError]:
+    """Every fault of a validation error as pointer and sentence."""
+    found = []
+    kinds = set(KINDS)
+    root = _model(error.title)
+    for entry in error.errors(include_url=False):
+        context = entry.get("ctx", {})
+        # pydantic names the chosen class of a union in the location; a pointer has no such step
+        place = entry["loc"]
+        steps = [str(s) for i, s in enumerate(place) if not (s in kinds and i == 2 and place[0] in ("forces", "add"))]
+        pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
+        pointer += str(context.get("at", ""))
+        sentence = str(context.get("sentence") or _sentence(entry, root))
+        found.append(InputError(pointer or "/", sentence))
+    return found
+
+
+def _sentence(entry: Any, root: type[Model] | None) -> str:
+    """What pydantic found, in our words: what was given, what is allowed."""
+    kind, context, given = entry["type"], entry.get("ctx", {}), _shown(entry["input"])
+    if kind in ("extra_forbidden", "missing"):
+        name, owner = str(entry["loc"][-1]), _owner(root, entry["loc"][:-1])
+        if owner is None:
+            return f"{_shown(name)} is not known here" if kind == "extra_forbidden" else f"{name} is needed"
+        if kind == "missing":
+            field = owner.model_fields.get(name)
+            return f"{name} is needed: {field.description}" if field and field.description else f"{name} is needed"
+        return f"{_shown(name)} is no field of {_called(owner)}; {_meant(name, list(owner.model_fields), 'it has')}"
+    if kind == "union_tag_invalid":
+        known = re.findall(r"'([^']*)'", context["expected_tags"])
+        return f"kind {_shown(context['tag'])} is none; {_meant(context['tag'], known, 'there are', always=True)}"
+    if kind == "union_tag_not_found":
+        return f"kind is needed; there are {', '.join(KINDS)}"
+    if kind == "literal_error":
+        allowed = re.findall(r"'([^']*)'", context["expected"])
+        return f"{given} given; {_meant(str(entry['input']), allowed, 'one of', always=True)}"
+    for rule, key, words in _LIMITS:
+        if kind == rule:
+            return f"{given} given; {words} {context[key]:g} allowed"
+    expected = next((words for start, words in _EXPECTED.items() if kind.startswith(start)), "")
+    if isinstance(entry["input"], str):
+        given = "a text"  # which may be anything, and long
+    return f"{given} given; {expected} expected" if expected else str(entry["msg"])
+
+
+_LIMITS = (
+    ("greater_than", "gt", "more than"),
+    ("greater_than_equal", "ge", "at least"),
+    ("less_than", "lt", "less than"),
+    ("less_than_equal", "le", "at most"),
+)
+_EXPECTED = {
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "dict_type": "an object of names and values",
+    "model_": "an object of names and values",
+    "string_type": "a text",
+    "bool_": "true or false",
+    "int_": "a whole number",
+    "float_": "a number",
+    "finite_number": "a finite number",
+}
+
+
+def _meant(given: Any, known: list[str], introduction: str, *, always: bool = False) -> str:
+    """The nearest known name as a question, or all of them; with `always` both."""
+    near = difflib.get_close_matches(str(given).lower(), {n.lower(): n for n in known}, 1)
+    nearest = next((n for n in known if near and n.lower() == near[0]), None)
+    listed = f"{introduction} {', '.join(known)}"
+    if nearest is None:
+        return listed
+    return f"{listed}; did you mean {nearest}?" if always else f"did you mean {nearest}?"
+
+
+def _shown(value: Any) -> str:
+    """A given value as JSON, if it is short; else what it is."""
+    if isinstance(value, str | int | float) or value is None:
+        text = json.dumps(value if not isinstance(value, str) else value[:60])
+        return text if len(text) <= 80 else f"{text[:60]}..."
+    if isinstance(value, dict):
+        return "an object"
+    return "a list" if isinstance(value, list | tuple) else type(value).__name__
+
+
+def _called(model: type[Model]) -> str:
+    """What a person calls a model: the kind of a force, else its name."""
+    if issubclass(model, Force):
+        return str(model.model_fields["kind"].default)
+    return "mesh" if model is MeshData else model.__name__.lower()
+
+
+def _model(title: str) -> type[Model] | None:
+    """The model that a validation error is about."""
+    waiting: list[type[Model]] = [Model]
+    for model in waiting:
+        if model.__name__ == title:
+            return model
+        waiting += model.__subclasses__()
+    return None
+
+
+def _owner(root: type[Model] | None, place: tuple[Any, ...]) -> type[Model] | None:
+    """The model at a location within `root`, found by the annotations of fields."""
+    hints: list[Any] = [root]
+    for step in place:
+        hints = [inner for hint in hints for inner in _inside(hint, step)]
+    found = [h for hint in hints for h in _alternatives(hint) if isinstance(h, type) and issubclass(h, Model)]
+    return found[0] if len(found) == 1 else None
+
+
+def _alternatives(hint: Any) -> list[Any]:
+    """A hint without `Annotated`, and the members of a union."""
+    if get_origin(hint) is Annotated:
+        return _alternatives(get_args(hint)[0])
+    if get_origin(hint) in (Union, UnionType):
+        return [a for member in get_args(hint) for a in _alternatives(member)]
+    return [hint]
+
+
+def _inside(hint: Any, step: Any) -> list[Any]:
+    """The hints one step of a location further in."""
+    found: list[Any] = []
+    for option in _alternatives(hint):
+        origin, inner = get_origin(option), get_args(option)
+        if origin in (tuple, list):
+            found += [a for a in inner if a is not Ellipsis]
+        elif origin is dict:
+            found.append(inner[1])
+        elif isinstance(option, type) and issubclass(option, Model):
+            if step in option.model_fields:
+                found.append(option.model_fields[step].annotation)
+            elif issubclass(option, Force) and step == _called(option):
+                found.append(option)
+    return found
+
+
+def first_fault(error: ValidationError) -> InputError:
+    """The faults of a validation error as one; its sentence is the first one and has how many more there are."""
+    return several(faults(error))
+
+
+__all__ = [
+    "Anchor",
+    "Anchors",
+    "Force",
+    "Geometry",
+    "MeshData",
+    "Scene",
+    "Settings",
+    "Units",
+    "faults",
+    "first_fault",
+]

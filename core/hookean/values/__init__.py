@@ -1,0 +1,1 @@
+"""Values that scenes are made of: columns and fields, meshes, units, colours."""

@@ -1,0 +1,1 @@
+"""Functions for Grasshopper's Hops component."""

@@ -1,0 +1,284 @@
+"""The description of the API: schemas from the scene's models, problems for every operation, examples that run."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+
+import hookean
+from hookean_server.http import claimed
+from hookean_server.http.access import Access
+from hookean_server.http.schemas import EXAMPLES, SCHEMAS, operation_schema
+from hookean_server.http.tokens import cookie_name
+from hookean_server.problems import CATALOGUE, MEDIA_TYPE
+
+HEALTH = {"application/json": {"schema": {"$ref": "#/components/schemas/Health"}}}
+PROOF = {"application/json": {"schema": {"$ref": "#/components/schemas/Proof"}}}
+SESSION = {"application/json": {"schema": {"$ref": "#/components/schemas/Session"}}}
+SESSIONS = {"application/json": {"schema": {"$ref": "#/components/schemas/Sessions"}}}
+FORCES = {"application/json": {"schema": {"$ref": "#/components/schemas/Catalogue"}}}
+GALLERY = {"application/json": {"schema": {"$ref": "#/components/schemas/Examples"}}}
+PICTURE = {"image/png": {"schema": {"type": "string", "format": "binary"}}}
+METRICS = {"text/plain": {"schema": {"type": "string"}}}
+_ALWAYS = (401, 403, 404, 405, 431, 500)
+_COMPUTED = (*_ALWAYS, 408, 413, 415, 422, 503, 504, 507)
+_LIVE = (*_COMPUTED, 409, 412, 429)
+
+
+def problems(
+    success: dict[str, Any] | None = None,
+    *codes: int,
+    computed: bool = False,
+    live: bool = False,
+    open_to_all: bool = False,
+    asked: bool = False,
+    headers: dict[str, Any] | None = None,
+) -> dict[int | str, dict[str, Any]]:
+    """`responses` of an operation: its success, with `headers`, and every problem it can give; `asked`: of parameters
+    that may be faulty, too."""
+    found: dict[int | str, dict[str, Any]] = {}
+    if success is not None:
+        found[200] = {"description": "Done", "content": success, **({"headers": headers} if headers else {})}
+    for code in codes:
+        found[code] = {"description": "As before"} if code == 304 else {"description": "Done", "content": success or {}}
+    content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    for status in _LIVE if live else _COMPUTED if computed else (*_ALWAYS, 422) if asked else _ALWAYS:
+        if status == 401 and open_to_all:
+            continue
+        titles = [f"{title} (`{slug}`)" for slug, (code, title, _) in CATALOGUE.items() if code == status]
+        found[status] = {"description": "; ".join(titles), "content": content}
+        if status == 412:
+            found[status]["headers"] = {"etag": {"description": "The current revision", "schema": {"type": "string"}}}
+    return found
+
+
+def _takes(schema: dict[str, Any], examples: dict[str, Any], kind: str = "application/json") -> dict[str, Any]:
+    named = {name: {"value": value} for name, value in examples.items()}
+    content = {"schema": schema, **({"examples": named} if named else {})}
+    return {"requestBody": {"required": True, "content": {kind: content}}}
+
+
+def _form(file: str) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "properties": {
+            "file": {"type": "string", "format": "binary", "description": file},
+            "recipe": {
+                "type": "string",
+                "description": "What to make of a .3dm file, as TOML or JSON text; none: as drawn",
+            },
+        },
+        "required": ["file"],
+    }
+
+
+def relax() -> dict[str, Any]:
+    """What the route of `/v1/relax` says of itself."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Result"}}}
+    scene = {"$ref": "#/components/schemas/Scene"}
+    found = problems(success, computed=True, headers=claimed.described())
+    return {"responses": found, "openapi_extra": _takes(scene, EXAMPLES["relax"])}
+
+
+def example_scene() -> dict[str, Any]:
+    """What the route of an example's scene says of itself."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Scene"}}}
+    found = problems(success)
+    return {"responses": {**found, **{code: problems(computed=True)[code] for code in (503, 504)}}}
+
+
+def relax_file() -> dict[str, Any]:
+    """What the route of `/v1/relax/3dm` says of itself."""
+    success = {
+        "model/vnd.3dm": {"schema": {"type": "string", "format": "binary"}},
+        "application/json": {"schema": {"type": "object"}},
+    }
+    return {
+        "responses": problems(success, computed=True, headers=claimed.described()),
+        "openapi_extra": _takes(_form("The .3dm file"), {}, "multipart/form-data"),
+    }
+
+
+def discretize(name: str) -> dict[str, Any]:
+    """What the route of one operation says of itself."""
+    takes, gives = operation_schema(name)
+    success = {"application/json": {"schema": gives}}
+    return {
+        "responses": problems(success, computed=True),
+        "openapi_extra": _takes(
+            takes, {"small": EXAMPLES["discretize"][name]} if name in EXAMPLES["discretize"] else {}
+        ),
+        "operation_id": f"discretize_{name}",
+    }
+
+
+def session_body(*codes: int) -> dict[str, Any]:
+    """What routes say of themselves that make a session of a scene or a file."""
+    found = problems(None, live=True)
+    found.update({code: {"description": "The session", "content": SESSION} for code in codes})
+    extra = _takes({"$ref": "#/components/schemas/Scene"}, EXAMPLES["relax"])
+    form = _form("A .3dm or .obj file, or a .json file with a scene or COMPAS documents")
+    extra["requestBody"]["content"]["multipart/form-data"] = {"schema": form}
+    return {"responses": found, "openapi_extra": extra}
+
+
+def edit() -> dict[str, Any]:
+    """What the route of edits says of itself."""
+    examples = {
+        "a load": {"forces": {"1": {"vector": [0.0, 0.0, -5.0]}}},
+        "a pin": {"pin": [{"particles": [2]}]},
+        "another load": {"add": [{"kind": "unary", "name": "snow", "particles": [2], "vector": [0.0, 0.0, -9.0]}]},
+    }
+    extra = _takes({"$ref": "#/components/schemas/Edit"}, examples)
+    return {"responses": problems(SESSION, live=True), "openapi_extra": extra}
+
+
+def acted() -> dict[int | str, dict[str, Any]]:
+    """Responses of commands to a session."""
+    return problems(SESSION, live=True)
+
+
+def forgotten() -> dict[int | str, dict[str, Any]]:
+    """Responses of taking something back that is stored."""
+    return {**problems(), 507: problems(live=True)[507]}
+
+
+def branched() -> dict[str, Any]:
+    """What the route of branches says of itself."""
+    return {"responses": {**problems(None, live=True), 201: {"description": "The branch", "content": SESSION}}}
+
+
+def exported(*codes: int) -> dict[int | str, dict[str, Any]]:
+    """Responses of what is taken out of a session."""
+    files = ("application/octet-stream", "model/vnd.3dm", "model/obj", "text/csv")
+    content = {"application/json": {"schema": {"type": "object"}}, **{kind: {} for kind in files}}
+    return problems(content, *codes, live=True)
+
+
+def shutdown() -> dict[str, Any]:
+    """What the route of `/v1/shutdown` says of itself."""
+    success = {"schema": {"type": "object", "properties": {"status": {"const": "stopping"}}, "required": ["status"]}}
+    told = {202: {"description": "It ends", "content": {"application/json": success}}}
+    return {"responses": {**problems(None, computed=True), **told}}
+
+
+def code() -> dict[str, Any]:
+    """What the route of codes says of itself."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Code"}}}
+    return {"responses": {**problems(), 201: {"description": "The code", "content": success}}}
+
+
+def hops_list() -> dict[str, Any]:
+    """What GET / says of itself."""
+    listed = {"type": "array", "items": {"$ref": "#/components/schemas/HopsFunction"}}
+    page = {"schema": {"type": "string"}}
+    return {"responses": problems({"application/json": {"schema": listed}, "text/html": page}, open_to_all=True)}
+
+
+def hops_description() -> dict[str, Any]:
+    """What GET /<name> says of itself."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsFunction"}}}
+    found = _told_to_hops(problems(success, open_to_all=True))
+    either = {"anyOf": [{"$ref": f"#/components/schemas/{name}"} for name in ("HopsProblem", "Problem")]}
+    found[404] = {**found[404], "content": {MEDIA_TYPE: {"schema": either}}}  # a name with a slash is none
+    return {"responses": found}
+
+
+def hops_solve() -> dict[str, Any]:
+    """What POST /solve says of itself: its problems have what Hops shows, as sentences."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsAnswer"}}}
+    found = _told_to_hops(problems(success, computed=True, open_to_all=True))
+    return {"responses": found, "openapi_extra": _takes({"$ref": "#/components/schemas/HopsRequest"}, EXAMPLES["hops"])}
+
+
+def _told_to_hops(found: dict[int | str, dict[str, Any]]) -> dict[int | str, dict[str, Any]]:
+    """Responses whose problems are as Hops reads them."""
+    problem = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/HopsProblem"}}}
+    return {
+        status: response if status == 200 else {**response, "content": problem} for status, response in found.items()
+    }
+
+
+def install(app: FastAPI) -> None:
+    """Give the app its description, made when first asked for."""
+
+    def build() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = _build(app)
+        return app.openapi_schema
+
+    app.openapi = build  # type: ignore[method-assign]
+
+
+def _build(app: FastAPI) -> dict[str, Any]:
+    from hookean.scene.catalogue import schema
+
+    document = get_openapi(
+        title="hookean",
+        version=hookean.__version__,
+        summary="Particle-spring form finding on this machine",
+        description="Bodies are JSON unless said otherwise; every failure is a problem document (RFC 9457).",
+        routes=app.routes,
+    )
+    _secure(app, document)
+    scene = json.loads(json.dumps(schema()).replace("#/$defs/", "#/components/schemas/"))
+    schemas = scene.pop("$defs")
+    schemas["Scene"] = scene
+    _accept_documents(schemas)
+    for path in document["paths"].values():
+        for operation in path.values():
+            if "HTTPValidationError" in str(operation["responses"].get("422")):
+                del operation["responses"]["422"]
+    found = document.setdefault("components", {}).setdefault("schemas", {})
+    found.clear()  # the framework's own forms of validation errors are not ours
+    found.update(sorted({**schemas, **SCHEMAS}.items()))
+    return document
+
+
+def _secure(app: FastAPI, document: dict[str, Any]) -> None:
+    """Say of every operation who may call it, as the guard has it."""
+    table, settings = app.state.table, app.state.settings
+    document.setdefault("components", {})["securitySchemes"] = {
+        "token": {
+            "type": "http",
+            "scheme": "bearer",
+            "description": "What `hookean token` prints; another one for each start of the service",
+        },
+        "code": {
+            "type": "http",
+            "scheme": "bearer",
+            "description": "A code of POST /v1/login/codes, which is good for one log-in within a minute",
+        },
+        "cookie": {
+            "type": "apiKey",
+            "in": "cookie",
+            "name": cookie_name(settings.port),
+            "description": "Of POST /v1/login, for the service's own page; the name has the service's port",
+        },
+    }
+    by: dict[Access, list[dict[str, list[str]]]] = {
+        Access.TOKEN: [{"token": []}, {"cookie": []}],
+        Access.PROGRAM: [{"token": []}],
+        Access.CODE: [{"token": []}, {"code": []}],
+        Access.OPEN: [],
+        Access.HOPS: [],
+    }
+    for path, item in document["paths"].items():
+        for method, operation in item.items():
+            operation["security"] = by[table.declared(method.upper(), path)]
+
+
+def _accept_documents(schemas: dict[str, Any]) -> None:
+    """Where a scene takes COMPAS documents: meshes, carried geometry, lines and coordinates."""
+    document = {"$ref": "#/components/schemas/CompasDocument"}
+    meshes = schemas["Scene"]["properties"]["meshes"]
+    meshes["additionalProperties"] = {"anyOf": [meshes["additionalProperties"], document]}
+    geometry = schemas["Scene"]["properties"]["geometry"]
+    geometry["items"] = {"anyOf": [geometry["items"], document]}
+    for schema in schemas.values():
+        for name, field in schema.get("properties", {}).items():
+            if name in ("lines", "points", "targets", "velocities", "vector") and "anyOf" in field:
+                field["anyOf"] = [*field["anyOf"], document, {"type": "array", "items": document, "minItems": 1}]

@@ -1,0 +1,1 @@
+"""How the service starts, is found, and ends."""

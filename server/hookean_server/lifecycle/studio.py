@@ -1,0 +1,202 @@
+"""What `hookean studio` does: joins or starts the service, makes a session of a file, and opens a browser on it."""
+
+from __future__ import annotations
+
+import hashlib
+import html
+import http.client
+import json
+import os
+import re
+import secrets
+import sys
+import tempfile
+import threading
+import time
+import webbrowser
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated, Any
+from urllib.parse import quote
+
+import typer
+
+from hookean.commands.command import new
+from hookean_server.lifecycle import command
+from hookean_server.lifecycle.discovery import Distrusted, Found, ask, check, find, folder, proven
+
+STARTED = 60.0  # seconds a server may take to start; kernels may have to be compiled first
+READ = 240.0  # seconds it may take to read a file
+PAUSE = 0.2  # seconds between looks whether a page has logged in
+DOOR = "open-"  # what names of files begin with that lead a browser to the page
+REDIRECT = """<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="referrer" content="no-referrer">
+<title>hookean studio</title>
+<meta http-equiv="refresh" content="0; url={address}">
+<p><a href="{address}">Open the studio</a></p>
+</html>
+"""
+
+
+class Refused(Exception):
+    """Why there is no session of a file, in a sentence."""
+
+
+app = new()
+
+
+@app.command()
+def studio(
+    file: Annotated[
+        Path | None, typer.Argument(help=".3dm, .obj, .json or .npz file to open; none: the start page")
+    ] = None,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only")] = False,
+) -> None:
+    """Look at simulations and play with them in a browser. Starts the service, or joins the one that runs.
+
+    A .json file has a scene or COMPAS documents; what names no forces is taken as drawn. A file that has not changed is
+    opened as it was left. What follows the # of the address lets the browser in: keep it to yourself.
+    """
+    raise typer.Exit(run(file, not no_browser))
+
+
+def run(file: Path | None, browser: bool) -> int:
+    """Show a file, or the start page, in a browser; without `browser` only its address. The exit code: that of the
+    server where one was started for it, 2 where the file cannot be opened, else 0."""
+    try:
+        check(folder())
+    except Distrusted as error:
+        return command.refuse(str(error))
+    try:
+        data = None if file is None else file.read_bytes()
+    except OSError as error:
+        from hookean.files.readers import endings
+
+        return command.refuse(f"{file} cannot be read ({error.strerror}); give a {endings()} file.")
+    if (found := find(folder())) is not None:
+        return _show(found, file, data, browser)
+    return _served(file, data, browser)
+
+
+def _served(file: Path | None, data: bytes | None, browser: bool) -> int:
+    """Serve until told to end; what is to be shown is shown once the server answers."""
+    codes: list[int] = []
+    over = threading.Event()
+
+    def show() -> None:
+        until = time.monotonic() + STARTED
+        while (found := find(folder())) is None:
+            if over.wait(0.05) or time.monotonic() > until:
+                return
+        codes.append(_show(found, file, data, browser))
+        if codes[0] and not over.is_set():
+            ask(found, "POST", "/v1/shutdown")
+
+    shown = threading.Thread(target=show, name="hookean-studio", daemon=True)
+    shown.start()
+    code = command.run(command.Options(any_port=True))
+    over.set()
+    shown.join(1.0 if code else READ)
+    return code or next(iter(codes), 0)
+
+
+def _show(found: Found, file: Path | None, data: bytes | None, browser: bool) -> int:
+    """Open the page of a server; with a file, on a session of it."""
+    session = ""
+    if file is not None and data is not None:
+        try:
+            key, notes = opened(found, file, data)
+        except Refused as error:
+            return command.refuse(str(error))
+        for note in notes:
+            print(f"{file.name}: {note}", file=sys.stderr)
+        session = f"&s={quote(key)}"
+    address = f"{found.url}/#t={quote(found.token)}{session}"
+    if not browser:
+        print(address, flush=True)
+        return 0
+    try:
+        if _opened_by_file(found, session):
+            return 0
+    except Refused as error:
+        return command.refuse(str(error))
+    print(f"No browser could be opened; open this address in one:\n{address}", flush=True)
+    return 0
+
+
+def _opened_by_file(found: Found, session: str) -> bool:
+    """Whether a browser was opened. It is given a file that only this user can read, which leads it to the page with a
+    code that is good for one log-in: everybody on this machine can read what a program is given as arguments. The file
+    is there until the code was used, or its time is over."""
+    made = ask(found, "POST", "/v1/login/codes")
+    if made is None:
+        raise Refused(f"The service at {found.url} does not answer; try again.")
+    _sweep()
+    code, until = str(made["code"]), time.monotonic() + float(made["seconds"])
+    handle, name = tempfile.mkstemp(dir=folder(), prefix=DOOR, suffix=".html")  # made with mode 0600
+    path = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(REDIRECT.format(address=html.escape(f"{found.url}/#t={quote(code)}{session}")))
+        if not webbrowser.open(path.as_uri()):
+            return False
+        print(f"The studio is open in a browser, at {found.url}.", flush=True)
+        with suppress(KeyboardInterrupt):
+            if not _used(found, code, until):
+                print("No page has logged in; open the address that `hookean token --url` prints.", file=sys.stderr)
+        return True
+    finally:
+        path.unlink(missing_ok=True)
+
+
+def _used(found: Found, code: str, until: float) -> bool:
+    """Wait until a code was used, or the server has ended; whether that was in time."""
+    known = hashlib.sha256(code.encode()).hexdigest()
+    while ask(found, "GET", f"/v1/login/codes/{known}") is not None:
+        if time.monotonic() > until - 2 * PAUSE:
+            return False
+        time.sleep(PAUSE)
+    return True
+
+
+def _sweep() -> None:
+    """Remove the files of commands that were killed; their codes are of no use any more."""
+    for path in folder().glob(f"{DOOR}*.html"):
+        with suppress(OSError):
+            if time.time() - path.stat().st_mtime > 10 * STARTED:
+                path.unlink()
+
+
+def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
+    """The key of a file's session and what is to be known of the file. As long as the file stays the same it has the
+    same session, with what was changed there by hand. Raises Refused."""
+    content = hashlib.sha256(str(file.resolve()).encode() + b"\0" + data).hexdigest()[:12]
+    key = f"{re.sub(r'[^A-Za-z0-9._-]+', '-', file.stem)[:80]}-{content}"
+    if ask(found, "GET", f"/v1/sessions/{key}") is not None:
+        return key, []
+    boundary = secrets.token_hex(16)
+    name = re.sub(r'[^ -~]|["\\]', "_", file.name)
+    head = f'--{boundary}\r\nContent-Disposition: form-data; name="file"; filename="{name}"\r\n\r\n'
+    body = b"".join([head.encode(), data, f"\r\n--{boundary}--\r\n".encode()])
+    status, value = _put(found, f"/v1/sessions/{key}?label={quote(file.name[:200])}", body, boundary)
+    if status not in (200, 201):
+        raise Refused(f"{file.name}: {re.sub(r'^/file:? ?', '', str(value.get('detail')))}")
+    return key, [str(note) for note in value.get("warnings", [])]
+
+
+def _put(found: Found, path: str, body: bytes, boundary: str) -> tuple[int, dict[str, Any]]:
+    headers = {"authorization": f"Bearer {found.token}", "content-type": f"multipart/form-data; boundary={boundary}"}
+    connection = proven(found, READ)
+    try:
+        if connection is not None:
+            connection.request("PUT", path, body, headers)
+            answer = connection.getresponse()
+            return answer.status, json.loads(answer.read())
+    except (OSError, http.client.HTTPException, ValueError):
+        pass
+    finally:
+        if connection is not None:
+            connection.close()
+    raise Refused(f"The service at {found.url} does not answer; try again.")

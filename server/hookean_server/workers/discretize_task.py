@@ -1,0 +1,302 @@
+"""Discretizing: the table of operations, and the task that runs one. Runs in a worker; no geometry of its own here."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from hookean.discretize import nurbs
+from hookean.errors import InputError
+from hookean.files import compas_json
+from hookean.scene.text import parse
+from hookean.values.columns import Faces, Lines, Points, Reals, Table, Vectors
+from hookean.values.mesh import Mesh
+from hookean_server.http import answers
+from hookean_server.workers.task import Cancelled, Clock, Done
+
+
+@dataclass(frozen=True)
+class Operation:
+    """One operation: where its function is, what geometry it takes, its options and what it gives.
+
+    `at`: `module:function`, of `hookean.discretize`. `takes`: `curve`, `surface`,
+    `mesh`, `lines` or `points`. `options`: name -> `count`, `whole`, `number`, `numbers`, `vectors`, `flag` or the
+    words to choose from; those with None as default must be given. `gives`: names of the function's results; their
+    places are added to edges and vertices of a mesh, see `PLACES`.
+    """
+
+    at: str
+    takes: str
+    options: dict[str, tuple[str, Any]] = field(default_factory=dict)
+    gives: tuple[str, ...] = ("points",)
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """The function, imported when first used."""
+        module, name = self.at.split(":")
+        found: Callable[..., Any] = getattr(importlib.import_module(f"hookean.discretize.{module}"), name)
+        return found
+
+    @property
+    def summary(self) -> str:
+        """The first line of the function's description."""
+        return (self.function.__doc__ or "").strip().splitlines()[0]
+
+
+_GRID = {"u": ("count", None), "v": ("count", None)}
+_NEAR = {"tolerance": ("number", 1e-6)}
+_HANGING = {"length": ("numbers", None), "count": ("count", 50), "gravity": ("vectors", (0.0, 0.0, -1.0))}
+_SMOOTH = {"count": ("count", None), "degree": ("whole", 3)}
+PLACES = {"edges": "lines", "indices": "points", "naked": "naked_points", "clothed": "clothed_points",
+          "warp": "warp_lines", "weft": "weft_lines"}  # fmt: skip
+"""Results that are numbers of vertices, and the names of what lies there."""
+
+OPERATIONS: dict[str, Operation] = {
+    "divide": Operation("curves:divide", "curve", {"count": ("count", None)}),
+    "shatter": Operation("curves:shatter", "curve", {"count": ("count", None)}, ("lines",)),
+    "explode": Operation("curves:explode", "curve", gives=("lines",)),
+    "end_points": Operation("curves:end_points", "curve"),
+    "length": Operation("curves:length", "curve", gives=("length",)),
+    "arc": Operation("arcs:arc_through", "points", {"count": ("count", None)}),
+    "interpolate": Operation("arcs:interpolate", "points", _SMOOTH),
+    "catenary": Operation("catenary:catenaries", "lines", _HANGING, ("polylines",)),
+    "mesh_surface": Operation("meshing:mesh_surface", "surface", _GRID, ("mesh",)),
+    "mesh_faces": Operation("breps:mesh_faces", "surface", _GRID, ("mesh",)),
+    "vertices": Operation("meshes:vertices", "mesh"),
+    "edges": Operation("meshes:edges", "mesh", gives=("edges",)),
+    "naked_edges": Operation("meshes:naked_edges", "mesh", gives=("edges",)),
+    "naked_vertices": Operation("meshes:naked_vertices", "mesh", gives=("indices",)),
+    "clothed_vertices": Operation("meshes:clothed_vertices", "mesh", gives=("indices",)),
+    "boundary": Operation("meshes:boundary", "mesh", gives=("naked", "clothed")),
+    "corners": Operation("meshes:corners", "mesh", {"angle": ("number", 0.75 * np.pi)}, ("indices",)),
+    "warp_weft": Operation("warpweft:warp_weft", "mesh", {"strict": ("flag", True)}, ("warp", "weft")),
+    "threads": Operation(
+        "warpweft:threads", "mesh", {"strict": ("flag", True)}, ("warp", "weft", "warp_naked", "weft_naked")
+    ),
+    "diagonals": Operation("meshes:diagonals", "mesh", {"pattern": ("both one other", "both")}, ("edges",)),
+    "triangles": Operation("meshes:triangles", "mesh", gives=("triangles",)),
+    "weld": Operation("meshes:weld", "mesh", _NEAR, ("mesh",)),
+    "remove_duplicate_points": Operation("duplicates:remove_duplicate_points", "points", _NEAR),
+    "remove_duplicate_lines": Operation("duplicates:remove_duplicate_lines", "lines", _NEAR, ("lines",)),
+}
+"""Every operation by the last part of its address; routes, description and tests walk this table."""
+
+
+def discretize(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
+    """Run the operation `options["operation"]` on the geometry and options in `body`.
+
+    Raises InputError with a pointer into the body.
+    """
+    operation = OPERATIONS[options["operation"]]
+    clock = Clock()
+    value = parse(body)
+    if not isinstance(value, dict):
+        raise InputError("/", "a JSON object is expected")
+    given = _options(operation, value, options["largest"])
+    if operation.takes not in value:
+        raise InputError(f"/{operation.takes}", "this is required")
+    geometry = _READERS[operation.takes](value[operation.takes], f"/{operation.takes}")
+    if operation.takes == "lines" and "count" in operation.options:
+        _check_many(len(geometry) * given.get("count", operation.options["count"][1]), "/count", options["largest"])
+    clock.lap("decode")
+    try:
+        found = operation.function(geometry, **given)
+    except InputError as error:
+        raise InputError(_placed(error.pointer, operation.takes), error.sentence) from None
+    clock.lap("compute")
+    arrays = options.get("arrays") or ("buffer" if answers.has_buffers(value) else "list")
+    documents = options.get("meshes") or ("compas" if compas_json.is_document(value[operation.takes]) else "plain")
+    text = answers.dump(_outputs(operation, found, geometry, documents), arrays)
+    clock.lap("encode")
+    return Done(text, timing=clock.parts)
+
+
+def uses_rhino(body: bytes) -> bool:
+    """Whether a body may hold encoded Rhino geometry, which only a worker that is then replaced may read."""
+    return b"opennurbs" in body or b"\\u00" in body
+
+
+def _placed(pointer: str, takes: str) -> str:
+    """The place of a fault of a function's argument in the body."""
+    first, _, rest = pointer.lstrip("/").partition("/")
+    known = first in (takes, *_NAMES)
+    return f"/{first}{'/' + rest if rest else ''}" if known else f"/{takes}"
+
+
+def _options(operation: Operation, value: dict[str, Any], largest: int) -> dict[str, Any]:
+    unknown = set(value) - {operation.takes, *operation.options}
+    if unknown:
+        name = sorted(unknown)[0]
+        known = ", ".join((operation.takes, *operation.options))
+        raise InputError(f"/{name}", f"this is not known here; known are {known}")
+    found = {}
+    product = 1
+    for name, (kind, default) in operation.options.items():
+        if name not in value:
+            if default is None:
+                raise InputError(f"/{name}", "this is required")
+            continue
+        found[name] = _option(value[name], kind, f"/{name}", largest)
+        if kind == "count":
+            product *= found[name]
+            _check_many(product, f"/{name}", largest)
+    return found
+
+
+def _check_many(pieces: int, pointer: str, largest: int) -> None:
+    if pieces > largest:
+        raise InputError(pointer, f"this makes {pieces} pieces; at most {largest} are allowed")
+
+
+def _option(value: Any, kind: str, pointer: str, largest: int) -> Any:
+    if kind == "count":
+        if type(value) is not int or not 1 <= value <= largest:
+            raise InputError(pointer, f"a whole number from 1 to {largest} is expected")
+    elif kind == "whole":
+        if type(value) is not int or not 1 <= value <= 1000:
+            raise InputError(pointer, "a whole number from 1 to 1000 is expected")
+    elif kind in ("numbers", "vectors"):
+        return _checked(_REALS if kind == "numbers" else _VECTORS, value, pointer)
+    elif kind == "number":
+        if type(value) not in (int, float) or not abs(value) < 1e12:
+            raise InputError(pointer, "a finite number is expected")
+    elif kind == "flag":
+        if type(value) is not bool:
+            raise InputError(pointer, "true or false is expected")
+    elif not isinstance(value, str) or value not in kind.split():
+        raise InputError(pointer, f"one of {', '.join(kind.split())} is expected")
+    return value
+
+
+def _curve(value: Any, pointer: str) -> Any:
+    if compas_json.is_document(value):
+        document = compas_json.read(value, pointer)
+        if document.kind not in ("line", "polyline", "polygon"):
+            raise InputError(f"{pointer}/dtype", f"a {document.kind} is no curve; give a Line, Polyline or Polygon")
+        closing = document.points[:1] if document.kind == "polygon" else document.points[:0]
+        return np.concatenate([document.points, closing])
+    if isinstance(value, dict) and "knots" in value:
+        return _nurbs(value, pointer, nurbs.nurbs_curve, ("degree", "points", "knots"))
+    return decode(value, pointer) if _encoded(value) else _points(value, pointer)
+
+
+def _surface(value: Any, pointer: str) -> Any:
+    if isinstance(value, dict) and "knots_u" in value:
+        return _nurbs(value, pointer, nurbs.nurbs_surface, ("degree_u", "degree_v", "points", "knots_u", "knots_v"))
+    if not _encoded(value):
+        raise InputError(pointer, "give a NURBS surface, or a Rhino surface or Brep as rhino3dm's Encode writes it")
+    return decode(value, pointer)
+
+
+def _nurbs(value: dict[str, Any], pointer: str, make: Any, needed: tuple[str, ...]) -> Any:
+    if not set(needed) <= set(value) <= {*needed, "weights"}:
+        raise InputError(pointer, f"a NURBS form has {', '.join(needed)}, and may have weights; nothing else")
+    tables = [name for name in (*needed, "weights") if not name.startswith("degree") and value.get(name) is not None]
+    read = {name: _checked(_TABLE, value[name], f"{pointer}/{name}") for name in tables}
+    try:
+        return make(**{**value, **read})
+    except InputError as error:
+        raise InputError(f"{pointer}/{error.pointer}", error.sentence) from None
+
+
+def _mesh(value: Any, pointer: str) -> Any:
+    if compas_json.is_document(value):
+        value = compas_json.plain_mesh(value, pointer)[1]
+    elif _encoded(value):
+        return decode(value, pointer)
+    if not isinstance(value, dict) or set(value) != {"vertices", "faces"}:
+        raise InputError(pointer, "give vertices and faces, a COMPAS Mesh document or an encoded Rhino mesh")
+    vertices = _checked(_POINTS, value["vertices"], f"{pointer}/vertices")
+    faces = _checked(_FACES, value["faces"], f"{pointer}/faces")
+    beyond = np.argwhere(faces >= len(vertices))
+    if len(beyond):
+        row, column = beyond[0]
+        said = f"vertex {faces[row, column]} does not exist; the mesh has {len(vertices)}, counted from 0"
+        raise InputError(f"{pointer}/faces/{row}/{column}", said)
+    return Mesh(vertices, faces)
+
+
+def _points(value: Any, pointer: str) -> Any:
+    return _checked(_POINTS, _documents(value, pointer, "points"), pointer)
+
+
+def _lines(value: Any, pointer: str) -> Any:
+    return _checked(_LINES, _documents(value, pointer, "lines"), pointer)
+
+
+def _documents(value: Any, pointer: str, name: str) -> Any:
+    """COMPAS documents, or a list of them, as arrays; anything else as it is."""
+    if compas_json.is_document(value):
+        return getattr(compas_json.read(value, pointer), name)
+    if isinstance(value, list) and value and compas_json.is_document(value[0]):
+        return np.concatenate([getattr(compas_json.read(v, f"{pointer}/{i}"), name) for i, v in enumerate(value)])
+    return value
+
+
+def _checked(adapter: TypeAdapter[Any], value: Any, pointer: str) -> Any:
+    try:
+        return adapter.validate_python(value)
+    except ValidationError as error:
+        context = error.errors(include_input=False, include_url=False)[0].get("ctx", {})
+        raise InputError(pointer + str(context.get("at", "")), str(context.get("sentence", "faulty"))) from None
+
+
+def _encoded(value: Any) -> bool:
+    return isinstance(value, dict) and {"archive3dm", "opennurbs", "data"} <= set(value)
+
+
+def decode(value: Any, pointer: str) -> Any:
+    """Rhino geometry from what rhino3dm's `Encode` writes."""
+    import rhino3dm
+
+    plain = {k: value[k] for k in ("version", "archive3dm", "opennurbs", "data") if k in value}
+    good = all(type(plain.get(k)) is int and abs(plain[k]) < 2**32 for k in ("version", "archive3dm", "opennurbs"))
+    if not good or not isinstance(plain["data"], str):
+        raise InputError(pointer, "this is not as rhino3dm's Encode writes it: version, archive3dm, opennurbs and data")
+    try:
+        found = rhino3dm.CommonObject.Decode(plain)  # type: ignore[attr-defined,unused-ignore]
+    except Exception:
+        found = None
+    if found is None:
+        raise InputError(f"{pointer}/data", "rhino3dm cannot decode this; encode the geometry again")
+    return found
+
+
+def _outputs(operation: Operation, found: Any, geometry: Any, documents: str) -> dict[str, Any]:
+    values = found if isinstance(found, tuple) and len(operation.gives) > 1 else (found,)
+    out: dict[str, Any] = {}
+    for name, value in zip(operation.gives, values, strict=True):
+        if name == "mesh" and documents == "compas":
+            out[name] = compas_json.mesh(value.vertices, value.faces)
+        elif name == "mesh":
+            out[name] = {"vertices": value.vertices, "faces": value.faces}
+        else:
+            out[name] = value
+    placed = [name for name in operation.gives if name in PLACES]
+    if placed:
+        from hookean.discretize.meshes import as_mesh
+
+        vertices = as_mesh(geometry).vertices
+        out.update({PLACES[name]: vertices[np.asarray(out[name], dtype=np.int64)] for name in placed})
+    return out
+
+
+_POINTS: TypeAdapter[Any] = TypeAdapter(Points, config={"arbitrary_types_allowed": True})
+_LINES: TypeAdapter[Any] = TypeAdapter(Lines, config={"arbitrary_types_allowed": True})
+_REALS: TypeAdapter[Any] = TypeAdapter(Reals, config={"arbitrary_types_allowed": True})
+_TABLE: TypeAdapter[Any] = TypeAdapter(Table, config={"arbitrary_types_allowed": True})
+_VECTORS: TypeAdapter[Any] = TypeAdapter(Vectors, config={"arbitrary_types_allowed": True})
+_FACES: TypeAdapter[Any] = TypeAdapter(Faces, config={"arbitrary_types_allowed": True})
+_NAMES = {name for operation in OPERATIONS.values() for name in operation.options}
+_READERS: dict[str, Callable[[Any, str], Any]] = {
+    "curve": _curve,
+    "surface": _surface,
+    "mesh": _mesh,
+    "points": _points,
+    "lines": _lines,
+}
