@@ -7,17 +7,20 @@ a session gets there, never where it ends.
 from __future__ import annotations
 
 import json
+import multiprocessing
 import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import httpx
 import pytest
 from websockets.sync.client import connect
 
+from hookean_server.sessions import host
+from hookean_server.workers import channel
 from serving import HANG, SOAK, wait_for
 
 from .conftest import Served
@@ -134,3 +137,38 @@ def test_the_same_start_and_edits_end_at_the_same_iteration(server: Served, solv
         assert ended(server, "busy", solver, watched, fast=True, halts=2) == first
         if SOAK:
             assert ended(server, "busy-real", solver, polled, fast=False) == first
+
+
+def stepped(slice_of: float, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
+    """How a session stands after each of its steps of a frame, where slices of computing are this long [s]."""
+    monkeypatch.setattr(host, "SLICE", slice_of)
+    ours, theirs = multiprocessing.Pipe()
+
+    def serve() -> None:
+        with suppress(EOFError, OSError):
+            host.Host(theirs).run()
+
+    serving = threading.Thread(target=serve)
+    serving.start()
+    scene = json.dumps({**NET, "settings": SETTINGS["verlet"]}).encode()
+    stands: list[tuple[Any, ...]] = []
+    try:
+        for command in [{"do": "create"}, *[{"do": "step", "frames": 1}] * 60, {"do": "step", "frames": 3}]:
+            channel.send(ours, {**command, "id": len(stands)}, scene)
+            head: dict[str, Any] = {}
+            while head.get("id") != len(stands):
+                assert ours.poll(HANG)
+                head, _ = channel.receive(ours)
+            stands.append(tuple(head[name] for name in ("status", "iteration", "residual", "energy")))
+    finally:
+        ours.close()
+        serving.join(HANG)
+    return stands
+
+
+def test_a_step_from_rest_is_a_whole_frame_however_quick_the_machine_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`Simulation.step`: every step does its first frame whole, and several end with the frame that is at rest."""
+    slow, quick = stepped(0.0, monkeypatch), stepped(10.0, monkeypatch)
+    assert slow == quick
+    assert [status for status, *_ in slow[-3:]] == ["converged"] * 3
+    assert [iteration for _, iteration, *_ in slow] == [100 * i for i in range(62)]

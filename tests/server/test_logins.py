@@ -260,23 +260,14 @@ def test_renewing_ends_a_stream_of_events(home: Home) -> None:
     endless["settings"]["tolerance"] = 0
     with httpx.Client(base_url=home.told["url"], timeout=HANG) as asks:
         job = asks.post("/v1/jobs", json={"scene": endless}, headers=old).headers["location"]
-        ended = threading.Event()
-
-        def listen() -> None:
-            with (
-                httpx.Client(base_url=home.told["url"], timeout=HANG) as other,
-                other.stream("GET", f"{job}/events", headers=old) as events,
-                pytest.raises(httpx.RemoteProtocolError),
-            ):
-                for _ in events.iter_bytes():
+        with asks.stream("GET", f"{job}/events", headers=old) as events:
+            assert events.status_code == 200
+            told = events.iter_bytes()
+            next(told)
+            assert home.command("token", "--renew").returncode == 0
+            with pytest.raises(httpx.RemoteProtocolError):
+                for _ in told:
                     pass
-            ended.set()
-
-        listening = threading.Thread(target=listen, daemon=True)
-        listening.start()
-        wait_for(lambda: home.command("token", "--renew").returncode == 0)
-        assert ended.wait(HANG)
-        listening.join(HANG)
         assert asks.delete(job, headers={"authorization": f"Bearer {home.told['token']}"}).status_code == 204
 
 

@@ -274,16 +274,21 @@ class Host:
             self.owed = frame
             self.due = max(self.due + FRAME, began)
         count = min(self.each, (self.left % frame or frame) if self.left else self.owed or self.each)
+        judged = True
         if not self.left or simulation.solver.together:
             simulation.play(count)
-        elif self.left % frame != count % frame:
-            simulation.advance(count)
-        else:  # as `Simulation.step` judges
+        elif self.left % frame == count % frame:  # as `Simulation.step` judges
             simulation.iterate(count)
+        else:
+            simulation.advance(count)
+            judged = False  # the status is that of the frame before
         done, took = max(count, simulation.state.iteration - before), time.monotonic() - began
         self.each = max(1, min(2 * self.each, int(done * SLICE / max(took, 1e-6)), 100_000))
         self.left, self.owed = max(0, self.left - done), max(0, self.owed - done)
-        self._note(simulation)
+        if judged:
+            self._note(simulation)
+        else:
+            self._mark()
 
     def _relax(self) -> None:
         """Begin to go to rest from here."""
