@@ -37,6 +37,30 @@ class Setup:
         retune(system, state, self.scene, list(self.held))
 
 
+class Before:
+    """All that an edit may change of a running system, its particles included, as it was before."""
+
+    def __init__(self, system: System, state: State) -> None:
+        self.setup = Setup.of(system)
+        self._state = state.copy()
+        self._parameters = [
+            (group.block.parameters.copy(), [part.force for part in group.parts])
+            for group in system.groups + system.contacts
+        ]
+
+    def put_back(self, system: System, state: State) -> State:
+        """Undo what was done to the system since, and its state `state`; the state as it was. Once only."""
+        self.setup.wiring.put_into(system, state)
+        for group, (parameters, forces) in zip(system.groups + system.contacts, self._parameters, strict=True):
+            group.block.parameters[:] = parameters
+            for part, force in zip(group.parts, forces, strict=True):
+                part.force = force
+        scene = self.setup.scene
+        system.scene, system.drag, system.held = scene, scene.settings.drag, list(self.setup.held)
+        system.brace()
+        return self._state
+
+
 @dataclass
 class History:
     """Setups before each edit, the latest last, and those that were taken back."""
@@ -44,6 +68,10 @@ class History:
     before: list[Setup] = field(default_factory=list)
     after: list[Setup] = field(default_factory=list)
     gesture: str = ""
+
+    def copy(self) -> History:
+        """The same setups in lists of its own."""
+        return History(list(self.before), list(self.after), self.gesture)
 
     def note(self, setup: Setup, gesture: str) -> None:
         """An edit follows this setup. Edits of one gesture, such as the drag of an anchor, are taken back as one."""

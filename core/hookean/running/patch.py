@@ -15,7 +15,7 @@ from hookean.forces.base import PLACES
 from hookean.scene.scene import Anchor, AnyForce, Scene, Settings, first_fault
 from hookean.system.state import State
 from hookean.system.system import Floats, Group, Held, Part, System, hold
-from hookean.system.wiring import Wiring, rewire, with_forces
+from hookean.system.wiring import rewire, with_forces
 from hookean.values.columns import Indices, Model, Points, Vector, fault
 from hookean.values.fields import Field, Maybe, Parts
 
@@ -69,32 +69,8 @@ class Patch(Model):
             raise first_fault(error) from None
 
 
-class Undo:
-    """Everything a patch may change, as it was before."""
-
-    def __init__(self, system: System, state: State) -> None:
-        self.scene, self.drag, self.held = system.scene, system.drag, system.held
-        self._wiring = Wiring.of(system)
-        self._state = state.copy()
-        self._groups = [
-            (group.block.parameters.copy(), [part.force for part in group.parts])
-            for group in system.groups + system.contacts
-        ]
-
-    def put_back(self, system: System, state: State) -> None:
-        """Undo the patch."""
-        system.scene, system.drag, system.held = self.scene, self.drag, self.held
-        self._wiring.put_into(system, state)
-        for group, (parameters, forces) in zip(system.groups + system.contacts, self._groups, strict=True):
-            group.block.parameters[:] = parameters
-            for part, force in zip(group.parts, forces, strict=True):
-                part.force = force
-        for name, value in vars(self._state).items():
-            setattr(state, name, value)
-
-
 def apply(system: System, state: State, patch: Patch) -> None:
-    """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Undo`)."""
+    """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Before`)."""
     held = _held(system, state, patch)
     forces = changed_forces(system.scene, patch.forces)
     scene = _with(system.scene, forces).replaced(settings=_settings(system, patch))
@@ -107,7 +83,7 @@ def apply(system: System, state: State, patch: Patch) -> None:
 
 def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None:
     """Give a running system other parameters, settings and anchors; raises its revision. `scene` has the system's
-    own places and elements; InputError where not, and then parts of it may have landed (see `Undo`)."""
+    own places and elements; InputError where not, and then parts of it may have landed (see `Before`)."""
     system.held = held
     _put_forces(system, scene)
     system.drag = scene.settings.drag

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import contextlib
+import zipfile
+import zlib
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
 from hookean.system.system import Held, System
+
+UNREADABLE = (
+    OSError, KeyError, ValueError, IndexError, TypeError, EOFError, NotImplementedError, zipfile.BadZipFile, zlib.error
+)  # fmt: skip
+"""What reading a damaged file raises."""
 
 
 def opened(path: str | Path | IO[bytes], mode: str) -> contextlib.AbstractContextManager[IO[bytes]]:
@@ -23,8 +30,23 @@ def no_simulation(path: str | Path | IO[bytes]) -> InputError:
     return InputError(where, "not a saved simulation; give a file that Simulation.save wrote")
 
 
-def anchor_of(arrays: dict[str, NDArray[np.generic]], i: int, system: System) -> Held:
-    """The i-th anchor of a saved simulation; ValueError where it does not fit the system."""
+def arrays_of(held: list[Held]) -> dict[str, NDArray[Any]]:
+    """Anchors as named arrays, for a file."""
+    arrays: dict[str, NDArray[Any]] = {}
+    for i, anchor in enumerate(held):
+        arrays[f"held_{i}"] = np.column_stack([anchor.particles, anchor.targets])
+        arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free])
+        arrays[f"name_{i}"] = np.array(anchor.name)
+    return arrays
+
+
+def anchors_of(arrays: dict[str, NDArray[Any]], system: System) -> list[Held]:
+    """The anchors that `arrays_of` wrote; ValueError where they do not fit the system."""
+    count = sum(name.startswith("held_") for name in arrays)
+    return [_anchor(arrays, i, system) for i in range(count)]
+
+
+def _anchor(arrays: dict[str, NDArray[np.generic]], i: int, system: System) -> Held:
     rows = np.asarray(arrays.pop(f"held_{i}"), np.float64).reshape(-1, 4)
     axes = np.asarray(arrays.pop(f"axes_{i}"), np.float64).reshape(4)
     particles = rows[:, 0].astype(np.int64)

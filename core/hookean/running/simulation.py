@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
-from hookean.running.history import History, Setup
-from hookean.running.patch import Patch, Undo, apply
+from hookean.running.history import Before, History
+from hookean.running.patch import Patch, apply
 from hookean.running.result import Result, Status, carried, gather, kinetic
 from hookean.running.run import Progress, relax_state
-from hookean.running.saving import anchor_of, no_simulation, opened
+from hookean.running.saving import UNREADABLE, anchors_of, arrays_of, no_simulation, opened
 from hookean.running.script import Playing, Script
 from hookean.running.stream import Stream
 from hookean.running.watch import Watch, seldom
@@ -30,8 +28,6 @@ from hookean.system.state import State
 from hookean.system.system import compile, hold
 
 OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
-
-_DAMAGED = (zipfile.BadZipFile, zlib.error)
 
 Floats = NDArray[np.float64]
 Source = Stream | str | Path | Iterable[str]
@@ -88,6 +84,7 @@ class Simulation:
             self._playing = Playing(Script.read({} if script is None else script), stream, self.system)
         self.state = self.system.start()
         self.history = History()
+        self._last: tuple[Before, History, Status] | None = None  # before the last change
         self._begin(start=True)
 
     @property
@@ -307,39 +304,52 @@ class Simulation:
         edit = Patch.read(edit)
         if edit.remove and self._playing is not None:
             raise InputError("/remove", "a script leads forces by their numbers; forces are removed without one only")
-        setup = Setup.of(self.system)
         # a moved anchor stiffens or quickens nothing by itself
         warn = bool(edit.forces or edit.settings or len(edit.release) or edit.rewires)
-        revision = self._changed(lambda: apply(self.system, self.state, edit), warn=warn)
-        self.history.note(setup, gesture)
-        return revision
+        before = self._changed(lambda: apply(self.system, self.state, edit), warn=warn)
+        self.history.note(before.setup, gesture)
+        return self.state.revision
 
     def undo(self) -> int:
-        """Take the last patch back; returns the new revision. The form follows, as after any patch. InputError where
-        there is none."""
-        return self._changed(lambda: self.history.undo(self.system, self.state))
+        """Take the last patch back; returns the new revision. The form follows. InputError where there is none."""
+        self._changed(lambda: self.history.undo(self.system, self.state))
+        return self.state.revision
 
     def redo(self) -> int:
         """Make the patch again that was taken back last; InputError where there is none."""
-        return self._changed(lambda: self.history.redo(self.system, self.state))
+        self._changed(lambda: self.history.redo(self.system, self.state))
+        return self.state.revision
 
-    def _changed(self, change: Callable[[], None], *, warn: bool = True) -> int:
-        """Make a change that lands whole or not at all; the new revision."""
-        undo, before = Undo(self.system, self.state), self.solver
+    def revert(self) -> None:
+        """Put everything back to before the last patch, undo, redo or reset, as if it had never been made."""
+        if self._last is not None:
+            (before, self.history, status), self._last = self._last, None
+            self.take_up(before.put_back(self.system, self.state), status)
+
+    def _changed(self, change: Callable[[], None], *, warn: bool = True) -> Before:
+        """Make a change that lands whole or not at all; what was before."""
+        before = self._before()
+        solver, settings = self.solver, before.setup.scene.settings
         try:
             change()
             self.state.scratch.pop("energy", None)  # a change may add to it
             if warn:
                 self.state.scratch.pop("parts", None)
-            same = self.scene.settings.solver == undo.scene.settings.solver
+            same = self.scene.settings.solver == settings.solver
             if not same or self.status is Status.DIVERGED:
                 self.state.v[:] = 0.0  # what one solver calls velocity means nothing to another, or it flew apart
-            self._begin(start=not (same and before.physical), warn=warn)
+            self._begin(start=not (same and solver.physical), warn=warn)
         except InputError:
-            undo.put_back(self.system, self.state)
-            self.solver = before
+            self.state, self.solver = before.put_back(self.system, self.state), solver
+            self._last = None
             raise
-        return self.state.revision
+        return before
+
+    def _before(self) -> Before:
+        """What is now, for `revert` too."""
+        before = Before(self.system, self.state)
+        self._last = before, self.history.copy(), self.status
+        return before
 
     def succeed(self, scene: Scene) -> Simulation:
         """A simulation of another scene that goes on from here: particles that start where one of this scene starts
@@ -374,17 +384,12 @@ class Simulation:
     def save(self, path: str | Path | IO[bytes]) -> None:
         """Everything about this simulation in one .npz file: the scene, the state and the anchors as they are now. Its
         history of patches is not in it."""
-        arrays = self.state.arrays()
-        for i, anchor in enumerate(self.system.held):
-            arrays[f"held_{i}"] = np.column_stack([anchor.particles, anchor.targets])
-            arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free])
-        names = {f"name_{i}": np.array(anchor.name) for i, anchor in enumerate(self.system.held)}
-        texts = {"scene": np.array(self.scene.canonical), "status": np.array(str(self.status)), **names}
+        texts = {"scene": np.array(self.scene.canonical), "status": np.array(str(self.status))}
         if self._playing is not None:
             texts["script"] = np.array(self._playing.script.model_dump_json())
             texts["finished"] = np.array(self._playing.finished)
         with opened(path, "wb") as file:
-            np.savez(file, allow_pickle=False, **texts, **arrays)
+            np.savez(file, allow_pickle=False, **texts, **self.state.arrays(), **arrays_of(self.system.held))
 
     @classmethod
     def load(cls, path: str | Path | IO[bytes], stream: Source | None = None) -> Simulation:
@@ -397,15 +402,14 @@ class Simulation:
             finished = bool(arrays.pop("finished", False))
             loaded = cls(Scene.read(str(arrays.pop("scene"))), script, stream)
             status = Status(str(arrays.pop("status")))
-            count = sum(name.startswith("held_") for name in arrays)
-            loaded.system.held = [anchor_of(arrays, i, loaded.system) for i in range(count)]
+            loaded.system.held = anchors_of(arrays, loaded.system)
             loaded.system.brace()
             loaded.take_up(State.of(arrays), status)
         except InputError as error:
             if stream is not None or error.pointer == "/drives":
                 raise
             raise no_simulation(path) from None
-        except (OSError, KeyError, ValueError, IndexError, TypeError, EOFError, NotImplementedError, *_DAMAGED):
+        except UNREADABLE:
             raise no_simulation(path) from None
         if loaded._playing is not None:
             loaded._playing.finished = finished  # what patches moved after its end stays moved
@@ -414,6 +418,7 @@ class Simulation:
     def reset(self) -> None:
         """Back to the start positions; anchors keep the particles they were given, and their present targets, or
         those of their script at its start. InputError for a stream that cannot be read again."""
+        self._before()
         revision = self.state.revision
         if self._playing is not None:
             self._playing.rewind(self.system)

@@ -18,7 +18,8 @@ from pydantic import ValidationError, model_validator
 
 from hookean.errors import InputError
 from hookean.forces import KINDS
-from hookean.running.patch import Patch, Undo, apply
+from hookean.running.history import Before
+from hookean.running.patch import Patch, apply
 from hookean.running.result import Result
 from hookean.running.run import relax_state
 from hookean.scene.scene import Scene, first_fault
@@ -128,13 +129,13 @@ class Table:
         system = self.system
         edit = Patch.read(dict(patch))
         state = system.start()
-        undo = Undo(system, state)
+        before = Before(system, state)
         try:
             apply(system, state, edit)
             state.revision = 0
             return relax_state(system, state, solver(system.scene.settings.solver), cancelled=cancelled)
         finally:
-            undo.put_back(system, state)
+            before.put_back(system, state)
             system.report.warnings[:] = self._said
 
     def row(self, patch: Mapping[str, Any], cancelled: Cancelled | None = None) -> dict[str, Any]:

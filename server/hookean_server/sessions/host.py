@@ -59,7 +59,7 @@ class Host:
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
         self.simulation: Simulation | None = None
-        self.before: parts.Before | None = None
+        self.before: Simulation | None = None  # what the last change may be put back to
         self.wired = parts.Wired()
         self.playing = False
         self.fast = False
@@ -185,23 +185,23 @@ class Host:
         following = parts.following(simulation, body)
         if following is None:
             return {**self._described(), "same": True}, b""
-        self.before = parts.Before(simulation)
-        self.simulation = following
+        self.before, self.simulation = simulation, following
         self._mark()
         return self._described(), parts.saved(self.simulation)
 
     def do_edit(self, head: dict[str, Any], body: bytes) -> Reply:
         """A patch, an undo, a redo or a reset; answers with what to store so that it can be made again exactly."""
         simulation = self._simulation()
-        self.before = parts.Before(simulation)
         resolved, sets = parts.make(simulation, body)
+        self.before = simulation
         self._mark()
         return {**self._described(), "sets": sets}, resolved
 
     def do_revert(self, head: dict[str, Any], body: bytes) -> Reply:
         """Take back an edit, or another scene, that could not be stored: as if it had never been made."""
-        if self.before is not None:
-            self.simulation, self.before = self.before.put_back(), None
+        if self.before is not None and self.before is self.simulation:
+            self.before.revert()  # an edit; another scene has left this one as it was
+        self.simulation, self.before = self.before or self.simulation, None
         self._mark()
         return self._described(), b""
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hookean.errors import InputError
 from hookean.files import saved as saved_file
 from hookean.files.documents import plain
-from hookean.running.patch import Patch, Undo
+from hookean.running.patch import Patch
 from hookean.running.result import Status, kinetic
 from hookean.running.simulation import Simulation
 from hookean.scene.scene import Scene
@@ -134,11 +134,14 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
             simulation.state.revision += name == "reset"
             return json.dumps(value).encode(), ""
     patch = Patch.read(value)
+    pins = []
     for pin, read in zip(value.get("pin") or [], patch.pin, strict=True):
         if read.targets is None and read.particles is not None and len(read.particles):
             _check(read.particles, simulation)
-            pin["targets"] = simulation.state.x[read.particles].tolist()
-    simulation.patch(Patch.read(value), gesture=gesture)
+            targets = simulation.state.x[read.particles]
+            read, pin["targets"] = read.replaced(targets=targets), targets.tolist()
+        pins.append(read)
+    simulation.patch(patch.replaced(pin=tuple(pins)), gesture=gesture)
     if not gesture:
         return json.dumps(value).encode(), ""
     return json.dumps({**value, "gesture": gesture}).encode(), _sets(value, patch, gesture)
@@ -150,24 +153,6 @@ def _sets(value: dict[str, Any], patch: Patch, gesture: str) -> str:
     columns = sorted(f"{force}.{column}" for force, given in patch.forces.items() for column in given)
     pins = [[np.asarray(pin.particles).tolist(), pin.axes, pin.name] for pin in patch.pin]
     return json.dumps([gesture, sorted(str(m.anchor) for m in patch.move), columns, sorted(patch.settings), pins])
-
-
-class Before:
-    """A simulation as it is now, to be put back where what is done next cannot be stored."""
-
-    def __init__(self, simulation: Simulation) -> None:
-        self.simulation, self.state, self.status = simulation, simulation.state, simulation.status
-        self.undo = Undo(simulation.system, simulation.state)
-        history = simulation.history
-        self.history = (list(history.before), list(history.after), history.gesture)
-
-    def put_back(self) -> Simulation:
-        """The simulation as it was, history and revision included."""
-        simulation, history = self.simulation, self.simulation.history
-        self.undo.put_back(simulation.system, self.state)
-        history.before, history.after, history.gesture = self.history
-        simulation.take_up(self.state, self.status)
-        return simulation
 
 
 def _check(particles: NDArray[np.int64], simulation: Simulation) -> None:
