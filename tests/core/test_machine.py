@@ -44,6 +44,12 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(autouse=True)
+def nothing_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a new process."""
+    monkeypatch.setattr(machine, "_reported", set())
+
+
 @pytest.fixture
 def folder(stored: Path, tmp_path: Path) -> Path:
     """A copy of it."""
@@ -138,7 +144,7 @@ DAMAGES = {
 @pytest.mark.parametrize(
     "damage", [name if name == "one byte changed" else pytest.param(name, marks=pytest.mark.soak) for name in DAMAGES]
 )
-def test_a_damaged_file_is_made_anew(damage: str, folder: Path) -> None:
+def test_a_damaged_file_is_replaced(damage: str, folder: Path, caplog: pytest.LogCaptureFixture) -> None:
     """Compiled again, and put right; each finds its bytes wrong before it looks at what they are."""
     x = np.ones((2, 2))
     (file,) = folder.iterdir()
@@ -147,13 +153,45 @@ def test_a_damaged_file_is_made_anew(damage: str, folder: Path) -> None:
     run = code(folder)
     assert run(x, 1.0, 2, False) == (4.0, 4, True)
     assert (run.made, run.loaded) == (1, 0) and file.read_bytes() == whole
+    [line] = caplog.messages
+    assert line.startswith(f"{file.name} was not loaded and is compiled again: ")
+
+
+def test_code_that_cannot_be_stored_is_run_by_numba_and_the_reason_logged_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """As when a private part of numba or llvmlite has changed."""
+
+    def changed(*given: object) -> bytes:
+        raise AttributeError("'Module' object has no attribute 'as_bitcode'")
+
+    monkeypatch.setattr("hookean.compiled.object_code.emit", changed)
+    for _ in range(2):
+        assert code(tmp_path)(np.ones((2, 2)), 1.0, 2, False) == (4.0, 4, True)
+    [line] = caplog.messages
+    assert line == "scaled was compiled but not stored: AttributeError: 'Module' object has no attribute 'as_bitcode'"
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("empty", [False, pytest.param(True, marks=pytest.mark.soak)])
 def test_a_small_cable_relaxes_without_numba_in_the_second_process(empty: bool, tmp_path: Path) -> None:
     """All of it: reading, compiling, solving and judging a cable imports neither numba nor scipy. From the cache of
     all tests, which the first fills where it has to, and from an empty one."""
-    told = (
+    first, second = (cable(**({"HOOKEAN_CACHE": str(tmp_path)} if empty else {})) for _ in range(2))
+    assert first[0] == second[0]
+    assert second[1] == "[]\n"
+
+
+def test_with_the_object_cache_switched_off_numba_gives_the_same_bits() -> None:
+    """HOOKEAN_OBJECT_CACHE=0: the same cable, with numba imported."""
+    kept, plain = cable(), cable(HOOKEAN_OBJECT_CACHE="0")
+    assert plain[0] == kept[0]
+    assert "'numba'" in plain[1]
+
+
+def cable(**environment: str) -> list[str]:
+    """A small cable at rest in a fresh process: its particles, and which of numba and scipy were imported."""
+    code = (
         "import sys, hookean\n"
         "lines = [[[i, 0, 0], [i + 1, 0, 0]] for i in range(10)]\n"
         "scene = hookean.Scene(forces=[{'kind': 'springs', 'lines': lines}, {'kind': 'self_weight', 'total': 9}],\n"
@@ -162,12 +200,8 @@ def test_a_small_cable_relaxes_without_numba_in_the_second_process(empty: bool, 
         "assert result.converged, result.message\n"
         "print(result.particles.tobytes().hex(), [m for m in ('numba', 'scipy') if m in sys.modules])"
     )
-    environment = {**os.environ, "HOOKEAN_CACHE": str(tmp_path)} if empty else None
-    first, second = (
-        subprocess.run(
-            [sys.executable, "-c", told], env=environment, check=True, capture_output=True, text=True, timeout=HANG
-        ).stdout.split(" ", 1)
-        for _ in range(2)
-    )
-    assert first[0] == second[0]
-    assert second[1] == "[]\n"
+    command = [sys.executable, "-W", "error", "-c", code]
+    whole = {**os.environ, **environment}
+    done = subprocess.run(command, env=whole, check=True, capture_output=True, text=True, timeout=HANG)
+    assert not done.stderr
+    return done.stdout.split(" ", 1)

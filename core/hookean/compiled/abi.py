@@ -19,7 +19,7 @@ Kind = tuple[Any, ...]
 DIFFERS = 2  # what an entry returns where an array is not what it takes
 
 
-class Unfit(Exception):
+class Unstorable(Exception):
     """For numba: arguments that a row of numbers does not hold, or code that needs more than a process has."""
 
 

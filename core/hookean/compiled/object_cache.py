@@ -4,7 +4,8 @@ Importing numba and its tables takes longer than most solves. So the object code
 with an entry that takes all arguments as one row of numbers; llvmlite alone loads and calls it. The file's name holds
 a digest of all that the code depends on: every source it may inline (in the folder's name), numba, llvmlite, the
 processor and its abilities, numba's settings, the types of the arguments. Where there is no such file, or a damaged
-one, numba compiles; numba runs, too, what cannot be stored (see `object_code`).
+one, numba compiles; numba runs, too, what cannot be stored (see `object_code`). With HOOKEAN_OBJECT_CACHE=0 in the
+environment, numba does everything. README.md in this folder has the whole picture.
 """
 
 from __future__ import annotations
@@ -13,18 +14,20 @@ import ctypes
 import hashlib
 import importlib.util
 import json
+import logging
 import os
 import struct
 import tempfile
 from collections.abc import Callable
-from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hookean.compiled.abi import DIFFERS, Kind, helpers, letters, readable
+from hookean.compiled.abi import DIFFERS, Kind, Unstorable, helpers, letters, readable
+
+log = logging.getLogger("hookean.compiled")
 
 
 class Compiled:
@@ -38,7 +41,7 @@ class Compiled:
 
     def __call__(self, *values: Any) -> Any:
         for entry in self._called:  # quicker than looking what values are
-            if (found := entry(values)) is not UNFIT:
+            if (found := entry(values)) is not REFUSED:
                 return found
         kind = kind_of(values)
         if kind is not None and (self.kind is None or kind == self.kind):
@@ -46,27 +49,35 @@ class Compiled:
             if new is not None:
                 if new not in self._called:
                     self._called = (*self._called, new)
-                if (found := new(values)) is not UNFIT:
+                if (found := new(values)) is not REFUSED:
                     return found
         return self.dispatcher()(*values)
 
     def entry(self, kind: Kind, values: tuple[Any, ...] = ()) -> Entry | None:
         """The code for arguments of a kind, such as `values`; None where only numba can run it."""
-        if kind in self._entries:
-            return self._entries[kind]
+        if kind not in self._entries:
+            self._entries[kind] = self._find(kind, values) if switched_on() else None
+        return self._entries[kind]
+
+    def _find(self, kind: Kind, values: tuple[Any, ...]) -> Entry | None:
+        """The code from disk, where it is put if it was not there."""
         path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
         found = _load(path, kind)
         if found is not None:
             self.loaded += 1
-        else:
-            self.made += 1
-            with suppress(Exception):  # whatever hinders it, numba has made the function and runs it
-                from hookean.compiled.object_code import emit
+            return found
+        self.made += 1
+        try:
+            from hookean.compiled.object_code import emit
 
-                _store(path, emit(self.dispatcher(), kind, values if self.kind is None else ()))
-                found = _load(path, kind)
-        self._entries[kind] = found
-        return found
+            _store(path, emit(self.dispatcher(), kind, values if self.kind is None else ()))
+        except Unstorable as reason:
+            log.debug("%s is left to numba: %s", self.name, reason)
+            return None
+        except Exception as error:  # private parts of numba and llvmlite may change in any way; numba still runs it
+            _report(f"{self.name} was compiled but not stored", error)
+            return None
+        return _load(path, kind)
 
 
 def kind_of(values: tuple[Any, ...]) -> Kind | None:
@@ -84,7 +95,7 @@ def kind_of(values: tuple[Any, ...]) -> Kind | None:
 
 ENGINES: list[Any] = []  # never freed: others keep addresses of their code
 SCALARS: dict[type, type] = {float: float, np.float64: float, int: int, bool: bool}
-UNFIT = object()
+REFUSED = object()
 
 
 class Entry:
@@ -117,19 +128,19 @@ class Entry:
         self.address: int = ctypes.c_int64.from_address(native).value  # for numba's own way of calling
 
     def __call__(self, values: tuple[Any, ...]) -> Any:
-        """What the code returns; UNFIT where it does not take these values."""
+        """What the code returns; REFUSED where it does not take these values."""
         if tuple(map(type, values)) != self.kinds and tuple(map(_plain, values)) != self.kinds:
-            return UNFIT
+            return REFUSED
         numbers: list[Any] = list(map(id, values))
         for place in self.numbers:
             numbers[place] = values[place]
         try:
             row = self.row.pack(*self.head, *numbers)  # bytes of nobody else's: the code may write at their end
         except struct.error:  # an integer of more than 64 bits
-            return UNFIT
+            return REFUSED
         ended = self.call(row)
         if ended == DIFFERS:
-            return UNFIT
+            return REFUSED
         if ended:
             raise MemoryError("compiled code got no memory")
         found = self.returned.unpack_from(row, 8 * self.end)
@@ -143,10 +154,30 @@ def _plain(value: Any) -> type | None:
 
 def _load(path: Path, kind: Kind) -> Entry | None:
     """The code in a file, or None if the file is missing or damaged."""
-    with suppress(Exception):
-        if path.exists() and readable():
-            return Entry(path, kind)
-    return None
+    if not path.exists() or not readable():
+        return None
+    try:
+        return Entry(path, kind)
+    except Exception as error:  # llvmlite raises errors of its own
+        _report(f"{path.name} was not loaded and is compiled again", error)
+        return None
+
+
+_reported: set[str] = set()
+
+
+def _report(what: str, error: Exception) -> None:
+    """Log a failure, each once for a process."""
+    said = f"{what}: {type(error).__name__}: {error}"
+    if said not in _reported:
+        _reported.add(said)
+        log.warning("%s", said)
+
+
+@cache
+def switched_on() -> bool:
+    """Whether code is kept as objects on disk; HOOKEAN_OBJECT_CACHE=0 turns it off."""
+    return os.environ.get("HOOKEAN_OBJECT_CACHE", "1") != "0"
 
 
 def _store(path: Path, data: bytes) -> None:

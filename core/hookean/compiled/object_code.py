@@ -13,7 +13,7 @@ from llvmlite import binding, ir
 from numba.core import cgutils, types
 from numba.core.compiler_lock import global_compiler_lock
 
-from hookean.compiled.abi import DIFFERS, Kind, Unfit, helpers, letters, readable
+from hookean.compiled.abi import DIFFERS, Kind, Unstorable, helpers, letters, readable
 
 WORD = ir.IntType(64)
 TYPE, DATA, DIMENSIONS, SIZES, LETTER, FLAGS = 1, 2, 3, 4, 7, 8  # words of numpy's array; see `abi.readable`
@@ -24,11 +24,11 @@ GOOD = 0x501  # in C order, aligned, may be written
 def emit(dispatcher: Any, kind: Kind, values: tuple[Any, ...]) -> bytes:
     """The content of a file for arguments of a kind, such as `values` (none: what it was declared to take).
 
-    Raises Unfit where the function takes or returns what a row of numbers does not hold, or calls what it cannot find
-    in a process without numba.
+    Raises Unstorable where the function takes or returns what a row of numbers does not hold, or calls what it cannot
+    find in a process without numba.
     """
     if sys.platform == "win32" or not readable():
-        raise Unfit
+        raise Unstorable("this system has no object cache")
     made = _made(dispatcher, values)
     entry, result = _entry(made, kind)
     whole = binding.parse_bitcode(made.library._get_module_for_linking().as_bitcode())
@@ -39,7 +39,7 @@ def emit(dispatcher: Any, kind: Kind, values: tuple[Any, ...]) -> bytes:
     for one in (*whole.functions, *whole.global_variables):
         known = not one.is_declaration or one.name.startswith("llvm.") or one.name in helped
         if not known and not hasattr(process, one.name):
-            raise Unfit(one.name)
+            raise Unstorable(f"it calls {one.name}")
     code = machine.emit_object(whole)
     told = {"digest": hashlib.sha256(code).hexdigest(), "result": result}
     return json.dumps(told).encode() + b"\n" + bytes(code)
@@ -137,7 +137,7 @@ class _Row:
             return self.builder.trunc(value, self.context.get_value_type(kind))
         if kind == types.int64:
             return value
-        raise Unfit(str(kind))
+        raise Unstorable(f"it takes or returns {kind}")
 
     def _array(self, kind: Any, address: Any) -> Any:
         """An array from the address of numpy's object."""
@@ -171,6 +171,6 @@ class _Row:
         elif kind == types.int64:
             letter = "q"
         else:
-            raise Unfit(str(kind))
+            raise Unstorable(f"it takes or returns {kind}")
         self.builder.store(value, self.word())
         return letter
