@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import email
 import os
 import re
 import subprocess
@@ -59,6 +60,32 @@ def test_a_wheel_of_the_sdist_needs_no_node(sdist: Path, tmp_path: Path):
     for path in re.findall(rb'(?:src|href)="/page/(.*?)"', page["index.html"]):
         assert path.decode() in page
     assert not [name for name in wheel.namelist() if "node_modules" in name or name.startswith("studio")]
+
+
+def test_packages_are_accepted_by_an_index_and_build_the_same_bytes_twice(sdist: Path, tmp_path: Path):
+    """`twine check --strict`; names and times inside archives do not depend on when or where they are built."""
+    twice = {
+        target: [
+            build(sdist, target, tmp_path / f"{target}-{i}", TZ=zone) for i, zone in enumerate(("UTC", "Asia/Tokyo"))
+        ]
+        for target in ("wheel", "sdist")
+    }
+    for one, other in twice.values():
+        assert one.name == other.name and one.read_bytes() == other.read_bytes()
+    command = [sys.executable, "-m", "twine", "check", "--strict", *(str(one) for one, _ in twice.values())]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_description_of_a_package_points_to_nothing_beside_it(sdist: Path):
+    """Links and pictures of the README are addresses: an index has no docs/ and no gh_examples/."""
+    text = email.message_from_string((sdist / "PKG-INFO").read_text(encoding="utf-8"))
+    description = text.get_payload()
+    targets = re.findall(r"\]\(([^)\s]+)|(?:src|href)=\"([^\"]+)", description)
+    assert len(targets) > 20
+    assert all(re.match(r"https://|#", a or b) for a, b in targets), targets
+    urls = dict(line.split(", ") for line in text.get_all("Project-URL"))
+    assert {"Homepage", "Documentation", "Changelog", "Issues"} <= set(urls)
 
 
 def test_the_page_is_built_where_its_sources_changed(sdist: Path):
