@@ -1,13 +1,14 @@
-"""Times hookean beside its peers and writes one page of tables; `run.py` starts it on one thread.
+"""Times hookean and other solvers and writes one page of tables; `run.py` starts it on one thread.
 
-All solvers of a problem run in turn, in one process, on one thread, round after round; seconds are medians over the
-rounds, and `least` the fewest. A run ends when the largest out-of-balance force is at most 1e-6 of the larger of the
-mean load and the mean spring force (or rounding allows no less), which the bench works out itself. `shape` is the
-largest distance from a reference solved as far as it goes, by the size of the model. hookean is timed over all of
-`relax`, its own checks and the compilation of the scene to arrays included; the peers' clocks stand still while they
-are judged. Nobody's import and first (compiling) call counts. `work` is in passes over all springs: what a solver
-tells, else its iterations. `times as fast` compares medians with numba-dr, kinetic damping written by hand. Peak memory
-is that of a process that does nothing else. A run marked missed ran out of time.
+The solvers of a problem run in turn, round after round, in one process on one thread. `seconds` is the median over the
+rounds and `least` the shortest time. A run ends when the largest out-of-balance force is at most 1e-6 of the larger of
+the mean load and the mean spring force (or rounding allows no less). The benchmark computes this residual itself.
+`shape` is the largest distance from a reference solution of the highest possible accuracy, divided by the size of the
+model. The time of hookean includes all of `relax`: its own checks and the compilation of the scene to arrays. The
+clocks of the other solvers are stopped while their residual is computed. Imports and the first (compiling) call are not
+timed. `work` is in passes over all springs: the number that the solver reports, otherwise its iterations. `times as
+fast` compares medians with numba-dr, a hand-written dynamic relaxation with kinetic damping. Peak memory is that of a
+process that does nothing else. A run marked missed ran out of time.
 """
 
 from __future__ import annotations
@@ -205,13 +206,13 @@ def solve(given: argparse.Namespace, peers: dict[str, Peer]) -> tuple[list[page.
             run, memory = alone(name, size, 10.0 * given.most)
             timed = {OURS: Timed([run], memory=memory)}
             if name == "soapfilm":
-                timed["scipy FDM"] = Timed(said="its factor takes minutes here")
+                timed["scipy FDM"] = Timed(said="the factorization takes minutes")
         else:
             slow = {}
             for peer in peers:
                 before, seconds = last.get((name, peer), (size, 0.0))
                 if seconds * size / before > given.most:
-                    slow[peer] = f"took {seconds:.3g} s at {before}"
+                    slow[peer] = f"it took {seconds:.3g} s at {before}"
             timed = compare(p, peers, given.rounds, given.most, slow)
             if size >= HEAVY:
                 _, timed[OURS].memory = alone(name, size, given.most)
@@ -219,7 +220,9 @@ def solve(given: argparse.Namespace, peers: dict[str, Peer]) -> tuple[list[page.
             if entry.runs:
                 last[name, solver] = size, entry.median
         table += rows(p, size, timed, given.most)
-        said += [f"{solver}, not on {name} {size}: {entry.said}." for solver, entry in timed.items() if entry.said]
+        said += [
+            f"{solver} was not run on {name} {size}: {entry.said}." for solver, entry in timed.items() if entry.said
+        ]
         print(f"{name} {size}: {time.perf_counter() - begun:.1f} s", file=sys.stderr, flush=True)
     return table, said
 

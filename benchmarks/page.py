@@ -64,7 +64,7 @@ def solved(table: list[Row]) -> str:
         ]
         for r in table
     ]  # fmt: skip
-    told = "The reference of a shape with ? is itself no better than 1e-7."
+    told = "A ? after a shape error: the reference itself is no more accurate than 1e-7."
     return "## Equilibrium\n\n" + markdown(head, body) + "\n\n" + told
 
 
@@ -80,20 +80,20 @@ def stepped(steps: dict[tuple[str, int], float]) -> str:
             part = f" ({rate / beside:.2f})" if rate and beside and name != "C, scalar" else ""
             cells.append(f"{rate / 1e6:.1f}{part}" if rate else "-")
         body.append([name, *cells])
-    told = "Millions of particle steps a second on the membrane (in brackets: by those of step.c, in turn)."
+    told = "Millions of particle steps per second on the membrane. In brackets: the ratio to step.c, run in turn."
     return f"## Steps\n\n{told}\n\n" + markdown(["", *(str(s) for s in sizes)], body)
 
 
 def framed(found: dict[int, float]) -> str:
     """Frames of the falling shell."""
     body = [[str(count), f"{rate:.0f}"] for count, rate in found.items()]
-    told = "A mesh sphere with springs and shell lands on a floor; 20 steps of time in a frame."
+    told = "A mesh sphere with springs and shell lands on a floor; 20 time steps per frame."
     return f"## Shell\n\n{told}\n\n" + markdown(["particles", "frames/s"], body)
 
 
 def started(starts: list[tuple[str, list[float]]]) -> str:
     """Whole processes."""
-    told = "Seconds from starting a process to the answer: the cable of 50 springs. Least and median."
+    told = "Seconds from starting a process to the result, for the cable of 50 springs."
     body = [[what, str(len(s)), figure(min(s)), figure(sorted(s)[len(s) // 2])] for what, s in starts]
     return f"## Start\n\n{told}\n\n" + markdown(["", "runs", "least", "median"], body)
 
@@ -118,9 +118,12 @@ def short(
     lines.append(markdown(["problem, size", "hookean", "numba-dr", "quickest package"], body))
     if steps:
         rates = [f"{rate / 1e6:.0f} at {size}" for (name, size), rate in steps.items() if name.startswith("hookean")]
-        lines += ["", f"Steps of time, millions of particles a second: {', '.join(rates)}."]
+        lines += ["", f"Time steps, in millions of particles per second: {', '.join(rates)}."]
     for what, seconds in starts or []:
-        lines += ["", f"{what}: {figure(sorted(seconds)[len(seconds) // 2])} s from the shell to the answer."]
+        lines += [
+            "",
+            f"{what}: {figure(sorted(seconds)[len(seconds) // 2])} s from starting the process to the result.",
+        ]
     return "\n".join(lines)
 
 

@@ -307,7 +307,7 @@ def jax_fdm(p: Problem, target: float, most: float) -> Run:
 
 def _only_linear(p: Problem) -> None:
     if p.l0.any():
-        raise Unfit("force density takes rest length 0 only")
+        raise Unfit("force density supports rest length 0 only")
 
 
 def shared_dr(folder: Path) -> Peer:
@@ -344,7 +344,7 @@ def available(shared: Path | None) -> tuple[dict[str, Peer], list[str]]:
     given = shared is not None and (shared / "base.py").exists()
     peers: dict[str, Peer] = {"numba-dr": shared_dr(shared) if given and shared is not None else numba_dr}
     peers.update({"numba-k2": numba_k2, "L-BFGS-B": lbfgsb, "scipy FDM": scipy_fdm})
-    said = ["numba-dr is that of the shared bench." if given else "numba-dr is that of peers.py."]
+    said = ["The numba-dr solver is the one of --shared." if given else "The numba-dr solver is the one of peers.py."]
     for name, (module, peer) in PACKAGES.items():
         if importlib.util.find_spec(module) is None:
             said.append(f"{name} is not installed; 'pip install {module}' adds it to the table.")

@@ -66,7 +66,7 @@ def test_what_a_peer_cannot_do_is_said_and_what_is_slow_is_left_out(parts: dict[
     assert len(timed[bench.OURS].runs) == 1
     said = {name: entry.said for name, entry in timed.items() if not entry.runs}
     assert said == {
-        "scipy FDM": "force density takes rest length 0 only",
+        "scipy FDM": "force density supports rest length 0 only",
         "slow": "took 9 s at 4",
         "broken": "by zero",
     }

@@ -48,7 +48,8 @@ def test_the_python_of_the_page_runs(
 
 
 def test_the_limits_of_the_page_are_those_of_the_reader() -> None:
-    assert f"one of {len(Type)} types" in PAGE
-    assert f"nested more than {archive_chunk.DEEPEST} deep" in PAGE
-    assert f"more than {archive_chunk.MOST_BYTES >> 20} MiB" in PAGE
-    assert f"more than {archive_chunk.MOST_PARTS // 10**6} million parts" in PAGE.replace("\n", " ")
+    page = PAGE.replace("\n", " ")
+    assert f"one of {len(Type)} types" in page
+    assert f"nested more than {archive_chunk.DEEPEST} deep" in page
+    assert f"more than {archive_chunk.MOST_BYTES >> 20} MiB" in page
+    assert f"more than {archive_chunk.MOST_PARTS // 10**6} million parts" in page

@@ -180,27 +180,29 @@ def examples() -> list[Example]:
 
 INTRODUCTION = """# Gallery
 
-The figures of the chapter that hookean implements, each a folder with its input, its script, the numbers it is held
-to and where they come from. `hookean example` lists them, `hookean example 9.11` runs one, and `make figures` draws all
-and writes this page.
+hookean follows a book chapter on particle-spring systems, and these examples reproduce its figures. Each is a folder
+with its input, its script, and the numbers that tests compare it with, including their sources. `hookean example` lists
+the examples, `hookean example 9.11` runs one, and `make figures` draws all of them and regenerates this page.
 
-To make one your own, copy its folder, change its input and run the copy: its numbers stand beside those it had.
+To start your own model from an example, copy its folder, change the input and run the copy. Its numbers are printed
+beside those of the original.
 
 ```sh
 hookean example 9.24 --copy roof
 hookean example ./roof --picture roof/relaxed.png
 ```
 
-Then give it your file. First see what it holds, change the layers that the recipe names to yours, and relax it:
+Then use your own file. Print how it is interpreted, replace the layers in the recipe by those of your file, and relax
+it:
 
 ```sh
 hookean relax mine.3dm --recipe roof/recipe.toml --explain
 hookean relax mine.3dm --recipe roof/recipe.toml -o relaxed.3dm --picture relaxed.png
 ```
 
-Stiffness and loads of an example fit its size: 20 N that shape a roof of 10 m tear a model of 10 mm. `--explain` says
-how large your model is and in which units the recipe counts. [rhino-files.md](../docs/rhino-files.md) has everything a
-recipe can say.
+Stiffness and loads of an example suit its size: 20 N that shape a roof of 10 m tear a model of 10 mm. `--explain`
+prints how large your model is and in which units the numbers of the recipe are.
+[rhino-files.md](../docs/rhino-files.md) describes recipes in full.
 
 """
 
