@@ -31,7 +31,7 @@ CREASED = "Some springs push, and may crease the net: other shapes of it may be 
 FIRST_NEWTON = 4_000
 NEWTON_STEPS = 60
 SHARP_STEPS = 1_000  # from near an equilibrium: along a curved path, if need be
-SOLVES = 2  # of a linear scene: the second one takes off what rounding left in the first
+SOLVES = 5  # of a linear scene: each takes off what rounding left in the one before; mostly two are enough
 
 
 class Method(Solver):
