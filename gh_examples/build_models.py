@@ -1,7 +1,7 @@
 """Draws the .3dm models of the examples, what a person would draw in Rhino before starting, and makes the wind.
 
-Run it from the project's root: `.venv/bin/python gh_examples/build_models.py [NAME ...]`. The same version of rhino3dm
-writes the same bytes. Where a figure's scene.py makes its geometry, the model is drawn from that; free-form curves and
+Run it from the project's root: `.venv/bin/python gh_examples/build_models.py [NAME ...]`. Machines differ
+in last digits. Where a figure's scene.py makes its geometry, the model is drawn from that; free-form curves and
 surfaces are drawn here, and scene.py reads them from the model.
 """
 

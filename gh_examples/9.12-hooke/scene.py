@@ -8,13 +8,9 @@ from hookean import Scene
 
 
 def scene(
-    rest_length: float = 80.0,
-    stiffness: float = 2.0,
-    weight: Any = 100.0,
-    damping: float = 10.0,
-    length: float | None = None,
-    **settings: Any,
-) -> Scene:
+    rest_length: float = 80.0, stiffness: float = 2.0, weight: Any = 100.0, damping: float = 10.0,
+    length: float | None = None, **settings: Any,
+) -> Scene:  # fmt: skip
     """A spring of `rest_length` [cm], `stiffness` [N/cm] and `damping` [N s/cm] hangs from an anchor, a `weight` [N] at
     its end; several weights hang on springs side by side, 30 cm apart. It starts with a `length` [cm], else its rest
     length."""

@@ -17,12 +17,9 @@ CASES: dict[str, dict[str, Any]] = {
 
 
 def scene(
-    start: Any = (0.0, 0.0, 0.0),
-    end: Any = (8.0, 0.0, 4.0),
-    length: float = 12.0,
-    gravity: Any = (0.0, 0.0, -1.0),
+    start: Any = (0.0, 0.0, 0.0), end: Any = (8.0, 0.0, 4.0), length: float = 12.0, gravity: Any = (0.0, 0.0, -1.0),
     links: int = 60,
-) -> Scene:
+) -> Scene:  # fmt: skip
     """A chain of a `length` [m] and 1 N/m that hardly stretches, from `start` to `end` [m] under `gravity`, a unit
     vector. It starts as two straight legs; each of its `links` weighs half at each of its ends."""
     link = round(length / links, 12)

@@ -9,15 +9,9 @@ from hookean.discretize import arc_of_length
 
 
 def scene(
-    arc_length: float = 20.0,
-    span: float = 10.0,
-    pieces: int = 50,
-    stiffness: float = 7000.0,
-    rest_factor: float = 0.995,
-    load: float = 1.0,
-    by_arc_length: bool = False,
-    **settings: Any,
-) -> Scene:
+    arc_length: float = 20.0, span: float = 10.0, pieces: int = 50, stiffness: float = 7000.0,
+    rest_factor: float = 0.995, load: float = 1.0, by_arc_length: bool = False, **settings: Any,
+) -> Scene:  # fmt: skip
     """An arc of `arc_length` [m] that stands over a `span` [m], a straight line where both are the same, in `pieces`
     springs at equal arc lengths.
 

@@ -11,14 +11,9 @@ from hookean.files.rhino import threedm
 
 
 def scene(
-    near_frame: Any = None,
-    far_frame: Any = None,
-    chains: int = 48,
-    links: int = 24,
-    length_factor: float = 1.2,
-    stiffness: float = 1e6,
-    load: float = 1.0,
-) -> Scene:
+    near_frame: Any = None, far_frame: Any = None, chains: int = 48, links: int = 24, length_factor: float = 1.2,
+    stiffness: float = 1e6, load: float = 1.0,
+) -> Scene:  # fmt: skip
     """Chains between points at equal lengths on two frames, curves of rhino3dm or COMPAS [m], without them those of
     model.3dm; where both are closed, their starts are one point with their ends.
 

@@ -11,20 +11,10 @@ from hookean.values.mesh import Mesh
 
 
 def scene(
-    size: float = 10.0,
-    divisions: int = 20,
-    stiffness: float = 2000.0,
-    rest_factor: float = 1.0,
-    load: float = 20.0,
-    held: str = "corners",
-    anchors: Any = None,
-    rise: float = 0.0,
-    drop: float = 0.0,
-    diagonals: str = "none",
-    diagonal_stiffness: float = 1000.0,
-    diagonal_factor: float = 1.0,
-    **settings: Any,
-) -> Scene:
+    size: float = 10.0, divisions: int = 20, stiffness: float = 2000.0, rest_factor: float = 1.0, load: float = 20.0,
+    held: str = "corners", anchors: Any = None, rise: float = 0.0, drop: float = 0.0, diagonals: str = "none",
+    diagonal_stiffness: float = 1000.0, diagonal_factor: float = 1.0, **settings: Any,
+) -> Scene:  # fmt: skip
     """A square of a `size` [m] in `divisions` by as many faces, their edges springs of a `stiffness` [N/m] and a
     `rest_factor` [-], with a `load` [N] down on every vertex.
 

@@ -7,13 +7,9 @@ from hookean.discretize import edges, grid, naked_vertices
 
 
 def scene(
-    size: float = 2.0,
-    divisions: int = 32,
-    film: bool = False,
-    tension: float = 100.0,
-    rest_factor: float = 0.0,
+    size: float = 2.0, divisions: int = 32, film: bool = False, tension: float = 100.0, rest_factor: float = 0.0,
     bulge: float = 0.5,
-) -> Scene:
+) -> Scene:  # fmt: skip
     """A square of a `size` [m] whose rim is held, in halves of its size, at z = x y.
 
     It has `divisions` by as many faces and starts with a `bulge` in its middle, in halves of its size [-]. A `film` has

@@ -13,16 +13,10 @@ scene = partial(MEMBRANE.scene, divisions=10, diagonals="one")
 
 
 def warp_and_weft(
-    size: float = 10.0,
-    divisions: int = 10,
-    warp_stiffness: float = 4000.0,
-    warp_factor: float = 0.9,
-    weft_stiffness: float = 1000.0,
-    weft_factor: float = 1.1,
-    load: float = 20.0,
-    held: str = "corners",
+    size: float = 10.0, divisions: int = 10, warp_stiffness: float = 4000.0, warp_factor: float = 0.9,
+    weft_stiffness: float = 1000.0, weft_factor: float = 1.1, load: float = 20.0, held: str = "corners",
     anchors: Any = None,
-) -> Scene:
+) -> Scene:  # fmt: skip
     """C: a membrane whose edges along x, the warp, and along y, the weft, differ in stiffness [N/m] and rest factor
     [-]; the rest as in `scene`."""
     mesh = MEMBRANE.square(size, divisions)

@@ -15,17 +15,9 @@ PIECES = 2000  # of a curve that particles are pulled to
 
 
 def scene(
-    surface: Any = None,
-    beams: Any = None,
-    arcs: Any = None,
-    end_arcs: Any = None,
-    along: int = 60,
-    across: int = 20,
-    stiffness: float = 4.0,
-    rest_factor: float = 0.5,
-    strength: float = 2000.0,
-    tolerance: float = 0.001,
-) -> Scene:
+    surface: Any = None, beams: Any = None, arcs: Any = None, end_arcs: Any = None, along: int = 60, across: int = 20,
+    stiffness: float = 4.0, rest_factor: float = 0.5, strength: float = 2000.0, tolerance: float = 0.001,
+) -> Scene:  # fmt: skip
     """A `surface` of rhino3dm or COMPAS with `along` by `across` faces, held where its rim lies on `end_arcs`; without
     a surface all four are those of model.3dm.
 

@@ -8,15 +8,9 @@ from hookean import InputError, Scene
 
 
 def scene(
-    anchors: Any = ((0.0, 0.0, 0.0), (10.0, 0.0, 0.0)),
-    pieces: int = 10,
-    length_factor: float = 1.0,
-    stiffness: float = 1000.0,
-    load: float = 10.0,
-    damping: float = 10.0,
-    strict: bool = True,
-    **settings: Any,
-) -> Scene:
+    anchors: Any = ((0.0, 0.0, 0.0), (10.0, 0.0, 0.0)), pieces: int = 10, length_factor: float = 1.0,
+    stiffness: float = 1000.0, load: float = 10.0, damping: float = 10.0, strict: bool = True, **settings: Any,
+) -> Scene:  # fmt: skip
     """A straight cable from the first of its `anchors` [m] to the last; those between hold the particles they meet.
 
     `pieces` springs, each with `length_factor` [-] of its length as rest length, `stiffness` [N/m] and `damping`

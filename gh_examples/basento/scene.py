@@ -13,14 +13,9 @@ CONCRETE = 5e6  # kN/m, a strut of concrete about 0.3 m by 1 m, 1.8 m long: E A 
 
 
 def scene(
-    skin: Any = None,
-    feet: Any = None,
-    fingers: Any = None,
-    along: int = 32,
-    across: int = 8,
-    skin_density: float = 100.0,
-    edge_density: float = 200.0,
-) -> Scene:
+    skin: Any = None, feet: Any = None, fingers: Any = None, along: int = 32, across: int = 8,
+    skin_density: float = 100.0, edge_density: float = 200.0,
+) -> Scene:  # fmt: skip
     """A `skin`, a surface of rhino3dm or COMPAS, stretched between its `feet` and `fingers`, points [m]; without a skin
     all three are those of model.3dm.
 

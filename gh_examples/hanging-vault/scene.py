@@ -7,14 +7,9 @@ from hookean.discretize import arc_of_length, edges, grid
 
 
 def scene(
-    length: float = 20.0,
-    width: float = 14.0,
-    along: int = 20,
-    across: int = 14,
-    length_factor: float = 1.1,
-    stiffness: float = 1e4,
-    weight: float = 0.5,
-) -> Scene:
+    length: float = 20.0, width: float = 14.0, along: int = 20, across: int = 14, length_factor: float = 1.1,
+    stiffness: float = 1e4, weight: float = 0.5,
+) -> Scene:  # fmt: skip
     """A flat net of `length` by `width` [m] in `along` by `across` faces, held at its corners, in its middle and in the
     middles of its sides.
 

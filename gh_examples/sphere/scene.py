@@ -10,16 +10,9 @@ from hookean.values.mesh import Mesh
 
 
 def scene(
-    radius: float = 5.0,
-    drop: float = 5.0,
-    around: int = 20,
-    along: int = 12,
-    stiffness: float = 5000.0,
-    shell: float = 500.0,
-    drag: float = 1.0,
-    weight: float = 9.81,
-    **settings: Any,
-) -> Scene:
+    radius: float = 5.0, drop: float = 5.0, around: int = 20, along: int = 12, stiffness: float = 5000.0,
+    shell: float = 500.0, drag: float = 1.0, weight: float = 9.81, **settings: Any,
+) -> Scene:  # fmt: skip
     """A sphere of a `radius` [m], its lowest point `drop` [m] over the floor, of `around` faces round its axis and
     `along` it, 1 kg and a `weight` [N] on every vertex.
 

@@ -12,18 +12,10 @@ AIR = 1.225  # kg/m^3
 
 
 def scene(
-    size: float = 6.0,
-    low: float = 2.5,
-    high: float = 4.5,
-    divisions: int = 10,
-    speed: float = 12.0,
-    drag: float = 0.5,
-    lift: float = 0.8,
-    stiffness: float = 4000.0,
-    rest_factor: float = 0.92,
-    edge_stiffness: float = 40_000.0,
-    edge_factor: float = 0.97,
-) -> Scene:
+    size: float = 6.0, low: float = 2.5, high: float = 4.5, divisions: int = 10, speed: float = 12.0,
+    drag: float = 0.5, lift: float = 0.8, stiffness: float = 4000.0, rest_factor: float = 0.92,
+    edge_stiffness: float = 40_000.0, edge_factor: float = 0.97,
+) -> Scene:  # fmt: skip
     """A ruled square of a `size` [m] in `divisions` by as many faces, two opposite corners at the height `low` and two
     at `high` [m], of springs with a `stiffness` [N/m] and a `rest_factor` [-]; `edge_stiffness` and `edge_factor` are
     those of the cables.

@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import difflib
 import importlib.util
+import inspect
 import json
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -161,6 +162,12 @@ def figure(folder: str | Path) -> ModuleType:
     """The module `scene.py` of a figure: of its folder's name in the gallery, or of a folder such as a copy. Its
     function `scene(**parameters)` makes a Scene; the defaults are the figure's values."""
     return _script(home() / folder / "scene.py")
+
+
+def defaults(make: Callable[..., Any]) -> dict[str, Any]:
+    """The parameters of a figure's function by their names, with their defaults: the figure's values."""
+    found = {name: p.default for name, p in inspect.signature(make).parameters.items() if p.kind is not p.VAR_KEYWORD}
+    return found | getattr(make, "keywords", {})
 
 
 def _script(path: Path) -> ModuleType:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hookean.commands.examples import figure
+from hookean.scene.scene import Scene
 from hookean_server.hops import scenes
 from hookean_server.hops.model import Function, Inputs, Parameter, count, inputs_of, item, optional
 from hookean_server.workers.task import Cancelled
@@ -45,7 +46,7 @@ _DRAG = item("Drag", "b", "Number", "Drag on every particle [N s/model unit]", m
 _PIECES = count("Pieces", "N", "Number of springs", None, 2000)
 
 
-def _shape(result: Any, name: str = "cable") -> dict[str, Any]:
+def _shape(inputs: Inputs, scene: Scene, result: Any, name: str = "cable") -> dict[str, Any]:
     """The outputs of a cable."""
     found = scenes.common(result, name)
     return {
@@ -56,25 +57,15 @@ def _shape(result: Any, name: str = "cable") -> dict[str, Any]:
     }
 
 
-def _cable(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-    return _shape(scenes.relaxed(inputs, inputs.make(_CABLE), cancelled))
-
-
-def _bouncing(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-    return _shape(scenes.moved(inputs, inputs.make(_BOUNCING), inputs.one("Time"), cancelled))
-
-
-def _smooth(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
+def _smooth(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
     from hookean.discretize.arcs import interpolate
 
-    result = scenes.relaxed(inputs, inputs.make(_SMOOTH), cancelled)
     curve = interpolate(result.particles, inputs.one("Samples"))
-    found = _shape(result)
+    found = _shape(inputs, scene, result)
     return {**found, "Curve": curve, "Length of the curve": np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()}
 
 
-def _hooke(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-    result = scenes.relaxed(inputs, inputs.make(_HOOKE), cancelled)
+def _hooke(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
     length = float(result.force("cable")["length"][0])
     return {
         "Spring": result.particles,
@@ -84,12 +75,11 @@ def _hooke(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
     }
 
 
-def _arc_to_catenary(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
+def _arc_to_catenary(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
     from hookean.discretize.catenary import catenary, catenary_of, parameter
 
     length, span = inputs.one("Arc length"), inputs.one("Span")
-    result = scenes.relaxed(inputs, inputs.make(_ARC), cancelled)
-    found = _shape(result)
+    found = _shape(inputs, scene, result)
     own = length if length > span else found["Length"]  # a line stretches: its own length then
     a = parameter(span, own)
     x, z = result.particles[:, 0] - 0.5 * span, result.particles[:, 2]
@@ -98,9 +88,8 @@ def _arc_to_catenary(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
     return {**found, "Catenary": drawn, "Off the catenary": np.abs(off).max()}
 
 
-def _arc_frames(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-    result = scenes.moved(inputs, inputs.make(_FALLING_ARC), inputs.one("Time"), cancelled)
-    return {**_shape(result), "Height of the middle": result.particles[inputs.one("Pieces") // 2, 2]}
+def _arc_frames(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
+    return {**_shape(inputs, scene, result), "Height of the middle": result.particles[inputs.one("Pieces") // 2, 2]}
 
 
 def _frames(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
@@ -114,7 +103,7 @@ def _frames(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
     given = inputs.one("Length factor") * np.linalg.norm(points[:, -1] - points[:, 0], axis=1)
     drawn = [catenary(c[0], c[-1], length, count=links) for c, length in zip(chains, given, strict=True)]
     return {
-        **_shape(result, "chains"),
+        **_shape(inputs, scene, result, "chains"),
         "Chains": list(chains),
         "Lengths": result.force("chains")["length"].reshape(-1, links).sum(axis=1),
         "Largest sag": (points - chains)[:, :, 2].max(),
@@ -133,40 +122,29 @@ _ARCHED = (
 )
 
 FUNCTIONS: dict[str, Function] = {
-    "cable": Function(
-        "Cable",
-        "Cable",
+    "cable": scenes.relaxing(
+        _CABLE, _shape, "Cable", "Cable",
         "Figures 9.4, 9.7, 9.9 and 9.11: a line cut into springs hangs under its loads",
-        inputs_of(_CABLE, *_SPRINGS),
+        _SPRINGS,
         _SHAPE,
-        _cable,
-        "Figures",
     ),
-    "bouncing_cable": Function(
-        "Bouncing cable",
-        "Bouncing",
+    "bouncing_cable": scenes.moving(
+        _BOUNCING, _shape, "Bouncing cable", "Bouncing",
         "Figure 9.6: the cable in motion, at a time since it was let go",
-        inputs_of(_BOUNCING, *_SPRINGS, _DAMPING, _DRAG, replace(_TIME, default=0.9)),
+        (*_SPRINGS, _DAMPING, _DRAG, replace(_TIME, default=0.9)),
         _SHAPE,
-        _bouncing,
-        "Figures",
     ),
-    "smooth_curve": Function(
-        "Smooth curve",
-        "Smooth",
+    "smooth_curve": scenes.relaxing(
+        _SMOOTH, _smooth, "Smooth curve", "Smooth",
         "Figure 9.10: a smooth curve through the particles of a cable, for display",
-        inputs_of(_SMOOTH, *_SPRINGS, count("Samples", "n", "Pieces of the curve", 4000, 100_000)),
+        (*_SPRINGS, count("Samples", "n", "Pieces of the curve", 4000, 100_000)),
         (*_SHAPE, item("Curve", "C", "Curve", "The smooth curve as a polyline"),
          item("Length of the curve", "Lc", "Number", "Its length [model unit]")),
-        _smooth,
-        "Figures",
     ),
-    "hooke": Function(
-        "Hooke",
-        "Hooke",
+    "hooke": scenes.relaxing(
+        _HOOKE, _hooke, "Hooke", "Hooke",
         "Figure 9.12: a spring under a weight, X = F / k",
-        inputs_of(
-            _HOOKE,
+        (
             item("Rest length", "L", "Number", "Length without a load [model unit]", minimum=1e-6),
             scenes.STIFFNESS,
             item("Weight", "P", "Number", "What hangs on it [N]", minimum=0.0),
@@ -177,29 +155,20 @@ FUNCTIONS: dict[str, Function] = {
             item("Extension", "X", "Number", "By how much it is longer [model unit]"),
             scenes.STATUS,
         ),
-        _hooke,
-        "Figures",
     ),
-    "arc_to_catenary": Function(
-        "Arc to catenary",
-        "ArcCatenary",
+    "arc_to_catenary": scenes.relaxing(
+        _ARC, _arc_to_catenary, "Arc to catenary", "ArcCatenary",
         "Figures 9.17 to 9.20: an arc whose springs hardly stretch becomes a catenary",
-        inputs_of(
-            _ARC, *_ARCHED, item("By arc length", "A", "Boolean", "Rest lengths from the arc, not from its chords")
+        (*_ARCHED, item("By arc length", "A", "Boolean", "Rest lengths from the arc, not from its chords")
         ),
         (*_SHAPE, item("Catenary", "C", "Curve", "The catenary to compare with, as a polyline"),
          item("Off the catenary", "O", "Number", "Largest height of a particle over or below it [model unit]")),
-        _arc_to_catenary,
-        "Figures",
     ),
-    "arc_frames": Function(
-        "Arc frames",
-        "ArcFrames",
+    "arc_frames": scenes.moving(
+        _FALLING_ARC, _arc_frames, "Arc frames", "ArcFrames",
         "Figure 9.21: an arc on its way down to the catenary, at a time since it was let go",
-        inputs_of(_FALLING_ARC, *_ARCHED, _DRAG, replace(_TIME, default=4.0)),
+        (*_ARCHED, _DRAG, replace(_TIME, default=4.0)),
         (*_SHAPE, item("Height of the middle", "H", "Number", "Of its middle particle [model unit]")),
-        _arc_frames,
-        "Figures",
     ),
     "chains_between_frames": Function(
         "Chains between frames",

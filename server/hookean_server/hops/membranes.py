@@ -9,8 +9,7 @@ from hookean.commands.examples import figure
 from hookean.scene.scene import Scene
 from hookean.values.mesh import Mesh
 from hookean_server.hops import scenes
-from hookean_server.hops.model import Function, Inputs, Parameter, count, inputs_of, item, optional
-from hookean_server.workers.task import Cancelled
+from hookean_server.hops.model import Function, Inputs, Parameter, count, item, optional
 
 _MEMBRANE = figure("9.24-membrane").scene
 _SHEET = figure("9.29-diagonals").scene
@@ -32,8 +31,9 @@ _SHAPE = (scenes.MESH, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, scenes.S
           _LEAST, _LENGTH, scenes.STATUS)  # fmt: skip
 
 
-def _shape(result: Any, scene: Scene, *names: str) -> dict[str, Any]:
-    """The outputs of a membrane."""
+def _shape(inputs: Inputs, scene: Scene, result: Any, *names: str) -> dict[str, Any]:
+    """The outputs of a membrane, of the springs of these names."""
+    names = names or ("membrane",)
     found = scenes.common(result, *names)
     z = result.particles[:, 2]
     return {
@@ -47,39 +47,28 @@ def _shape(result: Any, scene: Scene, *names: str) -> dict[str, Any]:
     }
 
 
-def _membrane(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-    scene = inputs.make(_MEMBRANE)
-    return _shape(scenes.relaxed(inputs, scene, cancelled, tolerance=1e-12), scene, "membrane")
-
-
-def _sheet(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-    scene = inputs.make(_SHEET)
-    result = scenes.relaxed(inputs, scene, cancelled)
+def _sheet(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
     names = ["membrane"] if inputs.one("Diagonals") == "none" else ["membrane", "diagonals"]
     forces = [result.force(name)["force"].max() for name in names]
     return {
-        **_shape(result, scene, *names),
+        **_shape(inputs, scene, result, *names),
         "Largest edge force": forces[0],
         "Largest diagonal force": [*forces, 0.0][1],
         "Energy": result.energy["springs"],
     }
 
 
-def _warp_weft(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-    scene = inputs.make(_WARP_AND_WEFT)
-    result = scenes.relaxed(inputs, scene, cancelled)
+def _warp_weft(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
     return {
-        **_shape(result, scene, "warp", "weft"),
+        **_shape(inputs, scene, result, "warp", "weft"),
         "Warp forces": result.force("warp")["force"],
         "Weft forces": result.force("weft")["force"],
     }
 
 
-def _hypar(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
+def _hypar(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
     from hookean.discretize import area, edges
 
-    scene = inputs.make(_HYPAR)
-    result = scenes.relaxed(inputs, scene, cancelled)
     found = Mesh(result.particles, scene.meshes["surface"].faces)
     side = inputs.one("Divisions") + 1
     return {
@@ -99,40 +88,32 @@ _ACROSS = (
 )
 
 FUNCTIONS: dict[str, Function] = {
-    "membrane": Function(
-        "Membrane",
-        "Membrane",
+    "membrane": scenes.relaxing(
+        _MEMBRANE, _shape, "Membrane", "Membrane",
         "Figures 9.1, 9.24, 9.26 and 9.27: a square net held at its corners, its rim or points, under its loads",
-        inputs_of(
-            _MEMBRANE,
+        (
             *_SQUARE,
             item("Rise", "U", "Number", "How far two opposite corners go up; all four are held [model unit]"),
             item("Drop", "V", "Number", "How far the other two go down [model unit]"),
         ),
         _SHAPE,
-        _membrane,
-        "Figures",
+        tolerance=1e-12,
     ),
-    "membrane_with_diagonals": Function(
-        "Membrane with diagonals",
-        "Diagonals",
+    "membrane_with_diagonals": scenes.relaxing(
+        _SHEET, _sheet, "Membrane with diagonals", "Diagonals",
         "Figures 9.29, 9.30 and 9.31: diagonals keep the faces of a membrane in shape, or fold them",
-        inputs_of(_SHEET, *_SQUARE, *_ACROSS),
+        (*_SQUARE, *_ACROSS),
         (
             *_SHAPE,
             item("Largest edge force", "Fe", "Number", "The largest force of an edge [N]"),
             item("Largest diagonal force", "Fd", "Number", "The largest force of a diagonal [N]"),
             item("Energy", "E", "Number", "Energy of the springs [N model unit]"),
         ),
-        _sheet,
-        "Figures",
     ),
-    "membrane_of_warp_and_weft": Function(
-        "Membrane of warp and weft",
-        "WarpWeft",
+    "membrane_of_warp_and_weft": scenes.relaxing(
+        _WARP_AND_WEFT, _warp_weft, "Membrane of warp and weft", "WarpWeft",
         "Figure 9.31: the edges along x (warp) and along y (weft) differ",
-        inputs_of(
-            _WARP_AND_WEFT,
+        (
             _SIZE,
             _DIVISIONS,
             item("Warp stiffness", "ka", "Number", "Stiffness of edges along x [N/model unit]", minimum=0.0),
@@ -145,15 +126,11 @@ FUNCTIONS: dict[str, Function] = {
         ),
         (*_SHAPE, Parameter("Warp forces", "Fa", "Number", "Force of every edge along x [N]"),
          Parameter("Weft forces", "Fe", "Number", "Force of every edge along y [N]")),
-        _warp_weft,
-        "Figures",
     ),
-    "hypar_net": Function(
-        "Hypar net",
-        "Hypar",
+    "hypar_net": scenes.relaxing(
+        _HYPAR, _hypar, "Hypar net", "Hypar",
         "Figure 9.28: a net of rest factor 0, or a soap film, in the frame of a hypar z = x y",
-        inputs_of(
-            _HYPAR,
+        (
             _SIZE,
             _DIVISIONS,
             item("Film", "S", "Boolean", "A soap film instead of a net"),
@@ -169,8 +146,6 @@ FUNCTIONS: dict[str, Function] = {
             item("Height", "H", "Number", "At three quarters of both sides [model unit]"),
             scenes.STATUS,
         ),
-        _hypar,
-        "Figures",
     ),
 }  # fmt: skip
 """Functions by their names."""

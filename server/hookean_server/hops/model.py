@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from inspect import signature
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.commands.examples import defaults
 from hookean.errors import InputError
 from hookean.scene.scene import Scene
 from hookean_server.hops.values import SIZES, TYPES, read, size, write
@@ -93,17 +93,11 @@ def optional(parameter: Parameter) -> Parameter:
 
 def inputs_of(make: Callable[..., Any], *inputs: Parameter) -> tuple[Parameter, ...]:
     """Inputs of which those that are parameters of `make`, a figure's scene, have their defaults from it."""
-    known = _defaults(make)
+    known = defaults(make)
     return tuple(
         replace(p, default=known[p.key]) if isinstance(known.get(p.key), bool | int | float | str) else p
         for p in inputs
     )
-
-
-def _defaults(make: Callable[..., Any]) -> dict[str, Any]:
-    """The parameters of a function by their names, with their defaults; of a partial one the settings as well."""
-    found = {name: p.default for name, p in signature(make).parameters.items() if p.kind is not p.VAR_KEYWORD}
-    return found | getattr(make, "keywords", {})
 
 
 Run = Callable[["Inputs", Cancelled], dict[str, Any]]
@@ -192,7 +186,7 @@ class Inputs:
 
     def make(self, make: Callable[..., Scene], **more: Any) -> Scene:
         """A figure's scene with the values of the inputs that are its parameters; InputError names the input."""
-        known = _defaults(make)
+        known = defaults(make)
         own = {p.key: p for p in self.function.inputs if p.key in known}
         for key, parameter in own.items():
             if parameter.least or self.many(parameter.name):

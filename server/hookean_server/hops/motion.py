@@ -8,21 +8,19 @@ from typing import Any
 import numpy as np
 
 from hookean.commands.examples import figure
+from hookean.scene.scene import Scene
 from hookean.values.mesh import Mesh
 from hookean_server.hops import scenes
-from hookean_server.hops.model import Function, Inputs, count, inputs_of, item
-from hookean_server.workers.task import Cancelled
+from hookean_server.hops.model import Function, Inputs, count, item
 
 _SPHERE = figure("sphere").scene
 _WIND = figure("wind").scene
 
 
-def _falling(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
+def _falling(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
     from hookean.discretize import volume
 
-    scene = inputs.make(_SPHERE)
     drawn = scene.meshes["sphere"]
-    result = scenes.moved(inputs, scene, inputs.one("Time"), cancelled, tolerance=0.0)
     now = Mesh(result.particles, drawn.faces)
     pairs = np.concatenate([result.force(name)["particles"] for name in ("edges", "diagonals")])
     heights, before = now.vertices[:, 2], drawn.vertices[:, 2]
@@ -37,9 +35,7 @@ def _falling(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
     }
 
 
-def _sail(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-    scene = inputs.make(_WIND)
-    result = scenes.relaxed(inputs, scene, cancelled)
+def _sail(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
     return {
         **scenes.common(result, "sail", "edge"),
         "Mesh": Mesh(result.particles, scene.meshes["sail"].faces),
@@ -50,12 +46,10 @@ def _sail(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
 
 
 FUNCTIONS: dict[str, Function] = {
-    "falling_sphere": Function(
-        "Falling sphere",
-        "Sphere",
+    "falling_sphere": scenes.moving(
+        _SPHERE, _falling, "Falling sphere", "Sphere",
         "Section 9.7: a mesh sphere falls onto the floor, at a time since it was let go",
-        inputs_of(
-            _SPHERE,
+        (
             item("Radius", "R", "Number", "Radius [model unit]", minimum=0.1, maximum=1000.0),
             item("Drop", "H", "Number", "Height of its lowest point over the floor [model unit]", minimum=0.0),
             count("Around", "N", "Faces around its axis", None, 60, 3),
@@ -75,15 +69,12 @@ FUNCTIONS: dict[str, Function] = {
             item("Volume kept", "Vk", "Number", "Its volume as a part of the first [%]"),
             scenes.STATUS,
         ),
-        _falling,
-        "Figures",
+        tolerance=0.0,
     ),
-    "sail": Function(
-        "Sail",
-        "Sail",
+    "sail": scenes.relaxing(
+        _WIND, _sail, "Sail", "Sail",
         "The essay of the sail: a net between four corners in a steady wind along x",
-        inputs_of(
-            _WIND,
+        (
             item("Size", "L", "Number", "Side of its plan [model unit]", minimum=1e-3, maximum=1e4),
             item("Low", "A", "Number", "Height of two opposite corners [model unit]"),
             item("High", "B", "Number", "Height of the other two [model unit]"),
@@ -107,8 +98,6 @@ FUNCTIONS: dict[str, Function] = {
             item("Load", "P", "Number", "Load of the wind on each particle [N]"),
             scenes.STATUS,
         ),
-        _sail,
-        "Figures",
     ),
 }  # fmt: skip
 """Functions by their names."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hookean.scene.scene import Scene
-from hookean_server.hops.model import Inputs, Parameter, item
+from hookean_server.hops.model import Function, Inputs, Parameter, inputs_of, item
 from hookean_server.problems import Problem
 from hookean_server.workers.task import Cancelled
 
@@ -27,6 +28,36 @@ REST_FACTOR = item("Rest factor", "R", "Number", "Rest length as a part of the d
                    minimum=0.0, maximum=10.0)  # fmt: skip
 LENGTH_FACTOR = replace(REST_FACTOR, name="Length factor")
 LOAD = item("Load", "P", "Number", "Force down on every particle [N]; below 0: up")
+
+
+Found = Callable[[Inputs, Scene, Any], dict[str, Any]]
+"""What a function of a figure gives: its outputs by name, from its inputs, the scene and the result."""
+
+
+def relaxing(
+    make: Callable[..., Scene], found: Found, title: str, nickname: str, description: str,
+    inputs: tuple[Parameter, ...], outputs: tuple[Parameter, ...], **settings: Any,
+) -> Function:  # fmt: skip
+    """The function that relaxes a figure's scene, made of its inputs."""
+
+    def run(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
+        scene = inputs.make(make)
+        return found(inputs, scene, relaxed(inputs, scene, cancelled, **settings))
+
+    return Function(title, nickname, description, inputs_of(make, *inputs), outputs, run, "Figures")
+
+
+def moving(
+    make: Callable[..., Scene], found: Found, title: str, nickname: str, description: str,
+    inputs: tuple[Parameter, ...], outputs: tuple[Parameter, ...], **settings: Any,
+) -> Function:  # fmt: skip
+    """The function that has a figure's scene move until its input `Time`."""
+
+    def run(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
+        scene = inputs.make(make)
+        return found(inputs, scene, moved(inputs, scene, inputs.one("Time"), cancelled, **settings))
+
+    return Function(title, nickname, description, inputs_of(make, *inputs), outputs, run, "Figures")
 
 
 def relaxed(inputs: Inputs, scene: Scene, cancelled: Cancelled, **settings: Any) -> Any:
