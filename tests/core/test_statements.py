@@ -141,30 +141,15 @@ def test_h5_the_force_on_each_particle_is_along_its_spring(seed: int):
 
 def test_h5_axial_forces_alone_carry_the_loads():
     """A sagging membrane: the sum of tension x direction over the springs of each particle is load or reaction."""
-    line = np.linspace(0.0, 10.0, 9)
-    x = np.stack([*np.meshgrid(line, line, indexing="ij"), np.zeros((9, 9))], axis=-1).reshape(-1, 3)
-    number = np.arange(81).reshape(9, 9)
-    pairs = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
-    edges = np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in pairs])
-    corners = [0, 8, 72, 80]
-    result = relax(
-        Scene(
-            particles=x,
-            forces=[
-                {"kind": "springs", "particles": edges, "stiffness": 2000},
-                {"kind": "unary", "particles": list(range(81)), "vector": [0, 0, -20]},
-            ],
-            anchors=[{"particles": corners}],
-            settings={"tolerance": 1e-10},
-        )
-    )
+    result = relax(figure("9.24-membrane").scene(divisions=8, tolerance=1e-10))
     assert result.converged
-    d = result.particles[edges[:, 1]] - result.particles[edges[:, 0]]
+    pairs = result.force("membrane")["particles"]
+    d = result.particles[pairs[:, 1]] - result.particles[pairs[:, 0]]
     length = np.linalg.norm(d, axis=1)
     pull = (2000.0 * (length - 1.25) / length)[:, None] * d
     total = np.tile([0.0, 0.0, -20.0], (81, 1))
-    np.add.at(total, edges[:, 0], pull)
-    np.add.at(total, edges[:, 1], -pull)
+    np.add.at(total, pairs[:, 0], pull)
+    np.add.at(total, pairs[:, 1], -pull)
     np.add.at(total, result.reactions["particles"], result.reactions["force"])
     # what the run itself says is out of balance, and rounding of 2000 N/m x 10 m
     assert np.abs(total).max() <= result.out_of_balance + 8 * EPS * 2e4

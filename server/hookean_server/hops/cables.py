@@ -21,9 +21,7 @@ _ARC = figure("9.17-arc-to-catenary").scene
 _FALLING_ARC = figure("9.21-arc-frames").scene
 _CHAINS = figure("9.22-freeform-frames").scene
 
-_LENGTH = item("Length", "Lt", "Number", "Length of all springs [model unit]")
 _SAG = item("Sag", "D", "Number", "How far the lowest particle lies below the first [model unit]")
-_LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring [N]")
 _TIME = item(
     "Time", "t", "Number", "Time since the start [s]; a frame every 0.05 s or 0.2 s", minimum=0.0, maximum=120.0
 )
@@ -33,9 +31,9 @@ _SHAPE = (
     scenes.FORCES,
     scenes.REACTIONS,
     scenes.SUPPORTS,
-    _LENGTH,
+    scenes.LENGTH,
     _SAG,
-    _LARGEST,
+    scenes.LARGEST,
     scenes.STATUS,
 )
 _ENDS = optional(

@@ -24,11 +24,9 @@ _ANCHORS = optional(
 )
 _SAG = item("Sag", "D", "Number", "How far the middle vertex lies below the plane z = 0 [model unit]")
 _DEEPEST = item("Deepest", "Dm", "Number", "How far the lowest vertex lies below the plane z = 0 [model unit]")
-_LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring [N]")
 _LEAST = item("Least force", "Fn", "Number", "The smallest force of a spring [N]")
-_LENGTH = item("Length", "Lt", "Number", "Length of all springs [model unit]")
-_SHAPE = (scenes.MESH, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, scenes.SUPPORTS, _SAG, _DEEPEST, _LARGEST,
-          _LEAST, _LENGTH, scenes.STATUS)  # fmt: skip
+_SHAPE = (scenes.MESH, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, scenes.SUPPORTS, _SAG, _DEEPEST, scenes.LARGEST,
+          _LEAST, scenes.LENGTH, scenes.STATUS)  # fmt: skip
 
 
 def _shape(inputs: Inputs, scene: Scene, result: Any, *names: str) -> dict[str, Any]:

@@ -20,6 +20,8 @@ MESH = item("Mesh", "M", "Mesh", "The mesh in equilibrium")
 FORCES = Parameter("Forces", "F", "Number", "Force of every spring [N], tension positive")
 REACTIONS = Parameter("Reactions", "Re", "Vector", "Force of every anchor on its particle [N]")
 SUPPORTS = Parameter("Supports", "Su", "Point", "Where the reactions act, in their order [model unit]")
+LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring [N]")
+LENGTH = item("Length", "Lt", "Number", "Length of all springs [model unit]")
 STATUS = item("Status", "S", "Text", "converged, or how the run ended")
 
 
@@ -34,28 +36,23 @@ Found = Callable[[Inputs, Scene, Any], dict[str, Any]]
 """What a function of a figure gives: its outputs by name, from its inputs, the scene and the result."""
 
 
-def relaxing(
-    make: Callable[..., Scene], found: Found, title: str, nickname: str, description: str,
-    inputs: tuple[Parameter, ...], outputs: tuple[Parameter, ...], **settings: Any,
-) -> Function:  # fmt: skip
-    """The function that relaxes a figure's scene, made of its inputs."""
+def relaxing(make: Callable[..., Scene], found: Found, *about: Any, **settings: Any) -> Function:
+    """The function that relaxes a figure's scene, made of its inputs; `about` is what stands in a Function, from its
+    title to its outputs."""
+    return _solving(make, found, about, lambda *given: relaxed(*given, **settings))
+
+
+def moving(make: Callable[..., Scene], found: Found, *about: Any, **settings: Any) -> Function:
+    """As `relaxing`, of a scene that moves until its input `Time`."""
+    return _solving(make, found, about, lambda inputs, *of: moved(inputs, *of, until=inputs.one("Time"), **settings))
+
+
+def _solving(make: Callable[..., Scene], found: Found, about: Any, solve: Callable[..., Any]) -> Function:
+    title, nickname, description, inputs, outputs = about
 
     def run(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
         scene = inputs.make(make)
-        return found(inputs, scene, relaxed(inputs, scene, cancelled, **settings))
-
-    return Function(title, nickname, description, inputs_of(make, *inputs), outputs, run, "Figures")
-
-
-def moving(
-    make: Callable[..., Scene], found: Found, title: str, nickname: str, description: str,
-    inputs: tuple[Parameter, ...], outputs: tuple[Parameter, ...], **settings: Any,
-) -> Function:  # fmt: skip
-    """The function that has a figure's scene move until its input `Time`."""
-
-    def run(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-        scene = inputs.make(make)
-        return found(inputs, scene, moved(inputs, scene, inputs.one("Time"), cancelled, **settings))
+        return found(inputs, scene, solve(inputs, scene, cancelled))
 
     return Function(title, nickname, description, inputs_of(make, *inputs), outputs, run, "Figures")
 
@@ -71,7 +68,7 @@ def relaxed(inputs: Inputs, scene: Scene, cancelled: Cancelled, **settings: Any)
     return result
 
 
-def moved(inputs: Inputs, scene: Scene, until: float, cancelled: Cancelled, **settings: Any) -> Any:
+def moved(inputs: Inputs, scene: Scene, cancelled: Cancelled, *, until: float, **settings: Any) -> Any:
     """A scene in motion at a time: the state of the step nearest to it, of those that end a frame."""
     from hookean.running.simulation import Simulation
 
