@@ -8,7 +8,7 @@ surfaces are drawn here, and scene.py reads them from the model.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -270,13 +270,10 @@ def basento() -> None:
     write("basento", layers, [("skin", "bay", skin), *held, *edges])
 
 
-MODELS: tuple[Callable[[], None], ...] = (
-    *(cables, arcs, frames, membranes, hypar, diagonals, ribbon, sphere, sail, wind, hanging_vault, basento),
-)
-
 if __name__ == "__main__":
     chosen = sys.argv[1:]
-    for model in MODELS:
+    models = (cables, arcs, frames, membranes, hypar, diagonals, ribbon, sphere, sail, wind, hanging_vault, basento)
+    for model in models:
         if not chosen or model.__name__ in chosen:
             model()
             print(model.__name__)

@@ -25,17 +25,8 @@ _SAG = item("Sag", "D", "Number", "How far the lowest particle lies below the fi
 _TIME = item(
     "Time", "t", "Number", "Time since the start [s]; a frame every 0.05 s or 0.2 s", minimum=0.0, maximum=120.0
 )
-_SHAPE = (
-    scenes.PARTICLES,
-    scenes.SPRINGS,
-    scenes.FORCES,
-    scenes.REACTIONS,
-    scenes.SUPPORTS,
-    scenes.LENGTH,
-    _SAG,
-    scenes.LARGEST,
-    scenes.STATUS,
-)
+_SHAPE = (scenes.PARTICLES, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, scenes.SUPPORTS, scenes.LENGTH, _SAG,
+          scenes.LARGEST, scenes.STATUS)  # fmt: skip
 _ENDS = optional(
     Parameter("Anchors", "A", "Point", "Where it is held: first, last and those between; none: (0, 0, 0), (10, 0, 0)")
 )
