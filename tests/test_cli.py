@@ -18,6 +18,7 @@ import hookean
 from hookean import Scene, cli
 from hookean.commands import relax as command
 from hookean.commands.command import taking
+from hookean.discretize import grid
 from hookean.files.rhino import threedm
 from hookean.files.rhino.threedm import Additions, NewObject
 from hookean.forces import KINDS
@@ -132,10 +133,8 @@ def test_a_load_that_meets_nothing_exits_with_2_whatever_the_limits(folder: Path
     """Wind on another division of the same net: nothing is written, and limits cannot pass for want of wind."""
 
     def square(count: int) -> dict[str, object]:
-        number = np.arange((count + 1) ** 2).reshape(count + 1, count + 1)
-        faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1)
-        vertices = np.argwhere(number >= 0) @ np.eye(2, 3) / count
-        return {"vertices": vertices.tolist(), "faces": faces.reshape(-1, 4).tolist()}
+        steps = np.arange(count + 1) / count
+        return {name: rows.tolist() for name, rows in vars(grid(steps, steps)).items()}
 
     wind = {"kind": "pressure", "name": "wind", "mesh": "b", "pressure": 1.0}
     scene: dict[str, object] = {"forces": [{"kind": "springs", "mesh": "a"}, wind]}

@@ -63,7 +63,7 @@ def test_a_row_for_each_frame_with_units_in_the_head(folder: Path):
     table = rows(done.stdout)
     assert list(table[0]) == [
         "time [s]", "iteration", "residual [-]", "kinetic energy [N m]", "largest force of cable [N]",
-        "largest force of unary [N]", "largest displacement [m]", "largest reaction [N]",
+        "largest force of load [N]", "largest displacement [m]", "largest reaction [N]",
     ]  # fmt: skip
     simulation = Simulation(cable(), LIFT)
     for row in table:

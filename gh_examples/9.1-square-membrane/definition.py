@@ -1,6 +1,10 @@
 """Figure 9.1 on the canvas: a square membrane of particles and springs, held at its corners."""
 
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.1-square-membrane").scene)
 
 GRID = """
 import Rhino
@@ -38,20 +42,19 @@ def definition() -> Definition:
         "Reset True reads what is drawn, False lets it move. Pull the sliders while it runs.",
     )
     with d.group("Membrane"):
-        side = d.slider("Side [m]", 8, 1, 20, decimals=1)
-        inputs = {"side": side, "count": d.slider("Faces along a side [-]", 8, 2, 30)}
+        side = d.slider("Side [m]", GIVEN["size"], 1, 20, decimals=1)
+        inputs = {"side": side, "count": d.slider("Faces along a side [-]", GIVEN["divisions"], 2, 30)}
         mesh = d.script("Grid", GRID, inputs, ["mesh"], description="A square mesh in the plane z = 0.")
         points = d.component("MeshVertices", mesh=mesh)
         corners = d.component("MeshCorners", mesh=mesh)
     with d.group("Forces"):
-        springs = d.component("Springs", connection=mesh, stiffness=d.slider("Stiffness [N/m]", 1000, 10, 5000))
-        load = d.slider("Load [N]", -5, -50, 0, decimals=1)
+        springs = d.component(
+            "Springs", connection=mesh, stiffness=d.slider("Stiffness [N/m]", GIVEN["stiffness"], 10, 5000)
+        )
+        load = d.slider("Load [N]", -GIVEN["load"], -50, 0, decimals=1)
         down = d.component("Unary", point=points, force=d.native("Unit Z", factor=load))
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "newton"), residual=d.text("Residual [-]", "1e-12"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "newton", "1e-12")
         engine = d.component(
             "Engine", forces=flat(springs, down), anchors=flat(corners["corners"]), settings=settings,
             geometry=mesh, reset=d.toggle("Reset", True),

@@ -1,6 +1,10 @@
 """Figure 9.10 on the canvas: a cable of four springs, and a smooth curve through its particles, for display only."""
 
-from hookean_canvas.definitions.write import Definition, flat
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
+from hookean_canvas.definitions.write import Definition
+
+GIVEN = defaults(figure("9.10-smooth-curve").scene)
 
 NUMBERS = """
 import math
@@ -42,25 +46,9 @@ def definition() -> Definition:
         "A cable of four springs under 40 N on every particle, and a curve interpolated through them. The curve is for "
         "display only: between the particles it is 18 cm away from the springs, and it does not turn at B as they do.",
     )
-    with d.group("Line"):
-        end = d.point(d.slider("Span [m]", 10, 1, 20, decimals=1), 0, 0)
-        line = d.native("Line", start_point=d.point(0, 0, 0), end_point=end)
-        ends = d.native("End Points", curve=line)
-        count = d.slider("Springs [-]", 4, 4, 50)
-        pieces = d.component("Shatter", curve=line, count=count)
-        points = d.component("Divide", curve=line, count=count)
-    with d.group("Forces"):
-        springs = d.component(
-            "Springs", connection=pieces["lines"], stiffness=d.slider("Stiffness [N/m]", 200, 10, 5000)
-        )
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -40, -100, 0, decimals=1))
-        load = d.component("Unary", point=points, force=down)
-    with d.group("Engine"):
-        settings = d.component("Settings", residual=d.text("Residual [-]", "1e-12"), fast=d.toggle("Fast", True))
-        engine = d.component(
-            "Engine", forces=flat(springs, load), anchors=[ends["Start"], ends["End"]], settings=settings,
-            geometry=pieces["lines"], reset=d.toggle("Reset", True),
-        )  # fmt: skip
+    line = parts.line(d, GIVEN["pieces"], least=4)
+    forces, _ = parts.hung(d, line, GIVEN)
+    engine = parts.at_rest(d, forces, line, [line.ends["Start"], line.ends["End"]])
     with d.group("Curve", "To look at; nothing pulls on it."):
         curve = d.component("Interpolate", points=engine["particles"], count=d.slider("Pieces [-]", 4000, 10, 4000))
     with d.group("Numbers", "What expected.json holds the figure to."):

@@ -5,14 +5,13 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
-from hookean.commands.examples import Outcome
+from hookean.commands.examples import Outcome, figure
 from hookean.discretize import interpolate
-from hookean.files.relax_file import read_scene
 from hookean.pictures.sheet import Panel
 
 
 def run(folder: Path) -> Outcome:
-    scene = read_scene(folder / "scene.json")
+    scene = figure(folder).scene()
     result = relax(scene)
     x = result.particles
     curve = interpolate(x, 4000)

@@ -1,6 +1,10 @@
 """Figure 9.11 on the canvas: springs nearer the supports of a loaded cable stretch more."""
 
-from hookean_canvas.definitions.write import Definition, flat
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
+from hookean_canvas.definitions.write import Definition
+
+GIVEN = defaults(figure("9.11-uneven-extension").scene)
 
 NUMBERS = """
 lengths = [a.DistanceTo(b) for a, b in zip(particles, particles[1:])]
@@ -22,29 +26,14 @@ def definition() -> Definition:
         "A cable of 10 m in five springs, 20 N on each of its six particles, becomes 10.468 m long. The springs at the "
         "supports carry the loads of the others too and stretch most.",
     )
-    with d.group("Line"):
-        end = d.point(d.slider("Span [m]", 10, 1, 20, decimals=1), 0, 0)
-        line = d.native("Line", start_point=d.point(0, 0, 0), end_point=end)
-        ends = d.native("End Points", curve=line)
-        count = d.slider("Springs [-]", 5, 1, 50)
-        pieces = d.component("Shatter", curve=line, count=count)
-        points = d.component("Divide", curve=line, count=count)
-    with d.group("Forces"):
-        stiffness = d.slider("Stiffness [N/m]", 1000, 10, 5000)
-        springs = d.component("Springs", connection=pieces["lines"], stiffness=stiffness)
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -20, -100, 0, decimals=1))
-        load = d.component("Unary", point=points, force=down)
-    with d.group("Engine"):
-        settings = d.component("Settings", residual=d.text("Residual [-]", "1e-12"), fast=d.toggle("Fast", True))
-        engine = d.component(
-            "Engine", forces=flat(springs, load), anchors=[ends["Start"], ends["End"]], settings=settings,
-            geometry=pieces["lines"], reset=d.toggle("Reset", True),
-        )  # fmt: skip
+    line = parts.line(d, GIVEN["pieces"])
+    forces, stiffness = parts.hung(d, line, GIVEN)
+    engine = parts.at_rest(d, forces, line, [line.ends["Start"], line.ends["End"]])
     with d.group("Numbers", "What expected.json holds the figure to."):
         d.panel("report", engine["report"])
         d.numbers(
             NUMBERS,
-            {"particles": engine["particles"], "forces": engine["forces"], "starts": pieces["lengths"],
+            {"particles": engine["particles"], "forces": engine["forces"], "starts": line.lengths,
              "stiffness": stiffness},
             {
                 "length": "length", "extension": "extension", "first": "extension of spring 1",

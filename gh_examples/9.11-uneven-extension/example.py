@@ -5,13 +5,12 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
-from hookean.commands.examples import Outcome
-from hookean.files.relax_file import read_scene
+from hookean.commands.examples import Outcome, figure
 from hookean.pictures.sheet import Graph, Panel
 
 
 def run(folder: Path) -> Outcome:
-    scene = read_scene(folder / "scene.json")
+    scene = figure(folder).scene()
     result = relax(scene)
     cable = result.force("cable")
     longer = cable["length"] - 2.0

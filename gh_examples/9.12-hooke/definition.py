@@ -2,7 +2,10 @@
 
 from typing import Any
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.12-hooke").scene)
 
 MOTION = '''
 """How a spring swings under its load: the length at last, and when it last was 0.5 cm away from rest."""
@@ -92,8 +95,8 @@ def definition() -> Definition:
             for name, residual in (("Residual [-]", "1e-12"), ("Residual without a load [-]", "1e-10"))
         )
         reset = d.toggle("Reset", True)
-        k = d.slider("Stiffness [N/cm]", 2, 0.5, 10, decimals=1)
-        weight = d.slider("Load [N]", 100, 0, 200)
+        k = d.slider("Stiffness [N/cm]", GIVEN["stiffness"], 0.5, 10, decimals=1)
+        weight = d.slider("Load [N]", GIVEN["weight"], 0, 200)
         down = d.script("Down", DOWN, {"load": weight}, ["force"])
         loads = d.parameter("Number", "Loads [N]", [0.0, -25.0, -50.0, -75.0, -100.0])
         stiffnesses = d.parameter("Number", "Stiffnesses [N/cm]", [1.0, 2.0, 4.0, 8.0])

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from hookean import Scene, Simulation, relax, simulate
-from hookean.commands.examples import Outcome
-from hookean.files.relax_file import read_scene
+from hookean.commands.examples import Outcome, figure
 from hookean.pictures.sheet import Graph, Panel
 
 STIFFNESSES = (1.0, 2.0, 4.0, 8.0)  # N/cm
@@ -14,16 +13,17 @@ DAMPINGS = {1.0: 5, 10.0: 20, 100.0: 80}  # N s/cm: time steps of 0.01 s in a fr
 
 
 def run(folder: Path) -> Outcome:
-    scene = read_scene(folder / "scene.json")
+    make = figure(folder).scene
+    scene = make()
     running = Simulation(scene)
     loaded = running.relax()
     running.patch({"forces": {"weight": {"vector": [0, 0, 0]}}})
     unloaded = running.relax()
-    row_scene = read_scene(folder / "scene-row.json")
+    row_scene = make(weight=(0.0, 25.0, 50.0, 75.0, 100.0))
     row = relax(row_scene)
     stretched = row.force("cable")["length"] - 80.0
-    extensions = [length(relax(changed(scene, "stiffness", k))) - 80.0 for k in STIFFNESSES]
-    paths = {f"damping {c:g} N s/cm": path(changed(scene, "damping", c), steps) for c, steps in DAMPINGS.items()}
+    extensions = [length(relax(make(stiffness=k))) - 80.0 for k in STIFFNESSES]
+    paths = {f"damping {c:g} N s/cm": path(make(damping=c, sub_iterations=steps)) for c, steps in DAMPINGS.items()}
     numbers = {
         "length under the load": length(loaded),
         "extension": length(loaded) - 80.0,
@@ -47,20 +47,13 @@ def run(folder: Path) -> Outcome:
     return Outcome(numbers, [hanging, law, *over_time], columns=2)
 
 
-def changed(scene: Scene, field: str, value: float) -> Scene:
-    """The scene with another stiffness or damping."""
-    cable = scene.forces[0].model_copy(update={field: value})
-    return scene.model_copy(update={"forces": (cable, scene.forces[1])})
-
-
 def length(result) -> float:
     return float(result.force("cable")["length"][0])
 
 
-def path(scene: Scene, steps: int) -> tuple[np.ndarray, np.ndarray]:
+def path(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Times [s] and lengths [cm] of the falling weight, until it is at rest or for 500 frames."""
-    slower = scene.model_copy(update={"settings": scene.settings.model_copy(update={"sub_iterations": steps})})
-    seen = [(frame.time, -frame.particles[1, 2]) for frame in simulate(slower, 500)]
+    seen = [(frame.time, -frame.particles[1, 2]) for frame in simulate(scene, 500)]
     return np.array(seen).T[0], np.array(seen).T[1]
 
 

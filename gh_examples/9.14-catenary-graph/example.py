@@ -5,16 +5,15 @@ from pathlib import Path
 import numpy as np
 
 from hookean import relax
-from hookean.commands.examples import Outcome
+from hookean.commands.examples import Outcome, figure
 from hookean.discretize.catenary import catenary, catenary_of, parameter, sag, tensions
-from hookean.files.relax_file import read_scene
 from hookean.pictures.sheet import Graph, Panel
 
 TOP = 10.0  # m, where the graph ends
 
 
 def run(folder: Path) -> Outcome:
-    scene = read_scene(folder / "scene.json")
+    scene = figure(folder).scene()
     result = relax(scene)
     x, z = result.particles[:, 0], result.particles[:, 2]
     first, last = result.particles[0], result.particles[-1]

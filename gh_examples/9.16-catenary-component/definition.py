@@ -79,7 +79,7 @@ off = max(x.DistanceTo(y) for x, y in zip(joints, drawn))
 """
 CASES = ("rising", "level", "nearly taut", "very slack", "gravity aslant", "gravity sideways")
 ENDS = [(8.0, 0.0, 4.0), (10.0, 0.0, 0.0), (10.0, 0.0, 0.0), (3.0, 0.0, 1.0), (9.0, 0.0, 0.0), (0.0, 0.0, -8.0)]
-LENGTHS = [12.0, 12.0, 60 * 0.168333333333, 18.0, 12.0, 12.0]  # the third as scene-taut.json has it
+LENGTHS = [12.0, 12.0, 60 * 0.168333333333, 18.0, 12.0, 12.0]  # the third of links rounded to 12 digits
 GRAVITIES = [(0.0, 0.0, -1.0)] * 4 + [(0.6, 0.0, -0.8), (1.0, 0.0, 0.0)]
 WHAT = {
     "a": "a", "depth": "depth below A", "tension": "largest tension", "off": "chain off the catenary",

@@ -5,26 +5,17 @@ from pathlib import Path
 import numpy as np
 
 from hookean import InputError, Scene, relax
-from hookean.commands.examples import Outcome
+from hookean.commands.examples import Outcome, figure
 from hookean.discretize.catenary import catenary, parameter, tensions
-from hookean.files.relax_file import read_scene
 from hookean.pictures.sheet import Panel
-
-SCENES = {
-    "rising": "scene.json",
-    "level": "scene-level.json",
-    "nearly taut": "scene-taut.json",
-    "very slack": "scene-slack.json",
-    "gravity aslant": "scene-aslant.json",
-    "gravity sideways": "scene-sideways.json",
-}
 
 
 def run(folder: Path) -> Outcome:
     numbers: dict[str, float] = {}
     panels = []
-    for name, file in SCENES.items():
-        scene = read_scene(folder / file)
+    made = figure(folder)
+    for name, parameters in made.CASES.items():
+        scene = made.scene(**parameters)
         start, end, length, gravity = inputs(scene)
         drawn = catenary(start, end, length, count=len(scene.particles) - 1, gravity=gravity)
         pull = tensions(start, end, length, gravity=gravity, weight=1.0)

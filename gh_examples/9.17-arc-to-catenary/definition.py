@@ -2,7 +2,10 @@
 
 from typing import Any
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.17-arc-to-catenary").scene)
 
 CASES = {
     "line": ("line", False),
@@ -44,13 +47,13 @@ def definition() -> Definition:
     )
     with d.group("Values"):
         file = d.text("File", "model.3dm")
-        count = d.slider("Springs [-]", 50, 2, 200)
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -1, -10, 0, decimals=1))
+        count = d.slider("Springs [-]", GIVEN["pieces"], 2, 200)
+        down = d.native("Unit Z", factor=d.slider("Load [N]", -GIVEN["load"], -10, 0, decimals=1))
         settings = d.component("Settings", residual=d.text("Residual [-]", "1e-12"), fast=d.toggle("Fast", True))
         reset = d.toggle("Reset", True)
         soft = d.slider("Stiffness of the line [N/m]", 75, 10, 1000)
-        stiff = d.slider("Stiffness of the arcs [N/m]", 7000, 100, 10000)
-        factor = d.slider("Rest factor of the arcs [-]", 0.995, 0.9, 1.1, decimals=3)
+        stiff = d.slider("Stiffness of the arcs [N/m]", GIVEN["stiffness"], 100, 10000)
+        factor = d.slider("Rest factor of the arcs [-]", GIVEN["rest_factor"], 0.9, 1.1, decimals=3)
         rest = d.text("Rest length along the arcs [m]", "0.4")
 
     def cable(title: str, layer: str, along: bool) -> Any:

@@ -1,6 +1,10 @@
 """Figure 9.21 on the canvas: an arc of 20 m comes down to the catenary, seen at five moments and at rest."""
 
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.21-arc-frames").scene)
 
 MOTION = """
 rows = [list(particles.Branch(path)) for path in particles.Paths]
@@ -24,21 +28,21 @@ def definition() -> Definition:
     with d.group("Drawn in Rhino", "The arc in model.3dm beside this file."):
         drawn = d.component("RhinoFile", file=d.text("File", "model.3dm"), layer=d.text("Layer", "arc"))
         arc = drawn["curves"]
-        count = d.slider("Springs [-]", 50, 2, 100)
+        count = d.slider("Springs [-]", GIVEN["pieces"], 2, 100)
         pieces = d.component("Shatter", curve=arc, count=count)
         points = d.component("Divide", curve=arc, count=count)
         ends = d.native("End Points", curve=arc)
     with d.group("Forces"):
         springs = d.component(
-            "Springs", connection=pieces["lines"], stiffness=d.slider("Stiffness [N/m]", 7000, 100, 10000),
-            rest_factor=d.slider("Rest factor [-]", 0.995, 0.9, 1.1, decimals=3),
+            "Springs", connection=pieces["lines"],
+            stiffness=d.slider("Stiffness [N/m]", GIVEN["stiffness"], 100, 10000),
+            rest_factor=d.slider("Rest factor [-]", GIVEN["rest_factor"], 0.9, 1.1, decimals=3),
         )  # fmt: skip
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -1, -10, 0, decimals=1))
-        load = d.component("Unary", point=points, force=down)
+        load = d.component("Unary", point=points, force=parts.down(d, GIVEN, 10))
     given = {"forces": flat(springs, load), "anchors": flat(ends["Start"], ends["End"]), "geometry": pieces["lines"]}
     with d.group("Motion", "In physical time: the step [s], and the drag [N s/m] on every particle."):
-        drag = d.slider("Drag [N s/m]", 1, 0, 10, decimals=1)
-        settings = d.component("Settings", time_step=d.text("Time step [s]", "0.0025"), drag=drag)
+        drag = d.slider("Drag [N s/m]", GIVEN["drag"], 0, 10, decimals=1)
+        settings = d.component("Settings", time_step=d.text("Time step [s]", str(GIVEN["time_step"])), drag=drag)
         times = d.native(
             "Series",
             start=0,
@@ -47,10 +51,7 @@ def definition() -> Definition:
         )
         moments = d.component("Moments", settings=settings, times=times, **given)
     with d.group("Equilibrium"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "newton"), residual=d.text("Residual [-]", "1e-12"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "newton", "1e-12")
         engine = d.component("Engine", settings=settings, reset=d.toggle("Reset", True), **given)
     with d.group("Numbers", "What expected.json holds the figure to."):
         d.panel("report", engine["report"])

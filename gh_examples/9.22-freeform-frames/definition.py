@@ -1,6 +1,10 @@
 """Figure 9.22 on the canvas: chains between two free-form frames, and the catenaries drawn from their ends."""
 
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.22-freeform-frames").scene)
 
 LENGTHS = """
 lengths = [factor * a.DistanceTo(b) for a, b in zip(starts, ends)]
@@ -36,21 +40,17 @@ def definition() -> Definition:
         chains = d.component("RhinoFile", file=file, layer=d.text("Chains", "chains"))["curves"]
         frames = d.component("RhinoFile", file=file, layer=d.text("Frames", "frames"))["curves"]
         ends = d.native("End Points", curve=chains)
-        count = d.slider("Links of a chain [-]", 24, 2, 60)
+        count = d.slider("Links of a chain [-]", GIVEN["links"], 2, 60)
         pieces = d.component("Shatter", curve=chains, count=count)
         points = d.component("Divide", curve=chains, count=count)
     with d.group("Forces"):
-        factor = d.slider("Length of a chain [-]", 1.2, 1, 2, decimals=2)
+        factor = d.slider("Length of a chain [-]", GIVEN["length_factor"], 1, 2, decimals=2)
         springs = d.component(
             "Springs", connection=flat(pieces["lines"]), stiffness=d.text("Stiffness [N/m]", "1e6"), rest_factor=factor
         )
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -1, -10, 0, decimals=1))
-        load = d.component("Unary", point=flat(points), force=down)
+        load = d.component("Unary", point=flat(points), force=parts.down(d, GIVEN, 10))
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "newton"), residual=d.text("Residual [-]", "1e-9"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "newton", "1e-9")
         engine = d.component(
             "Engine", forces=flat(springs, load), anchors=flat(ends["Start"], ends["End"]), settings=settings,
             geometry=chains, reset=d.toggle("Reset", True),
@@ -60,12 +60,12 @@ def definition() -> Definition:
         lengths = d.script("Lengths", LENGTHS, given, ["lengths"], lists=["starts", "ends"])
         drawn = d.component("Catenary", start=ends["Start"], end=ends["End"], length=lengths, count=count)
         number = d.native("List Length", list=chains)
-        parts = d.component("Divide", "Equal parts", curve=frames, count=number)
+        equal = d.component("Divide", "Equal parts", curve=frames, count=number)
     with d.group("Numbers", "What expected.json holds the figure to."):
         d.panel("report", engine["report"])
         d.numbers(
             NUMBERS,
-            {"particles": engine["particles"], "forces": engine["forces"], "count": count, "frames": parts,
+            {"particles": engine["particles"], "forces": engine["forces"], "count": count, "frames": equal,
              "catenaries": drawn["points"]},
             {
                 "chains": "chains", "off": "ends off equal parts of the frames", "total": "total length",

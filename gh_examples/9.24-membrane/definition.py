@@ -1,6 +1,9 @@
 """Figures 9.23 to 9.25 on the canvas: a surface becomes a net of springs, held at its corners; its mesh rides along."""
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.24-membrane").scene)
 
 NUMBERS = """
 points = [mesh.Vertices.Point3dAt(i) for i in range(len(vertices))]
@@ -38,18 +41,18 @@ def definition() -> Definition:
     with d.group("Surface"):
         drawn = d.component("RhinoFile", file=d.text("File", "model.3dm"), layer=d.text("Layer", "membrane"))
         mesh = d.component(
-            "MeshSurface", surface=drawn["surfaces"], u=d.slider("Faces U [-]", 20, 2, 60),
-            v=d.slider("Faces V [-]", 20, 2, 60),
+            "MeshSurface", surface=drawn["surfaces"], u=d.slider("Faces U [-]", GIVEN["divisions"], 2, 60),
+            v=d.slider("Faces V [-]", GIVEN["divisions"], 2, 60),
         )  # fmt: skip
         vertices = d.component("MeshVertices", mesh=mesh)
         edges = d.component("MeshEdges", mesh=mesh)
         corners = d.component("MeshCorners", mesh=mesh)
     with d.group("Forces"):
         springs = d.component(
-            "Springs", connection=edges["edges"], stiffness=d.slider("Stiffness [N/m]", 2000, 10, 5000)
+            "Springs", connection=edges["edges"], stiffness=d.slider("Stiffness [N/m]", GIVEN["stiffness"], 10, 5000)
         )
         load = d.component(
-            "Unary", point=vertices, force=d.native("Unit Z", factor=d.slider("Load [N]", -20, -100, 100))
+            "Unary", point=vertices, force=d.native("Unit Z", factor=d.slider("Load [N]", -GIVEN["load"], -100, 100))
         )
     with d.group("Engine"):
         settings = d.component("Settings", residual=d.text("Residual [-]", "1e-9"), fast=d.toggle("Fast", True))

@@ -1,6 +1,10 @@
 """Figure 9.26 on the canvas: a membrane whose corners are led up and down while it runs."""
 
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.26-membrane-anchors-moved").scene)
 
 NUMBERS = """
 start = [drawn.Vertices.Point3dAt(i) for i in range(len(drawn.Vertices))]
@@ -26,21 +30,16 @@ def definition() -> Definition:
         "particle along.",
     )
     with d.group("Drawn in Rhino", "Layers of model.3dm beside this file."):
-        file = d.text("File", "model.3dm")
-        drawn = d.component(
-            "RhinoFile", file=file, layer=d.text("Surface", "membrane"), u=d.slider("U [-]", 20, 2, 40),
-            v=d.slider("V [-]", 20, 2, 40),
-        )  # fmt: skip
+        file, mesh = parts.surface(d, GIVEN, 40)
         rising = d.component("RhinoFile", file=file, layer=d.text("Corners that rise", "rising"))
         sinking = d.component("RhinoFile", file=file, layer=d.text("Corners that sink", "sinking"))
-        points = d.component("MeshVertices", mesh=drawn["meshes"])
+        points = d.component("MeshVertices", mesh=mesh)
     with d.group("Forces"):
         springs = d.component(
-            "Springs", connection=drawn["meshes"], stiffness=d.slider("Stiffness [N/m]", 2000, 10, 5000),
-            rest_factor=d.slider("Rest factor [-]", 0.8, 0, 1.2, decimals=2),
+            "Springs", connection=mesh, stiffness=d.slider("Stiffness [N/m]", GIVEN["stiffness"], 10, 5000),
+            rest_factor=d.slider("Rest factor [-]", GIVEN["rest_factor"], 0, 1.2, decimals=2),
         )  # fmt: skip
-        load = d.native("Unit Z", factor=d.slider("Load [N]", -20, -100, 0, decimals=1))
-        weight = d.component("Unary", point=points, force=load)
+        weight = d.component("Unary", point=points, force=parts.down(d, GIVEN))
     with d.group("Anchors", "Points say which particles are held, targets where."):
         anchors = []
         for name, corners, height in (("Rise [m]", rising, 4), ("Sink [m]", sinking, -1)):
@@ -48,19 +47,16 @@ def definition() -> Definition:
             moved = d.native("Move", geometry=corners["points"], motion=up)
             anchors.append(d.component("Anchors", point=corners["points"], targets=moved["Geometry"]))
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-10"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "relaxation", "1e-10")
         engine = d.component(
             "Engine", forces=flat(springs, weight), anchors=flat(*anchors), settings=settings,
-            geometry=drawn["meshes"], reset=d.toggle("Reset", True),
+            geometry=mesh, reset=d.toggle("Reset", True),
         )  # fmt: skip
     with d.group("Numbers", "What expected.json holds the figure to."):
         d.panel("report", engine["report"])
         d.numbers(
             NUMBERS,
-            {"drawn": drawn["meshes"], "membrane": engine["geometry"], "forces": engine["forces"],
+            {"drawn": mesh, "membrane": engine["geometry"], "forces": engine["forces"],
              "reactions": engine["reactions"]},
             {
                 "middle": "height of the middle", "largest": "largest force", "smallest": "smallest force",

@@ -1,6 +1,10 @@
 """Figure 9.27 on the canvas: a membrane held at its naked vertices, and the same one held at drawn points."""
 
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.27-naked-vertices").scene)
 
 NUMBERS = """
 points = [membrane.Vertices.Point3dAt(i) for i in range(len(membrane.Vertices))]
@@ -26,25 +30,16 @@ def definition() -> Definition:
         "vertices of the mesh, the other one the points that are drawn.",
     )
     with d.group("Drawn in Rhino", "Layers of model.3dm beside this file."):
-        file = d.text("File", "model.3dm")
-        drawn = d.component(
-            "RhinoFile", file=file, layer=d.text("Surface", "membrane"), u=d.slider("U [-]", 20, 2, 40),
-            v=d.slider("V [-]", 20, 2, 40),
-        )  # fmt: skip
+        file, mesh = parts.surface(d, GIVEN, 40)
         points = d.component("RhinoFile", file=file, layer=d.text("Points that are held", "anchors"))
-        mesh = drawn["meshes"]
         naked = d.component("NakedVertices", mesh=mesh)
         vertices = d.component("MeshVertices", mesh=mesh)
     with d.group("Forces"):
-        stiffness = d.slider("Stiffness [N/m]", 2000, 10, 5000)
+        stiffness = d.slider("Stiffness [N/m]", GIVEN["stiffness"], 10, 5000)
         springs = d.component("Springs", connection=mesh, stiffness=stiffness)
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -20, -100, 0, decimals=1))
-        load = d.component("Unary", point=vertices, force=down)
+        load = d.component("Unary", point=vertices, force=parts.down(d, GIVEN))
     with d.group("Settings"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-11"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "relaxation", "1e-11")
         reset = d.toggle("Reset", True)
     for which, anchors in (("rim", naked["naked_points"]), ("points", points["points"])):
         with d.group(f"Held: {which}"):

@@ -1,6 +1,9 @@
 """Figure 9.28 on the canvas: a net of rest factor 0, and the soap film in the same frame."""
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.28-rest-factor-zero").scene)
 
 GRID = """
 def grid(mesh):
@@ -72,13 +75,13 @@ def definition() -> Definition:
     with d.group("Drawn in Rhino", "The frame's surface in model.3dm beside this file, divided twice."):
         file, layer = d.text("File", "model.3dm"), d.text("Surface", "membrane")
         meshes, frames = [], []
-        for name, count in (("Divisions [-]", 32), ("Divisions, fine [-]", 64)):
+        for name, count in (("Divisions [-]", GIVEN["divisions"]), ("Divisions, fine [-]", 64)):
             number = d.slider(name, count, 2, 64)
             meshes.append(d.component("RhinoFile", file=file, layer=layer, u=number, v=number)["meshes"])
             frames.append(d.component("NakedVertices", mesh=meshes[-1])["naked_points"])
     with d.group("Forces"):
-        factor = d.slider("Rest factor [-]", 0, 0, 1, decimals=2)
-        stiffness = d.slider("Stiffness [N/m]", 100, 1, 1000)
+        factor = d.slider("Rest factor [-]", GIVEN["rest_factor"], 0, 1, decimals=2)
+        stiffness = d.slider("Stiffness [N/m]", GIVEN["tension"], 1, 1000)
         springs = d.component("Springs", connection=meshes[0], stiffness=stiffness, rest_factor=factor)
         tension = d.slider("Tension [N/m]", 1, 0.1, 10, decimals=1)
         films = [d.component("SoapFilm", mesh=mesh, tension=tension) for mesh in meshes]

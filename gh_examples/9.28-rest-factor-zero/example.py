@@ -7,6 +7,8 @@ from scipy.interpolate import CubicSpline
 
 from hookean import relax
 from hookean.commands.examples import Outcome
+from hookean.discretize import area as area_of
+from hookean.discretize import quads
 from hookean.files.relax_file import read_scene
 from hookean.pictures.sheet import Graph, Panel
 from hookean.running.result import Result
@@ -44,13 +46,9 @@ def run(folder: Path) -> Outcome:
 
 
 def area(result: Result, every: int = 1) -> float:
-    """Area of the carried mesh, a grid of particles; a quad is the mean of its two cuts into triangles. With `every`
-    2 only each second row and column of particles counts."""
+    """Area of the carried mesh, a grid of particles; with `every` 2 only each second row and column of them counts."""
     n = int(np.sqrt(len(result.particles)))
-    p = result.particles.reshape(n, n, 3)[::every, ::every]
-    a, b, c, d = p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]
-    cuts = [(b - a, c - a), (c - a, d - a), (b - a, d - a), (c - b, d - b)]
-    return float(sum(0.25 * np.linalg.norm(np.cross(u, v), axis=2).sum() for u, v in cuts))
+    return area_of(quads(result.particles.reshape(n, n, 3)[::every, ::every]))
 
 
 def height(result: Result, at):

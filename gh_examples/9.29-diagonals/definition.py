@@ -1,6 +1,10 @@
 """Figure 9.29 on the canvas: the same membrane without diagonals, with one and with both in every face."""
 
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.29-diagonals").scene)
 
 NUMBERS = """
 import math
@@ -41,31 +45,24 @@ def definition() -> Definition:
         "drawn in Rhino, and with both in every face.",
     )
     with d.group("Drawn in Rhino", "Layers of model.3dm beside this file."):
-        file = d.text("File", "model.3dm")
-        drawn = d.component(
-            "RhinoFile", file=file, layer=d.text("Surface", "membrane"), u=d.slider("U [-]", 10, 2, 30),
-            v=d.slider("V [-]", 10, 2, 30),
-        )  # fmt: skip
+        file, mesh = parts.surface(d, GIVEN, 30)
         one = d.component("RhinoFile", file=file, layer=d.text("Diagonals", "one way"))
-        mesh = drawn["meshes"]
         both = d.component("Diagonals", mesh=mesh)
         corners = d.component("MeshCorners", mesh=mesh)
         vertices = d.component("MeshVertices", mesh=mesh)
     with d.group("Forces"):
-        edges = d.component("Springs", "Edges", connection=mesh, stiffness=d.slider("Edges [N/m]", 2000, 10, 5000))
-        stiffness = d.slider("Diagonals [N/m]", 1000, 10, 5000)
+        edges = d.component(
+            "Springs", "Edges", connection=mesh, stiffness=d.slider("Edges [N/m]", GIVEN["stiffness"], 10, 5000)
+        )
+        stiffness = d.slider("Diagonals [N/m]", GIVEN["diagonal_stiffness"], 10, 5000)
         lines = {"one": one["lines"], "both": both}
         diagonals = {
             name: d.component("Springs", f"Diagonals {name}", connection=given, stiffness=stiffness)
             for name, given in lines.items()
         }
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -20, -100, 0, decimals=1))
-        load = d.component("Unary", point=vertices, force=down)
+        load = d.component("Unary", point=vertices, force=parts.down(d, GIVEN))
     with d.group("Settings"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-10"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "relaxation", "1e-10")
         reset = d.toggle("Reset", True)
     for which in ("none", "one", "both"):
         with d.group(f"Diagonals: {which}"):

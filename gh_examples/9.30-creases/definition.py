@@ -1,6 +1,10 @@
 """Figure 9.30 on the canvas: a sheet of edges and diagonals; shorter diagonals fold its faces."""
 
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.30-creases").scene)
 
 NUMBERS = """
 import math
@@ -42,24 +46,17 @@ def definition() -> Definition:
         "with shorter ones its faces fold. Pull the factors: the more, the sharper.",
     )
     with d.group("Drawn in Rhino", "The surface in model.3dm beside this file."):
-        drawn = d.component(
-            "RhinoFile", file=d.text("File", "model.3dm"), layer=d.text("Surface", "membrane"),
-            u=d.slider("U [-]", 20, 2, 40), v=d.slider("V [-]", 20, 2, 40),
-        )  # fmt: skip
-        mesh = drawn["meshes"]
+        _, mesh = parts.surface(d, GIVEN, 40)
         lines = d.component("Diagonals", mesh=mesh)
         corners = d.component("MeshCorners", mesh=mesh)
         vertices = d.component("MeshVertices", mesh=mesh)
     with d.group("Forces"):
-        stiffness = d.slider("Stiffness [N/m]", 2000, 10, 5000)
+        stiffness = d.slider("Stiffness [N/m]", GIVEN["stiffness"], 10, 5000)
         edges = d.component("Springs", "Edges", connection=mesh, stiffness=stiffness)
-        weight = d.slider("Load [N]", -1, -20, 0, decimals=1)
+        weight = d.slider("Load [N]", -GIVEN["load"], -20, 0, decimals=1)
         load = d.component("Unary", point=vertices, force=d.native("Unit Z", factor=weight))
     with d.group("Settings"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-10"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "relaxation", "1e-10")
         reset = d.toggle("Reset", True)
     for name, factor in (("smooth", "1"), ("creased", "0.95"), ("sharper", "0.9")):
         with d.group(f"Diagonals: {name}"):

@@ -1,6 +1,11 @@
 """Figure 9.31 on the canvas: diagonals one way (A), the other way (B), and warp and weft that differ (C)."""
 
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
+
+PATTERNS = figure("9.31-diagonal-patterns")
+GIVEN, WOVEN = defaults(PATTERNS.scene), defaults(PATTERNS.warp_and_weft)
 
 NUMBERS = """
 def grid(mesh):
@@ -41,12 +46,7 @@ def definition() -> Definition:
         "all one way (A) or all the other way (B), and with edges that differ along x and y (C).",
     )
     with d.group("Drawn in Rhino", "Layers of model.3dm beside this file."):
-        file = d.text("File", "model.3dm")
-        drawn = d.component(
-            "RhinoFile", file=file, layer=d.text("Surface", "membrane"), u=d.slider("U [-]", 10, 2, 30),
-            v=d.slider("V [-]", 10, 2, 30),
-        )  # fmt: skip
-        mesh = drawn["meshes"]
+        file, mesh = parts.surface(d, GIVEN, 30)
         ways = [
             d.component("RhinoFile", file=file, layer=d.text(f"Diagonals {key}", layer))["lines"]
             for key, layer in (("A", "one way"), ("B", "other way"))
@@ -55,10 +55,11 @@ def definition() -> Definition:
         corners = d.component("MeshCorners", mesh=mesh)["corners"]
         vertices = d.component("MeshVertices", mesh=mesh)
     with d.group("Forces"):
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -20, -100, 0, decimals=1))
-        load = d.component("Unary", point=vertices, force=down)
-        edges = d.component("Springs", "Edges", connection=mesh, stiffness=d.slider("Edges [N/m]", 2000, 10, 5000))
-        stiffness = d.slider("Diagonals [N/m]", 1000, 10, 5000)
+        load = d.component("Unary", point=vertices, force=parts.down(d, GIVEN))
+        edges = d.component(
+            "Springs", "Edges", connection=mesh, stiffness=d.slider("Edges [N/m]", GIVEN["stiffness"], 10, 5000)
+        )
+        stiffness = d.slider("Diagonals [N/m]", GIVEN["diagonal_stiffness"], 10, 5000)
         tables = [
             [edges, d.component("Springs", f"Diagonals {key}", connection=lines, stiffness=stiffness), load]
             for key, lines in zip("AB", ways, strict=True)
@@ -66,17 +67,14 @@ def definition() -> Definition:
         threads = [
             d.component(
                 "Springs", name, connection=woven[name.lower()],
-                stiffness=d.slider(f"{name} [N/m]", force, 10, 5000),
-                rest_factor=d.slider(f"{name} factor [-]", factor, 0.5, 1.5, decimals=2),
+                stiffness=d.slider(f"{name} [N/m]", WOVEN[f"{name.lower()}_stiffness"], 10, 5000),
+                rest_factor=d.slider(f"{name} factor [-]", WOVEN[f"{name.lower()}_factor"], 0.5, 1.5, decimals=2),
             )
-            for name, force, factor in (("Warp", 4000, 0.9), ("Weft", 1000, 1.1))
+            for name in ("Warp", "Weft")
         ]  # fmt: skip
         tables.append([*threads, load])
     with d.group("Engines"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-10"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "relaxation", "1e-10")
         reset = d.toggle("Reset", True)
         engines = [
             d.component(

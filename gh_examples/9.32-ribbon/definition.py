@@ -1,6 +1,9 @@
 """Figure 9.32 on the canvas: a membrane stretched over two free-form beams and eleven arcs."""
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("9.32-ribbon").scene)
 
 FINE = """
 import Rhino
@@ -103,7 +106,7 @@ def definition() -> Definition:
     )
     with d.group("Drawn in Rhino", "Layers of model.3dm beside this file."):
         file = d.text("File", "model.3dm")
-        u, v = d.slider("U [-]", 60, 10, 120), d.slider("V [-]", 20, 2, 40)
+        u, v = d.slider("U [-]", GIVEN["along"], 10, 120), d.slider("V [-]", GIVEN["across"], 2, 40)
         bays = d.slider("Bays [-]", 10, 1, 20)
         mesh = d.component("RhinoFile", file=file, layer=d.text("Surface", "membrane"), u=u, v=v)["meshes"]
         beams = d.component("RhinoFile", file=file, layer=d.text("Beams", "beams"))["curves"]
@@ -119,15 +122,15 @@ def definition() -> Definition:
         inputs = {"vertices": vertices, "u": u, "v": v, "bays": bays}
         where = d.script("On curves", WHERE, inputs, ["beams", "inner", "ends"], lists=["vertices"])
     with d.group("Forces"):
-        stiffness = d.slider("Stiffness [kN/m]", 4, 0.1, 20, decimals=1)
-        factor = d.slider("Rest factor [-]", 0.5, 0, 1, decimals=2)
+        stiffness = d.slider("Stiffness [kN/m]", GIVEN["stiffness"], 0.1, 20, decimals=1)
+        factor = d.slider("Rest factor [-]", GIVEN["rest_factor"], 0, 1, decimals=2)
         springs = [
             d.component(
                 "Springs", name, connection=mesh, edges=d.text(name, edges), stiffness=stiffness, rest_factor=factor
             )
             for name, edges in (("Across", "weft"), ("Along", "warp"))
         ]
-        strength = d.slider("Strength [kN/m]", 2000, 100, 5000)
+        strength = d.slider("Strength [kN/m]", GIVEN["strength"], 100, 5000)
         pulls = [
             d.component("PullToCurve", f"To {name}", curve=curve, point=where[output], strength=strength)
             for name, curve, output in (("beams", fine[0], "beams"), ("arcs", fine[1], "inner"))

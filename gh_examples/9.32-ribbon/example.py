@@ -7,6 +7,7 @@ import numpy as np
 
 from hookean import Simulation
 from hookean.commands.examples import Outcome
+from hookean.discretize import area, quads
 from hookean.files.relax_file import read_scene
 from hookean.pictures.sheet import Panel
 
@@ -22,8 +23,8 @@ def run(folder: Path) -> Outcome:
     start, x = (np.reshape(r.particles, (BAY * (ARCS - 1) + 1, -1, 3)) for r in (drawn, result))
     force = {name: result.force(name)["force"] for name in ("across", "along")}
     numbers = {
-        "area of the surface drawn": area(start),
-        "area": area(x),
+        "area of the surface drawn": area(quads(start)),
+        "area": area(quads(x)),
         "smallest force across": force["across"].min(),
         "largest force across": force["across"].max(),
         "smallest force along": force["along"].min(),
@@ -36,21 +37,14 @@ def run(folder: Path) -> Outcome:
         "saddle-shaped as drawn": saddles(start),
     }
     titles = (
-        f"As drawn: beams, arcs and a surface through them, {area(start):.1f} m²",
-        f"Relaxed: a saddle in every bay, {area(x):.1f} m², all springs in tension",
+        f"As drawn: beams, arcs and a surface through them, {area(quads(start)):.1f} m²",
+        f"Relaxed: a saddle in every bay, {area(quads(x)):.1f} m², all springs in tension",
     )
     panels = [
         Panel(with_lines(shape, scene, start), scene, title=title, view=(-66.0, 32.0))
         for shape, title in zip((drawn, result), titles, strict=True)
     ]
     return Outcome(numbers, panels, columns=1, size=(1800, 1950))
-
-
-def area(x):
-    """Of a grid of particles [m2]; a quad is the mean of its two cuts into triangles."""
-    a, b, c, d = x[:-1, :-1], x[1:, :-1], x[1:, 1:], x[:-1, 1:]
-    cuts = [(b - a, c - a), (c - a, d - a), (b - a, d - a), (c - b, d - b)]
-    return sum(0.25 * np.linalg.norm(np.cross(u, v), axis=2).sum() for u, v in cuts)
 
 
 def saddles(x):

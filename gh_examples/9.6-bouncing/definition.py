@@ -1,6 +1,10 @@
 """Figure 9.6 on the canvas: a cable let go bounces until it is at rest; its shape at some times, and at last."""
 
-from hookean_canvas.definitions.write import Definition, flat
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
+from hookean_canvas.definitions.write import Definition
+
+GIVEN = defaults(figure("9.6-bouncing").scene)
 
 MOTION = '''
 """The particles at a time: the same forces, anchors and settings, run for so many steps from the start."""
@@ -40,38 +44,26 @@ def definition() -> Definition:
         "The cable of figure 9.4 in physical time: 1 kg on every particle, steps of 1 ms. Set Fast to False to watch "
         "it: it passes its equilibrium by half, comes back, and settles. Motion gives its shape at the times listed.",
     )
-    with d.group("Line"):
-        end = d.point(d.slider("Span [m]", 10, 1, 20, decimals=1), 0, 0)
-        line = d.native("Line", start_point=d.point(0, 0, 0), end_point=end)
-        ends = d.native("End Points", curve=line)
-        count = d.slider("Springs [-]", 10, 1, 50)
-        pieces = d.component("Shatter", curve=line, count=count)
-        points = d.component("Divide", curve=line, count=count)
-    with d.group("Forces"):
-        springs = d.component(
-            "Springs", connection=pieces["lines"], stiffness=d.slider("Stiffness [N/m]", 1000, 10, 5000),
-            damping=d.slider("Damping [N s/m]", 10, 0, 100),
-        )  # fmt: skip
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -10, -100, 0, decimals=1))
-        load = d.component("Unary", point=points, force=down)
+    line = parts.line(d, GIVEN["pieces"])
+    forces, _ = parts.hung(d, line, GIVEN, damped=True)
     with d.group("Settings"):
         settings = d.component(
-            "Settings", time_step=d.text("Time step [s]", "0.001"),
-            sub_iterations=d.slider("Steps a frame [-]", 50, 1, 200),
-            drag=d.slider("Drag [N s/m]", 1, 0, 10, decimals=1), solver=d.text("Solver", "verlet"),
+            "Settings", time_step=d.text("Time step [s]", str(GIVEN["time_step"])),
+            sub_iterations=d.slider("Steps a frame [-]", GIVEN["sub_iterations"], 1, 200),
+            drag=d.slider("Drag [N s/m]", GIVEN["drag"], 0, 10, decimals=1), solver=d.text("Solver", "verlet"),
             residual=d.text("Residual [-]", "1e-10"), fast=d.toggle("Fast", True),
         )  # fmt: skip
     with d.group("Motion", "The same cable at some times, each from the start."):
         moving = d.script(
             "Motion", MOTION,
-            {"forces": flat(springs, load), "anchors": flat(ends["Start"], ends["End"]), "settings": settings,
+            {"forces": forces, "anchors": line.held, "settings": settings,
              "time": d.parameter("Number", "Times [s]", [0.3, 0.6, 0.9, 1.2, 1.8])},
             ["particles"], lists=["forces", "anchors"],
         )  # fmt: skip
     with d.group("Engine"):
         engine = d.component(
-            "Engine", forces=flat(springs, load), anchors=flat(ends["Start"], ends["End"]), settings=settings,
-            geometry=pieces["lines"], reset=d.toggle("Reset", True),
+            "Engine", forces=forces, anchors=line.held, settings=settings,
+            geometry=line.pieces, reset=d.toggle("Reset", True),
         )  # fmt: skip
     with d.group("Numbers", "What expected.json holds the figure to."):
         d.panel("report", engine["report"])

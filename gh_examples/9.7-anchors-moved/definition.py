@@ -1,6 +1,10 @@
 """Figures 9.7 and 9.8 on the canvas: an anchor of a running cable is moved, put back, and the cable is reset."""
 
-from hookean_canvas.definitions.write import Definition, flat
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
+from hookean_canvas.definitions.write import Definition
+
+GIVEN = defaults(figure("9.7-anchors-moved").scene)
 
 SEQUENCE = """
 # What a person does: wait until the cable is at rest, move the anchor, wait, put it back, wait, reset, wait.
@@ -54,13 +58,7 @@ def definition() -> Definition:
         "The right anchor goes 3 m in and 2 m up while the cable runs, comes back, and the cable is reset. An anchor "
         "keeps the particle it was given, so no support is lost. Reset False plays the sequence.",
     )
-    with d.group("Line"):
-        end = d.point(d.slider("Span [m]", 10, 1, 20, decimals=1), 0, 0)
-        line = d.native("Line", start_point=d.point(0, 0, 0), end_point=end)
-        ends = d.native("End Points", curve=line)
-        count = d.slider("Springs [-]", 10, 1, 50)
-        pieces = d.component("Shatter", curve=line, count=count)
-        points = d.component("Divide", curve=line, count=count)
+    line = parts.line(d, GIVEN["pieces"])
     with d.group("Sequence"):
         reset = d.toggle("Reset", True)
         sequence = d.script(
@@ -69,21 +67,16 @@ def definition() -> Definition:
              "z": d.slider("Up [m]", 2, -5, 5, decimals=1)},
             ["shift", "hold", "phase", "key"],
         )  # fmt: skip
-        right = d.native("Move", geometry=ends["End"], motion=sequence["shift"])
-    with d.group("Forces"):
-        springs = d.component(
-            "Springs", connection=pieces["lines"], stiffness=d.slider("Stiffness [N/m]", 1000, 10, 5000)
-        )
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -10, -100, 0, decimals=1))
-        load = d.component("Unary", point=points, force=down)
+        right = d.native("Move", geometry=line.ends["End"], motion=sequence["shift"])
+    forces, _ = parts.hung(d, line, GIVEN)
     with d.group("Engine"):
         settings = d.component(
-            "Settings", drag=d.slider("Drag [N s/m]", 5, 0, 10, decimals=1), residual=d.text("Residual [-]", "1e-12"),
-            fast=d.toggle("Fast", True),
+            "Settings", drag=d.slider("Drag [N s/m]", GIVEN["drag"], 0, 10, decimals=1),
+            residual=d.text("Residual [-]", "1e-12"), fast=d.toggle("Fast", True),
         )  # fmt: skip
         engine = d.component(
-            "Engine", forces=flat(springs, load), anchors=[ends["Start"], right["Geometry"]], settings=settings,
-            geometry=pieces["lines"], reset=sequence["hold"],
+            "Engine", forces=forces, anchors=[line.ends["Start"], right["Geometry"]], settings=settings,
+            geometry=line.pieces, reset=sequence["hold"],
         )  # fmt: skip
     with d.group("Numbers", "What expected.json holds the figure to."):
         d.panel("report", engine["report"])

@@ -1,6 +1,10 @@
 """Figure 9.9 on the canvas: a cable with two anchors, with a third one, and with a third that meets no particle."""
 
-from hookean_canvas.definitions.write import Definition, flat
+from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
+from hookean_canvas.definitions.write import Definition
+
+GIVEN = defaults(figure("9.9-three-anchors").scene)
 
 NUMBERS = """
 import re
@@ -30,30 +34,19 @@ def definition() -> Definition:
         "The cable of 10 m in ten springs, held at its ends; at a third particle too; and with a third anchor between "
         "two particles, which has no influence: the engine says so and how far away it is.",
     )
-    with d.group("Line"):
-        end = d.point(d.slider("Span [m]", 10, 1, 20, decimals=1), 0, 0)
-        line = d.native("Line", start_point=d.point(0, 0, 0), end_point=end)
-        ends = d.native("End Points", curve=line)
-        count = d.slider("Springs [-]", 10, 1, 50)
-        pieces = d.component("Shatter", curve=line, count=count)
-        points = d.component("Divide", curve=line, count=count)
+    line = parts.line(d, GIVEN["pieces"])
     with d.group("Third anchors"):
         at = d.slider("At a particle [m]", 4, 0, 10, decimals=1)
         third = d.point(at, 0, 0)
         between = d.point(d.slider("Between particles [m]", 4.5, 0, 10, decimals=1), 0, 0)
-    with d.group("Forces"):
-        springs = d.component(
-            "Springs", connection=pieces["lines"], stiffness=d.slider("Stiffness [N/m]", 1000, 10, 5000)
-        )
-        down = d.native("Unit Z", factor=d.slider("Load [N]", -10, -100, 0, decimals=1))
-        load = d.component("Unary", point=points, force=down)
+    forces, _ = parts.hung(d, line, GIVEN)
     with d.group("Engines", "Two anchors, three, and one that meets no particle: one toggle for all."):
         reset = d.toggle("Reset", True)
         settings = d.component("Settings", residual=d.text("Residual [-]", "1e-12"), fast=d.toggle("Fast", True))
         engines = [
             d.component(
-                "Engine", nickname, forces=flat(springs, load), anchors=[ends["Start"], ends["End"], *more],
-                settings=settings, geometry=pieces["lines"], reset=reset,
+                "Engine", nickname, forces=forces, anchors=[line.ends["Start"], line.ends["End"], *more],
+                settings=settings, geometry=line.pieces, reset=reset,
             )
             for nickname, more in (("Two", []), ("Three", [third]), ("Between", [between]))
         ]  # fmt: skip

@@ -4,16 +4,17 @@ from pathlib import Path
 
 import numpy as np
 
-from hookean import Scene, relax
-from hookean.commands.examples import Outcome
-from hookean.files.relax_file import read_scene
+from hookean import relax
+from hookean.commands.examples import Outcome, figure
 from hookean.pictures.sheet import Panel
+
+LEFT, RIGHT = (0.0, 0.0, 0.0), (10.0, 0.0, 0.0)
 
 
 def run(folder: Path) -> Outcome:
-    three = read_scene(folder / "scene.json")
-    between = read_scene(folder / "scene-between.json")
-    two = Scene.read({**three.model_dump(), "anchors": [three.anchors[0]]})
+    scene = figure(folder).scene
+    three, two = scene(), scene(anchors=(LEFT, RIGHT))
+    between = scene(anchors=(LEFT, (4.5, 0.0, 0.0), RIGHT), strict=False)
     held, stray, free = relax(three), relax(between), relax(two)
     (unmatched,) = stray.report.unmatched
     z = held.particles[:, 2]

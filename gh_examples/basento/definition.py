@@ -1,6 +1,9 @@
 """The Basento study on the canvas: a skin in tension, and the same shape with every force reversed."""
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("basento").scene)
 
 REVERSE = """
 import Rhino
@@ -83,8 +86,8 @@ def definition() -> Definition:
     )
     with d.group("Drawn in Rhino", "Layers of model.3dm beside this file."):
         file = d.text("File", "model.3dm")
-        v = d.slider("V [-]", 8, 2, 20)
-        drawn = d.component("RhinoFile", file=file, layer=d.text("Skin", "skin"), u=d.slider("U [-]", 32, 2, 60), v=v)
+        v, skin = d.slider("V [-]", GIVEN["across"], 2, 20), d.text("Skin", "skin")
+        drawn = d.component("RhinoFile", file=file, layer=skin, u=d.slider("U [-]", GIVEN["along"], 2, 60), v=v)
         feet, fingers = (
             d.component("RhinoFile", file=file, layer=d.text(name.title(), name))["points"]
             for name in ("feet", "fingers")
@@ -95,9 +98,9 @@ def definition() -> Definition:
         cables = [
             d.component(
                 "Springs", name, connection=mesh, edges=d.text(f"Which: {name}", which),
-                stiffness=d.slider(f"{name} [kN/m]", force, 1, 1000), rest_factor=factor,
+                stiffness=d.slider(f"{name} [kN/m]", GIVEN[of], 1, 1000), rest_factor=factor,
             )
-            for name, which, force in (("Skin", "all", 100), ("Edges", "naked", 200))
+            for name, which, of in (("Skin", "all", "skin_density"), ("Edges", "naked", "edge_density"))
         ]  # fmt: skip
         reset, fast, unit = d.toggle("Reset", True), d.toggle("Fast", True), d.text("Force", "kN")
         solver = d.text("Solver", "newton")

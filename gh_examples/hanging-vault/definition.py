@@ -2,7 +2,10 @@
 
 from typing import Any
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("hanging-vault").scene)
 
 INNER = """
 inner = list(points)[1:-1]
@@ -103,8 +106,8 @@ def definition() -> Definition:
         inner = d.script("Inner", INNER, {"points": knots}, ["inner"], lists=["points"])
         ends = d.native("End Points", curve=chain)
         mesh = d.component(
-            "RhinoFile", file=file, layer=d.text("Net", "net"), u=d.slider("U [-]", 20, 2, 40),
-            v=d.slider("V [-]", 14, 2, 40),
+            "RhinoFile", file=file, layer=d.text("Net", "net"), u=d.slider("U [-]", GIVEN["along"], 2, 40),
+            v=d.slider("V [-]", GIVEN["across"], 2, 40),
         )["meshes"]  # fmt: skip
         columns = d.component("RhinoFile", file=file, layer=d.text("Columns", "columns"))["points"]
     with d.group("Hanging forces"):
@@ -116,8 +119,8 @@ def definition() -> Definition:
             d.component("Unary", "Links", point=inner, force=weight),
         )
         string = d.text("Stiffness of the net [kN/m]", "1e4")
-        slack = d.slider("Rest factor [-]", 1.1, 1, 1.5, decimals=2)
-        per_length = d.slider("Weight of string [kN/m]", 0.5, 0, 5, decimals=1)
+        slack = d.slider("Rest factor [-]", GIVEN["length_factor"], 1, 1.5, decimals=2)
+        per_length = d.slider("Weight of string [kN/m]", GIVEN["weight"], 0, 5, decimals=1)
         net_forces = flat(
             d.component("Springs", "Net", connection=mesh, stiffness=string, rest_factor=slack),
             d.component("SelfWeight", "Weight", connection=mesh, per_length=per_length),

@@ -5,37 +5,12 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import brentq
 
-from hookean import Result, Scene, relax
-from hookean.commands.examples import Outcome
+from hookean import Result, relax
+from hookean.commands.examples import Outcome, figure
 from hookean.files.relax_file import read_scene
 from hookean.pictures.sheet import Panel
 
 WEIGHT, LENGTH, SPAN = 3.0, 19.2, 16.0  # kN/m, m, m: of the chain
-
-
-def upside_down(result: Result, stiffness: float) -> Scene:
-    """The hanging shape mirrored in the plane of its supports, under the same weight. Each strut is so much longer
-    than its place that it pushes as hard as the string pulled: rest length = length + tension / k."""
-    strings, weight = result.forces
-    struts = {
-        "kind": "springs",
-        "name": "struts",
-        "particles": strings["particles"],
-        "stiffness": stiffness,
-        "rest_length": strings["length"] + strings["force"] / stiffness,
-    }
-    loads = {"kind": "unary", "name": "weight", "particles": weight["particles"][:, 0], "vector": weight["force"]}
-    standing = result.particles * [1, 1, -1]
-    meshes = {g["name"]: {"vertices": standing, "faces": g["faces"]} for g in result.geometry}
-    return Scene(
-        units=result.units,
-        particles=standing,
-        forces=[struts, loads],
-        anchors=[{"name": "supports", "particles": result.reactions["particles"]}],
-        meshes=meshes,
-        geometry=[{"name": name, "kind": "mesh", "mesh": name} for name in meshes],
-        settings={"allow_unstable": True},
-    )
 
 
 def catenary(x: np.ndarray) -> np.ndarray:
@@ -84,6 +59,7 @@ def net_and_vault(net: Result, vault: Result) -> dict[str, float]:
 
 def run(folder: Path) -> Outcome:
     """Chain and net, arch and vault."""
+    upside_down = figure(folder).upside_down
     chain_scene = read_scene(folder / "model.3dm", folder / "recipe-chain.toml")
     net_scene = read_scene(folder / "model.3dm", folder / "recipe.toml")
     chain, net = relax(chain_scene), relax(net_scene)

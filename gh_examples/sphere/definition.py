@@ -2,7 +2,10 @@
 
 from typing import Any
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("sphere").scene)
 
 OPPOSITE = """
 import Rhino
@@ -145,17 +148,17 @@ def definition() -> Definition:
         opposite = d.script("Opposite corners", OPPOSITE, {"mesh": mesh}, ["lines"])
         once = d.component("RemoveDuplicateLines", lines=flat(edges, opposite))
     with d.group("Forces"):
-        stiffness = d.slider("Stiffness [N/m]", 5000, 100, 10000)
+        stiffness = d.slider("Stiffness [N/m]", GIVEN["stiffness"], 100, 10000)
         springs = [
             d.component("Springs", name, connection=lines, stiffness=stiffness)
             for name, lines in (("Edges", edges), ("Diagonals", diagonals))
         ]
-        down = d.native("Unit Z", factor=d.slider("Gravity [N]", -9.81, -20, 0, decimals=2))
+        down = d.native("Unit Z", factor=d.slider("Gravity [N]", -GIVEN["weight"], -20, 0, decimals=2))
         gravity = d.component("Unary", "Gravity", point=vertices, force=down)
-        shell = d.component("Shell", mesh=mesh, strength=d.slider("Bending stiffness [N m]", 500, 0, 2000))
+        shell = d.component("Shell", mesh=mesh, strength=d.slider("Bending stiffness [N m]", GIVEN["shell"], 0, 2000))
         alone, with_shell = flat(*springs, gravity), flat(*springs, gravity, shell)
     with d.group("Motion", "A step of 0.01 s is too large: it is warned of, and the sphere explodes."):
-        drag, floor = d.slider("Drag [N s/m]", 1, 0, 10, decimals=1), d.toggle("Floor", True)
+        drag, floor = d.slider("Drag [N s/m]", GIVEN["drag"], 0, 10, decimals=1), d.toggle("Floor", True)
         more: dict[str, Any] = {"drag": drag, "floor": floor}
         settings = d.component(
             "Settings", time_step=d.text("Time step [s]", "0.004"),

@@ -7,7 +7,7 @@ import numpy as np
 
 from hookean import Result, Scene, Simulation
 from hookean.commands.examples import Outcome
-from hookean.discretize import edges, remove_duplicate_lines
+from hookean.discretize import edges, remove_duplicate_lines, volume
 from hookean.files.relax_file import read_scene
 from hookean.pictures.sheet import Graph, Panel
 from hookean.stability.time_steps import stable_time_step
@@ -37,19 +37,12 @@ class Fall:
             x, now = running.state.x, running.state.time
             self.time.append(now)
             self.height.append(np.ptp(x[:, 2]))
-            self.volume.append(volume(x, self.scene.meshes["layer:sphere"].faces))
+            self.volume.append(volume((x, self.scene.meshes["layer:sphere"].faces)))
             self.bottom.append(x[:, 2].min())
             if now > SECONDS - 1e-6:
                 self.result = running.result()
                 return self
             running.step()
-
-
-def volume(x: np.ndarray, faces: np.ndarray) -> float:
-    """Enclosed volume [m3] by the divergence theorem; a quad is the mean of its two cuts into triangles."""
-    a, b, c, d = (x[faces[:, i]] for i in range(4))
-    cuts = ((a, b, c), (a, c, d), (a, b, d), (b, c, d))
-    return float(sum((p * np.cross(q, r)).sum() for p, q, r in cuts)) / 12.0
 
 
 def drawn_lines(scene: Scene) -> np.ndarray:

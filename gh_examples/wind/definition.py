@@ -1,6 +1,10 @@
 """A sail in wind on the canvas: the load of every moment comes from a table of speeds."""
 
+from hookean.commands.examples import defaults, figure
 from hookean_canvas.definitions.write import Definition, flat
+
+GIVEN = defaults(figure("wind").scene)
+CABLES = (("Sail", "all", "stiffness", "rest_factor"), ("Edge", "naked", "edge_stiffness", "edge_factor"))
 
 NUMBERS = """
 sail, edge, wind = [list(largest.Branch(path)) for path in largest.Paths]
@@ -25,7 +29,7 @@ def definition() -> Definition:
     with d.group("Drawn in Rhino", "The sail in model.3dm beside this file."):
         drawn = d.component(
             "RhinoFile", file=d.text("File", "model.3dm"), layer=d.text("Layer", "sail"),
-            u=d.slider("U [-]", 10, 2, 30), v=d.slider("V [-]", 10, 2, 30),
+            u=d.slider("U [-]", GIVEN["divisions"], 2, 30), v=d.slider("V [-]", GIVEN["divisions"], 2, 30),
         )  # fmt: skip
         mesh = drawn["meshes"]
         corners = d.component("MeshCorners", mesh=mesh)["corners"]
@@ -34,10 +38,10 @@ def definition() -> Definition:
         springs = [
             d.component(
                 "Springs", name, connection=mesh, edges=d.text(f"Which: {name}", edges),
-                stiffness=d.slider(f"{name} [N/m]", stiffness, 100, 100000),
-                rest_factor=d.slider(f"{name} factor [-]", factor, 0.5, 1.1, decimals=2),
+                stiffness=d.slider(f"{name} [N/m]", GIVEN[of], 100, 100000),
+                rest_factor=d.slider(f"{name} factor [-]", GIVEN[factor], 0.5, 1.1, decimals=2),
             )
-            for name, edges, stiffness, factor in (("Sail", "all", 4000, 0.92), ("Edge", "naked", 40000, 0.97))
+            for name, edges, of, factor in CABLES
         ]  # fmt: skip
         still = d.native("Unit Z", factor=d.slider("Load at the start [N]", 0, -100, 100))
         wind = d.component("Unary", point=vertices, force=still, name=d.text("Name", "wind"))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hookean import Scene, relax
+from hookean.discretize import grid, naked_vertices
 from hookean.running.result import Result
 
 Heights = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -44,11 +45,8 @@ def square(n: int, height: Heights, kind: str, power: float = 1.0) -> tuple[np.n
     """n x n faces over [-1, 1]^2, finer towards the rim by a power above 1, and the rim."""
     t = np.linspace(-1, 1, n + 1)
     t = np.sign(t) * (1.0 - (1.0 - np.abs(t)) ** power)
-    u, v = np.meshgrid(t, t, indexing="ij")
-    x = np.stack([u, v, height(u, v)], axis=-1).reshape(-1, 3)
-    number = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
-    return x, cut(patch(number), kind), rim
+    mesh = grid(t, t, height(*np.meshgrid(t, t, indexing="ij")))
+    return mesh.vertices, cut(mesh.faces, kind), naked_vertices(mesh)
 
 
 def inside(x: np.ndarray, rim: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hookean.discretize.arcs import arc, interpolate
+from hookean.discretize.arcs import arc, arc_of_length, interpolate
 from hookean.errors import InputError
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=200, database=None)
@@ -116,3 +116,23 @@ def test_few_points_lower_the_degree() -> None:
     """Two points: a straight line; three: a parabola through them."""
     assert interpolate([[0, 0, 0], [2, 4, 6]], 2)[1] == pytest.approx([1, 2, 3], abs=4 * EPS)
     assert interpolate([[-1, 1, 0], [0, 0, 0], [1, 1, 0]], 4)[1] == pytest.approx([-0.5, 0.25, 0], abs=4 * EPS)
+
+
+@SEEDED
+@given(st.floats(1.0, 900.0), st.floats(1e-3, 1e3), st.integers(2, 40))
+def test_an_arc_of_a_length_stands_over_its_span(times: float, span: float, count: int) -> None:
+    """Ends a span apart; chords c of a circle of radius r, each the part 2 r asin(c / 2r) of the length: to 1e-7, for
+    the radius of a flat arc is lost with the square root of what rounds its height."""
+    found = arc_of_length(times * span, span, count)
+    assert found[-1] - found[0] == pytest.approx([span, 0.0, 0.0], abs=1e-9 * times * span)
+    chords = np.linalg.norm(np.diff(found, axis=0), axis=1)
+    assert chords == pytest.approx(np.full(count, chords[0]), rel=1e-9, abs=1e-12 * times * span)
+    finer = arc_of_length(times * span, span, 2000 * count)
+    assert np.linalg.norm(np.diff(finer, axis=0), axis=1).sum() == pytest.approx(times * span, rel=1e-5)
+    assert (found[:, 1] == 0.0).all() and (found[:, 2] >= -1e-9 * times * span).all()
+
+
+@pytest.mark.parametrize("length", [0.999, 1001.0, float("nan")])
+def test_an_arc_shorter_than_its_span_is_refused(length: float) -> None:
+    with pytest.raises(InputError, match="is given over a span of 1; the arc is at least as long, at most 1000 times"):
+        arc_of_length(length, 1.0, 8)

@@ -12,6 +12,7 @@ from hypothesis import strategies as some
 from scipy.optimize import brentq, root
 
 from hookean import Result, Scene, relax
+from hookean.commands.examples import figure
 from hookean.compiled import dispatch
 from hookean.linear import profile_cholesky as _profile
 from hookean.solvers import _complementary
@@ -293,20 +294,7 @@ def test_a_strut_that_stands_stays() -> None:
 
 def test_a_net_is_more_than_chains() -> None:
     """In a square net most particles have four springs: not for this method."""
-    side = 8
-    number = np.arange(side * side).reshape(side, side)
-    x = np.stack(np.meshgrid(np.arange(side), np.arange(side), [0.0], indexing="ij"), -1).reshape(-1, 3)
-    pairs = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
-    springs = np.concatenate([np.column_stack([a.ravel(), b.ravel()]) for a, b in pairs])
-    forces = [
-        {"kind": "springs", "particles": springs, "stiffness": 100.0},
-        {"kind": "self_weight", "total": 10.0},
-    ]
-    found = relax(
-        Scene.read(
-            {"particles": x, "forces": forces, "anchors": [{"particles": number[[0, 0, -1, -1], [0, -1, 0, -1]]}]}
-        )
-    )
+    found = relax(figure("9.24-membrane").scene(divisions=7))
     assert found.converged and "complementary" not in found.solver
 
 

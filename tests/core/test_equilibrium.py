@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
 
 from hookean import Result, Scene, Simulation, relax
+from hookean.discretize import diagonals, edges, grid, naked_vertices
 from hookean.running.run import relax_state
 from hookean.solvers import solver
 from hookean.stability.equilibrium import LARGE_NET, Equilibrium, Stability, excess, leave
@@ -249,18 +250,13 @@ def test_rods_that_are_free_to_turn_are_mechanisms(n: int, stiffness: float, anc
 
 def sheet(n: int, factor: float, total: float, **settings: Any) -> Springs:
     """A square of n x n faces with both diagonals, its rim held, a total load."""
-    number = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-    grid = np.linspace(0.0, 1.0, n + 1)
-    u, v = np.meshgrid(grid, grid, indexing="ij")
-    x = np.stack([u, v, 0.0 * u], axis=-1).reshape(-1, 3)
-    ends = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
-    ends += [(number[:-1, :-1], number[1:, 1:]), (number[1:, :-1], number[:-1, 1:])]
-    pairs = np.concatenate([np.column_stack([a.ravel(), b.ravel()]) for a, b in ends])
-    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
+    steps = np.linspace(0.0, 1.0, n + 1)
+    mesh = grid(steps, steps)
+    x, pairs = mesh.vertices, np.concatenate([edges(mesh), diagonals(mesh)])
     loads = np.zeros_like(x)
     loads[:, 2] = -total / len(x)
     rest = factor * np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1)
-    return Springs(x, pairs, np.full(len(pairs), 100.0), rest, loads, rim)
+    return Springs(x, pairs, np.full(len(pairs), 100.0), rest, loads, naked_vertices(mesh))
 
 
 def exact_step(structure: Springs, x: np.ndarray) -> float:

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from hookean import Scene, relax
+from hookean.discretize import corners, edges, grid
 from hookean.linear import sparse_factors as factor
 from hookean.linear.sparse_factors import Factors
 from hookean.solvers.newton import Pattern
@@ -105,18 +106,15 @@ def test_a_pattern_is_the_lower_triangle_of_the_tangent(seed: int) -> None:
 
 def net(side: int, solver: str) -> Scene:
     """A net hung by its corners."""
-    number = np.arange(side * side).reshape(side, side)
-    x = np.stack(np.meshgrid(np.arange(side), np.arange(side), [0.0], indexing="ij"), -1).reshape(-1, 3)
-    pairs = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
-    springs = np.concatenate([np.column_stack([a.ravel(), b.ravel()]) for a, b in pairs])
+    mesh = grid(np.arange(side), np.arange(side))
     return Scene.read(
         {
-            "particles": x,
+            "particles": mesh.vertices,
             "forces": [
-                {"kind": "springs", "particles": springs, "stiffness": 100.0, "rest_factor": 0.95},
+                {"kind": "springs", "particles": edges(mesh), "stiffness": 100.0, "rest_factor": 0.95},
                 {"kind": "self_weight", "total": 10.0},
             ],
-            "anchors": [{"particles": number[[0, 0, -1, -1], [0, -1, 0, -1]]}],
+            "anchors": [{"particles": corners(mesh)}],
             "settings": {"solver": solver, "tolerance": 1e-10},
         }
     )

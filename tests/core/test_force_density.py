@@ -14,7 +14,7 @@ import scipy.sparse as sparse
 from hypothesis import given, settings
 from hypothesis import strategies as some
 
-from hookean import Scene, relax
+from hookean import Scene, discretize, relax
 from hookean.linear import scalar_aggregation as _aggregates
 from hookean.linear import scalar_cg as _gradients
 from hookean.linear.laplacian import Laplacian, laplacian
@@ -130,17 +130,13 @@ def test_what_hangs_on_nothing_is_left(way: str, seed: int) -> None:
 
 def grid(side: int, height: Any) -> tuple[Scene, np.ndarray]:
     """A square net of rest length 0 and stiffness 1 over [-1, 1]^2 in a frame at a height; and that everywhere."""
-    number = np.arange((side + 1) ** 2).reshape(side + 1, side + 1)
     along = np.linspace(-1.0, 1.0, side + 1)
-    u, v = (c.ravel() for c in np.meshgrid(along, along, indexing="ij"))
-    found = np.column_stack([u, v, height(u, v)])
-    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
-    start = found.copy()
-    start[np.setdiff1d(number, rim)] *= 0.5
-    pairs = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
-    springs = np.concatenate([np.column_stack([a.ravel(), b.ravel()]) for a, b in pairs])
-    force = {"kind": "springs", "particles": springs, "stiffness": 1.0, "rest_length": 0.0}
-    return Scene.read({"particles": start, "forces": [force], "anchors": [{"particles": rim}]}), found
+    mesh = discretize.grid(along, along, height(*np.meshgrid(along, along, indexing="ij")))
+    start = mesh.vertices.copy()
+    start[discretize.clothed_vertices(mesh)] *= 0.5
+    force = {"kind": "springs", "particles": discretize.edges(mesh), "stiffness": 1.0, "rest_length": 0.0}
+    held = [{"particles": discretize.naked_vertices(mesh)}]
+    return Scene.read({"particles": start, "forces": [force], "anchors": held}), mesh.vertices
 
 
 @pytest.mark.parametrize("side", [20, 150, *([500] if SOAK else [])])

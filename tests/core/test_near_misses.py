@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean import Scene, Simulation
+from hookean.discretize import grid
 from hookean.forces import KINDS
 from hookean.system import near_misses
 from hookean.system.system import System, compile
@@ -22,12 +23,8 @@ def polyline(start: Any, end: Any, pieces: int) -> Any:
 
 def mesh(count: int, size: float = 1.0, z: float = 0.0) -> dict[str, Any]:
     """A square of `count` x `count` faces from the origin."""
-    number = np.arange((count + 1) ** 2).reshape(count + 1, count + 1)
-    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1)
-    return {
-        "vertices": np.argwhere(number >= 0) @ np.eye(2, 3) * size / count + [0, 0, z],
-        "faces": faces.reshape(-1, 4),
-    }
+    steps = np.arange(count + 1) * size / count
+    return vars(grid(steps, steps, z))
 
 
 def springs(name: str, lines: Any) -> dict[str, Any]:

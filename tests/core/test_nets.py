@@ -6,23 +6,16 @@ import numpy as np
 import pytest
 
 from hookean import Scene, relax
+from hookean.discretize import area, edges, grid, naked_vertices, quads
 
 
 def net(count: int, side: float, height, *, loads=None, stiffness: float = 1.0, solver: str = "auto") -> Scene:
     """A square net of `count` x `count` cells of rest length 0, rim held at z = height(x, y)."""
     line = np.linspace(-side / 2, side / 2, count + 1)
-    x, y = np.meshgrid(line, line, indexing="ij")
-    number = np.arange((count + 1) ** 2).reshape(count + 1, count + 1)
-    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
-    points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    mesh = grid(line, line)
+    points, rim = mesh.vertices, naked_vertices(mesh)
     points[rim, 2] = height(points[rim, 0], points[rim, 1])
-    edges = np.concatenate(
-        [
-            np.stack([number[:-1].ravel(), number[1:].ravel()], axis=1),
-            np.stack([number[:, :-1].ravel(), number[:, 1:].ravel()], axis=1),
-        ]
-    )
-    forces = [{"kind": "springs", "particles": edges, "stiffness": stiffness, "rest_length": 0}]
+    forces = [{"kind": "springs", "particles": edges(mesh), "stiffness": stiffness, "rest_length": 0}]
     if loads is not None:
         forces.append({"kind": "unary", "particles": np.arange(len(points)), "vector": loads})
     settings = {"tolerance": 1e-12, "solver": solver}
@@ -30,14 +23,8 @@ def net(count: int, side: float, height, *, loads=None, stiffness: float = 1.0, 
 
 
 def surface_area(points: np.ndarray, count: int, refine: int = 1) -> float:
-    """Area of the net's surface, each quad as the mean of its two triangulations."""
-    grid = points.reshape(count + 1, count + 1, 3)
-    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
-
-    def triangle(p, q, r):
-        return 0.5 * np.linalg.norm(np.cross(q - p, r - p), axis=-1)
-
-    return 0.5 * float((triangle(a, b, c) + triangle(a, c, d) + triangle(a, b, d) + triangle(b, c, d)).sum())
+    """Area of the net's surface."""
+    return area(quads(points.reshape(count + 1, count + 1, 3)))
 
 
 @pytest.mark.parametrize("solver", ["auto", "relaxation"])
@@ -87,7 +74,7 @@ def test_diagonals_come_both_or_one_to_a_face():
     """Figure 9.31: on a quad a-b-c-d the diagonals are a-c ("one") and b-d ("other"), or both."""
     mesh = {"quad": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "faces": [[0, 1, 2, 3]]}}
     found = {}
-    for edges in ("diagonals", "diagonals_one", "diagonals_other"):
-        scene = Scene.read({"meshes": mesh, "forces": [{"kind": "springs", "mesh": "quad", "edges": edges}]})
-        found[edges] = relax(scene).force("springs")["particles"].tolist()
+    for kind in ("diagonals", "diagonals_one", "diagonals_other"):
+        scene = Scene.read({"meshes": mesh, "forces": [{"kind": "springs", "mesh": "quad", "edges": kind}]})
+        found[kind] = relax(scene).force("springs")["particles"].tolist()
     assert found == {"diagonals": [[0, 2], [1, 3]], "diagonals_one": [[0, 2]], "diagonals_other": [[1, 3]]}

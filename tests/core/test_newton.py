@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from hookean import Result, Scene, relax
+from hookean.discretize import clothed_vertices, diagonals, edges, grid, naked_vertices
 from hookean.stability.time_steps import _scaled_stiffness
 from hookean.system.system import compile
 
@@ -19,19 +20,15 @@ SEEDS = range(20 if os.environ.get("HOOKEAN_SOAK") == "1" else 2)
 def net(kind: str, seed: int) -> Spec:
     """A square net of 8 x 8 particles under a load of 1 on each."""
     side, rng = 8, np.random.default_rng([5, seed])
-    number = np.arange(side * side).reshape(side, side)
-    x = np.stack(np.meshgrid(np.arange(side), np.arange(side), [0.0], indexing="ij"), -1).reshape(-1, 3).astype(float)
-    pairs = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
-    if kind in ("sheet", "wrinkled"):
-        pairs += [(number[:-1, :-1], number[1:, 1:]), (number[1:, :-1], number[:-1, 1:])]
-    springs = np.concatenate([np.column_stack([a.ravel(), b.ravel()]) for a, b in pairs])
+    mesh = grid(np.arange(side), np.arange(side))
+    x = mesh.vertices
+    springs = np.concatenate([edges(mesh), *([diagonals(mesh)] if kind in ("sheet", "wrinkled") else [])])
     factor = {"compressed": 1.1, "slack": 1.3, "stiff": 1.0, "disorder": 0.9, "sheet": 0.9, "wrinkled": 1.05}[kind]
     rest = factor * np.linalg.norm(x[springs[:, 1]] - x[springs[:, 0]], axis=1)
     x += rng.normal(size=x.shape) * 1e-3
     if kind == "disorder":
-        x[number[1:-1, 1:-1].ravel()] += rng.normal(size=((side - 2) ** 2, 3)) * 5.0
-    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
-    held = rim if kind in ("compressed", "wrinkled") else number[[0, 0, -1, -1], [0, -1, 0, -1]]
+        x[clothed_vertices(mesh)] += rng.normal(size=((side - 2) ** 2, 3)) * 5.0
+    held = naked_vertices(mesh) if kind in ("compressed", "wrinkled") else [0, side - 1, side * (side - 1), side**2 - 1]
     return {
         "particles": x,
         "forces": [

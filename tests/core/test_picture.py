@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from hookean.discretize import corners, edges, grid
 from hookean.errors import InputError
 from hookean.pictures import legends
 from hookean.pictures.picture import legend, render
@@ -40,21 +41,17 @@ def cable(**settings: Any) -> Scene:
 
 
 def net(n: int, *, load: float = -20.0, mesh: bool = False, **more: Any) -> Scene:
-    side = np.arange(n + 1.0)
-    x = np.array([[a, b, 0.0] for a in side for b in side])
-    at = np.arange(len(x)).reshape(n + 1, n + 1)
-    faces = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=-1).reshape(-1, 4)
-    ways = ((at[:-1], at[1:]), (at[:, :-1], at[:, 1:]))
-    pairs = np.concatenate([np.stack(ends, axis=-1).reshape(-1, 2) for ends in ways])
+    square = grid(np.arange(n + 1), np.arange(n + 1))
+    x, faces = square.vertices, square.faces
     return Scene.read(
         {
             "particles": x,
             "meshes": {"m": {"vertices": x, "faces": faces}} if mesh else {},
             "forces": [
-                {"kind": "springs", "particles": pairs},
+                {"kind": "springs", "particles": edges(square)},
                 {"kind": "unary", "particles": np.arange(len(x)), "vector": [0, 0, load]},
             ],
-            "anchors": [{"particles": at[[0, 0, -1, -1], [0, -1, 0, -1]]}],
+            "anchors": [{"particles": corners(square)}],
             "geometry": [{"kind": "mesh", "mesh": "m"}] if mesh else [],
             **more,
         }

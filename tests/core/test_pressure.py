@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from hookean import Scene, relax
+from hookean.discretize import grid, naked_vertices, quads
 from hookean.forces import Pressure, SoapFilm, Springs
 from hookean.running.result import Result
 from hookean.system.system import compile
@@ -150,11 +151,9 @@ def test_a_bubble_on_a_rim_is_a_cap_of_a_sphere() -> None:
         u, v = np.meshgrid(t, t, indexing="ij")
         # squares to a disc, without corners that lie on the rim with three neighbours in a row
         x = np.stack([u * np.sqrt(1 - v**2 / 2), v * np.sqrt(1 - u**2 / 2), 0.3 * (1 - u**2) * (1 - v**2)], axis=-1)
-        number = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-        faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
-        rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
+        mesh = quads(x)
         forces = [SoapFilm(mesh="m", tension=tension), Pressure(mesh="m", pressure=p)]
-        result = solved(x.reshape(-1, 3), faces, forces, [{"particles": rim}], 1e-9)
+        result = solved(mesh.vertices, mesh.faces, forces, [{"particles": naked_vertices(mesh)}], 1e-9)
         errors.append(result.particles[:, 2].max() - right)
     slopes = np.log2(np.abs(np.array(errors[:-1]) / errors[1:]))
     assert slopes == pytest.approx([2, 2], abs=0.15) and abs(errors[-1]) <= 2e-3
@@ -168,14 +167,11 @@ def test_a_net_of_uniform_tension_under_small_pressure(n: int, c: float) -> None
     """
     side, tension, p = 2.0, 5.0, 1e-4
     t = np.linspace(0, side, n + 1)
-    u, v = np.meshgrid(t, t, indexing="ij")
-    x = np.stack([u, v, 0 * u], axis=-1).reshape(-1, 3)
-    number = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
-    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
+    mesh = grid(t, t)
     net = Springs(mesh="m", stiffness=tension, rest_length=0.0)
-    result = solved(x, faces, [net, Pressure(mesh="m", pressure=p)], [{"particles": rim}], 1e-11)
-    middle = result.particles[number[n // 2, n // 2], 2]
+    held = [{"particles": naked_vertices(mesh)}]
+    result = solved(mesh.vertices, mesh.faces, [net, Pressure(mesh="m", pressure=p)], held, 1e-11)
+    middle = result.particles[len(mesh.vertices) // 2, 2]
     # half a unit of the last digit given
     assert middle * tension / (p * side**2) == pytest.approx(c, abs=6e-9)
 

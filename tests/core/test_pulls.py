@@ -12,6 +12,7 @@ from scipy.optimize import minimize
 
 from hookean import Scene, relax
 from hookean.compiled.dispatch import keep, rows
+from hookean.discretize import grid
 from hookean.errors import InputError
 from hookean.forces import PullToCurve, PullToMesh, Unary
 from hookean.running.simulation import Simulation
@@ -129,10 +130,8 @@ def test_of_equal_distances_the_first_face_wins() -> None:
 def wave(n: int) -> tuple[np.ndarray, np.ndarray]:
     """A wavy mesh of n x n quads over [-2, 2]^2."""
     t = np.linspace(-2, 2, n + 1)
-    u, v = np.meshgrid(t, t, indexing="ij")
-    number = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
-    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
-    return np.stack([u, v, 0.3 * np.sin(u) * np.cos(v)], axis=-1).reshape(-1, 3), faces
+    mesh = grid(t, t, 0.3 * np.outer(np.sin(t), np.cos(t)))
+    return mesh.vertices, mesh.faces
 
 
 def test_particles_end_on_the_mesh() -> None:

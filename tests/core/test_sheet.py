@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from matplotlib.image import imread
 
 from hookean import Scene, relax
+from hookean.discretize import grid, naked_vertices
 from hookean.errors import InputError
 from hookean.pictures import legends
 from hookean.pictures.page import Page, _few
@@ -48,16 +49,13 @@ def square(side: float, unit: str = "m") -> Scene:
 def film(n: int) -> Scene:
     """A soap film in a frame that is no plane; no springs."""
     side = np.linspace(0.0, 1.0, n + 1)
-    x = np.array([[a, b, a * b] for a in side for b in side])
-    at = np.arange(len(x)).reshape(n + 1, n + 1)
-    faces = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=-1).reshape(-1, 4)
-    rim = np.unique(np.concatenate([at[0], at[-1], at[:, 0], at[:, -1]]))
+    mesh = grid(side, side, np.outer(side, side))
     return Scene.read(
         {
-            "particles": x,
-            "meshes": {"film": {"vertices": x, "faces": faces}},
+            "particles": mesh.vertices,
+            "meshes": {"film": {"vertices": mesh.vertices, "faces": mesh.faces}},
             "forces": [{"kind": "soapfilm", "mesh": "film"}],
-            "anchors": [{"particles": rim}],
+            "anchors": [{"particles": naked_vertices(mesh)}],
             "geometry": [{"kind": "mesh", "mesh": "film"}],
         }
     )

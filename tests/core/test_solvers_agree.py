@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean import Result, Scene, relax
+from hookean import Result, Scene, discretize, relax
 from hookean.errors import InputError
 from hookean.scene.solver_names import SOLVERS
 from hookean.solvers import solver
@@ -20,17 +20,8 @@ Spec = dict[str, Any]
 
 def grid(n: int, step: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Points, edges and rim of an n x n grid."""
-    number = np.arange(n * n).reshape(n, n)
-    x = np.zeros((n * n, 3))
-    x[:, :2] = np.stack(np.meshgrid(np.arange(n), np.arange(n), indexing="ij"), axis=-1).reshape(-1, 2) * step
-    edges = np.concatenate(
-        [
-            np.column_stack([number[:-1].ravel(), number[1:].ravel()]),
-            np.column_stack([number[:, :-1].ravel(), number[:, 1:].ravel()]),
-        ]
-    )
-    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
-    return x, edges, rim
+    mesh = discretize.grid(np.arange(n) * step, np.arange(n) * step)
+    return mesh.vertices, discretize.edges(mesh), discretize.naked_vertices(mesh)
 
 
 def chain(n: int, **springs: Any) -> Spec:
@@ -127,12 +118,7 @@ def braced() -> Spec:
     x, edges, _ = grid(4)
     x = x[:, [0, 2, 1]]
     number = np.arange(16).reshape(4, 4)
-    ties = np.concatenate(
-        [
-            np.column_stack([number[:-1, :-1].ravel(), number[1:, 1:].ravel()]),
-            np.column_stack([number[1:, :-1].ravel(), number[:-1, 1:].ravel()]),
-        ]
-    )
+    ties = discretize.diagonals(discretize.grid(np.arange(4), np.arange(4)))
     start = np.linalg.norm(x[ties[:, 1]] - x[ties[:, 0]], axis=1)
     return {
         "particles": x,
@@ -169,7 +155,7 @@ def folded() -> Spec:
     x = x[:12]
     edges = edges[(edges < 12).all(axis=1)]
     number = np.arange(12).reshape(3, 4)
-    quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
+    quads = discretize.grid(np.arange(3), np.arange(4)).faces
     hinges = [[a, c, b, d] for a, b, c, d in quads]
     hinges += [[number[1, j], number[1, j + 1], number[2, j + 1], number[0, j]] for j in range(3)]
     for i, j in ((0, 1), (0, 2), (1, 1), (1, 2)):

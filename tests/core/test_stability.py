@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from hookean import Scene, Simulation, simulate
+from hookean.discretize import diagonals as across
+from hookean.discretize import edges, grid
 from hookean.running.in_motion import MOST_STEPS, in_motion
 from hookean.running.result import Status
 from hookean.stability.time_steps import critical_time_step, highest_mode, stable_time_step
@@ -16,16 +18,13 @@ from hookean.system.system import compile
 
 def sheet(stiffness: float, diagonals: bool, damping: float, drag: float, **settings: object) -> Scene:
     """A flat sheet of 20 x 20 square cells, masses 1."""
-    x, y = np.meshgrid(np.arange(21) * 0.5, np.arange(21) * 0.5, indexing="ij")
-    number = np.arange(441).reshape(21, 21)
-    pairs = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
-    if diagonals:
-        pairs += [(number[:-1, :-1], number[1:, 1:]), (number[1:, :-1], number[:-1, 1:])]
-    edges = np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in pairs])
+    mesh = grid(np.arange(21) * 0.5, np.arange(21) * 0.5)
+    pairs = np.concatenate([edges(mesh), *([across(mesh)] if diagonals else [])])
+    x, y, z = mesh.vertices.T
     return Scene(
-        particles=np.stack([x.ravel(), y.ravel(), np.zeros(441)], axis=1),
-        velocities=np.stack([1e-3 * np.sin(7.0 * x.ravel() + 3.0 * y.ravel() ** 2), 0 * y.ravel(), 0 * y.ravel()], 1),
-        forces=[{"kind": "springs", "particles": edges, "stiffness": stiffness, "damping": damping}],
+        particles=mesh.vertices,
+        velocities=np.stack([1e-3 * np.sin(7.0 * x + 3.0 * y**2), z, z], axis=1),
+        forces=[{"kind": "springs", "particles": pairs, "stiffness": stiffness, "damping": damping}],
         settings={"drag": drag, "solver": "verlet", **settings},
     )
 

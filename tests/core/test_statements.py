@@ -11,11 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from chapter_scenes import arc, ball, grid, hooke, hung
 from hookean import Scene, Simulation, relax
+from hookean.commands.examples import figure
+from hookean.discretize import area, edges, grid, naked_vertices
 from hookean.discretize.catenary import catenary, catenary_of, parameter
 from hookean.system.system import compile
 from samples import cable
+
+HOOKE, ARC, HYPAR = (figure(name).scene for name in ("9.12-hooke", "9.17-arc-to-catenary", "9.28-rest-factor-zero"))
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)
 EPS = float(np.finfo(float).eps)
@@ -24,10 +27,10 @@ EPS = float(np.finfo(float).eps)
 @pytest.mark.parametrize("damping", [0.0, 1.0, 10.0, 100.0])
 def test_h1_force_is_stiffness_times_extension_and_the_length_comes_back(damping: float):
     """F = k X: 100 N / 2 N/cm = 50 cm, and back to 80 cm without the load, whatever the damping."""
-    assert relax(hooke(100.0, damping)).force("springs")["length"][0] == pytest.approx(130.0, rel=1e-12)
-    released = relax(hooke(0.0, damping, length=130.0))
+    assert relax(HOOKE(damping=damping)).force("cable")["length"][0] == pytest.approx(130.0, rel=1e-12)
+    released = relax(HOOKE(weight=0.0, damping=damping, length=130.0))
     assert released.converged
-    assert released.force("springs")["length"][0] == pytest.approx(80.0, rel=1e-9)
+    assert released.force("cable")["length"][0] == pytest.approx(80.0, rel=1e-9)
 
 
 def test_h2_damping_changes_how_long_it_takes_and_never_the_final_length():
@@ -39,7 +42,7 @@ def test_h2_damping_changes_how_long_it_takes_and_never_the_final_length():
     step, stiffness, times = 0.005, 2.0, {}
     for damping, seconds in ((1.0, 25.0), (10.0, 70.0), (100.0, 700.0)):
         frame = 100 * step
-        running = Simulation(hooke(100.0, damping, time_step=step, sub_iterations=100, drag=0.0))
+        running = Simulation(HOOKE(damping=damping, time_step=step, sub_iterations=100))
         lengths = [80.0]
         for _ in range(round(seconds / frame)):
             running.step()
@@ -78,9 +81,7 @@ def test_h4_the_lower_the_stiffness_the_longer_the_elongation():
     stiffnesses = [0.5, 1.0, 2.0, 4.0, 50.0]
     single = []
     for k in stiffnesses:
-        scene = hooke(100.0).model_dump()
-        scene["forces"][0]["stiffness"] = k
-        single.append(relax(Scene(**scene)).force("springs")["length"][0] - 80.0)
+        single.append(relax(HOOKE(stiffness=k)).force("cable")["length"][0] - 80.0)
     assert single == pytest.approx([100.0 / k for k in stiffnesses], rel=1e-11)
     lengths = []
     for k in (250.0, 500.0, 1000.0, 2000.0, 4000.0):
@@ -140,30 +141,15 @@ def test_h5_the_force_on_each_particle_is_along_its_spring(seed: int):
 
 def test_h5_axial_forces_alone_carry_the_loads():
     """A sagging membrane: the sum of tension x direction over the springs of each particle is load or reaction."""
-    line = np.linspace(0.0, 10.0, 9)
-    x = np.stack([*np.meshgrid(line, line, indexing="ij"), np.zeros((9, 9))], axis=-1).reshape(-1, 3)
-    number = np.arange(81).reshape(9, 9)
-    pairs = [(number[:-1], number[1:]), (number[:, :-1], number[:, 1:])]
-    edges = np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in pairs])
-    corners = [0, 8, 72, 80]
-    result = relax(
-        Scene(
-            particles=x,
-            forces=[
-                {"kind": "springs", "particles": edges, "stiffness": 2000},
-                {"kind": "unary", "particles": list(range(81)), "vector": [0, 0, -20]},
-            ],
-            anchors=[{"particles": corners}],
-            settings={"tolerance": 1e-10},
-        )
-    )
+    result = relax(figure("9.24-membrane").scene(divisions=8, tolerance=1e-10))
     assert result.converged
-    d = result.particles[edges[:, 1]] - result.particles[edges[:, 0]]
+    pairs = result.force("membrane")["particles"]
+    d = result.particles[pairs[:, 1]] - result.particles[pairs[:, 0]]
     length = np.linalg.norm(d, axis=1)
     pull = (2000.0 * (length - 1.25) / length)[:, None] * d
     total = np.tile([0.0, 0.0, -20.0], (81, 1))
-    np.add.at(total, edges[:, 0], pull)
-    np.add.at(total, edges[:, 1], -pull)
+    np.add.at(total, pairs[:, 0], pull)
+    np.add.at(total, pairs[:, 1], -pull)
     np.add.at(total, result.reactions["particles"], result.reactions["force"])
     # what the run itself says is out of balance, and rounding of 2000 N/m x 10 m
     assert np.abs(total).max() <= result.out_of_balance + 8 * EPS * 2e4
@@ -189,28 +175,21 @@ def test_r1_rest_length_tensions_is_elastic_or_slackens(factor: float, tension: 
     assert running.relax().force("springs")["length"] == pytest.approx([factor] * 2, rel=1e-9)
 
 
-def area(x: np.ndarray, quads: np.ndarray) -> float:
-    """Area of quads, each as the mean of its two cuts into triangles."""
-    a, b, c, d = (x[quads[:, i]] for i in range(4))
-    cuts = ((a, b, c), (a, c, d), (a, b, d), (b, c, d))
-    return 0.25 * sum(float(np.linalg.norm(np.cross(q - p, r - p), axis=1).sum()) for p, q, r in cuts)
-
-
 @SEEDED
 @given(st.integers(0, 2**32 - 1))
 def test_r2_rest_factor_zero_is_a_force_density_net(seed: int):
     """Any rim, any stiffness, any loads: D x = sum of k x over the neighbours + load, one linear system, solved here by
     numpy. Condition of the matrix below 1e3: positions below 10: 1e3 eps 10, and some."""
     rng = np.random.default_rng(seed)
-    x, quads, rim = grid(5, lambda u, v: rng.normal(size=u.size))
-    pairs = {tuple(sorted((q[i], q[(i + 1) % 4]))) for q in quads.tolist() for i in range(4)}
-    edges = np.array(sorted(pairs))
-    k, loads = rng.uniform(1.0, 3.0, len(edges)), rng.normal(size=x.shape)
-    springs = {"kind": "springs", "particles": edges, "stiffness": k, "rest_factor": 0}
+    mesh = grid(*np.linspace(-1.0, 1.0, 6)[None].repeat(2, axis=0))
+    x, rim, pairs = mesh.vertices, naked_vertices(mesh), edges(mesh)
+    x[rim, 2] = rng.normal(size=len(rim))
+    k, loads = rng.uniform(1.0, 3.0, len(pairs)), rng.normal(size=x.shape)
+    springs = {"kind": "springs", "particles": pairs, "stiffness": k, "rest_factor": 0}
     unary = {"kind": "unary", "particles": list(range(len(x))), "vector": loads}
     found = relax(Scene(particles=x, forces=[springs, unary], anchors=[{"particles": rim}]))
-    incidence = np.zeros((len(edges), len(x)))
-    incidence[np.arange(len(edges)), edges[:, 0]], incidence[np.arange(len(edges)), edges[:, 1]] = -1.0, 1.0
+    incidence = np.zeros((len(pairs), len(x)))
+    incidence[np.arange(len(pairs)), pairs[:, 0]], incidence[np.arange(len(pairs)), pairs[:, 1]] = -1.0, 1.0
     stiffness = incidence.T @ (k[:, None] * incidence)
     free = np.setdiff1d(np.arange(len(x)), rim)
     right = loads[free] - stiffness[np.ix_(free, rim)] @ x[rim]
@@ -224,19 +203,14 @@ def test_r2_the_net_of_rest_factor_zero_approximates_the_film_and_has_more_area(
     """
     nets, films = [], []
     for count in (16, 32):
-        x, quads, rim = grid(count, lambda u, v: u * v)
-        for forces, areas in (
-            ({"kind": "springs", "mesh": "skin", "rest_factor": 0}, nets),
-            ({"kind": "soapfilm", "mesh": "skin"}, films),
-        ):
-            meshes = {"skin": {"vertices": x, "faces": quads}}
-            held, strict = [{"particles": rim}], {"tolerance": 1e-9}
-            result = relax(Scene(particles=x, meshes=meshes, forces=[forces], anchors=held, settings=strict))
+        for film, areas in ((False, nets), (True, films)):
+            scene = HYPAR(divisions=count, film=film, bulge=0.0)
+            result = relax(scene)
             assert result.converged
-            areas.append(area(result.particles, quads))
-            if areas is nets:
-                x = result.particles  # where the film starts
-                assert x[:, 2] == pytest.approx(x[:, 0] * x[:, 1], abs=1e-12)
+            areas.append(area((result.particles, scene.meshes["surface"].faces)))
+            if not film:
+                x, y, z = result.particles.T
+                assert z == pytest.approx(x * y, abs=1e-12)
         assert nets[-1] > films[-1]
     net, film = (fine + (fine - coarse) / 3.0 for coarse, fine in (nets, films))
     assert net == pytest.approx(5.1232, abs=5e-5 + 2e-5)
@@ -279,8 +253,8 @@ def test_c2_an_arc_of_stiff_springs_lands_on_the_catenary(chord, chord_rest, len
     Pieces stay within half a per cent of 0.4. From the catenary of its own length the polygon is away by the rounding
     of its corners alone: a chord of 0.4 lies inside a curve of radius a by 0.4^2 / 8a, a = 2.17 (chord 10) or 5.0.
     """
-    result = relax(arc(chord, chord_rest))
-    lengths = result.force("springs")["length"]
+    result = relax(ARC(span=chord, by_arc_length=not chord_rest))
+    lengths = result.force("cable")["length"]
     assert result.converged
     assert lengths.sum() == pytest.approx(length, abs=1e-6)
     assert -result.particles[:, 2].min() == pytest.approx(sag, abs=1e-6)
@@ -298,12 +272,12 @@ def test_c2_a_plain_elastic_cable_differs_from_the_catenary():
     off = {}
     for axial in (200.0, 200_000.0):
         for count in (25, 50, 100):
-            line = np.linspace(0.0, 10.0, count + 1)
-            points = np.stack([line, 0 * line, -0.6 * line * (10.0 - line) / 10.0], axis=1)
-            rest = 10.0 * (1.0 if axial < 1e3 else 1.2) / count
-            result = relax(hung(points, 50.0 / count, {"stiffness": axial / rest, "rest_length": rest}))
+            factor = 1.0 if axial < 1e3 else 1.2
+            stiffness = axial * count / (10.0 * factor)
+            hung = figure("9.4-cable").scene(pieces=count, length_factor=factor, stiffness=stiffness, load=50.0 / count)
+            result = relax(hung)
             assert result.converged
-            off[axial, count] = off_the_catenary(result.particles, float(result.force("springs")["length"].sum()))
+            off[axial, count] = off_the_catenary(result.particles, float(result.force("cable")["length"].sum()))
     elastic, stiff = (np.array([off[axial, count] for count in (25, 50, 100)]) for axial in (200.0, 200_000.0))
     assert elastic.min() > 0.003 and elastic[1] < 1.2 * elastic[2]
     assert np.log2(stiff[:-1] / stiff[1:]) == pytest.approx([2, 2], abs=0.15)
@@ -324,6 +298,15 @@ def test_c3_the_load_of_a_particle_is_the_weight_over_the_number_of_particles():
     assert -weights[0, 2] == pytest.approx(0.19607843, abs=5e-9)
 
 
+def ball(**parameters: float) -> Scene:
+    """The sphere of section 9.7 with a radius of 1, half a metre above the floor, upright on a pole."""
+    small = {"radius": 1.0, "drop": 0.5, "around": 12, "along": 8, "weight": 10.0, "time_step": 0.002}
+    made = figure("sphere").scene(**{**small, **parameters})
+    upright = made.particles[:, [2, 0, 1]] + [-1.5, 0.0, 1.5]
+    sphere = {"vertices": upright, "faces": made.meshes["sphere"].faces}
+    return Scene.read({**made.model_dump(), "particles": upright, "meshes": {"sphere": sphere}})
+
+
 def kept(scene: Scene) -> tuple[float, float]:
     """The parts of height and volume that are left after three seconds."""
     running = Simulation(scene)
@@ -333,7 +316,7 @@ def kept(scene: Scene) -> tuple[float, float]:
 
     def volume(x: np.ndarray) -> float:
         total = 0.0
-        for face in scene.meshes["ball"].faces:
+        for face in scene.meshes["sphere"].faces:
             a, b, c, d = x[face[[0, 1, 2, -1]]]
             total += float(a @ np.cross(b, c) + a @ np.cross(c, d)) / 6.0
         return total
@@ -345,7 +328,10 @@ def kept(scene: Scene) -> tuple[float, float]:
 def test_s1_a_falling_sphere_of_springs_crumples_and_a_shell_keeps_its_shape():
     """9.7: springs alone, diagonals and all, lose 47 % of the height and a third of the volume, four times as stiff
     still 18 % of the height; a shell loses 2 % of it and less of the volume."""
-    springs, stiff, shell = kept(ball(False)), kept(ball(False, stiffness=20_000.0)), kept(ball(True))
+    springs, stiff, shell = (
+        kept(ball(stiffness=stiffness, shell=strength))
+        for stiffness, strength in ((5000.0, 0.0), (20_000.0, 0.0), (5000.0, 500.0))
+    )
     assert springs[0] < 0.6 and springs[1] < 0.7
     assert stiff[0] < 0.85
     assert shell[0] > 0.95 and shell[1] > 0.98
@@ -354,6 +340,6 @@ def test_s1_a_falling_sphere_of_springs_crumples_and_a_shell_keeps_its_shape():
 
 def test_s1_the_chapters_own_step_would_explode_and_that_is_told():
     """k = 5000 and D = 500 with 0.01 s: a warning that names a step that holds, and the one used here is below it."""
-    (warning,) = Simulation(ball(True, time_step=0.01)).system.report.warnings
+    (warning,) = Simulation(ball(time_step=0.01)).system.report.warnings
     assert warning.startswith("/settings/time_step: 0.01 s is too large")
     assert 0.002 < float(warning.split("Steps up to ")[1].split(" s hold")[0]) < 0.01

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from hookean import Scene, Simulation, Status
+from hookean.discretize import edges, grid
 from hookean.stability.time_steps import MOST_PARTS, most_parts
 from serving import SOAK
 
@@ -240,17 +241,14 @@ def test_a_shell_that_collapses_does_not_diverge_by_default():
     forces have no bound. What springs and motion have stays within three times the energy of the start (it grew ten
     thousandfold), as a shell has no negative energy."""
     rng = np.random.default_rng(3)
-    x = np.array([[i, j, 0.0] for i in range(4) for j in range(4)]) * 2.5 + rng.normal(size=(16, 3)) * 0.25
-    number = np.arange(16).reshape(4, 4)
-    pairs = np.concatenate([np.stack([a.ravel(), b.ravel()], 1) for a, b in
-                            ((number[:-1], number[1:]), (number[:, :-1], number[:, 1:]))])  # fmt: skip
-    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], -1).reshape(-1, 4)
+    plate = grid(2.5 * np.arange(4), 2.5 * np.arange(4))
+    x = plate.vertices + rng.normal(size=(16, 3)) * 0.25
     spec: Spec = {
         "particles": x,
         "masses": 0.011,
-        "meshes": {"plate": {"vertices": x, "faces": faces}},
+        "meshes": {"plate": {"vertices": x, "faces": plate.faces}},
         "forces": [
-            {"kind": "springs", "particles": pairs, "stiffness": 16000.0, "damping": 0.0, "rest_factor": 0.3},
+            {"kind": "springs", "particles": edges(plate), "stiffness": 16000.0, "damping": 0.0, "rest_factor": 0.3},
             {"kind": "shell", "mesh": "plate", "strength": 3.3e5},
             {"kind": "unary", "particles": [5], "vector": [1.0, 2.0, -3.0]},
         ],

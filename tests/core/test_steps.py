@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hookean import Scene, Simulation, Status, relax
+from hookean.discretize import corners, edges, grid, naked_vertices
 from hookean.running.in_motion import in_motion
 from hookean.solvers import solver
 from hookean.stability.time_steps import stable_time_step, time_step_of_all_shapes
@@ -121,22 +122,16 @@ def test_the_step_chosen_for_a_scheme_is_within_its_limit(scheme: str):
 
 def net(factor: float, held: str, load: float, **settings: Any) -> dict[str, Any]:
     """A square net of 10 x 10 cells of springs stretched to 1 / factor of their rest lengths, plucked in its middle."""
-    number = np.arange(121).reshape(11, 11)
-    x = np.zeros((121, 3))
-    x[:, :2] = np.stack(np.meshgrid(np.arange(11), np.arange(11), indexing="ij"), -1).reshape(-1, 2) * 0.5
-    pairs = np.concatenate([np.stack([a.ravel(), b.ravel()], 1) for a, b in
-                            ((number[:-1], number[1:]), (number[:, :-1], number[:, 1:]))])  # fmt: skip
-    rim = np.unique(np.concatenate([number[0], number[-1], number[:, 0], number[:, -1]]))
-    corners = number[[0, 0, -1, -1], [0, -1, 0, -1]]
-    velocities = np.zeros_like(x)
+    mesh = grid(np.arange(11) * 0.5, np.arange(11) * 0.5)
+    velocities = np.zeros_like(mesh.vertices)
     velocities[60] = [3.0, 0.9, 3.0]
     return {
-        "particles": x, "velocities": velocities,
+        "particles": mesh.vertices, "velocities": velocities,
         "forces": [
-            {"kind": "springs", "particles": pairs, "stiffness": 1000.0, "damping": 0.0, "rest_factor": factor},
+            {"kind": "springs", "particles": edges(mesh), "stiffness": 1000.0, "damping": 0.0, "rest_factor": factor},
             {"kind": "unary", "particles": np.arange(121), "vector": [0.0, 0.0, load]},
         ],
-        "anchors": [{"name": "held", "particles": rim if held == "rim" else corners}],
+        "anchors": [{"name": "held", "particles": naked_vertices(mesh) if held == "rim" else corners(mesh)}],
         "settings": {"drag": 0.0, **settings},
     }  # fmt: skip
 

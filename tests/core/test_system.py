@@ -8,6 +8,7 @@ import pytest
 from hookean import Scene
 from hookean.forces.springs import Springs
 from hookean.system.system import compile
+from hookean.system.two_ended import spring_ends, spring_forces
 
 
 @pytest.mark.parametrize("exact", [True, False])
@@ -29,3 +30,16 @@ def test_the_tangent_of_a_spring_is_its_closed_form(monkeypatch: pytest.MonkeyPa
         along = np.outer(x[b] - x[a], x[b] - x[a]) / length**2
         own = k * along + k * (1.0 - rest / length) * (np.eye(3) - along)
         assert block == pytest.approx(np.block([[own, -own], [-own, own]]), abs=1e-9 * k)
+
+
+def test_springs_are_listed_with_their_ends_and_their_forces() -> None:
+    """Two tables of springs in one group, a load that is none: k (l - L0) by hand, and the tables by their numbers."""
+    load = {"kind": "unary", "particles": [1], "vector": [0.0, 0.0, -1.0]}
+    soft, stiff = (
+        {"kind": "springs", "particles": pairs, "stiffness": k, "rest_length": 1.0}
+        for pairs, k in (([[0, 1]], 10.0), ([[1, 2], [0, 2]], 20.0))
+    )
+    system = compile(Scene(particles=[[0, 0, 0], [3, 0, 0], [3, 4, 0]], forces=[soft, load, stiff]))
+    pairs, numbers = spring_ends(system)
+    assert pairs.tolist() == [[0, 1], [1, 2], [0, 2]] and numbers.tolist() == [0, 2, 2]
+    assert spring_forces(system, system.start()) == pytest.approx([20.0, 60.0, 80.0], rel=1e-14)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from hookean import Scene, Simulation
+from hookean.discretize import edges, grid
 from hookean.running.result import Status
 from hookean.solvers import solver
 from hookean.stability.time_steps import highest_mode, stable_time_step
@@ -122,17 +123,12 @@ def test_undamped_energy_is_bounded_without_drift(method: str) -> None:
     that over the whole run.
     """
     rng = np.random.default_rng(2)
-    number = np.arange(25).reshape(5, 5)
-    pairs = np.concatenate([np.column_stack([number[:-1].ravel(), number[1:].ravel()]),
-                            np.column_stack([number[:, :-1].ravel(), number[:, 1:].ravel()])])  # fmt: skip
-    x = np.zeros((25, 3))
-    x[:, :2] = np.stack(np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij"), axis=-1).reshape(-1, 2)
-    x[:, 2] = 0.1 * rng.normal(size=25)
+    mesh = grid(np.arange(5), np.arange(5), 0.1 * rng.normal(size=(5, 5)))
     scene = Scene.read(
         {
-            "particles": x,
+            "particles": mesh.vertices,
             "forces": [
-                {"kind": "springs", "particles": pairs, "stiffness": 100.0, "damping": 0.0, "rest_factor": 0.8},
+                {"kind": "springs", "particles": edges(mesh), "stiffness": 100.0, "damping": 0.0, "rest_factor": 0.8},
                 {"kind": "self_weight", "total": 50.0},
             ],
             "anchors": [{"particles": [0, 4, 20, 24]}],

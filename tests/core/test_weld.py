@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean import InputError, Scene, relax
+from hookean.discretize import grid
 from hookean.system.system import compile
 from hookean.system.weld import weld
 
@@ -79,9 +80,8 @@ def test_loads_and_anchors_create_no_particles_and_are_told_when_they_miss():
 
 def mesh(count: int) -> dict[str, object]:
     """A square of 2 m in `count` x `count` faces."""
-    number = np.arange((count + 1) ** 2).reshape(count + 1, count + 1)
-    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
-    return {"vertices": np.argwhere(number >= 0) @ np.eye(2, 3) * 2.0 / count, "faces": faces}
+    steps = np.arange(count + 1) * 2.0 / count
+    return vars(grid(steps, steps))
 
 
 def blown(**more: object) -> dict[str, object]:

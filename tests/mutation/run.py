@@ -138,6 +138,7 @@ class Bench:
     def __init__(self, folder: Path) -> None:
         self.core, self.cache = folder / "core" / "hookean", folder / "cache"
         shutil.copytree(CORE, self.core, ignore=shutil.ignore_patterns("__pycache__"))
+        (folder / "gh_examples").symlink_to(ROOT / "gh_examples")
         # files that change within a second are told apart by what they hold
         compileall.compile_dir(self.core, quiet=1, invalidation_mode=py_compile.PycInvalidationMode.CHECKED_HASH)
 

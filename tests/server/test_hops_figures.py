@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rhino3dm
 
-from hookean.commands.examples import find
+from hookean.commands.examples import figure, find
 from hookean_server.hops.functions import FUNCTIONS
 from serving import SOAK
 
@@ -53,28 +52,14 @@ def corner(i: int) -> Read:
     return lambda found: float(np.linalg.norm(found.all("Reactions")[i]))
 
 
-def drawn(folder: str, layer: str) -> list[Any]:
-    """What a figure's model has on a layer, as the component would send it."""
-    file = rhino3dm.File3dm.Read(str(find(folder).folder / "model.3dm"))
-    layers = {one.Index: one.FullPath for one in file.Layers}
-    found = [o.Geometry for o in file.Objects if layers[o.Attributes.LayerIndex] == layer]
-    return [(g.Location.X, g.Location.Y, g.Location.Z) if isinstance(g, rhino3dm.Point) else g for g in found]
+def drawn(folder: str, *inputs: str, **more: Any) -> dict[str, Any]:
+    """What a figure's model holds, as inputs of a function."""
+    return dict(zip(inputs, figure(folder).drawn(), strict=True)) | more
 
 
-def ribbon() -> dict[str, Any]:
-    take = functools.partial(drawn, "9.32-ribbon")
-    return {"Surface": take("membrane")[0], "Beams": take("beams"), "Arcs": take("arcs::inner"),
-            "End arcs": take("arcs::ends")}  # fmt: skip
-
-
-def bridge(**more: Any) -> dict[str, Any]:
-    take = functools.partial(drawn, "basento")
-    return {"Skin": take("skin")[0], "Feet": take("feet"), "Fingers": take("fingers"), **more}
-
-
-def frames() -> dict[str, Any]:
-    near, far = drawn("9.22-freeform-frames", "frames")
-    return {"Near frame": near, "Far frame": far}
+ribbon = functools.partial(drawn, "9.32-ribbon", "Surface", "Beams", "Arcs", "End arcs")
+bridge = functools.partial(drawn, "basento", "Skin", "Feet", "Fingers")
+frames = functools.partial(drawn, "9.22-freeform-frames", "Near frame", "Far frame")
 
 
 A, B = (0.0, 0.0, 0.0), (8.0, 0.0, 4.0)

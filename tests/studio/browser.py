@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.discretize import grid
 from serving import HANG
 
 from .service import Service
@@ -179,13 +180,10 @@ def context(browser: Any, **options: Any) -> BrowserContext:
 
 def net(side: int) -> dict[str, Any]:
     """A square net held at its corners that swings for ever, with its skin."""
-    number = np.arange(side * side).reshape(side, side)
-    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
-    across, along = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float), indexing="ij")
-    vertices = np.stack([across, along, np.zeros_like(across)], axis=-1).reshape(-1, 3)
+    mesh = {name: rows.tolist() for name, rows in vars(grid(np.arange(side), np.arange(side))).items()}
     return {
-        "particles": vertices.tolist(),
-        "meshes": {"net": {"vertices": vertices.tolist(), "faces": faces.tolist()}},
+        "particles": mesh["vertices"],
+        "meshes": {"net": mesh},
         "forces": [
             {"kind": "springs", "mesh": "net", "stiffness": 500.0, "damping": 0.0},
             {"kind": "unary", "particles": list(range(side * side)), "vector": [0.0, 0.0, -0.02]},

@@ -153,9 +153,9 @@ def _copy(example: Example, target: Path) -> None:
         shutil.copytree(example.folder, target, ignore=shutil.ignore_patterns("__pycache__", "oracle.py"))
     except OSError as error:
         raise InputError(str(target), f"cannot be written ({error.strerror})") from None
-    typer.echo(f"copied to {target}; its README.md says what to try. Next, run it or relax its input:")
+    typer.echo(f"copied to {target}; its README.md says what to try. Change its scene.py and run it:")
     run = str(target) if target.is_absolute() else f"{os.curdir}{os.sep}{target}"
-    given = str(target / "scene.json")
-    if (target / "recipe.toml").is_file():
+    typer.echo(f"  hookean example {run}")
+    if example.drawn:
         given = f"{target / 'model.3dm'} --recipe {target / 'recipe.toml'}"
-    typer.echo(f"  hookean example {run}\n  hookean relax {given} --picture {target / 'relaxed.png'}")
+        typer.echo(f"  hookean relax {given} --picture {target / 'relaxed.png'}")

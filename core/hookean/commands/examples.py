@@ -1,21 +1,24 @@
 """Examples: the figures of the source chapter, each a folder that runs, is drawn and is checked.
 
-A folder holds its input (`scene.json`, or `model.3dm` and `recipe.toml`), `example.py` with `run(folder) -> Outcome`,
-`expected.json` with the numbers it is held to and where they come from, `README.md` and `picture.png`. They stand in
-`gh_examples/` of the project, and travel in the wheel.
+A folder holds `scene.py` with `scene(**parameters) -> Scene`, what the figure shows with its values as defaults;
+`example.py` with `run(folder) -> Outcome`; `expected.json` with the numbers it is held to and where they come from;
+`README.md` and `picture.png`. Where a figure begins in Rhino, `model.3dm` and `recipe.toml` hold the same scene. They
+stand in `gh_examples/` of the project, and travel in the wheel.
 """
 
 from __future__ import annotations
 
 import difflib
 import importlib.util
+import inspect
 import json
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
@@ -129,29 +132,21 @@ class Example:
         return shown if shown.is_file() else self.folder / "picture.png"
 
     @property
-    def input(self) -> tuple[Path, Path | None] | None:
-        """The files its scene is read from: a scene, or a model and its recipe; None for one that has no scene."""
-        if (self.folder / "scene.json").is_file():
-            return self.folder / "scene.json", None
-        model, recipe = self.folder / "model.3dm", self.folder / "recipe.toml"
-        return (model, recipe) if model.is_file() and recipe.is_file() else None
+    def drawn(self) -> bool:
+        """Whether it begins in Rhino: with a model and a recipe."""
+        return (self.folder / "model.3dm").is_file()
 
     def scene(self) -> Scene:
-        """Its scene, made fit to move (see `running.in_motion`); InputError where it has none."""
+        """Its scene, as drawn where it is, made fit to move (see `running.in_motion`)."""
         from hookean.files.relax_file import read_scene
         from hookean.running.in_motion import in_motion
 
-        if self.input is None:
-            raise InputError(self.name, "is no scene; its script computes it")
-        return in_motion(read_scene(*self.input))[0]
+        model, recipe = self.folder / "model.3dm", self.folder / "recipe.toml"
+        return in_motion(read_scene(model, recipe) if self.drawn else figure(self.folder).scene())[0]
 
     def run(self) -> Outcome:
         """Run the example afresh."""
-        spec = importlib.util.spec_from_file_location(f"example_{self.name}", self.folder / "example.py")
-        assert spec is not None and spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        outcome: Any = module.run(self.folder)
+        outcome: Any = _script(self.folder / "example.py").run(self.folder)
         assert isinstance(outcome, Outcome)
         return outcome
 
@@ -161,6 +156,27 @@ class Example:
             outcome.panels, path, title=self.expected.title, columns=outcome.columns, same_scale=outcome.same_scale,
             size=outcome.size,
         )  # fmt: skip
+
+
+def figure(folder: str | Path) -> ModuleType:
+    """The module `scene.py` of a figure: of its folder's name in the gallery, or of a folder such as a copy. Its
+    function `scene(**parameters)` makes a Scene; the defaults are the figure's values."""
+    return _script(home() / folder / "scene.py")
+
+
+def defaults(make: Callable[..., Any]) -> dict[str, Any]:
+    """The parameters of a figure's function by their names, with their defaults: the figure's values."""
+    found = {name: p.default for name, p in inspect.signature(make).parameters.items() if p.kind is not p.VAR_KEYWORD}
+    return found | getattr(make, "keywords", {})
+
+
+def _script(path: Path) -> ModuleType:
+    """A script of an example as a module of its own, read afresh."""
+    spec = importlib.util.spec_from_file_location(f"{path.stem}_of_{path.parent.name}", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def home() -> Path:
@@ -247,7 +263,7 @@ def find(wanted: str) -> Example:
             if fits(example):
                 return example
     if (Path(wanted) / "example.py").is_file():
-        return Example(Path(wanted))
+        return Example(Path(wanted).resolve())
     near = _near(named, [e.name for e in known])
     meant = f"; did you mean {' or '.join(near)}?" if near else ";"
     raise InputError(wanted, f"no example has this figure or name{meant} hookean example lists all")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hookean.discretize.arcs import arc as arc
+    from hookean.discretize.arcs import arc_of_length as arc_of_length
     from hookean.discretize.arcs import arc_through as arc_through
     from hookean.discretize.arcs import interpolate as interpolate
     from hookean.discretize.breps import is_trimmed as is_trimmed
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     from hookean.discretize.duplicates import remove_duplicate_points as remove_duplicate_points
     from hookean.discretize.duplicates import unique_lines as unique_lines
     from hookean.discretize.duplicates import unique_points as unique_points
+    from hookean.discretize.grids import grid as grid
+    from hookean.discretize.grids import quads as quads
+    from hookean.discretize.measures import area as area
+    from hookean.discretize.measures import volume as volume
     from hookean.discretize.meshes import as_mesh as as_mesh
     from hookean.discretize.meshes import boundary as boundary
     from hookean.discretize.meshes import clothed_vertices as clothed_vertices
@@ -44,10 +49,12 @@ if TYPE_CHECKING:
     from hookean.discretize.warpweft import warp_weft as warp_weft
 
 _NAMES = {
-    "arcs": "arc arc_through interpolate",
+    "arcs": "arc arc_of_length arc_through interpolate",
     "breps": "is_trimmed mesh_faces",
     "curves": "divide end_points explode length shatter",
     "duplicates": "remove_duplicate_lines remove_duplicate_points unique_lines unique_points",
+    "grids": "grid quads",
+    "measures": "area volume",
     "meshes": "as_mesh boundary clothed_vertices corners diagonals edges join naked_edges naked_vertices on_boundary "
     "triangles vertices weld",
     "nurbs": "NurbsCurve NurbsSurface nurbs_curve nurbs_surface",

@@ -1,4 +1,4 @@
-"""Arcs through three points, and smooth curves through particles for display."""
+"""Arcs through three points or of a length, and smooth curves through particles for display."""
 
 from __future__ import annotations
 
@@ -52,6 +52,28 @@ def arc_through(points: ArrayLike, count: int) -> Array:
     if rows.shape != (3, 3):
         raise InputError("points", f"shape {list(rows.shape)} given; three rows of x, y, z expected")
     return arc(rows[0], rows[1], rows[2], count)
+
+
+def arc_of_length(arc_length: float, span: float, count: int) -> Array:
+    """Points (count + 1, 3) [length] at equal arc lengths on the arc of a length that stands over a span, from the
+    origin along x, its middle up; a straight line where both are the same.
+
+    Its half angle t solves arc_length sin(t) / t = span. InputError where the arc is shorter than the span or longer
+    than 1000 times it.
+    """
+    if not span <= arc_length < 1e3 * span:
+        said = f"{arc_length:g} is given over a span of {span:g}; the arc is at least as long, at most 1000 times"
+        raise InputError("arc_length", said)
+    _check_count(count)
+    if arc_length == span:
+        return np.linspace((0.0, 0.0, 0.0), (span, 0.0, 0.0), count + 1)
+    from scipy.optimize import brentq
+
+    half = brentq(lambda t: arc_length * np.sin(t) / t - span, 1e-9, np.pi, xtol=1e-15, rtol=1e-15)
+    radius = 0.5 * arc_length / half
+    turn = np.linspace(-half, half, count + 1)
+    height = radius * (np.cos(turn) - np.cos(half))
+    return np.stack([0.5 * span + radius * np.sin(turn), np.zeros_like(turn), height], axis=1)
 
 
 def interpolate(points: ArrayLike, count: int, degree: int = 3) -> Array:

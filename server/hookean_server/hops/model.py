@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.commands.examples import defaults
 from hookean.errors import InputError
+from hookean.scene.scene import Scene
 from hookean_server.hops.values import SIZES, TYPES, read, size, write
 from hookean_server.workers.task import Cancelled
 
@@ -50,6 +52,11 @@ class Parameter:
         """Whether it takes or gives one value."""
         return self.least == self.most == 1
 
+    @property
+    def key(self) -> str:
+        """Its name as a parameter of Python: `length_factor` of `Length factor`."""
+        return self.name.lower().replace(" ", "_")
+
     def described(self) -> dict[str, Any]:
         """As Hops reads it."""
         found: dict[str, Any] = {"Name": self.name, "Nickname": self.nickname, "Description": self.description,
@@ -82,6 +89,15 @@ def count(name: str, nickname: str, description: str, default: int | None, most:
 def optional(parameter: Parameter) -> Parameter:
     """The same where nothing need be connected."""
     return replace(parameter, least=0)
+
+
+def inputs_of(make: Callable[..., Any], *inputs: Parameter) -> tuple[Parameter, ...]:
+    """Inputs of which those that are parameters of `make`, a figure's scene, have their defaults from it."""
+    known = defaults(make)
+    return tuple(
+        replace(p, default=known[p.key]) if isinstance(known.get(p.key), bool | int | float | str) else p
+        for p in inputs
+    )
 
 
 Run = Callable[["Inputs", Cancelled], dict[str, Any]]
@@ -168,6 +184,20 @@ class Inputs:
         each = sum(SIZES[p.kind] for p in self.function.outputs if not p.one or p.kind in ("Mesh", "Curve"))
         _afford(pieces * each, self.bytes, where)
 
+    def make(self, make: Callable[..., Scene], **more: Any) -> Scene:
+        """A figure's scene with the values of the inputs that are its parameters; InputError names the input."""
+        known = defaults(make)
+        own = {p.key: p for p in self.function.inputs if p.key in known}
+        for key, parameter in own.items():
+            if parameter.least or self.many(parameter.name):
+                more[key] = self._value(parameter)
+        try:
+            return make(**more)
+        except InputError as error:
+            if error.pointer not in own:
+                raise
+            raise InputError(f"/{own[error.pointer].name}", error.sentence) from None
+
     def tree(self, name: str) -> dict[str, list[Any]]:
         """The branches of an input by their paths."""
         return self._given.get(name, {})
@@ -191,6 +221,12 @@ class Inputs:
         if len(found) > 1:
             raise InputError(f"/{name}", f"{name} takes one {parameter.kind.lower()}; {len(found)} are given")
         return parameter.check(found[0])
+
+    def _value(self, parameter: Parameter) -> Any:
+        """What a parameter of a figure's scene takes: one value, points as rows, or a list."""
+        if parameter.one:
+            return self.surface(parameter.name) if parameter.kind == "Surface" else self.one(parameter.name)
+        return self.points(parameter.name) if parameter.kind == "Point" else self.many(parameter.name)
 
     def points(self, name: str) -> Floats:
         """The values of an input of points as rows."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hookean.errors import InputError
+from hookean.scene.scene import Scene
 from hookean.values.mesh import Mesh
 from hookean_server.hops import scenes
 from hookean_server.hops.model import Function, Inputs, Parameter, count, item, optional
@@ -43,8 +44,8 @@ def _relaxed(inputs: Inputs, particles: Any, springs: Any, anchors: Any, cancell
         {"kind": "unary", "particles": np.arange(len(particles)), "vector": inputs.one("Load")},
     ]
     held = [{"points": anchors}] if len(anchors) else []
-    scene = {"particles": particles, "forces": forces, "anchors": held, "settings": {"tolerance": 1e-6}}
-    return scenes.relaxed(inputs, scene, cancelled)
+    scene = Scene.model_validate({"particles": particles, "forces": forces, "anchors": held})
+    return scenes.relaxed(inputs, scene, cancelled, tolerance=1e-6)
 
 
 def _catenary(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
@@ -72,8 +73,8 @@ def _catenary(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
 
 _FORCED = (
     item("Load", "P", "Vector", "Force on every particle [N]"),
-    scenes.stiffness(1000.0),
-    replace(scenes.rest_factor(1.0), maximum=None),
+    replace(scenes.STIFFNESS, default=1000.0),
+    replace(scenes.REST_FACTOR, default=1.0, maximum=None),
 )
 _FOUND = (scenes.FORCES, scenes.REACTIONS, scenes.SUPPORTS, scenes.STATUS)
 

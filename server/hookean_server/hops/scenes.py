@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hookean.values.mesh import Mesh
-from hookean_server.hops.model import Inputs, Parameter, item
+from hookean.scene.scene import Scene
+from hookean_server.hops.model import Function, Inputs, Parameter, inputs_of, item
 from hookean_server.problems import Problem
 from hookean_server.workers.task import Cancelled
-
-Floats = NDArray[np.float64]
 
 PARTICLES = Parameter("Particles", "Pt", "Point", "Particles in equilibrium [model unit]")
 SPRINGS = Parameter("Springs", "L", "Line", "Springs in equilibrium, in the order of what they were made of")
@@ -21,51 +20,61 @@ MESH = item("Mesh", "M", "Mesh", "The mesh in equilibrium")
 FORCES = Parameter("Forces", "F", "Number", "Force of every spring [N], tension positive")
 REACTIONS = Parameter("Reactions", "Re", "Vector", "Force of every anchor on its particle [N]")
 SUPPORTS = Parameter("Supports", "Su", "Point", "Where the reactions act, in their order [model unit]")
+LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring [N]")
+LENGTH = item("Length", "Lt", "Number", "Length of all springs [model unit]")
 STATUS = item("Status", "S", "Text", "converged, or how the run ended")
 
 
-def stiffness(default: float, unit: str = "N/model unit") -> Parameter:
-    """The input of a stiffness."""
-    return item("Stiffness", "k", "Number", f"Stiffness of every spring [{unit}]", default, minimum=0.0)
+STIFFNESS = item("Stiffness", "k", "Number", "Stiffness of every spring [N/model unit]", minimum=0.0)
+REST_FACTOR = item("Rest factor", "R", "Number", "Rest length as a part of the drawn length [-]; 0: as short as it can",
+                   minimum=0.0, maximum=10.0)  # fmt: skip
+LENGTH_FACTOR = replace(REST_FACTOR, name="Length factor")
+LOAD = item("Load", "P", "Number", "Force down on every particle [N]; below 0: up")
 
 
-def rest_factor(default: float, name: str = "Rest factor", nickname: str = "R") -> Parameter:
-    """The input of a rest factor."""
-    said = "Rest length as a part of the drawn length [-]; 0: as short as it can"
-    return item(name, nickname, "Number", said, default, minimum=0.0, maximum=10.0)
+Found = Callable[[Inputs, Scene, Any], dict[str, Any]]
+"""What a function of a figure gives: its outputs by name, from its inputs, the scene and the result."""
 
 
-def load(default: float) -> Parameter:
-    """The input of a load straight down on each particle."""
-    return item("Load", "P", "Number", "Force down on every particle [N]; below 0: up", default)
+def relaxing(make: Callable[..., Scene], found: Found, *about: Any, **settings: Any) -> Function:
+    """The function that relaxes a figure's scene, made of its inputs; `about` is what stands in a Function, from its
+    title to its outputs."""
+    return _solving(make, found, about, lambda *given: relaxed(*given, **settings))
 
 
-def particles_of(points: Floats, force: float) -> dict[str, Any]:
-    """The load of `load` on particles."""
-    return {"kind": "unary", "name": "load", "particles": np.arange(len(points)), "vector": [0.0, 0.0, -force]}
+def moving(make: Callable[..., Scene], found: Found, *about: Any, **settings: Any) -> Function:
+    """As `relaxing`, of a scene that moves until its input `Time`."""
+    return _solving(make, found, about, lambda inputs, *of: moved(inputs, *of, until=inputs.one("Time"), **settings))
 
 
-def relaxed(inputs: Inputs, scene: dict[str, Any], cancelled: Cancelled) -> Any:
-    """The equilibrium of a scene; what a person should know of it goes to the warnings."""
+def _solving(make: Callable[..., Scene], found: Found, about: Any, solve: Callable[..., Any]) -> Function:
+    title, nickname, description, inputs, outputs = about
+
+    def run(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
+        scene = inputs.make(make)
+        return found(inputs, scene, solve(inputs, scene, cancelled))
+
+    return Function(title, nickname, description, inputs_of(make, *inputs), outputs, run, "Figures")
+
+
+def relaxed(inputs: Inputs, scene: Scene, cancelled: Cancelled, **settings: Any) -> Any:
+    """The equilibrium of a scene with some other `settings`; what a person should know of it goes to the warnings."""
     from hookean.running.run import relax
-    from hookean.scene.scene import Scene
 
-    settings = {"tolerance": 1e-9, **scene.get("settings", {}), "time_limit": inputs.seconds}
-    result = relax(Scene.model_validate({**_common(inputs), **scene, "settings": settings}), cancelled=cancelled)
+    result = relax(_placed(inputs, scene, time_limit=inputs.seconds, **settings), cancelled=cancelled)
     if result.status in ("time_limit", "cancelled"):
         raise out_of_time(inputs)
     inputs.warnings += remarks(result)
     return result
 
 
-def moved(inputs: Inputs, scene: dict[str, Any], until: float, cancelled: Cancelled) -> Any:
+def moved(inputs: Inputs, scene: Scene, cancelled: Cancelled, *, until: float, **settings: Any) -> Any:
     """A scene in motion at a time: the state of the step nearest to it, of those that end a frame."""
     from hookean.running.simulation import Simulation
-    from hookean.scene.scene import Scene
 
-    running = Simulation(Scene.model_validate({**_common(inputs), **scene}))
-    settings = running.scene.settings
-    frames = round(until / (settings.time_step * settings.sub_iterations))
+    running = Simulation(_placed(inputs, scene, **settings))
+    taken = running.scene.settings
+    frames = round(until / (taken.time_step * taken.sub_iterations))
     stop = time.monotonic() + inputs.seconds
     for _ in range(frames):
         if running.step() != "running":
@@ -79,6 +88,15 @@ def moved(inputs: Inputs, scene: dict[str, Any], until: float, cancelled: Cancel
     return result
 
 
+def _placed(inputs: Inputs, scene: Scene, **settings: Any) -> Scene:
+    """A scene in the units of the model, with nothing that rides along; people drag points on a canvas, so one that
+    meets no particle is a warning."""
+    units = scene.units.model_copy(update={"length": inputs.units})
+    settled = scene.settings.model_copy(update=settings)
+    own = {"units": units, "weld_tolerance": inputs.tolerance, "strict": False, "settings": settled, "geometry": ()}
+    return scene.model_copy(update=own)
+
+
 def out_of_time(inputs: Inputs) -> Problem:
     """A result cut off by the clock is none: it would be kept for ever, and a quicker machine has another."""
     said = f"Not done within {inputs.seconds:g} s; give a coarser model, less time, or a higher tolerance."
@@ -89,11 +107,6 @@ def remarks(result: Any) -> list[str]:
     """What a person should know of a result."""
     said = [] if result.converged else [result.message]
     return said + _notes(result)
-
-
-def _common(inputs: Inputs) -> dict[str, Any]:
-    """What all scenes have; people drag points on a canvas, so one that meets no particle is a warning."""
-    return {"units": {"length": inputs.units}, "weld_tolerance": inputs.tolerance, "strict": False}
 
 
 def _notes(result: Any) -> list[str]:
@@ -112,29 +125,3 @@ def common(result: Any, *names: str) -> dict[str, Any]:
         "Supports": result.particles[result.reactions["particles"]],
         "Status": str(result.status),
     }
-
-
-def chain(count: int) -> NDArray[np.int64]:
-    """The pairs of neighbours (count, 2) in a row of count + 1 particles."""
-    return np.stack([np.arange(count), np.arange(1, count + 1)], axis=1)
-
-
-def row(start: Any, end: Any, count: int) -> Floats:
-    """Points (count + 1, 3) at equal distances."""
-    return np.asarray(np.linspace(start, end, count + 1), dtype=np.float64)
-
-
-def grid(x: Floats, y: Floats, z: Floats | None = None) -> Mesh:
-    """A mesh over the plan of the steps x (m,) and y (n,), at heights z (m, n): y fastest, sides along x first."""
-    steps = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
-    heights = np.zeros(steps.shape[:2]) if z is None else z
-    number = np.arange(len(x) * len(y)).reshape(len(x), len(y))
-    faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1)
-    return Mesh(np.dstack([steps, heights]).reshape(-1, 3), faces.reshape(-1, 4))
-
-
-def area(mesh: Mesh) -> float:
-    """Area of a mesh of quads [length^2], each the mean of its two cuts into triangles."""
-    a, b, c, d = mesh.vertices[mesh.faces].transpose(1, 0, 2)
-    cuts = (np.cross(b - a, c - a), np.cross(c - a, d - a), np.cross(b - a, d - a), np.cross(c - b, d - b))
-    return float(0.25 * sum(np.linalg.norm(n, axis=1).sum() for n in cuts))

@@ -12,7 +12,7 @@ from hookean.commands.examples import Example
 from hookean_server.http import openapi
 from hookean_server.http.handling import answered, respond
 from hookean_server.problems import Problem
-from hookean_server.workers.example_task import with_scene
+from hookean_server.workers.example_task import by_name
 from hookean_server.workers.pool import Job
 
 router = APIRouter(tags=["examples"])
@@ -34,7 +34,7 @@ async def listing(request: Request) -> dict[str, Any]:
                 "picture": f"/v1/examples/{name}/picture",
                 "scene": f"/v1/examples/{name}/scene",
             }
-            for name, example in (await asyncio.to_thread(with_scene)).items()
+            for name, example in (await asyncio.to_thread(by_name)).items()
         ]
     }
 
@@ -65,7 +65,7 @@ async def scene(request: Request, example: Id) -> Response:
 
 
 async def _found(name: str) -> Example:
-    known = await asyncio.to_thread(with_scene)
+    known = await asyncio.to_thread(by_name)
     if name not in known:
         raise Problem("not-found", "There is no such example; GET /v1/examples lists those there are.")
     return known[name]

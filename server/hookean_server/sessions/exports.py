@@ -9,6 +9,7 @@ from typing import Any
 
 from hookean.files import obj
 from hookean.running.simulation import Simulation
+from hookean.system.two_ended import spring_ends
 from hookean_server.http import answers
 from hookean_server.lifecycle import leftovers
 from hookean_server.sessions import parts
@@ -48,7 +49,7 @@ def export(simulation: Simulation, form: str, arrays: str) -> tuple[str, bytes, 
 def topology(simulation: Simulation) -> dict[str, Any]:
     """What stays while a session runs: springs, meshes, geometry and forces by particles, and the units."""
     system = simulation.system
-    pairs, numbers = parts.spring_ends(simulation)
+    pairs, numbers = spring_ends(system)
     scene = simulation.scene
     geometry = []
     for item, particles in zip(scene.geometry, system.carried, strict=True):

@@ -22,6 +22,7 @@ from hookean.scene.scene import Scene
 from hookean.scene.text import parse
 from hookean.system.state import State
 from hookean.system.system import hold
+from hookean.system.two_ended import spring_forces
 from hookean_server.sessions.wire import Shown
 
 EDITS = ("undo", "redo", "reset")
@@ -208,36 +209,5 @@ def frame(simulation: Simulation, number: int, playing: bool) -> Shown:
     moving = kinetic(system, state) if simulation.solver.physical else 0.0
     return Shown(
         number, state.revision, state.iteration, state.time, float(stand.residual), str(simulation.status), playing,
-        moving, state.x, spring_forces(simulation), stand.reactions[held],
+        moving, state.x, spring_forces(system, state), stand.reactions[held],
     )  # fmt: skip
-
-
-def spring_forces(simulation: Simulation) -> NDArray[np.float64]:
-    """The force (m,) in every element with two ends, tension +, in the order of `spring_ends`."""
-    system, state = simulation.system, simulation.state
-    found = [np.zeros(0)]
-    for group, memory in zip(system.groups, state.memory, strict=True):
-        if _pulls(group):
-            pulls = system.element_forces(group, state, memory)[:, 0]
-            start, end = group.block.indices.T
-            along = state.x.take(end, axis=0) - state.x.take(start, axis=0)
-            length = np.sqrt(np.einsum("ij,ij->i", along, along))
-            found.append(np.einsum("ij,ij->i", pulls, along) / np.where(length > 0.0, length, 1.0))
-    return np.concatenate(found)
-
-
-def spring_ends(simulation: Simulation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Particles (m, 2) and number of the force in the scene (m,) of every element with two ends."""
-    pairs, numbers = [np.zeros((0, 2), np.int64)], [np.zeros(0, np.int64)]
-    for group in simulation.system.groups:
-        if _pulls(group):
-            pairs.append(group.block.indices)
-            number = np.zeros(len(group.block.indices), np.int64)
-            for part in group.parts:
-                number[part.rows] = part.number
-            numbers.append(number)
-    return np.concatenate(pairs), np.concatenate(numbers)
-
-
-def _pulls(group: Any) -> bool:
-    return bool(group.cls.role == "internal" and group.block.indices.shape[1] == 2)

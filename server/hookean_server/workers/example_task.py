@@ -12,12 +12,12 @@ from hookean_server.workers.task import Cancelled, Clock, Done
 def read_example(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
     """The scene of the example `options["name"]`, as JSON."""
     clock = Clock()
-    found = with_scene()[options["name"]].scene()
+    found = by_name()[options["name"]].scene()
     clock.lap("read")
     return Done(found.canonical.encode(), timing=clock.parts)
 
 
 @functools.cache
-def with_scene() -> dict[str, Example]:
-    """The examples that have a scene, by the names of their folders."""
-    return {example.name: example for example in examples() if example.input is not None}
+def by_name() -> dict[str, Example]:
+    """The examples by the names of their folders."""
+    return {example.name: example for example in examples()}
