@@ -1,0 +1,30 @@
+"""The Python of the documentation's pages: its blocks in their order, each with the output printed below it."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted(page for page in [DOCS / "start.md", *DOCS.glob("tutorials/*.md"), *DOCS.glob("how-to/*.md")])
+BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\s*^```text\n(.*?)^```)?", re.S | re.M)
+
+
+def blocks(page: Path) -> list[tuple[str, str]]:
+    """Code and output of each block; the output is empty where the page shows none."""
+    return [(m[1], m[2] or "") for m in BLOCK.finditer(page.read_text("utf-8"))]
+
+
+def run(page: Path) -> list[str]:
+    """What each block prints, run one after another in the present folder with the names of those before."""
+    names: dict[str, object] = {"__name__": "__main__"}
+    printed = []
+    for number, (code, _) in enumerate(blocks(page)):
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out):
+            exec(compile(code, f"{page.name}, block {number}", "exec"), names)
+        printed.append(out.getvalue())
+    return printed
