@@ -51,7 +51,9 @@ def _fields(cls: type) -> str:
         return "\n".join(["| field | default | |", "| --- | --- | --- |", *rows, ""])
     if dataclasses.is_dataclass(cls):
         public = [field for field in dataclasses.fields(cls) if not field.name.startswith("_")]
-        return "\n".join(["| field | type |", "| --- | --- |", *(f"| `{f.name}` | {_type(f.type)} |" for f in public), ""])
+        return "\n".join(
+            ["| field | type |", "| --- | --- |", *(f"| `{f.name}` | {_type(f.type)} |" for f in public), ""]
+        )
     return ""
 
 
@@ -66,7 +68,9 @@ def _default(field: FieldInfo) -> str:
     given = field.get_default(call_default_factory=True)
     if given is None or isinstance(given, BaseModel) or not len(str(given)) or not isinstance(given, str | float | int):
         return ""
-    return f"`{given:g}`" if isinstance(given, float) else f"`{str(given).lower() if isinstance(given, bool) else given}`"
+    return (
+        f"`{given:g}`" if isinstance(given, float) else f"`{str(given).lower() if isinstance(given, bool) else given}`"
+    )
 
 
 def _methods(cls: type) -> list[str]:

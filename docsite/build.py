@@ -39,7 +39,12 @@ def build(into: Path) -> None:
 def pages(into: Path) -> None:
     """The pages by MkDocs; exits with its words where there is a warning."""
     command = [sys.executable, "-m", "mkdocs", "--quiet", "build", "--strict", "-f", str(HERE / "mkdocs.yml")]
-    environment = {**os.environ, "PYTHONPATH": str(HERE.parent), "NO_MKDOCS_2_WARNING": "1", "DISABLE_MKDOCS_2_WARNING": "true"}
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(HERE.parent),
+        "NO_MKDOCS_2_WARNING": "1",
+        "DISABLE_MKDOCS_2_WARNING": "true",
+    }
     done = subprocess.run([*command, "-d", str(into)], env=environment, capture_output=True, text=True)
     if done.returncode:
         print(done.stdout + done.stderr, file=sys.stderr)

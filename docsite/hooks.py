@@ -8,15 +8,14 @@ import posixpath
 import re
 import shutil
 from pathlib import Path
-from typing import Any
 
+from docsite.api import expand
 from latex2mathml.converter import convert
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 from mkdocs.utils import get_relative_url
 
-from docsite.api import expand
 from hookean.forces import KINDS
 
 ROOT = Path(__file__).parents[1]
@@ -30,7 +29,8 @@ PROJECT = {
 PLACES: dict[str, str] = {}
 """Place in the site of every page and picture, by its place in the repository."""
 FENCE = re.compile(r"(^ *```.*?^ *```$)", re.S | re.M)
-LINK = re.compile(r"(\]\()([^)\s#:]+)(#[^)\s]*)?(\))")
+SIGNS = {"φ": r"\varphi", "θ": r"\theta", "μ": r"\mu", "≥": r"\ge", "≤": r"\le", "·": r" \cdot "}
+LINK = re.compile(r"(?<=\[)([^\[\]]*)\]\(([^)\s#:]+)(#[^)\s]*)?\)")
 
 
 def on_files(files: Files, *, config: MkDocsConfig) -> Files:
@@ -40,7 +40,9 @@ def on_files(files: Files, *, config: MkDocsConfig) -> Files:
     added = dict(PROJECT)
     for folder in sorted(path.parent for path in (ROOT / "gh_examples").glob("*/README.md")):
         added[f"gh_examples/{folder.name}/README.md"] = f"gallery/{folder.name}/index.md"
-        added |= {f"gh_examples/{folder.name}/{p.name}": f"gallery/{folder.name}/{p.name}" for p in folder.glob("*.png")}
+        added |= {
+            f"gh_examples/{folder.name}/{p.name}": f"gallery/{folder.name}/{p.name}" for p in folder.glob("*.png")
+        }
     for path in (ROOT / "docsite" / "pages").rglob("*.md"):
         added[path.relative_to(ROOT).as_posix()] = path.relative_to(ROOT / "docsite" / "pages").as_posix()
     for place, uri in added.items():
@@ -58,8 +60,9 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
     place = next(place for place, uri in PLACES.items() if uri == page.file.src_uri)
     if place == "gh_examples/README.md":
         markdown = _gallery(markdown)
+        page.meta["hide"] = ["navigation", "toc"]
     if place == "docs/forces.md":
-        markdown = re.sub(r"^## (\w+)$", lambda m: f"{m[0]}\n\n$$\n{tex(KINDS[m[1]].formula)}\n$$", markdown, flags=re.M)
+        markdown = _forces(markdown)
     if place.startswith("gh_examples/"):
         title = re.search(r"^# (.*)$", markdown, re.M)
         markdown = markdown.replace("![](", f"![{title[1] if title else ''}](")
@@ -67,16 +70,36 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
         markdown = expand(markdown)
     parts = FENCE.split(markdown)
     for n in range(0, len(parts), 2):  # between the fences
-        parts[n] = LINK.sub(lambda m: f"{m[1]}{_moved(m[2], place, page.file.src_uri)}{m[3] or ''}{m[4]}", parts[n])
-        parts[n] = re.sub(r"^(?! *(?:[-*]|\d+\.) |\s*$|\|)(.+)\n(?=(?:[-*]|\d+\.) )", r"\1\n\n", parts[n], flags=re.M)
+        parts[n] = LINK.sub(lambda m: _link(m, place, page.file.src_uri), parts[n])
+        parts[n] = re.sub(r"^(?!(?:[-*]|\d+\.)? |\||\s*$)(.+)\n(?=(?:[-*]|\d+\.) )", r"\1\n\n", parts[n], flags=re.M)
     return "".join(parts)
 
 
-def _moved(target: str, place: str, uri: str) -> str:
-    """A link of a page in the repository as one of that page in the site."""
+def _link(match: re.Match[str], place: str, uri: str) -> str:
+    """A link of a page in the repository as one of that page in the site; a file's name becomes the page's title."""
+    text, target, anchor = match[1], match[2], match[3] or ""
     wanted = posixpath.normpath(posixpath.join(posixpath.dirname(place), target))
-    found = PLACES.get(wanted) or PLACES.get(f"{wanted}/README.md")
-    return posixpath.relpath(found, posixpath.dirname(uri) or ".") if found else target
+    wanted = wanted if wanted in PLACES else f"{wanted}/README.md"
+    if wanted not in PLACES:
+        return match[0]  # MkDocs warns
+    if text == posixpath.basename(target):
+        title = re.search(r"^# (.*)$", (ROOT / wanted).read_text("utf-8"), re.M)
+        text = title[1] if title else text
+    return f"{text}]({posixpath.relpath(PLACES[wanted], posixpath.dirname(uri) or '.')}{anchor})"
+
+
+def _forces(markdown: str) -> str:
+    """The formula of every force, below its heading and in the table of all."""
+    lines = []
+    for line in markdown.splitlines():
+        kind = re.match(r"(?:## |\| \[`)(\w+)(?:$|`\])", line)
+        if kind and kind[1] in KINDS:
+            plain, formula = KINDS[kind[1]].formula.replace("|", "\\|"), tex(KINDS[kind[1]].formula)
+            line = (
+                line.replace(f"| {plain} |", f"| ${formula}$ |") if line[0] == "|" else f"{line}\n\n$$\n{formula}\n$$"
+            )
+        lines.append(line)
+    return "\n".join(lines) + "\n"
 
 
 def _gallery(markdown: str) -> str:
@@ -93,20 +116,26 @@ def _gallery(markdown: str) -> str:
 
 def tex(formula: str) -> str:
     """A formula of a force as TeX: `E = k (l - L0)²/2` is `E = \\frac{k\\,(l - L_0)^2}{2}`."""
-    found = re.sub(r"([A-Zφθ])0", r"\1_0", formula).replace("²", "^2")
+    found = re.sub(r"(?<=[\w)]) (?=[\w(|])", r"\\,", formula)
+    found = re.sub(r"([A-Zφθ])0", r"\1_0", found).replace("²", "^2").replace("EI", r"E\!I")
     found = re.sub(r"\^\(([^)]*)\)", r"^{\1}", found)
-    found = re.sub(r"\|([^|]*)\|", r"\\lvert \1 \\rvert", found)
-    found = re.sub(r"= (-?)(.*?) ?/ ?(?:\(([^)]*)\)|(\d+))$", lambda m: rf"= {m[1]}\frac{{{m[2]}}}{{{m[3] or m[4]}}}", found)
-    found = re.sub(r"(?<=[\w)]) (?=[\w(\\](?!ge|le))", r"\\,", found)
-    for sign, name in {"φ": r"\varphi ", "θ": r"\theta ", "μ": r"\mu ", "≥": r"\ge ", "≤": r"\le ", "·": r"\cdot "}.items():
+    found = re.sub(r"\|([^|]*)\|", r"\\left\\vert \1 \\right\\vert", found)
+    divided = re.fullmatch(r"(.*= -?)(.*?) ?/ ?(?:\(([^)]*)\)|(\d+))", found)
+    if divided:
+        found = rf"{divided[1]}\frac{{{divided[2]}}}{{{divided[3] or divided[4]}}}"
+    for sign, name in SIGNS.items():
         found = found.replace(sign, name)
-    return found.replace("EI", r"E\!I")
+    return found
 
 
 def on_page_content(content: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Formulas as MathML, which browsers draw without a script; tables in a box that scrolls."""
-    content = re.sub(r'<span class="arithmatex">\\\((.*?)\\\)</span>', lambda m: _math(m[1], "inline"), content, flags=re.S)
-    return re.sub(r'<div class="arithmatex">\s*\\\[(.*?)\\\]\s*</div>', lambda m: _math(m[1], "block"), content, flags=re.S)
+    content = re.sub(
+        r'<span class="arithmatex">\\\((.*?)\\\)</span>', lambda m: _math(m[1], "inline"), content, flags=re.S
+    )
+    return re.sub(
+        r'<div class="arithmatex">\s*\\\[(.*?)\\\]\s*</div>', lambda m: _math(m[1], "block"), content, flags=re.S
+    )
 
 
 def _math(text: str, display: str) -> str:

@@ -1,10 +1,17 @@
-"""The Python of the documentation's pages: its blocks in their order, each with the output printed below it."""
+"""The Python of the documentation's pages: its blocks in their order, each with the output printed below it.
+
+By hand, to write the output of a page again: `cd tests && python -m docs.snippets ../docs/tutorials/cable.md`; its
+pictures go to the folder `pictures` beside it.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import io
 import re
+import shutil
+import sys
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -28,3 +35,25 @@ def run(page: Path) -> list[str]:
             exec(compile(code, f"{page.name}, block {number}", "exec"), names)
         printed.append(out.getvalue())
     return printed
+
+
+def write(page: Path) -> None:
+    """Write the output of a page's blocks below them, and its pictures beside it."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        printed, text = iter(run(page)), page.read_text("utf-8")
+
+        def shown(match: re.Match[str]) -> str:
+            start, out = match.start(), next(printed)
+            return (
+                match[0] if match[2] is None else text[start : match.start(2)] + out + text[match.end(2) : match.end()]
+            )
+
+        page.write_text(BLOCK.sub(shown, text), "utf-8")
+        for name in re.findall(r"\(pictures/([^)]+)\)", text):
+            (page.parent / "pictures").mkdir(exist_ok=True)
+            shutil.copy(Path(folder) / name, page.parent / "pictures" / name)
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:]:
+        write(Path(name).resolve())
