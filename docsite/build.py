@@ -36,9 +36,9 @@ def build(into: Path) -> None:
         made.rename(into)
 
 
-def pages(into: Path) -> None:
+def pages(into: Path, config: Path = HERE / "mkdocs.yml") -> None:
     """The pages by MkDocs; exits with its words where there is a warning."""
-    command = [sys.executable, "-m", "mkdocs", "--quiet", "build", "--strict", "-f", str(HERE / "mkdocs.yml")]
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "-f", str(config)]
     environment = {
         **os.environ,
         "PYTHONPATH": str(HERE.parent),

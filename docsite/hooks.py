@@ -30,7 +30,17 @@ PLACES: dict[str, str] = {}
 """Place in the site of every page and picture, by its place in the repository."""
 FENCE = re.compile(r"(^ *```.*?^ *```$)", re.S | re.M)
 SIGNS = {"φ": r"\varphi", "θ": r"\theta", "μ": r"\mu", "≥": r"\ge", "≤": r"\le", "·": r" \cdot "}
+FIGURE = re.compile(r"^## \[(.*?)\]\((.*?)\): (.*)$", re.M)
 LINK = re.compile(r"(?<=\[)([^\[\]]*)\]\(([^)\s#:]+)(#[^)\s]*)?\)")
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Puts the figures of the gallery into the navigation, in the gallery's order."""
+    listed = FIGURE.findall((ROOT / "gh_examples" / "README.md").read_text("utf-8"))
+    for section in config.nav or []:
+        if "Gallery" in section:
+            section["Gallery"] += [{f"{name}: {title}": f"gallery/{folder}/index.md"} for name, folder, title in listed]
+    return config
 
 
 def on_files(files: Files, *, config: MkDocsConfig) -> Files:
@@ -104,14 +114,12 @@ def _forces(markdown: str) -> str:
 
 def _gallery(markdown: str) -> str:
     """The figures as cards: a picture with its title, in rows."""
-    head, *figures = re.split(r"^## ", markdown, flags=re.M)
     cards = []
-    for figure in figures:
-        name, folder, title = re.match(r"\[(.*?)\]\((.*?)\): (.*)", figure).groups()  # type: ignore[union-attr]
+    for name, folder, title in FIGURE.findall(markdown):
         picture = f'<img src="{folder}/picture.png" alt="" loading="lazy" width="640" height="400">'
         words = f"<strong>{html.escape(name)}</strong> {html.escape(title)}"
         cards.append(f'<a class="card" href="{folder}/">{picture}<span>{words}</span></a>')
-    return "\n".join([head, '<div class="gallery">', *cards, "</div>", ""])
+    return "\n".join([markdown.partition("\n## ")[0], "", '<div class="gallery">', *cards, "</div>", ""])
 
 
 def tex(formula: str) -> str:
@@ -129,7 +137,7 @@ def tex(formula: str) -> str:
 
 
 def on_page_content(content: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Formulas as MathML, which browsers draw without a script; tables in a box that scrolls."""
+    """Formulas as MathML, which browsers draw without a script."""
     content = re.sub(
         r'<span class="arithmatex">\\\((.*?)\\\)</span>', lambda m: _math(m[1], "inline"), content, flags=re.S
     )
@@ -139,7 +147,8 @@ def on_page_content(content: str, *, page: Page, config: MkDocsConfig, files: Fi
 
 
 def _math(text: str, display: str) -> str:
-    return convert(html.unescape(text).strip(), display=display)
+    drawn: str = convert(html.unescape(text).strip(), display=display)
+    return f'<div class="formula">{drawn}</div>' if display == "block" else drawn
 
 
 def on_post_page(output: str, *, page: Page, config: MkDocsConfig) -> str:
