@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -118,6 +119,15 @@ def test_the_reference_has_every_public_name(pages: dict[str, Page]) -> None:
     }
     client = pages["api/client/index.html"].anchors
     assert {f"hookean_client.{name}" for name in ("connect", "Client", "Session", "Frames", "Problem")} <= client
+
+
+def test_the_reference_of_http_is_of_this_service(site: Path) -> None:
+    """The description beside it is what `GET /v1/openapi.json` answers, so that it is there without a token, too."""
+    from hookean_server.app import create_app
+    from hookean_server.settings import Settings
+
+    shown = json.loads((site / "http" / "openapi.json").read_text("utf-8"))
+    assert shown == json.loads(json.dumps(create_app(Settings()).openapi()))
 
 
 def test_every_force_has_its_formula(site: Path) -> None:
