@@ -71,6 +71,8 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
     if place == "gh_examples/README.md":
         markdown = _gallery(markdown)
         page.meta["hide"] = ["navigation", "toc"]
+    if place == "benchmarks/results.md":
+        page.meta["hide"] = ["toc"]  # its tables are wide
     if place == "docs/forces.md":
         markdown = _forces(markdown)
     if place.startswith("gh_examples/"):

@@ -18,6 +18,10 @@ pytestmark = pytest.mark.slow
 pytest.importorskip("material", reason="what builds the site is not installed: pip install -e .[site]")
 
 
+DECODED = "Promise.all([...document.images].map(image => { image.loading = 'eager'; return image.decode(); }))"
+"""Waits for every picture of a page; fails where one is missing."""
+
+
 @pytest.fixture(scope="module")
 def pages() -> list[str]:
     """Addresses of all pages of the site, which is built where it is not."""
@@ -31,7 +35,8 @@ class Reader:
     """A browser's page, and everything that went wrong in it."""
 
     def __init__(self, browser: Any, service: Service, **options: Any) -> None:
-        self.context, self.url, self.wrong = context(browser, **options), service.url, []
+        self.context, self.url = context(browser, **options), service.url
+        self.own = f"{self.url}/docs"
         self.page = self.context.new_page()
         self.wrong: list[str] = []
         self.page.on("console", lambda message: self.wrong.append(f"{self.page.url}: {message.text}"))
@@ -42,7 +47,7 @@ class Reader:
         )
 
     def _own(self, url: str) -> None:
-        if not url.startswith((f"{self.url}/docs", "data:")):
+        if not url.startswith((self.own, "data:")):
             self.wrong.append(f"{self.page.url} asks for {url}")
 
     def open(self, path: str) -> None:
@@ -71,9 +76,7 @@ def test_every_page_fits_and_loads_only_its_own(reader: Any, pages: list[str], s
     for path in pages:
         shown.open(path)
         assert shown.page.evaluate("document.documentElement.scrollWidth") <= size["width"], path
-        shown.page.evaluate("document.querySelectorAll('img').forEach(image => image.loading = 'eager')")
-        shown.page.wait_for_function("[...document.images].every(image => image.complete)")
-        assert shown.page.evaluate("[...document.images].every(image => image.naturalWidth > 0)"), path
+        shown.page.evaluate(DECODED)
 
 
 def test_the_search_finds_a_page(reader: Any, pages: list[str]) -> None:
@@ -86,12 +89,24 @@ def test_the_search_finds_a_page(reader: Any, pages: list[str]) -> None:
     shown.page.wait_for_url(re.compile("/docs/how-to/soap-film/"))
 
 
-def test_the_reference_lists_every_operation(reader: Any, pages: list[str]) -> None:
-    """In the colours chosen on the other pages."""
+def test_the_reference_lists_every_operation_and_tries_one(reader: Any, service: Service, pages: list[str]) -> None:
+    """In the colours chosen on the other pages; with the token a request to this service is answered."""
     shown = reader(color_scheme="light")
     shown.open("/docs/")
     shown.page.locator("label[title='Dark']").click()
     shown.open("/docs/http/")
-    wanted = sum(len(item) for item in create_app().openapi()["paths"].values())
-    shown.page.wait_for_function(f"document.querySelectorAll('.opblock').length === {wanted}")
+    operations = shown.page.locator(".opblock")
+    operations.first.wait_for()
+    assert operations.count() == sum(len(item) for item in create_app().openapi()["paths"].values())
     assert shown.page.evaluate("document.documentElement.classList.contains('dark-mode')")
+    shown.own = service.url
+    shown.page.locator("button.authorize").click()
+    dialog = shown.page.locator(".auth-container", has_text=re.compile(r"^token"))
+    dialog.locator("input").fill(service.token)
+    dialog.get_by_role("button", name="Apply credentials").click()
+    shown.page.locator(".btn-done").first.click()
+    forces = shown.page.locator(".opblock", has=shown.page.locator("[data-path='/v1/forces']"))
+    forces.locator(".opblock-summary-control").click()
+    forces.get_by_role("button", name="Try it out").click()
+    forces.get_by_role("button", name="Execute").click()
+    assert forces.locator(".live-responses-table .response-col_status").first.inner_text().startswith("200")
