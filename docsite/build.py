@@ -15,7 +15,9 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent))
+# this tree, whatever is installed
+TREE = [str(HERE.parent / folder) for folder in (".", "core", "server", "components", "canvas")]
+sys.path[:0] = TREE
 
 import hatch_build  # noqa: E402
 

@@ -109,4 +109,4 @@ def test_the_reference_lists_every_operation_and_tries_one(reader: Any, service:
     forces.locator(".opblock-summary-control").click()
     forces.get_by_role("button", name="Try it out").click()
     forces.get_by_role("button", name="Execute").click()
-    assert forces.locator(".live-responses-table td.response-col_status").first.inner_text().startswith("200")
+    assert forces.locator(".live-responses-table tbody .response-col_status").first.inner_text().startswith("200")
