@@ -41,12 +41,7 @@ def build(into: Path) -> None:
 def pages(into: Path, config: Path = HERE / "mkdocs.yml") -> None:
     """The pages by MkDocs; exits with its words where there is a warning."""
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "-f", str(config)]
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(HERE.parent),
-        "NO_MKDOCS_2_WARNING": "1",
-        "DISABLE_MKDOCS_2_WARNING": "true",
-    }
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(TREE), "NO_MKDOCS_2_WARNING": "1"}
     done = subprocess.run([*command, "-d", str(into)], env=environment, capture_output=True, text=True)
     if done.returncode:
         print(done.stdout + done.stderr, file=sys.stderr)
