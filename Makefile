@@ -4,7 +4,7 @@ PORT ?= 8765
 BIN = .venv/bin
 EXAMPLE = gh_examples/9.24-membrane
 
-.PHONY: run test quick soak mutants bench bench-service figures definitions screenshots docs page studio lint clean
+.PHONY: run test quick soak mutants bench bench-service figures definitions screenshots docs site page studio lint clean
 STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
 run: .venv/run
@@ -48,6 +48,9 @@ docs: .venv/run
 	$(BIN)/python -c "from hookean.scene.catalogue import page; print(page(), end='')" > docs/forces.md
 	$(BIN)/python -c "from hookean.scene.catalogue import write_exports; write_exports()"
 
+site: .venv/site # the documentation, for people to browse: hookean serve shows it at /docs/
+	$(BIN)/python docsite/build.py
+
 page: .venv/test
 	$(BIN)/python hatch_build.py
 
@@ -72,9 +75,15 @@ lint: .venv/test
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
 	@touch $@
 
+.venv/site: .venv/run
+	@echo "Installing what the documentation needs ..."
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[site]'
+	@touch $@
+
 .venv/mutants: .venv/test
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[mutants]'
 	@touch $@
 
 clean:
-	rm -rf .venv out build dist studio/node_modules server/hookean_server/page
+	rm -rf .venv out build dist studio/node_modules docsite/node_modules \
+		server/hookean_server/page server/hookean_server/site

@@ -1,4 +1,4 @@
-"""What is packed: the page is in the sdist and in the wheel, and whoever builds a wheel of the sdist needs no Node."""
+"""What is packed: page and documentation are in the sdist and in the wheel; a wheel of the sdist needs no Node."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ pytest.importorskip("hatchling", reason="hatchling, which builds packages, is no
 
 ROOT = Path(__file__).parents[1]
 PAGE = "hookean_server/page/"
+SITE = "hookean_server/site/"
 
 
 def build(tree: Path, target: str, into: Path, **environment: str) -> Path:
@@ -47,16 +48,20 @@ def test_an_sdist_carries_the_page_and_its_sources(sdist: Path):
     names = {path.relative_to(sdist).as_posix() for path in sdist.rglob("*") if path.is_file()}
     assert {"hatch_build.py", "studio/package-lock.json", "studio/src/main.tsx", "studio/.npmrc"} <= names
     assert {f"server/{PAGE}index.html", f"server/{PAGE}licenses.md"} <= names
+    assert {"docsite/mkdocs.yml", "docsite/package-lock.json", "docsite/theme/http.html", "docs/index.md"} <= names
+    assert {f"server/{SITE}index.html", f"server/{SITE}http/swagger-ui-bundle.js"} <= names
     assert not [name for name in names if "node_modules" in name or name.endswith(".map")]
 
 
 def test_a_wheel_of_the_sdist_needs_no_node(sdist: Path, tmp_path: Path):
-    """Neither node nor npm on the path, no registry; the page is that of the sdist, byte for byte."""
+    """Neither node nor npm on the path, no registry; page and documentation are those of the sdist, byte for byte."""
     nothing = {"PATH": str(tmp_path), "npm_config_registry": "http://127.0.0.1:9", "PYTHONPATH": ""}
     wheel = zipfile.ZipFile(build(sdist, "wheel", tmp_path / "wheel", **nothing))
     page = {name.removeprefix(PAGE): wheel.read(name) for name in wheel.namelist() if name.startswith(PAGE)}
-    folder = sdist / "server" / PAGE
-    assert page == {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+    for place in (PAGE, SITE):
+        folder = sdist / "server" / place
+        packed = {name.removeprefix(place): wheel.read(name) for name in wheel.namelist() if name.startswith(place)}
+        assert packed == {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
     for path in re.findall(rb'(?:src|href)="/page/(.*?)"', page["index.html"]):
         assert path.decode() in page
     assert not [name for name in wheel.namelist() if "node_modules" in name or name.startswith("studio")]
@@ -86,6 +91,28 @@ def test_the_description_of_a_package_points_to_nothing_beside_it(sdist: Path):
     assert all(re.match(r"https://|#", a or b) for a, b in targets), targets
     urls = dict(line.split(", ") for line in text.get_all("Project-URL"))
     assert {"Homepage", "Documentation", "Changelog", "Issues"} <= set(urls)
+
+
+def test_the_documentation_is_built_where_its_sources_changed(sdist: Path):
+    """A page, a docstring or a picture; an editable install, which is what `make run` makes, never asks."""
+    ask = "from hatch_build import *; print(site_is_built())"
+
+    def is_built() -> str:
+        return subprocess.run([sys.executable, "-c", ask], cwd=sdist, capture_output=True, text=True, check=True).stdout
+
+    assert is_built() == "True\n"
+    for name in ("docs/solvers.md", "core/hookean/running/run.py", "gh_examples/9.4-cable/picture.png"):
+        written = (sdist / name).read_bytes()
+        (sdist / name).write_bytes(written + b"\n# changed\n")
+        assert is_built() == "False\n", name
+        (sdist / name).write_bytes(written)
+    (sdist / "hook.py").write_text(
+        "import hatch_build as h\n"
+        "h.is_built = lambda: True\nh.site_is_built = lambda: False\nh.build_site = lambda: print('built')\n"
+        "for version in ('editable', 'standard'):\n    h.PageHook.initialize(None, version, {}); print(version)\n"
+    )
+    done = subprocess.run([sys.executable, "hook.py"], cwd=sdist, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["editable", "built", "standard"]
 
 
 def test_the_page_is_built_where_its_sources_changed(sdist: Path):
@@ -121,6 +148,7 @@ def test_a_page_that_cannot_be_built_says_why_in_a_sentence(sdist: Path, tmp_pat
 
 def test_the_lock_names_no_registry():
     """Everybody's own registry is asked, and every package has its digest."""
-    lock = (ROOT / "studio" / "package-lock.json").read_text()
-    assert '"resolved"' not in lock and "://registry" not in lock
-    assert lock.count('"integrity"') > 10
+    for folder, fewest in (("studio", 10), ("docsite", 2)):
+        lock = (ROOT / folder / "package-lock.json").read_text()
+        assert '"resolved"' not in lock and "://registry" not in lock
+        assert lock.count('"integrity"') >= fewest

@@ -93,6 +93,8 @@ class Settings:
     """Further names the service answers to, besides 127.0.0.1, localhost and [::1]."""
     page: Path | str = field(default_factory=lambda: Path(__file__).with_name("page"))
     """The folder of the page that browsers get."""
+    site: Path | str = field(default_factory=lambda: Path(__file__).with_name("site"))
+    """The folder of the documentation."""
 
     @property
     def lanes(self) -> int:

@@ -8,7 +8,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from hookean_server.routes.page import KINDS
+from hookean_server.routes.built_files import KINDS
 from serving import HANG
 
 from .conftest import Served, problem

@@ -1,61 +1,54 @@
-"""`/docs`: the description of the API as one plain page, without scripts and without anything from elsewhere."""
+"""`/docs/`: the documentation as `make site` has built it. It loads nothing from elsewhere and needs no token."""
 
 from __future__ import annotations
 
-import asyncio
-import json
-from html import escape
-from typing import Any
+import re
+from pathlib import Path
 
 from fastapi import APIRouter, Request
-from starlette.responses import Response
+from starlette.responses import RedirectResponse, Response
+
+from hookean_server.http.access import Access, marked
+from hookean_server.routes.built_files import FILE, FOLDER, answer
 
 router = APIRouter()
 
 HEADERS = {
-    "content-security-policy": "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    # icons in the style sheets are data; search runs in a worker
+    "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "font-src 'self'; connect-src 'self'; worker-src 'self'; frame-ancestors 'none'; base-uri 'none'; "
+    "form-action 'none'",
     "referrer-policy": "no-referrer",
     "cache-control": "no-cache",
 }
+NOT_BUILT = (
+    '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>hookean documentation</title>\n'
+    "<p>The documentation has not been built here: run <code>make site</code> in the checkout, or install a wheel of "
+    "hookean, and reload. Its sources are in the folder <code>docs</code>.</p>\n</html>\n"
+)
 
 
 @router.get("/docs", include_in_schema=False)
-async def docs(request: Request) -> Response:
-    """Every operation with its parameters, bodies and answers, as `/v1/openapi.json` has them."""
-    page = await asyncio.to_thread(lambda: _page(request.app.openapi()))
-    return Response(page, media_type="text/html", headers=HEADERS)
+@marked(Access.OPEN)
+async def docs() -> Response:
+    """The address of the first page."""
+    return _moved("/docs/")
 
 
-def _page(document: dict[str, Any]) -> str:
-    operations = [(path, m, o) for path, item in document["paths"].items() for m, o in item.items()]
-    schemas = document["components"]["schemas"]
-    return "\n".join(
-        [
-            '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>hookean: the service</title>',
-            f"<h1>hookean {escape(document['info']['version'])}</h1>",
-            f"<p>{escape(document['info']['description'])}</p>",
-            '<p>For programs: <a href="/v1/openapi.json">/v1/openapi.json</a>.</p>',
-            "<h2>Operations</h2>",
-            *(_operation(path, method, operation) for path, method, operation in operations),
-            "<h2>Schemas</h2>",
-            *(f"<h3><code>{escape(name)}</code></h3>\n{_json(schema)}" for name, schema in schemas.items()),
-            "</html>\n",
-        ]
-    )
+@router.get("/docs/{path:path}", include_in_schema=False)
+@marked(Access.OPEN)
+async def docs_file(request: Request, path: str) -> Response:
+    """A page or a file of the documentation; where it was not built, how to build it."""
+    site = Path(request.app.state.settings.site)
+    if path in ("", "index.html") and not (site / "index.html").is_file():
+        return Response(NOT_BUILT, media_type="text/html", headers=HEADERS)
+    if path == "" or path.endswith("/"):
+        return answer(request, site, f"{path}index.html", HEADERS)
+    if not re.fullmatch(FOLDER + FILE, path, re.ASCII):
+        answer(request, site, f"{path}/index.html", HEADERS)  # raises where there is no such page
+        return _moved(f"/docs/{path}/")
+    return answer(request, site, path, HEADERS)
 
 
-def _operation(path: str, method: str, operation: dict[str, Any]) -> str:
-    schemes = [name for one in operation["security"] for name in one]
-    parts = [
-        f"<h3><code>{method.upper()} {escape(path)}</code></h3>",
-        f"<p><strong>{escape(operation['summary'])}</strong>. {escape(operation.get('description', ''))}</p>",
-        f"<p>Needs: {escape(' or '.join(schemes) or 'nothing')}.</p>",
-    ]
-    for title in ("parameters", "requestBody", "responses"):
-        if operation.get(title):
-            parts.append(f"<details><summary>{title}</summary>{_json(operation[title])}</details>")
-    return "\n".join(parts)
-
-
-def _json(value: Any) -> str:
-    return f"<pre>{escape(json.dumps(value, indent=2, ensure_ascii=False))}</pre>"
+def _moved(to: str) -> Response:
+    return RedirectResponse(to, status_code=307, headers=HEADERS)

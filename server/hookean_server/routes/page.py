@@ -6,24 +6,15 @@ import re
 from pathlib import Path
 
 from fastapi import APIRouter, Request
-from starlette.responses import FileResponse, Response
+from starlette.responses import Response
 
 from hookean_server.http.access import Access, marked
 from hookean_server.problems import Problem
+from hookean_server.routes.built_files import FILE, answer
 
 router = APIRouter()
 
-KINDS = {
-    "html": "text/html",
-    "js": "text/javascript",
-    "css": "text/css",
-    "svg": "image/svg+xml",
-    "png": "image/png",
-    "woff2": "font/woff2",
-    "json": "application/json",
-}
-"""Media types by the ending of a name; other files are not served. Said here, as systems disagree about some."""
-NAME = re.compile(rf"(assets/)?[\w-][\w.-]*\.({'|'.join(KINDS)})", re.ASCII)
+NAME = re.compile(rf"(assets/)?{FILE}", re.ASCII)
 HEADERS = {
     "content-security-policy": "default-src 'self'; connect-src 'self' ws://127.0.0.1:* ws://localhost:*; "
     "img-src 'self' data: blob:; frame-ancestors 'none'; base-uri 'none'",
@@ -48,21 +39,17 @@ async def page_file(request: Request, path: str) -> Response:
 def start_page(request: Request) -> Response:
     """The page itself; where it was not built, how to build it."""
     try:
-        answer = _answer(request, "index.html")
+        shown = _answer(request, "index.html")
     except Problem:
-        answer = Response(NOT_BUILT, media_type="text/html", headers={**HEADERS, "cache-control": "no-cache"})
-    answer.headers["vary"] = "Accept"
-    return answer
+        shown = Response(NOT_BUILT, media_type="text/html", headers={**HEADERS, "cache-control": "no-cache"})
+    shown.headers["vary"] = "Accept"
+    return shown
 
 
 def _answer(request: Request, name: str) -> Response:
     """A file in the page's folder or its folder `assets`, whose names change with what is in them."""
     found = NAME.fullmatch(name)
-    file = Path(request.app.state.settings.page) / name
-    if found is None or not file.is_file():
+    if found is None:
         raise Problem("not-found", "There is no such file.")
     headers = {**HEADERS, "cache-control": FOR_EVER if found[1] else "no-cache"}
-    answer = FileResponse(file, headers=headers, media_type=KINDS[found[2]], stat_result=file.stat())
-    if request.headers.get("if-none-match") == answer.headers["etag"]:
-        return Response(status_code=304, headers={**headers, "etag": answer.headers["etag"]})
-    return answer
+    return answer(request, Path(request.app.state.settings.page), name, headers)
