@@ -74,12 +74,12 @@ def test_a_file_that_was_not_run_before_is_refused(person: Person) -> None:
     refused = person.command("run", str(file))
     assert refused.returncode == 2 and refused.stdout == "" and person.times == 0 and not person.remembered.exists()
     assert refused.stderr.count("\n") == 1
-    assert "runs as you" in refused.stderr and "--trust" in refused.stderr and "show --code" in refused.stderr
+    assert "runs with your rights" in refused.stderr and "--trust" in refused.stderr and "show --code" in refused.stderr
     trusted = person.command("run", str(file), "--trust")
     assert (trusted.returncode, trusted.stdout) == (0, "twice: 12\n") and person.times == 1
-    assert "runs as you" in trusted.stderr
+    assert "runs with your rights" in trusted.stderr
     again = person.run(file)
-    assert (again.exit_code, again.stdout) == (0, "twice: 12\n") and "runs as you" in again.stderr
+    assert (again.exit_code, again.stdout) == (0, "twice: 12\n") and "runs with your rights" in again.stderr
     shutil.copy(file, person.folder / "b.ghx")
     assert person.run(person.folder / "b.ghx").exit_code == 0 and person.times == 3
     changed = person.definition(more=" Changed.")

@@ -1,8 +1,8 @@
 """Examples: the figures of the source chapter, each a folder that runs, is drawn and is checked.
 
 A folder holds its input (`scene.json`, or `model.3dm` and `recipe.toml`), `example.py` with `run(folder) -> Outcome`,
-`expected.json` with the numbers it is held to and where they come from, `README.md` and `picture.png`. They stand in
-`gh_examples/` of the project, and travel in the wheel.
+`expected.json` with the expected numbers and their sources, `README.md` and `picture.png`. They are in
+`gh_examples/` of the project, and in the wheel.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Outcome:
     """What an example's `run` returns: its numbers by the names of expected.json, in the units given there, and what
-    its picture shows. `title` stands above the picture."""
+    its picture shows. `title` is the heading of the picture."""
 
     numbers: Mapping[str, float]
     panels: Sequence[Panel | Graph]
@@ -41,13 +41,13 @@ class Outcome:
 
     @property
     def failures(self) -> list[str]:
-        """What the runs in its panels say that ended neither at rest nor while moving."""
+        """Messages of the runs in its panels that ended neither at rest nor while moving."""
         results = [panel.result for panel in self.panels if isinstance(panel, Panel) and panel.result is not None]
         return [result.message for result in results if result.status not in ("converged", "running")]
 
 
 class Expected(BaseModel):
-    """A number an example is held to: `value` within `tolerance` (absolute, in `unit`), or bounds; and its `source`:
+    """An expected number of an example: `value` within `tolerance` (absolute, in `unit`), or bounds; and its `source`:
     `chapter: ...`, `closed form: ...` or `script NAME: ...`, a script beside it that does not import hookean."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -82,7 +82,7 @@ class Expected(BaseModel):
 
 
 class Expectations(BaseModel):
-    """The file expected.json: title, what to see and try in a sentence, figures of the chapter it stands for, numbers
+    """The file expected.json: title, what to see and try in a sentence, figures of the chapter it shows, numbers
     by name."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -142,11 +142,11 @@ class Example:
         from hookean.running.in_motion import in_motion
 
         if self.input is None:
-            raise InputError(self.name, "is no scene; its script computes it")
+            raise InputError(self.name, "has no scene; its script computes it")
         return in_motion(read_scene(*self.input))[0]
 
     def run(self) -> Outcome:
-        """Run the example afresh."""
+        """Run the example."""
         spec = importlib.util.spec_from_file_location(f"example_{self.name}", self.folder / "example.py")
         assert spec is not None and spec.loader is not None
         module = importlib.util.module_from_spec(spec)
@@ -180,27 +180,28 @@ def examples() -> list[Example]:
 
 INTRODUCTION = """# Gallery
 
-The figures of the chapter that hookean implements, each a folder with its input, its script, the numbers it is held
-to and where they come from. `hookean example` lists them, `hookean example 9.11` runs one, and `make figures` draws all
+The figures of the chapter that hookean implements, each a folder with its input, its script, its expected
+numbers and their sources. `hookean example` lists them, `hookean example 9.11` runs one, and `make figures` draws all
 and writes this page.
 
-To make one your own, copy its folder, change its input and run the copy: its numbers stand beside those it had.
+To make one your own, copy its folder, change its input and run the copy: its numbers are printed beside the original
+ones.
 
 ```sh
 hookean example 9.24 --copy roof
 hookean example ./roof --picture roof/relaxed.png
 ```
 
-Then give it your file. First see what it holds, change the layers that the recipe names to yours, and relax it:
+Then use your file. First print its contents, change the layers in the recipe to yours, and relax it:
 
 ```sh
 hookean relax mine.3dm --recipe roof/recipe.toml --explain
 hookean relax mine.3dm --recipe roof/recipe.toml -o relaxed.3dm --picture relaxed.png
 ```
 
-Stiffness and loads of an example fit its size: 20 N that shape a roof of 10 m tear a model of 10 mm. `--explain` says
-how large your model is and in which units the recipe counts. [rhino-files.md](../docs/rhino-files.md) has everything a
-recipe can say.
+Stiffness and loads of an example suit its size: 20 N that shape a roof of 10 m tear a model of 10 mm. `--explain`
+prints the size of your model and the units of the recipe. [rhino-files.md](../docs/rhino-files.md) documents all recipe
+options.
 
 """
 
@@ -220,7 +221,7 @@ def gallery(known: Sequence[Example]) -> str:
 
 
 def _figures(figures: Sequence[str]) -> str:
-    """Such as `Figure 9.4`, `Figures 9.4 and 9.6` or `Figures 9.23 to 9.25`; what is no number stays as it is."""
+    """Such as `Figure 9.4`, `Figures 9.4 and 9.6` or `Figures 9.23 to 9.25`; anything else is kept as it is."""
     first, *more = figures
     if not more or not all(re.fullmatch(r"\d+\.\d+", figure) for figure in figures):
         return f"Figure {first}" if first[0].isdigit() else first.capitalize()
@@ -248,12 +249,14 @@ def find(wanted: str) -> Example:
         return Example(Path(wanted))
     near = _near(named, [e.name for e in known])
     meant = f"; did you mean {' or '.join(near)}?" if near else ";"
-    raise InputError(wanted, f"no example has this figure or name{meant} hookean example lists all")
+    raise InputError(wanted, f"no example has this figure or name{meant} list all with: hookean example")
 
 
 def _beside(wanted: str) -> Example:
     if not (Path(wanted) / "example.py").is_file():
-        raise InputError(wanted, "is no folder with an example.py; hookean example 9.24 --copy FOLDER makes one")
+        raise InputError(
+            wanted, "is not a folder with an example.py; make one with: hookean example 9.24 --copy FOLDER"
+        )
     return Example(Path(wanted).resolve())
 
 

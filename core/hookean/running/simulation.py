@@ -116,7 +116,7 @@ class Simulation:
         self.solver = solver("verlet" if name == "auto" else name)
         refusal = self.solver.refuse(self.system)
         if self._playing is not None and not self.solver.physical:
-            refusal = f"{name} knows no time, and a script does; use verlet, yoshida or auto"
+            refusal = f"{name} has no physical time, which a script needs; use verlet, yoshida or auto"
         if refusal:
             raise InputError("/settings/solver", refusal)
         if warn:
@@ -255,7 +255,7 @@ class Simulation:
 
     @property
     def message(self) -> str:
-        """How it stands, in a sentence."""
+        """Its status, in a sentence."""
         if self.status is Status.RUNNING:
             found, unit = self.balance, self.scene.units.force
             said = f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance."
@@ -306,7 +306,9 @@ class Simulation:
         """
         edit = Patch.read(edit)
         if edit.remove and self._playing is not None:
-            raise InputError("/remove", "a script leads forces by their numbers; forces are removed without one only")
+            raise InputError(
+                "/remove", "a script refers to forces by number; forces can only be removed without a script"
+            )
         setup = Setup.of(self.system)
         # a moved anchor stiffens or quickens nothing by itself
         warn = bool(edit.forces or edit.settings or len(edit.release) or edit.rewires)
@@ -320,7 +322,7 @@ class Simulation:
         return self._changed(lambda: self.history.undo(self.system, self.state))
 
     def redo(self) -> int:
-        """Make the patch again that was taken back last; InputError where there is none."""
+        """Redo the last undone patch; raises InputError if there is none."""
         return self._changed(lambda: self.history.redo(self.system, self.state))
 
     def _changed(self, change: Callable[[], None], *, warn: bool = True) -> int:
@@ -362,7 +364,7 @@ class Simulation:
         """Go on from a state that `State.of` read back; its anchors are those of the system. ValueError where it is
         the state of another system."""
         if not state.fits(self.state):
-            raise ValueError("a state of another system")
+            raise ValueError("this state belongs to another system")
         goal, scale = state.scratch.get("goal"), state.force_scale
         self.state = state
         self._begin(start=False, warn=False)
@@ -388,7 +390,7 @@ class Simulation:
 
     @classmethod
     def load(cls, path: str | Path | IO[bytes], stream: Source | None = None) -> Simulation:
-        """The simulation that `save` wrote; it goes on bit for bit, with its stream given anew from the first row.
+        """The simulation that `save` wrote; it goes on bit for bit, with its stream given again from the first row.
         InputError where the file is not one."""
         try:
             with opened(path, "rb") as source, np.load(source, allow_pickle=False) as file:

@@ -33,7 +33,12 @@ _SHAPE = (
     scenes.STATUS,
 )
 _ENDS = optional(
-    Parameter("Anchors", "A", "Point", "Where it is held: first, last and those between; none: (0, 0, 0), (10, 0, 0)")
+    Parameter(
+        "Anchors",
+        "A",
+        "Point",
+        "Points where it is held: first, last and those between; default: (0, 0, 0), (10, 0, 0)",
+    )
 )
 _DAMPING = item("Damping", "c", "Number", "Damping of every spring [N s/model unit]", 10.0, minimum=0.0)
 _DRAG = item("Drag", "b", "Number", "Drag on every particle [N s/model unit]", 1.0, minimum=0.0)
@@ -62,7 +67,7 @@ def _hung(inputs: Inputs) -> dict[str, Any]:
     if not len(anchors):
         anchors = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]])
     if len(anchors) < 2:
-        raise InputError("/Anchors", "one anchor is given; a cable has two ends, give both")
+        raise InputError("/Anchors", "one anchor given; a cable needs two, one for each end")
     pieces = inputs.one("Pieces")
     points = scenes.row(anchors[0], anchors[-1], pieces)
     springs = {"kind": "springs", "name": "cable", "particles": scenes.chain(pieces),
@@ -114,7 +119,7 @@ def arc(length: float, span: float, pieces: int) -> Floats:
     from scipy.optimize import brentq
 
     if not span <= length < 1e3 * span:
-        said = f"{length:g} is given over a span of {span:g}; the arc is at least as long, at most 1000 times"
+        said = f"{length:g} given for a span of {span:g}; at least the span, at most 1000 times it allowed"
         raise InputError("/Arc length", said)
     if length == span:
         return scenes.row((0.0, 0.0, 0.0), (span, 0.0, 0.0), pieces)
@@ -221,7 +226,7 @@ FUNCTIONS: dict[str, Function] = {
     "bouncing_cable": Function(
         "Bouncing cable",
         "Bouncing",
-        "Figure 9.6: the cable in motion, at a time since it was let go",
+        "Figure 9.6: the cable in motion, at a time after its release",
         (*_CABLE, _DAMPING, _DRAG, replace(_TIME, default=0.9)),
         _SHAPE,
         _bouncing,
@@ -251,12 +256,12 @@ FUNCTIONS: dict[str, Function] = {
         (
             item("Rest length", "L", "Number", "Length without a load [model unit]", 80.0, minimum=1e-6),
             scenes.stiffness(2.0),
-            item("Weight", "P", "Number", "What hangs on it [N]", 100.0, minimum=0.0),
+            item("Weight", "P", "Number", "Weight that hangs on it [N]", 100.0, minimum=0.0),
         ),
         (
             item("Spring", "Sp", "Line", "The spring"),
             item("Length", "L", "Number", "Its length [model unit]"),
-            item("Extension", "X", "Number", "By how much it is longer [model unit]"),
+            item("Extension", "X", "Number", "Its elongation [model unit]"),
             scenes.STATUS,
         ),
         _hooke,
@@ -267,7 +272,7 @@ FUNCTIONS: dict[str, Function] = {
         "ArcCatenary",
         "Figures 9.17 to 9.20: an arc whose springs hardly stretch becomes a catenary",
         (*_ARC, item("By arc length", "A", "Boolean", "Rest lengths from the arc, not from its chords", False)),
-        (*_SHAPE, item("Catenary", "C", "Curve", "The catenary to compare with, as a polyline"),
+        (*_SHAPE, item("Catenary", "C", "Curve", "The exact catenary, as a polyline"),
          item("Off the catenary", "O", "Number", "Largest height of a particle over or below it [model unit]")),
         _arc_to_catenary,
         "Figures",
@@ -275,7 +280,7 @@ FUNCTIONS: dict[str, Function] = {
     "arc_frames": Function(
         "Arc frames",
         "ArcFrames",
-        "Figure 9.21: an arc on its way down to the catenary, at a time since it was let go",
+        "Figure 9.21: an arc on its way down to the catenary, at a time after its release",
         (*_ARC, _DRAG, replace(_TIME, default=4.0)),
         (*_SHAPE, item("Height of the middle", "H", "Number", "Of its middle particle [model unit]")),
         _arc_frames,

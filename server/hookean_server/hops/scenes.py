@@ -16,12 +16,12 @@ from hookean_server.workers.task import Cancelled
 Floats = NDArray[np.float64]
 
 PARTICLES = Parameter("Particles", "Pt", "Point", "Particles in equilibrium [model unit]")
-SPRINGS = Parameter("Springs", "L", "Line", "Springs in equilibrium, in the order of what they were made of")
+SPRINGS = Parameter("Springs", "L", "Line", "Springs in equilibrium, in the order of the input")
 MESH = item("Mesh", "M", "Mesh", "The mesh in equilibrium")
 FORCES = Parameter("Forces", "F", "Number", "Force of every spring [N], tension positive")
 REACTIONS = Parameter("Reactions", "Re", "Vector", "Force of every anchor on its particle [N]")
-SUPPORTS = Parameter("Supports", "Su", "Point", "Where the reactions act, in their order [model unit]")
-STATUS = item("Status", "S", "Text", "converged, or how the run ended")
+SUPPORTS = Parameter("Supports", "Su", "Point", "Points of the reactions, in their order [model unit]")
+STATUS = item("Status", "S", "Text", "converged, or another status of the run")
 
 
 def stiffness(default: float, unit: str = "N/model unit") -> Parameter:
@@ -31,7 +31,7 @@ def stiffness(default: float, unit: str = "N/model unit") -> Parameter:
 
 def rest_factor(default: float, name: str = "Rest factor", nickname: str = "R") -> Parameter:
     """The input of a rest factor."""
-    said = "Rest length as a part of the drawn length [-]; 0: as short as it can"
+    said = "Rest length / drawn length [-]; 0: as short as possible"
     return item(name, nickname, "Number", said, default, minimum=0.0, maximum=10.0)
 
 
@@ -80,8 +80,8 @@ def moved(inputs: Inputs, scene: dict[str, Any], until: float, cancelled: Cancel
 
 
 def out_of_time(inputs: Inputs) -> Problem:
-    """A result cut off by the clock is none: it would be kept for ever, and a quicker machine has another."""
-    said = f"Not done within {inputs.seconds:g} s; give a coarser model, less time, or a higher tolerance."
+    """A result cut off by the clock is an error: it would be kept for ever, and a quicker machine has another."""
+    said = f"Not finished within {inputs.seconds:g} s; give a coarser model, less time, or a higher tolerance."
     return Problem("out-of-time", said)
 
 

@@ -29,7 +29,7 @@ _FORCES, _REACTIONS = _in_kilonewtons(scenes.FORCES), _in_kilonewtons(scenes.REA
 _LARGEST = item("Largest force", "Fm", "Number", "The largest force, tension positive [kN]")
 _LEAST = item("Least force", "Fn", "Number", "The smallest force, tension positive [kN]")
 _SHAPE = (scenes.MESH, scenes.SPRINGS, _FORCES, _REACTIONS, scenes.SUPPORTS, _LARGEST, _LEAST, scenes.STATUS)
-_OVER = item("Upside down", "U", "Boolean", "True: turned over, every force reversed", False)
+_OVER = item("Upside down", "U", "Boolean", "True: upside down, with every force reversed", False)
 _UNITS = {"force": "kN"}
 _STANDING = {"allow_unstable": True}  # a thrust line of hinged struts balances, as on a knife's edge
 
@@ -228,7 +228,7 @@ FUNCTIONS: dict[str, Function] = {
     "hanging_chain": Function(
         "Hanging chain",
         "Chain",
-        "The vault's essay: a chain hangs from its ends, or turned over stands as an arch",
+        "The vault's essay: a chain hangs from its ends, or, upside down, stands as an arch",
         (
             item("Arc length", "L", "Number", "Length of the chain [model unit]", 19.2, minimum=1e-6),
             item("Span", "B", "Number", "Distance of its ends [model unit]", 16.0, minimum=1e-6),
@@ -247,7 +247,7 @@ FUNCTIONS: dict[str, Function] = {
     "vault": Function(
         "Vault",
         "Vault",
-        "The vault's essay: a net hangs from nine columns, or turned over stands as a vault",
+        "The vault's essay: a net hangs from nine columns, or, upside down, stands as a vault",
         (
             item("Length", "L", "Number", "Along x [model unit]", 20.0, minimum=1e-6),
             item("Width", "B", "Number", "Along y [model unit]", 14.0, minimum=1e-6),
@@ -259,7 +259,7 @@ FUNCTIONS: dict[str, Function] = {
             _OVER,
         ),
         (*_SHAPE, item("Height", "H", "Number", "Sag of the net, or rise of the vault [model unit]"),
-         item("Total weight", "Wt", "Number", "What the columns carry [kN]"),
+         item("Total weight", "Wt", "Number", "Load of the columns [kN]"),
          item("Thrust at a corner", "T", "Number", "Horizontal force at a corner [kN]")),
         _vault,
         "Figures",
@@ -281,7 +281,7 @@ FUNCTIONS: dict[str, Function] = {
                  minimum=0.0),
         ),
         (*_SHAPE, item("Area", "A", "Number", "Area of the membrane [model unit^2]"),
-         item("Moved", "D", "Number", "Farthest from where it was drawn [model unit]"),
+         item("Moved", "D", "Number", "Largest distance from the drawing [model unit]"),
          Parameter("Across", "Fc", "Number", "Force of every spring from beam to beam [kN]"),
          Parameter("Along", "Fl", "Number", "Force of every spring along the beams [kN]")),
         _ribbon,
@@ -293,8 +293,8 @@ FUNCTIONS: dict[str, Function] = {
         "The Basento study: a skin between feet and fingers in tension, or every force reversed in compression",
         (
             item("Skin", "S", "Surface", "The surface that is drawn"),
-            Parameter("Feet", "F", "Point", "Where it stands [model unit]"),
-            Parameter("Fingers", "G", "Point", "Where the deck rests [model unit]"),
+            Parameter("Feet", "F", "Point", "Points of support [model unit]"),
+            Parameter("Fingers", "G", "Point", "Points that carry the deck [model unit]"),
             count("Along", "N", "Faces along u", 32, 150),
             count("Across", "M", "Faces along v", 8, 150),
             item("Skin density", "q", "Number", "Force of the net by its length [kN/model unit]", 100.0, minimum=0.0),

@@ -22,7 +22,7 @@ KINDS = {
     "woff2": "font/woff2",
     "json": "application/json",
 }
-"""Media types by the ending of a name; other files are not served. Said here, as systems disagree about some."""
+"""Media types by the ending of a name; other files are not served. Listed here, as systems differ in some."""
 NAME = re.compile(rf"(assets/)?[\w-][\w.-]*\.({'|'.join(KINDS)})", re.ASCII)
 HEADERS = {
     "content-security-policy": "default-src 'self'; connect-src 'self' ws://127.0.0.1:* ws://localhost:*; "
@@ -32,8 +32,8 @@ HEADERS = {
 }
 FOR_EVER = "public, max-age=31536000, immutable"
 NOT_BUILT = (
-    '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>hookean</title>\n<p>The page of hookean has not '
-    "been built here: run <code>python hatch_build.py</code> in the checkout, or install hookean, and reload.</p>\n"
+    '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>hookean</title>\n<p>The page of hookean is not '
+    "built: run <code>python hatch_build.py</code> in the checkout, or install hookean, and reload.</p>\n"
     "</html>\n"
 )
 
@@ -60,7 +60,7 @@ def _answer(request: Request, name: str) -> Response:
     found = NAME.fullmatch(name)
     file = Path(request.app.state.settings.page) / name
     if found is None or not file.is_file():
-        raise Problem("not-found", "There is no such file.")
+        raise Problem("not-found", "This file does not exist.")
     headers = {**HEADERS, "cache-control": FOR_EVER if found[1] else "no-cache"}
     answer = FileResponse(file, headers=headers, media_type=KINDS[found[2]], stat_result=file.stat())
     if request.headers.get("if-none-match") == answer.headers["etag"]:
