@@ -166,7 +166,7 @@ def test_sliders_toggles_lists_and_panels_give_their_values_and_can_be_set() -> 
     assert values(other, "found") == {"{0}": ["7 0.13 False 0 '2'"]}
     for name, value, said in [
         ("Whole", "11", "ranges from 0 to 10"), ("On", "perhaps", "give True or False"),
-        ("Pattern", "Some", "none of its choices Both, None"), ("Wide", "1", "Part, Pattern"),
+        ("Pattern", "Some", "not one of its choices Both, None"), ("Wide", "1", "Part, Pattern"),
     ]:  # fmt: skip
         with pytest.raises(InputError, match=said):
             ran(d, **{name: value})

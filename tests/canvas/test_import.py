@@ -87,7 +87,7 @@ def test_a_classic_definition_is_translated_whole_with_its_ids_groups_and_timer(
     for part in parts(before):
         known = COMPONENTS.get(part.guid) if part.guid else None
         assert kinds[part.id] == (PYTHON3_SCRIPT if known else part.guid)
-    assert "Timer is not needed" in report.text()
+    assert "Timer is no longer needed" in report.text()
 
 
 def test_objects_stay_where_they_stand() -> None:

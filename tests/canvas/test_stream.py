@@ -101,7 +101,7 @@ def test_an_anchor_that_meets_no_particle_is_a_warning(home: Home, tmp_path: Pat
         ({"_file": None}, "Warning", "_file is missing"),
         ({"_file": ["none.csv"]}, "Error", "does not exist"),
         ({"_column": ["speed"]}, "Error", 'a column time and "speed" are needed'),
-        ({"_force": ["rain"]}, "Error", 'no force is called "rain"; there are Springs, wind'),
+        ({"_force": ["rain"]}, "Error", 'no force has the name "rain"; there are Springs, wind'),
         ({"_force": ["Springs"]}, "Error", '"Springs" is not a load'),
         ({"_every_": [1e-9]}, "Error", "frames are more than"),
         ({"table": "time [s],speed [m/s]\n0,1\n1,fast\n"}, "Error", "line 3 is not a row of numbers"),

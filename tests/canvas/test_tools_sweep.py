@@ -170,7 +170,7 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
     ({"_values": [1.0], "_mode_": ["all"]}, 'Mode: the text "all" is unknown; give one of 0 product, 1 zip.'),
     ({"scene_": None}, "_forces is missing; connect the outputs of force components, or a scene."),
     ({"scene_": "{"}, "Scene: it is not the JSON text of a scene."),
-    ({"results_": ["force"]}, 'Results: there is no "force"; there are iterations, residual, energy, displacement, '
+    ({"results_": ["force"]}, 'Results: unknown "force"; known: iterations, residual, energy, displacement, '
                               "reaction, springs.smallest, springs.largest, unary.smallest, unary.largest."),
     ({"_parameters": ["0.stiffnes"]}, "0 stiffnes: springs has no field \"stiffnes\"; did you mean "
                                       "stiffness?"),

@@ -115,7 +115,7 @@ def test_what_is_shipped_is_trusted_by_its_digest(
     data = path.read_bytes()
     found = graph.parse(data, path)
     trust.require(found, data, tmp_path / "copy.ghx", False)
-    assert (trust.scripts(found) > 0) == ("as you" in capsys.readouterr().err)
+    assert (trust.scripts(found) > 0) == ("with your rights" in capsys.readouterr().err)
     if trust.scripts(found):
         with pytest.raises(trust.InputError, match="--trust"):
             trust.require(found, data + b" ", path, False)

@@ -226,7 +226,7 @@ def test_defaults_stand_in(hops: httpx.Client) -> None:
 FAULTY: dict[str, tuple[Any, str]] = {
     "no lines": (without("Lines"), "Lines is missing; connect at least one line"),
     "no load": (without("Load"), "Load is missing; connect one vector"),
-    "two stiffnesses": (cable(Stiffness=branch("System.Double", 1.0, 2.0)), "Stiffness takes one number; 2 are given"),
+    "two stiffnesses": (cable(Stiffness=branch("System.Double", 1.0, 2.0)), "Stiffness accepts one number; 2 given"),
     "text": (cable(Stiffness=branch("System.String", "soft")), "/Stiffness: a finite number is expected"),
     "a negative factor": (
         cable(**{"Rest factor": branch("System.Double", -1.0)}),

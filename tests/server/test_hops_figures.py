@@ -249,7 +249,7 @@ def test_every_figure_of_the_gallery_is_a_function() -> None:
 BOUNDED = [
     ("cable", {"Pieces": 5000}, "Pieces: 5000 given; 1 to 2000 allowed"),
     ("membrane", {"Divisions": 1000}, "Divisions: 1000 given; 1 to 150 allowed"),
-    ("membrane", {"Held": "sides"}, "Held: unknown text; allowed corners, rim"),
+    ("membrane", {"Held": "sides"}, "Held: unknown text; allowed: corners, rim"),
     ("falling_sphere", {"Time": 1e6}, "Time: 1e+06 given; 0 to 30 allowed"),
     ("cable", {"Anchors": [A]}, "Anchors: one anchor given; a cable needs two"),
     ("arc_to_catenary", {"Span": 30.0}, "Arc length: 20 given for a span of 30"),

@@ -18,7 +18,7 @@ export function Report({ studio }: { studio: Studio }) {
 
 const LOST = {
   silent: "Playing, but no update for 2 s; showing the last received values.",
-  lost: "Connection to the service lost; reconnecting. Showing the last received values.",
+  lost: "Connection to the service lost; retrying. Showing the last received values.",
   gone: "This session was deleted; showing the last received values.",
   broken: "Reload the page.",
 };
