@@ -1,7 +1,7 @@
 """Write the force bundles from the force classes, draw the icon of every bundle and list all in README.md.
 
 python components/generate.py          write what differs
-python components/generate.py --check  only say what differs; exit code 1 if anything does
+python components/generate.py --check  only print what differs; exit code 1 if anything does
 """
 
 import json
@@ -24,7 +24,7 @@ def main(arguments):
 
 
 def written(files, check):
-    """The files of which something else is on the disk; they are told, and written unless only checked."""
+    """The files that differ on the disk; they are printed, and written unless only checked."""
     stale = [(path, data) for path, data in files if not path.is_file() or path.read_bytes() != data]
     for path, data in stale:
         if not check:
@@ -54,7 +54,7 @@ def listed():
     readme = HERE / "README.md"
     if not readme.is_file():
         return []
-    rows = ["| panel | component | nickname | what it is |", "| --- | --- | --- | --- |"]
+    rows = ["| panel | component | nickname | description |", "| --- | --- | --- | --- |"]
     found = [json.loads(path.read_text(encoding="utf-8")) for path in HERE.glob("*/metadata.json")]
     for panel in bundles.SUBCATEGORIES:
         for entry in sorted((e for e in found if e.get("subcategory") == panel), key=lambda e: e["name"]):

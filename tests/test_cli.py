@@ -120,13 +120,13 @@ def test_a_limit_on_a_force_that_is_not_there_stops_no_output(folder: Path) -> N
 def test_notes_are_told_without_explain(folder: Path) -> None:
     result = run("relax", "cable.3dm", "-o", "out.3dm", "--report", "out.json")
     note = "nothing is marked as an anchor: loose ends are held (2 particles)"
-    beside = "recipe.toml lies beside it and is not used; give it with -r recipe.toml"
+    beside = "recipe.toml in the same folder is not used; to use it, add -r recipe.toml"
     assert result.stderr == f"hookean: cable.3dm: note: {note}\nhookean: cable.3dm: note: {beside}\n"
     assert beside in run("relax", "cable.3dm", "--explain").stderr
-    assert "lies beside it" not in run("relax", "cable.3dm", "--explain", "-r", "recipe.toml").stderr
+    assert "in the same folder is not used" not in run("relax", "cable.3dm", "--explain", "-r", "recipe.toml").stderr
     assert note in json.loads((folder / "out.json").read_text(encoding="utf-8"))["warnings"]
     recipe = run("relax", "recipe.toml")
-    assert recipe.stderr.startswith("hookean: recipe.toml is a recipe; give it with -r")
+    assert recipe.stderr.startswith("hookean: recipe.toml is a recipe; pass it with -r")
 
 
 def test_a_load_that_meets_nothing_exits_with_2_whatever_the_limits(folder: Path) -> None:
@@ -251,7 +251,7 @@ def test_many_files_go_to_a_folder_and_a_bad_one_stops_none(folder: Path) -> Non
     assert names(folder / "out") == ["b.3dm", "b.csv", "b.report.json", "cable.3dm", "cable.csv", "cable.report.json"]
     assert run("relax", "cable.3dm", "b.3dm", "-r", "recipe.toml", "-o", "one.3dm").exit_code == 2
     assert "would be written twice" in run("relax", "cable.3dm", "cable.3dm", "-o", "out").stderr
-    assert "read from" in run("relax", "cable.3dm", "b.3dm", "-o", ".").stderr
+    assert "never overwritten" in run("relax", "cable.3dm", "b.3dm", "-o", ".").stderr
 
 
 def test_folders_to_write_to_are_made(folder: Path) -> None:
@@ -264,7 +264,7 @@ def test_folders_to_write_to_are_made(folder: Path) -> None:
     for path in ("new/cable.3dm", "new/cable.csv", "deep/er/cable.report.json", "deep/picture.png"):
         assert str(Path(path)) in result.stdout
     assert "nothing written" not in run("relax", "cable.3dm", "-r", "recipe.toml", "--csv", "a.csv").stdout
-    assert "(nothing written: give -o)" in run("relax", "cable.3dm", "-r", "recipe.toml").stdout
+    assert "(nothing written; use -o to write a file)" in run("relax", "cable.3dm", "-r", "recipe.toml").stdout
 
 
 def test_a_folder_made_for_nothing_is_taken_away(folder: Path) -> None:
@@ -349,7 +349,7 @@ def test_real_files_without_a_recipe(folder: Path, stem: str) -> None:
     expected = 0 if stem == "v7_my_surfaces" else 2
     assert result.exit_code == expected
     assert (folder / "out.3dm").exists() == (expected == 0)
-    assert expected == 0 or "holds nothing to relax" in result.stderr
+    assert expected == 0 or "has nothing to relax" in result.stderr
     assert run("relax", str(source), "--explain").exit_code == 0
 
 

@@ -229,7 +229,7 @@ def test_a_copy_relaxes_by_itself_and_is_not_written_over(tmp_path: Path):
     ran = ["relax", str(folder / "model.3dm"), "-r", str(folder / "recipe.toml"), "-o", str(tmp_path / "out.3dm")]
     assert CliRunner().invoke(app, ran).exit_code == 0
     again = CliRunner().invoke(app, ["example", "9.24", "--copy", str(tmp_path)])
-    assert again.exit_code == 2 and "is there already" in again.stderr
+    assert again.exit_code == 2 and "exists already" in again.stderr
 
 
 def test_a_copy_runs_with_its_numbers_beside_the_originals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -260,12 +260,12 @@ def test_a_figure_is_found_as_people_write_it(typed: str):
     ("arguments", "said"),
     [
         (["9.99"], "no example has this figure or name; did you mean "),
-        (["bolt"], "no example has this figure or name; hookean example lists all"),
+        (["bolt"], "no example has this figure or name; list all with: hookean example"),
         (["membran"], "did you mean 9.1-square-membrane or 9.24-membrane"),
         (["9.11", "--picture", "a.jpg"], "is not a .png file"),
         (["--copy", "nowhere"], "--copy needs a figure: hookean example 9.24 --copy nowhere"),
         (["--picture", "a.png"], "--picture needs a figure: hookean example 9.24 --picture a.png"),
-        (["./nowhere"], "is no folder with an example.py"),
+        (["./nowhere"], "is not a folder with an example.py"),
         (["--figures", os.devnull], "cannot be written"),
     ],
 )

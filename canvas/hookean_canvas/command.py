@@ -12,7 +12,7 @@ from hookean.commands.command import fail, new
 from hookean.errors import InputError
 
 app = new(
-    help="Grasshopper without Rhino: build components, look into archives, run and import definitions.",
+    help="Grasshopper without Rhino: build components, inspect archives, run and import definitions.",
     no_args_is_help=True,
 )
 
@@ -25,11 +25,13 @@ def _options() -> None:
 @app.command()
 def show(
     file: Annotated[Path, typer.Argument(help="A .gh, .ghx or .ghuser file")],
-    code: Annotated[bool, typer.Option("--code", help="With the source of every script")] = False,
-    json: Annotated[bool, typer.Option("--json", help="As JSON, for scripts")] = False,
-    everything: Annotated[bool, typer.Option("--all", help="Every chunk and item, nothing interpreted")] = False,
+    code: Annotated[bool, typer.Option("--code", help="Include the source of every script")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    everything: Annotated[
+        bool, typer.Option("--all", help="Print every chunk and item, without interpretation")
+    ] = False,
 ) -> None:
-    """Print what a Grasshopper file holds: objects with inputs, outputs, wires, values and scripts."""
+    """Print the contents of a Grasshopper file: objects with inputs, outputs, wires, values and scripts."""
     from hookean_canvas.inspect.show import show
 
     show(file, code, json, everything)
@@ -38,9 +40,11 @@ def show(
 @app.command()
 def check(
     files: Annotated[list[Path], typer.Argument(help=".gh, .ghx and .ghuser files")],
-    strict: Annotated[bool, typer.Option("--strict", help="Also what Grasshopper repairs, drops or ignores")] = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Also report what Grasshopper repairs, drops or ignores")
+    ] = False,
 ) -> None:
-    """Print why Grasshopper would refuse files or objects in them, a line for each fault; exits with 1 for any."""
+    """Print why Grasshopper would refuse files or objects in them, a line for each fault; exits with 1 for faults."""
     from hookean_canvas.inspect.show import check
 
     raise typer.Exit(check(files, strict))
@@ -66,35 +70,39 @@ def build(
 @app.command()
 def install(
     rhino: Annotated[int, typer.Option(min=7, max=9, help="The Rhino to install for: 7, 8 or 9")] = 8,
-    folder: Annotated[Path | None, typer.Option(help="Grasshopper's User Object Folder, where not found")] = None,
+    folder: Annotated[
+        Path | None, typer.Option(help="Grasshopper's User Object Folder; default: search for it")
+    ] = None,
 ) -> None:
-    """Put the components on Grasshopper's panel: copy them to its user objects; it shows them when next started."""
+    """Install the components: copy them to Grasshopper's user objects; they appear when Rhino is next started."""
     from hookean_canvas.components.build import install
 
     try:
         files = install(rhino, folder)
     except InputError as error:
         fail(error)
-    typer.echo(f"{files[0].parent}: {len(files)} components for Rhino {rhino}; start Rhino anew to see them.")
+    typer.echo(f"{files[0].parent}: {len(files)} components for Rhino {rhino}; restart Rhino to see them.")
 
 
 @app.command()
 def run(
     file: Annotated[Path, typer.Argument(help="A definition, .ghx or .gh")],
     set_: Annotated[list[str] | None, typer.Option("--set", help="A slider, toggle or panel: 'name=value'")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="As JSON")] = False,
-    seconds: Annotated[float, typer.Option(help="How long it may run [s]", min=0)] = 120.0,
-    trust: Annotated[bool, typer.Option("--trust", help="Run its scripts, now and later: they run as you")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    seconds: Annotated[float, typer.Option(help="Longest run [s]", min=0)] = 120.0,
+    trust: Annotated[
+        bool, typer.Option("--trust", help="Trust its scripts, now and later: they run with your rights")
+    ] = False,
 ) -> None:
     """Evaluate a definition without Rhino: print its panels, compare its numbers with an expected.json beside it.
 
-    Scripts in it run as you, so that a file that was not run before needs --trust, unless it was shipped with hookean
-    or HOOKEAN_TRUST is 1. Exit code 0; 1 where a number is not as expected, a component fails or it does not come to
-    rest; 2 where it cannot be run.
+    Scripts in it run with your rights, so a file that you run for the first time needs --trust, unless it is part of
+    hookean or HOOKEAN_TRUST is 1. Exits with 0; with 1 if a number is not as expected, a component fails or it does
+    not come to rest; with 2 if it cannot be run.
     """
     from hookean_canvas.run import checking
 
-    raise typer.Exit(_told(lambda: checking.run(file, set_ or [], as_json, seconds, trust)))
+    raise typer.Exit(_printed(lambda: checking.run(file, set_ or [], as_json, seconds, trust)))
 
 
 @app.command()
@@ -102,13 +110,13 @@ def draw(
     file: Annotated[Path, typer.Argument(help="A definition, .ghx or .gh")],
     output: Annotated[Path, typer.Option("--output", "-o", help="The picture, .png")],
 ) -> None:
-    """Draw a definition as its canvas looks: boxes, groups and wires."""
+    """Draw the canvas of a definition: boxes, groups and wires."""
     from hookean_canvas.inspect import drawing
     from hookean_canvas.run import graph
 
-    left = _told(lambda: drawing.draw(graph.read(file), output))
+    left = _printed(lambda: drawing.draw(graph.read(file), output))
     if left:
-        typer.echo(f"{output}: without {', '.join(left)}, which the file gives no place on the canvas", err=True)
+        typer.echo(f"{output}: drawn without {', '.join(left)}; the file gives them no place on the canvas", err=True)
 
 
 @app.command("import")
@@ -116,15 +124,15 @@ def import_(
     file: Annotated[Path, typer.Argument(help="A .gh or .ghx file with components of Kangaroo 0.099 or Kangaroo 2")],
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Default: NAME-hookean.ghx beside it")] = None,
 ) -> None:
-    """Translate a definition made for Kangaroo: its components become ours, all else stays; says what could not be."""
+    """Translate a definition made for Kangaroo: replace its components by hookean's and report which could not be."""
     from hookean_canvas.kangaroo import translate as kangaroo
 
-    target, report = _told(lambda: kangaroo.import_file(file, output))
+    target, report = _printed(lambda: kangaroo.import_file(file, output))
     typer.echo(f"{report.text()}\n\nwritten: {target}")
 
 
-def _told(work: Callable[[], Any]) -> Any:
-    """What the work gives; an InputError becomes one line and exit code 2."""
+def _printed(work: Callable[[], Any]) -> Any:
+    """The result of the work; an InputError becomes one line and exit code 2."""
     try:
         return work()
     except InputError as error:

@@ -1,7 +1,7 @@
 # r: compas>=2.4
 """Loads on vertices of a COMPAS Mesh or nodes of a Graph.
 
-Without a vector each vertex carries what its attributes px, py and pz [force] say.
+Without a vector each vertex carries its attributes px, py and pz [force].
 
 f = F on each vertex
 """

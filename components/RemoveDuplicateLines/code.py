@@ -1,4 +1,4 @@
-"""Lines of a branch without those that are there before, either way round.
+"""Lines of a branch without duplicates, in either direction.
 
 The first of each kind stays; order and direction of the others are kept.
 

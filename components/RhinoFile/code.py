@@ -1,7 +1,7 @@
-"""What is drawn in a .3dm file, by layer and name; surfaces come as meshes, too.
+"""The geometry in a .3dm file, by layer and name; surfaces come as meshes, too.
 
 Visible objects in the order of the file, in its own unit, blocks taken apart; what hookean added
-is left out. The file is read anew when it was saved since. Definitions need no geometry of their
+is left out. The file is read again when it was saved since. Definitions need no geometry of their
 own this way.
 
 Vertex (i, j) of a mesh = S(u0 + i (u1 - u0) / U, v0 + j (v1 - v0) / V)

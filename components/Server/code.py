@@ -1,4 +1,4 @@
-"""The service that computes, on this machine: how it stands, start, stop, and the studio in the browser.
+"""The service that computes, on this machine: status, start, stop, and the studio in the browser.
 
 The Engine and all components that need the service start it by themselves where they can.
 """

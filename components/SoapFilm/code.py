@@ -5,9 +5,9 @@ diagonal is special. The area does not depend on where in the film a vertex lies
 stiffness along itself, and its equilibrium is that across it. The part along the film does not
 count at vertices on which films act alone, with pressure, or with loads on whole faces; nor, at the
 edge of a film that is pulled to a curve, the part along the edge, for sliding there does not change
-the film. At vertices of springs and other forces, all of it counts. An edge that nothing holds
-draws back: such a film has no equilibrium. Nor has one between rings too far apart, or under too
-large a load on a single vertex; the run then ends as diverged, with its last good shape.
+the film. At vertices of springs and other forces, all of it counts. An unsupported edge draws back:
+such a film has no equilibrium. Nor has one between rings too far apart, or under too large a load
+on a single vertex; the run then ends as diverged, with its last good shape.
 
 Vertices stay evenly spread, whatever they were when drawn: the solver `auto` fills a rim by one
 linear solve, and steps in time and of relaxation pull them along the film, with `evenness` as part

@@ -60,7 +60,7 @@ def connect(start=True, python=None, timeout=15.0, folder=None, parent=None, idl
         found = finding.found(place, _now() + ANSWER)
         while not found:
             if not start:
-                raise Problem("no-server", "No hookean server runs; `hookean serve` starts it.")
+                raise Problem("no-server", "No hookean server is running; start it with `hookean serve`.")
             finding.start(place, python, os.getpid() if parent is None else parent, idle)
             if _now() > until:
                 raise Problem("starting", "The hookean server is starting; try again soon.")
@@ -117,7 +117,7 @@ class Client(object):
             except FAILURES:
                 connection.close()
                 if not more or _now() > until:
-                    raise Problem("lost", "No answer to %s; it may be done." % method)
+                    raise Problem("lost", "No answer to %s; it may or may not have been done." % method)
             finally:
                 cut.cancel()
         if data is None:
@@ -320,7 +320,7 @@ class Link(object):
             cut.cancel()
         digest = hashlib.sha1((key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode("ascii")).digest()
         if self._answer.getheader("sec-websocket-accept") != base64.b64encode(digest).decode("ascii"):
-            raise ValueError("no WebSocket")
+            raise ValueError("not a WebSocket")
 
     def send(self, kind, data, wait=True):
         """Send a message of less than 64 kB: 1 text, 8 close, 10 pong; `wait` for others that are being sent."""
@@ -345,7 +345,7 @@ class Link(object):
                     size = size << 8 | octet
             wrong = (code == 0) != bool(kind) if code < 3 else code not in (8, 9, 10) or size > 125 or not last
             if wrong or first & 0x70 or second & 0x80 or len(whole) + size > 1 << 28:
-                raise ValueError("a part of no message")
+                raise ValueError("invalid message")
             data = self._exactly(size)
             if code == 8:
                 code = data[0] << 8 | data[1] if size > 1 else 1005
@@ -379,12 +379,12 @@ class Link(object):
 def decode(data):
     """A frame: FIELDS and flat x y z of `particles` and `reactions`; `scalars`: the force of each spring."""
     if data[:4] != b"HKFR" or len(data) < HEADER.size:
-        raise ValueError("no frame")
+        raise ValueError("not a frame")
     frame = dict(zip(FIELDS, HEADER.unpack(data[: HEADER.size])))
     _check(frame["version"])
     end, last, count = 3 * frame["n"], 3 * frame["n"] + frame["m"], len(data) // 4 - 16
     if frame["flags"] & ~7 or frame["size"] != 64 or len(data) % 4 or count < last or (count - last) % 3:
-        raise ValueError("no frame")
+        raise ValueError("not a frame")
     floats = struct.unpack("<%df" % count, data[HEADER.size :])
     frame.update(status=STATUSES[frame["status"]], playing=bool(frame["playing"]))
     return dict(frame, particles=floats[:end], scalars=floats[end:last], reactions=floats[last:])
@@ -464,7 +464,7 @@ def _refusal(status, data):
 
 def _check(wire):
     if wire != WIRE:
-        said = "Its frames are of version %s, not %d; `hookean serve --stop` ends it." % (wire, WIRE)
+        said = "Its frames have version %s, not %d; stop it with `hookean serve --stop`." % (wire, WIRE)
         raise Problem("wrong-version", said)
 
 

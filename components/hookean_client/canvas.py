@@ -72,7 +72,7 @@ def say(ghenv, level, sentence):
 
 
 def _says(ghenv, sentence):
-    """Whether a component says this already."""
+    """Whether a component shows this message already."""
     from Grasshopper.Kernel import GH_RuntimeMessageLevel as levels
 
     known = getattr(ghenv.Component, "RuntimeMessages", lambda _: ())
@@ -250,7 +250,7 @@ def _made(answer):
 
 def ask(ghenv, slot, signature, work):
     """The value of a task of this component, None until it is there. The same signature is asked once; words on the
-    component tell how it stands, and a solution is scheduled where it is worth while."""
+    component show its status, and a solution is scheduled where it is worth while."""
     now = turn(ghenv)
     known = now.tasks.get(slot)
     if known is None or known[0] != signature or known[1].stale:

@@ -179,7 +179,7 @@ def _rides(player, given):
 
 
 def _length_unit():
-    """The unit of the document in Rhino, None where that is none of ours."""
+    """The unit of the document in Rhino, None if hookean does not have it."""
     try:
         import Rhino
 
@@ -234,7 +234,7 @@ def placed(forces, anchors, said):
 
 
 def sentences(report, forces, anchors):
-    """What a report says to people: what met no particle, a sentence for each force and anchor, then warnings."""
+    """The sentences of a report: what met no particle, a sentence for each force and anchor, then warnings."""
     missed = [placed(forces, anchors, one["message"]) + "." for one in report["missed"]]
     if len(missed) > MANY:
         missed[MANY:] = ["%d more forces or anchors have points that met no particle." % (len(missed) - MANY)]

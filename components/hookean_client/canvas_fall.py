@@ -23,7 +23,7 @@ def sentence(scene, unmatched=()):
     if not falling:
         return None
     said = (
-        "Nothing holds the form in %s, and its loads do not cancel there: it falls. Connect anchors, or a force that "
+        "The form is unsupported in %s, and its loads do not cancel there: it falls. Connect anchors, or a force that "
     )
     return (said + "holds it: Anchor Spring, Pull To Curve, Pull To Mesh or Floor.") % " and ".join(falling)
 

@@ -1,4 +1,4 @@
-"""What is drawn in a .3dm file, as Rhino's geometry by kind. For Python 2.7 to 3.13."""
+"""The geometry in a .3dm file, as Rhino's geometry by kind. For Python 2.7 to 3.13."""
 
 import fnmatch
 import hashlib
@@ -81,8 +81,8 @@ def _chosen(objects, patterns, key, known):
     for pattern in patterns:
         if not any(_fits(one[key], pattern, key) for one in objects):
             names = ", ".join('"%s"' % name for name in known[:12] if name) or "none"
-            raise Unfit('%s: nothing visible is on "%s"; there are %s' % (key, pattern, names) if key == "layer"
-                        else 'name: nothing is called "%s"; there are %s' % (pattern, names))  # fmt: skip
+            raise Unfit('%s: no visible object is on "%s"; there are %s' % (key, pattern, names) if key == "layer"
+                        else 'name: no object has the name "%s"; there are %s' % (pattern, names))  # fmt: skip
     return [one for one in objects if any(_fits(one[key], pattern, key) for pattern in patterns)]
 
 
@@ -157,12 +157,14 @@ def file_of(ghenv, given):
         if os.path.isfile(place):
             return place
     if not places:
-        raise Unfit('file: "%s" counts from the folder of the definition; save that first, or give a whole path' % name)
-    raise Unfit("file: there is none at %s; check the path" % places[0])
+        raise Unfit(
+            'file: "%s" is relative to the definition; save the definition first, or give an absolute path' % name
+        )
+    raise Unfit("file: %s does not exist; check the path" % places[0])
 
 
 def drawn(ghenv, place, query):
-    """What is drawn in a .3dm file (see the service's `POST /v1/geometry/3dm`); None until it is there."""
+    """The geometry in a .3dm file (see the service's `POST /v1/geometry/3dm`); None until it is there."""
     try:
         told = os.stat(place)
     except EnvironmentError:

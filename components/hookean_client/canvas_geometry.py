@@ -55,19 +55,19 @@ def is_point(item):
 
 
 def number(item):
-    """A number; text that reads as one is one. `Unfit` where it is none."""
+    """A number; text that reads as one is one. Raises `Unfit` for anything else."""
     if isinstance(item, TEXT):
         try:
             item = float(item)
         except ValueError:
-            raise Unfit("%s is no number" % called(item))
+            raise Unfit("%s is not a number" % called(item))
     if isinstance(item, bool) or not isinstance(item, NUMBERS):
         try:
             item = float(item)  # .NET's other numbers
         except (TypeError, ValueError):
-            raise Unfit("%s is no number" % called(item))
+            raise Unfit("%s is not a number" % called(item))
     if not abs(item) <= 1e12:
-        raise Unfit("%r is too large or no number" % item)
+        raise Unfit("%r is too large or not a number" % item)
     return item
 
 
@@ -81,7 +81,7 @@ def point(item):
     parts = item.strip("{}() ").split(",") if isinstance(item, TEXT) else item
     if isinstance(parts, (list, tuple)) and len(parts) == 3:
         return [float(number(part)) for part in parts]
-    raise Unfit("%s is no point; connect points" % called(item))
+    raise Unfit("%s is not a point; connect points" % called(item))
 
 
 def points(items):
@@ -134,7 +134,7 @@ def curve(item):
     if isinstance(item, dict) and "knots" in item:
         return item
     if not hasattr(item, "ToNurbsCurve"):
-        raise Unfit("%s is no curve; connect a curve" % called(item))
+        raise Unfit("%s is not a curve; connect a curve" % called(item))
     nurbs = item.ToNurbsCurve()
     if nurbs is None:
         raise Unfit("%s has no NURBS form; rebuild it" % called(item))
@@ -152,7 +152,7 @@ def straight(item):
         steps = [first + (last - first) * i / PIECES for i in range(PIECES)] + [last]
         corners = [point(item.PointAt(step)) for step in steps]
     if corners is None:
-        raise Unfit("%s is no curve; connect a curve" % called(item))
+        raise Unfit("%s is not a curve; connect a curve" % called(item))
     return corners
 
 
@@ -168,7 +168,7 @@ def surface(item):
     if not hasattr(item, "ToNurbsSurface"):
         if hasattr(item, "ToBrep"):
             return encoded(item.ToBrep())
-        raise Unfit("%s is no surface; connect a surface or Brep" % called(item))
+        raise Unfit("%s is not a surface; connect a surface or Brep" % called(item))
     nurbs = item.ToNurbsSurface()
     rows, columns = int(nurbs.Points.CountU), int(nurbs.Points.CountV)
     controls = [_control(nurbs.Points.GetControlPoint(i, j)) for i in range(rows) for j in range(columns)]
@@ -206,7 +206,7 @@ def mesh(item):
     vertices, faces = [], []
     for one in listed(item):
         if not is_mesh(one) or hasattr(one, "Surfaces"):
-            raise Unfit("%s is no mesh; connect a mesh" % called(one))
+            raise Unfit("%s is not a mesh; connect a mesh" % called(one))
         first = len(vertices)
         if isinstance(one, dict):
             vertices += one["vertices"]

@@ -13,22 +13,22 @@ from . import FAILURES, Problem, buffer, connect
 
 WAIT = 0.25  # seconds a component may hold the canvas up in a solution
 GLANCE = 0.005  # seconds that let threads work
-LATE = 0.4  # seconds of silence after which that is said
-PATIENT = 5.0  # seconds of silence of a server that was there that are no cause for alarm
+LATE = 0.4  # seconds of silence after which this is reported
+PATIENT = 5.0  # seconds of silence of a server that has answered before that are not reported
 AGAIN = 0.4  # seconds until what failed for want of a server is tried again
 now = getattr(time, "monotonic", time.time)
 SENTENCES = {
-    "starting": "The hookean server is starting; this goes on by itself once it is there.",
-    "no-server": "No hookean server runs; start one with `hookean serve` in a terminal.",
+    "starting": "The hookean server is starting; this continues automatically.",
+    "no-server": "No hookean server is running; start one with `hookean serve` in a terminal.",
     "no-python": (
-        "No hookean server runs and none can be started from here; run `hookean serve` once in a terminal, or set "
-        "HOOKEAN_PYTHON to the Python that has hookean."
+        "No hookean server is running, and this component cannot start one; run `hookean serve` once in a terminal, or "
+        "set HOOKEAN_PYTHON to the Python that has hookean."
     ),
-    "lost": "The hookean server is gone; this goes on by itself once it is back.",
-    "no-answer": "The hookean server does not answer; this goes on by itself once it does.",
-    "silent": "The hookean server has not answered for %.1f s; this goes on by itself once it does.",
-    "wrong-version": "The hookean server that runs does not fit this component. %s",
-    "not-started": "The hookean server is not there. %s",
+    "lost": "The connection to the hookean server was lost; this continues when it is back.",
+    "no-answer": "The hookean server does not answer; this continues when it does.",
+    "silent": "The hookean server has not answered for %.1f s; this continues when it does.",
+    "wrong-version": "The running hookean server is not compatible with this component. %s",
+    "not-started": "The hookean server could not be started. %s",
 }
 
 
@@ -51,7 +51,7 @@ class Service(object):
             return self._client
 
     def patience(self, seconds):
-        """For how long a component may wait: hardly, where others have waited in vain."""
+        """For how long a component may wait: hardly, if others have waited without an answer."""
         since = self._since
         return seconds if since is None else max(GLANCE, min(seconds, WAIT - (now() - since)))
 
@@ -72,12 +72,12 @@ class Service(object):
         self._seen = 0.0
 
     def lose(self):
-        """Look for the server anew next time, which was asked in vain now."""
+        """Look for the server again next time; it did not answer now."""
         self.forget()
         self._since = now() - WAIT
 
     def forget(self):
-        """Look for the server anew next time."""
+        """Look for the server again next time."""
         client, self._client, self._since = self._client, None, None
         if client is not None:
             client.close()
@@ -148,7 +148,7 @@ class Task(object):
 
 
 def wants_server(problem):
-    """Whether a problem is none of what was asked, but of the server."""
+    """Whether a problem is one of the server, not of the request."""
     return problem is not None and (problem.status == 0 or problem.status in (429, 502, 503, 504))
 
 

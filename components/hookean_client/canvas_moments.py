@@ -74,7 +74,7 @@ def setup(ghenv, forces, anchors, settings, rides):
     scene = compose.compose(read, held, setting, [entry for entry, _ in carried], canvas_engine._length_unit())
     solver, step = scene["settings"].get("solver", "auto"), float(scene["settings"].get("time_step", STEP))
     if solver not in PHYSICAL:
-        raise Unfit("settings_: %s has no time; moments need verlet or yoshida" % solver)
+        raise Unfit("settings_: %s has no physical time; moments need verlet or yoshida" % solver)
     fixed = {"solver": "yoshida" if solver == "yoshida" else "verlet", "tolerance": 0.0}
     made = dict(scene, settings=dict(scene["settings"], **fixed))
     return made, step, [make for _, make in carried], lambda report: canvas_engine.sentences(report, read, held)

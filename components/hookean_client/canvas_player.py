@@ -25,8 +25,8 @@ class Parting(link.Task):
 
 
 class Player(object):
-    """`wanted` is what the canvas wants, `kept` what the session has; `topology` and `state` as the service tells
-    them. `before`: the player of the same engine before the definition was saved under another name."""
+    """`wanted` is what the canvas wants, `kept` what the session has; `topology` and `state` as the service sends them.
+    `before`: the player of the same engine before the definition was saved under another name."""
 
     def __init__(self, key, title="", before=None):
         self.key, self.title = key, title
@@ -106,7 +106,7 @@ class Player(object):
     # how it stands
 
     def frame(self):
-        """The newest frame of what the session has been told, or None."""
+        """The newest frame with the last edit, or None."""
         frame = self.frames and self.frames.latest()
         fits = frame and frame["revision"] >= self.revision and frame["n"] == self.topology["particles"]
         return frame if fits else None

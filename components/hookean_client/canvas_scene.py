@@ -53,7 +53,7 @@ def force(source, kind, fields):
     if len(place) > 1:
         raise Unfit("%s: %s are connected; connect one of them" % (kind, " and ".join(place)))
     if not place:
-        raise missing("%s: nothing says where it acts; connect lines, points or a mesh" % kind)
+        raise missing("%s: its place is missing; connect lines, points or a mesh" % kind)
     if place == ["mesh"]:
         made["mesh"] = geometry.mesh(fields["mesh"])
         made.update((name, _single(values)) for name, values in lists.items())
@@ -177,7 +177,10 @@ def read(given, kinds, what):
             value = json.loads(item)
             kind = value["kind"]
         except (TypeError, ValueError, KeyError):
-            raise Unfit("%s: %s is none; connect the output of one of our components" % (what, geometry.called(item)))
+            raise Unfit(
+                "%s: %s is not a hookean object; connect the output of a hookean component"
+                % (what, geometry.called(item))
+            )
         if (kind in ("anchors", "settings")) if kinds is None else kind != kinds:
             raise Unfit("%s: %s are connected here; they belong to another input" % (what, kind))
         found.append(value)
@@ -186,7 +189,7 @@ def read(given, kinds, what):
 
 def compose(forces, anchors, setting, carried, lengths=None):
     """The scene of forces (as `read` gives them), anchors {"name", "point", "target", "axes"}, one settings or None
-    and geometry that rides along; `lengths`: the document's unit, where no settings say another."""
+    and geometry that rides along; `lengths`: the document's unit, unless settings have another."""
     meshes, made = {}, []
 
     def shared(mesh):
@@ -271,7 +274,7 @@ def ride(item):
     try:
         plain = geometry.curve(item)
     except Unfit:
-        said = "geometry: %s cannot ride along; connect points, curves or meshes" % geometry.called(item)
+        said = "geometry: %s cannot be carried along; connect points, curves or meshes" % geometry.called(item)
         raise Unfit(said)
     if isinstance(plain, dict):
         return dict(plain, kind="curve"), lambda moved: geometry.to_curve(dict(plain, points=moved))

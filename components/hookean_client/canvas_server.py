@@ -75,7 +75,7 @@ def _work(start, stop, studio):
     try:
         if stop:
             client.post("/v1/shutdown", timeout=5.0)
-            raise Problem("stopped", "The hookean server has been stopped; its sessions are kept.")
+            raise Problem("stopped", "The hookean server has been stopped; its sessions are saved.")
         health = client.get("/v1/health", timeout=5.0)
         if studio:
             _show(client)
@@ -83,7 +83,7 @@ def _work(start, stop, studio):
     finally:
         client.close()
     lines = [_line(row) for row in rows]
-    status = "The hookean server runs, version %s, %d sessions." % (health["version"], len(rows))
+    status = "The hookean server is running, version %s, %d sessions." % (health["version"], len(rows))
     return Stand(status, client.url, health["version"], lines)
 
 
@@ -113,7 +113,7 @@ def _remove(path):
 
 
 def _line(row):
-    """A session in a line; one that sleeps since the server was started tells less."""
+    """A session in a line; one that sleeps since the start of the server has less."""
     if row.get("residual") is None:
         return "%s: asleep" % (row.get("label") or row["key"])
     said = "%s: %s, iteration %s, residual %.3g"

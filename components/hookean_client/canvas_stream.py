@@ -70,11 +70,11 @@ def _table(place, column):
         try:
             rows.append((float(line[times[0]]), float(line[names.index(column)])))
         except (ValueError, IndexError):
-            raise Unfit("_file: line %d is no row of numbers" % number)
+            raise Unfit("_file: line %d is not a row of numbers" % number)
         if len(rows) > 1 and rows[-1][0] <= rows[-2][0]:
             raise Unfit("_file: line %d goes back in time" % number)
     if len(rows) < 2:
-        raise Unfit("_file: it has %d rows; two or more are needed" % len(rows))
+        raise Unfit("_file: it has %d rows; at least two are needed" % len(rows))
     return rows
 
 
@@ -86,10 +86,10 @@ def _number(scene, name):
     """The number of the load of this name."""
     names = [one["name"] for one in scene["forces"]]
     if name not in names:
-        raise Unfit('_force: no force is called "%s"; there are %s' % (name, ", ".join(names)))
+        raise Unfit('_force: no force has the name "%s"; there are %s' % (name, ", ".join(names)))
     number = names.index(name)
     if scene["forces"][number]["kind"] != "unary":
-        raise Unfit('_force: "%s" is no load; connect the name of a load' % name)
+        raise Unfit('_force: "%s" is not a load; connect the name of a load' % name)
     return number
 
 

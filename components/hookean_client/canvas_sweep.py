@@ -145,7 +145,7 @@ def sweep(ghenv, forces, anchors, settings, scene, parameters, values, mode, res
 def _wanted(ghenv, forces, anchors, settings, scene, parameters, values, mode):
     names = [_parameter(item) for item in listed(parameters)]
     if not names:
-        raise compose.missing("_parameters is missing; name what changes, such as Springs.stiffness")
+        raise compose.missing("_parameters is missing; give names of fields, such as Springs.stiffness")
     rows = [[_value(item) for item in items] for _, items in geometry.branches(values)]
     rows = [row for row in rows if row]
     if len(rows) != len(names):
@@ -160,7 +160,7 @@ def _parameter(item):
     """A name such as Springs.stiffness, or settings.tolerance, as a pair."""
     owner, dot, column = str(item).strip().rpartition(".")
     if not (dot and owner and column):
-        said = "parameters: %s is none; give the name of a force or settings, a dot and what changes"
+        said = "parameters: %s is not a parameter; give the name of a force or settings, a dot and a field"
         raise Unfit(said % geometry.called(item))
     return owner, column
 
@@ -175,7 +175,7 @@ def _columns(rows, mode):
     if mode == "zip":
         if len(set(map(len, rows))) > 1:
             raise Unfit(
-                "values: %s in a branch; side by side they are equally many" % ", ".join(str(len(r)) for r in rows)
+                "values: %s in a branch; zip needs equal numbers of values" % ", ".join(str(len(r)) for r in rows)
             )
         return rows
     count = 1
@@ -210,7 +210,7 @@ def _scene(ghenv, forces, anchors, settings, scene):
         except ValueError:
             found = None
         if not isinstance(found, dict):
-            raise Unfit("scene: it is no JSON text of a scene")
+            raise Unfit("scene: it is not the JSON text of a scene")
         return found, lambda said: said
     if not texts:
         raise compose.missing("_forces is missing; connect the outputs of force components, or a scene")
@@ -285,7 +285,7 @@ def _chosen(known, wanted):
     for name in wanted:
         if name not in by_name:
             there = ", ".join(name for name, _ in known)
-            raise Unfit('results: there is no "%s"; there are %s' % (name, there))
+            raise Unfit('results: unknown "%s"; known: %s' % (name, there))
     return [by_name[name] for name in wanted]
 
 

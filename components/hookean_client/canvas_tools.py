@@ -14,7 +14,8 @@ def default(given, value):
 
 
 def whole(given, value, name, least=1):
-    """Whole numbers of an input, or a value where nothing is connected. `Unfit` where one is none, or too small."""
+    """Whole numbers of an input, or a value where nothing is connected. Raises `Unfit` for anything else, or too small
+    numbers."""
     found = []
     for item in default(given, value):
         try:
@@ -37,7 +38,7 @@ def word(given, known, name):
         except (Unfit, IndexError):
             ways = ", ".join("%d %s" % pair for pair in enumerate(known))
             given = item if isinstance(item, geometry.NUMBERS) else geometry.called(item)
-            raise Unfit("%s: %s is not known; give one of %s" % (name, given, ways))
+            raise Unfit("%s: %s is unknown; give one of %s" % (name, given, ways))
     return str(found)
 
 

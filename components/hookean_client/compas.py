@@ -101,7 +101,7 @@ def springs(structure, name="", **columns):
     of edges: stiffness [force/length], rest_length [length], rest_factor [-], and all that springs have."""
     ends = edges(structure)
     if not ends:
-        raise _fault("The %s has no edge to be a spring." % kind(structure))
+        raise _fault("The %s has no edges; springs need at least one." % kind(structure))
     place = dict(zip(keys(structure), points(structure)))
     force = {"kind": "springs", "lines": buffer([[place[a], place[b]] for a, b in ends])}
     for column, value in columns.items():
@@ -134,14 +134,14 @@ def anchors(structure, at=None, targets=None, axes="xyz", name=""):
     `targets` [length]."""
     chosen = supports(structure) if at is None else _chosen(structure, at)
     if not chosen:
-        said = "No vertex is held: set %s of some to True, or give their keys."
+        said = "No vertex is held: set %s of some vertices to True, or give their keys."
         raise _fault(said % " or ".join(SUPPORTS))
     place = dict(zip(keys(structure), points(structure)))
     anchor = {"points": buffer([place[key] for key in chosen]), "axes": axes}
     if targets is not None:
         rows = [[float(c) for c in row] for row in targets]
         if len(rows) != len(chosen) or any(len(row) != 3 for row in rows):
-            raise _fault("%d targets x, y, z are given for %d anchors; give one for each." % (len(rows), len(chosen)))
+            raise _fault("%d targets x, y, z given for %d anchors; give one for each." % (len(rows), len(chosen)))
         anchor["targets"] = buffer(rows)
     return dict(anchor, name=name) if name else anchor
 
@@ -299,7 +299,7 @@ def _chosen(structure, at):
     for key in at:
         if str(key) not in lookup:
             told = "its %d keys are %s to %s" % (len(known), known[0], known[-1]) if known else "it has none"
-            raise _fault("%s is no vertex of the %s; %s." % (key, kind(structure), told))
+            raise _fault("%s is not a vertex of the %s; %s." % (key, kind(structure), told))
         chosen.append(lookup[str(key)])
     return chosen
 
@@ -337,7 +337,7 @@ def _vectors(vector, count):
     rows = rows if rows and hasattr(rows[0], "__len__") else [rows]
     rows = [[float(c) for c in row] for row in rows]
     if any(len(row) != 3 for row in rows) or len(rows) not in (1, count):
-        raise _fault("%d vectors are given for %d vertices; give one, or one for each." % (len(rows), count))
+        raise _fault("%d vectors given for %d vertices; give one, or one for each." % (len(rows), count))
     return rows * count if len(rows) == 1 else rows
 
 

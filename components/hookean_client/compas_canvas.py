@@ -26,7 +26,8 @@ def load(ghenv, structure, vector=None, vertices=None, name=None):
 
 
 def anchors(ghenv, structure, vertices=None, targets=None, x=True, y=True, z=True):
-    """Anchors on vertices as text for the engine: those of the keys `vertices`, else those that say they are held."""
+    """Anchors on vertices as text for the engine: those of the keys `vertices`, else those with an attribute for held
+    ones."""
 
     def make():
         found = _structure(structure)
@@ -110,7 +111,7 @@ def _report(ghenv, answer, falls):
     """Sentences on how it ended; what a person should look at is a warning too. `falls`: why it falls, or None."""
     told = answer["report"]
     lines = [answer["message"]]
-    lines += ["%d coordinates are one particle with another one." % told["merged"]] if told["merged"] else []
+    lines += ["%d coordinates were merged with other particles." % told["merged"]] if told["merged"] else []
     worth = ([falls] if falls else []) + list(told["warnings"]) + [_missed(one) for one in told["missed"]]
     for sentence in worth + ([answer["message"]] if answer["status"] != "converged" else []):
         canvas.warning(ghenv, sentence)

@@ -19,13 +19,13 @@ import time
 from . import FAILURES, REACH, Problem, _check, _cut, _now, _read, httplib
 
 STARTING = 30.0  # seconds a start may take
-ADVICE = "see who made it, then remove it, or set HOOKEAN_STATE to a folder that is yours alone."
+ADVICE = "check who made it, then remove it, or set HOOKEAN_STATE to a folder that is yours alone."
 _lock = threading.Lock()
 _children = {}  # started from here, by folder
 
 
 def found(place, until):
-    """What the file of a server says that runs and has proven it is that one; None for none."""
+    """The contents of the file of a running server that has proven it wrote it; None if there is no such server."""
     check(place)
     said = told(place, "server.json")
     connection = reach(said.get("url"), said.get("instance"), said.get("proof"), until)
@@ -88,7 +88,7 @@ def check(place):
 
 
 def told(place, name):
-    """What a file of the folder says; nothing where it is not there, or another user could have written it."""
+    """The contents of a file of the folder; empty if it does not exist, or another user could have written it."""
     path = os.path.join(place, name)
     try:
         if not hasattr(os, "getuid"):

@@ -24,16 +24,16 @@ def check_target(target: StrPath, source: StrPath | None = None, *, folder: bool
     name = path.name or str(target)
     try:
         if source is not None and _same(target, source):
-            raise InputError(name, "the file read from is never written over; give another path.")
+            raise InputError(name, "the input file is never overwritten; give another path.")
         if path.is_dir():
             raise InputError(name, "is a folder; give the path of the file to write.")
         if folder and not path.parent.is_dir():
             where = path.parent.as_posix()
-            raise InputError(name, f"is to be written to {where}, a folder that does not exist; make it first.")
+            raise InputError(name, f"cannot be written: its folder {where} does not exist; make it first.")
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(name, "is not a possible path of a file; check it for odd characters.") from None
+        raise InputError(name, "is not a valid file path; check it for invalid characters.") from None
 
 
 def put(target: StrPath, data: bytes, check: Callable[[bytes], object]) -> None:
@@ -52,7 +52,9 @@ def put(target: StrPath, data: bytes, check: Callable[[bytes], object]) -> None:
         _write(beside, data)
         back = beside.read_bytes()
         if back != data:
-            raise InputError(path.name, "reads back other than written; the disk may be failing, use another one.")
+            raise InputError(
+                path.name, "reads back differently than written; the disk may be failing, use another one."
+            )
         check(back)
         if path.exists():
             shutil.copymode(path, beside)
@@ -60,7 +62,8 @@ def put(target: StrPath, data: bytes, check: Callable[[bytes], object]) -> None:
         _sync_folder(path.parent)
     except OSError as error:
         raise InputError(
-            path.name, f"cannot be written ({error.strerror}); check free space and permissions, close it elsewhere."
+            path.name,
+            f"cannot be written ({error.strerror}); check free space and permissions, and close it in other programs.",
         ) from error
     finally:
         with contextlib.suppress(OSError):
@@ -115,7 +118,7 @@ def _sync_folder(folder: Path) -> None:
 
 
 def read_bytes(path: str | os.PathLike[str], name: str) -> bytes:
-    """The bytes of a regular file; InputError with a sentence if there is none or it cannot be read."""
+    """The bytes of a regular file; raises InputError if it does not exist or cannot be read."""
     try:
         mode = os.stat(path).st_mode
         if stat.S_ISDIR(mode):
@@ -130,4 +133,4 @@ def read_bytes(path: str | os.PathLike[str], name: str) -> bytes:
     except ValueError as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(name, "is not a possible path of a file; check it for odd characters.") from None
+        raise InputError(name, "is not a valid file path; check it for invalid characters.") from None

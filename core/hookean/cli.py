@@ -44,7 +44,7 @@ def _known() -> dict[str, EntryPoint]:
 
 
 def _load(entry: EntryPoint) -> typer.Typer:
-    """The command of an entry point; where its package is not installed, one that fails with a sentence."""
+    """The command of an entry point; if its package is not installed, one that reports this and exits with 2."""
     package = entry.module.partition(".")[0]
     try:
         found: typer.Typer = entry.load()
@@ -57,7 +57,7 @@ def _load(entry: EntryPoint) -> typer.Typer:
     @absent.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
     def missing() -> None:
         """Not installed."""
-        fail(InputError(entry.name, f"{package} is not installed; install hookean with it"))
+        fail(InputError(entry.name, f"{package} is not installed; install hookean with this package"))
 
     return absent
 

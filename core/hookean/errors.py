@@ -38,4 +38,4 @@ def refuse_pointer(data: bytes, name: str) -> None:
     Source: the Git LFS specification, docs/spec.md: a pointer's first line is `version` and the address of the version.
     """
     if data.startswith(b"version https://git-lfs.github.com/spec/"):
-        raise InputError(name, "is a Git LFS pointer, not the file itself; run `git lfs pull` where it was cloned.")
+        raise InputError(name, "is a Git LFS pointer, not the file itself; run `git lfs pull` in the clone.")

@@ -115,9 +115,9 @@ async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     slug = _SLUGS.get(error.status_code, "bad-request" if error.status_code < 500 else "internal")
     detail = {
-        404: "There is nothing at this address; GET /v1/openapi.json lists every one.",
-        405: f"{request.method} is not taken here.",
-    }.get(error.status_code, "The request cannot be understood.")
+        404: "This address does not exist; GET /v1/openapi.json lists every one.",
+        405: f"{request.method} is not supported here.",
+    }.get(error.status_code, "The request is malformed.")
     headers = dict(error.headers or {})
     if error.status_code == 405:  # the framework names the methods of one route
         headers = {"allow": ", ".join(request.app.state.table.methods(request.scope["path"]))}

@@ -1,4 +1,4 @@
-"""Problems: every answer that is no success, as `application/problem+json` (RFC 9457)."""
+"""Problems: every answer that is not a success, as `application/problem+json` (RFC 9457)."""
 
 from __future__ import annotations
 
@@ -15,94 +15,94 @@ LONGEST = 600  # characters of one sentence
 LONGEST_POINTER = 200
 
 CATALOGUE: dict[str, tuple[int, str, str]] = {
-    "bad-request": (400, "The request cannot be understood", "Send it as the API's description says."),
+    "bad-request": (400, "Malformed request", "Follow the API's description at /v1/openapi.json."),
     "unauthorized": (
         401,
-        "The token is missing or wrong",
+        "Token missing or wrong",
         "Send the header Authorization: Bearer with the token of this start of the service; the command "
         "`hookean token` prints it.",
     ),
     "forbidden-host": (
         403,
-        "This host name is not served",
+        "Host name not allowed",
         "Address the service as 127.0.0.1, localhost or [::1] with its port; a web page that reaches it under "
         "another name is refused.",
     ),
     "forbidden-origin": (
         403,
-        "Other sites may not do this",
-        "Requests that change or compute something are refused from pages of another origin.",
+        "Origin not allowed",
+        "Pages of another origin may not send requests that change or compute something.",
     ),
-    "not-found": (404, "There is nothing here", "The API's description at /v1/openapi.json lists every address."),
-    "method-not-allowed": (405, "This address does not take that method", "The header Allow lists those it takes."),
-    "slow-body": (408, "The body did not arrive in time", "Send the body without long pauses."),
-    "key-taken": (409, "There is one of this key already", "Choose another key, or leave it to the service."),
+    "not-found": (404, "Not found", "The API's description at /v1/openapi.json lists every address."),
+    "method-not-allowed": (405, "Method not allowed", "The header Allow lists the supported methods."),
+    "slow-body": (408, "Timeout while reading the body", "Send the body without long pauses."),
+    "key-taken": (409, "Key already in use", "Choose another key, or let the service choose one."),
     "stale-revision": (
         412,
-        "Somebody else has edited it",
-        "The header ETag has the current revision: read the session again and send the edit with If-Match for that.",
+        "Edited by another client",
+        "The header ETag has the current revision: read the session again and send the edit with this If-Match.",
     ),
     "too-large": (413, "Too large", "Send less, for example arrays as buffers instead of lists, or a coarser model."),
     "unsupported-media": (
         415,
-        "This kind of body is not taken",
-        "Send JSON as application/json and files as multipart/form-data, neither compressed.",
+        "Unsupported media type",
+        "Send JSON as application/json and files as multipart/form-data, without compression.",
     ),
     "invalid-scene": (
         422,
-        "The scene has faults",
-        "Each entry of errors points at one fault and says what is allowed there.",
+        "Invalid scene",
+        "Each entry of errors points at one fault and names the allowed values.",
     ),
     "invalid-input": (
         422,
-        "The input has faults",
-        "Each entry of errors points at one fault and says what is allowed.",
+        "Invalid input",
+        "Each entry of errors points at one fault and names the allowed values.",
     ),
-    "headers-too-large": (431, "The headers are too large", "Send fewer or shorter headers, or a shorter address."),
+    "headers-too-large": (431, "Headers too large", "Send fewer or shorter headers, or a shorter address."),
     "session-limit": (
         429,
-        "There are as many sessions as are kept",
-        "Delete one with DELETE /v1/sessions/{key}, or come back after the seconds in the header Retry-After.",
+        "Session limit reached",
+        "Delete one with DELETE /v1/sessions/{key}, or retry after the seconds in the header Retry-After.",
     ),
     "job-limit": (
         429,
-        "There are as many jobs as are taken",
-        "Cancel one with DELETE /v1/jobs/{id}, or come back after the seconds in the header Retry-After.",
+        "Job limit reached",
+        "Cancel one with DELETE /v1/jobs/{id}, or retry after the seconds in the header Retry-After.",
     ),
     "key-reused": (
         422,
-        "This Idempotency-Key belongs to another request",
-        "A key stands for one request and its body. Take another key for another body.",
+        "Idempotency-Key already used by another request",
+        "A key identifies one request and its body. Use another key for another body.",
     ),
-    "internal": (500, "The service failed", "This is a defect of the service; its log tells more."),
+    "internal": (500, "Internal error", "This is a defect of the service; its log has the details."),
     "worker-lost": (
         500,
-        "The process that worked on this ended",
-        "It has been replaced and other requests go on. If it happens again with the same input, report the input.",
+        "The worker process ended",
+        "It has been replaced; other requests are not affected. If this happens again, report the input.",
     ),
-    "busy": (503, "All workers are busy", "Come back after the seconds in the header Retry-After."),
+    "busy": (503, "All workers are busy", "Retry after the seconds in the header Retry-After."),
     "shutting-down": (503, "The service is shutting down", "Start it again and repeat the request."),
     "not-stored": (
         507,
-        "It could not be stored",
-        "Nothing was changed. Make room on the disk, or mend it, and repeat the request.",
+        "Could not be stored",
+        "Nothing was changed. Free disk space, or repair the disk, and repeat the request.",
     ),
     "over-quota": (
         507,
-        "The store may not take more",
+        "Store quota reached",
         "Nothing was changed. Delete sessions or jobs that are no longer needed, or raise HOOKEAN_QUOTA (MiB).",
     ),
     "out-of-time": (
         504,
-        "Not done in time",
+        "Timeout",
         "The work was stopped. Give a smaller model, a looser tolerance or a shorter time_limit.",
     ),
 }
-"""Slug: status, title and what to do. `type` is `/problems/<slug>`, which the service answers with these words."""
+"""Slug: status, title and advice. `type` is `/problems/<slug>`, a page with this text."""
 
 
 class Problem(Exception):
-    """An answer that is no success; raised anywhere, sent by the outermost middleware."""
+    """An answer that is not a success; raised anywhere, sent by the outermost middleware."""
 
     def __init__(
         self,
@@ -118,7 +118,7 @@ class Problem(Exception):
         self.headers = headers or {}
 
     def to_wire(self) -> dict[str, Any]:
-        """What stands for it in the head of a message between processes."""
+        """Its form in the head of a message between processes."""
         return {"problem": self.slug, "detail": self.detail, "errors": self.errors, "headers": self.headers}
 
     @classmethod
@@ -151,16 +151,17 @@ class Problem(Exception):
 
 
 def is_function(path: str) -> bool:
-    """Whether an address is a name at the root, as Hops' functions have; whoever asks for one reads as Hops does."""
+    """Whether an address is a name at the root, as Hops' functions have; clients that ask for one read as Hops does."""
     return path.startswith("/") and "/" not in path[1:] and path not in ("/", "/docs", "/metrics", "/v1")
 
 
 def not_stored(error: BaseException) -> Problem:
-    """What a disk that is full or broken gives."""
+    """The problem of a full or broken disk."""
     full = "full" in str(error) or getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT)
     why = "the disk is full" if full else "the disk or its file system refused the write"
     return Problem(
-        "not-stored", f"Nothing was changed: {why}. Make room or mend it and repeat the request; nothing else is lost."
+        "not-stored",
+        f"Nothing was changed: {why}. Free space or repair it, and repeat the request; nothing else is lost.",
     )
 
 
@@ -175,7 +176,7 @@ def faulty(slug: str, faults: list[InputError]) -> Problem:
 
 
 def page(slug: str) -> str:
-    """What `/problems/<slug>` says."""
+    """The text of `/problems/<slug>`."""
     status, title, advice = CATALOGUE[slug]
     return f"{title} ({status})\n\n{advice}\n"
 

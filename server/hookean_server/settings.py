@@ -10,11 +10,11 @@ MIB = 2**20
 
 
 def _quota() -> int:
-    """Bytes that the store may take, as HOOKEAN_QUOTA says in MiB. Raises ValueError."""
+    """Bytes that the store may take, from HOOKEAN_QUOTA in MiB. Raises ValueError."""
     given = os.environ.get("HOOKEAN_QUOTA") or "8192"
     if not (given.isascii() and given.isdigit()):
         raise ValueError(
-            f"HOOKEAN_QUOTA is {given[:20]!r}; it accepts a whole number of MiB, such as 8192, or 0 for any"
+            f"HOOKEAN_QUOTA is {given[:20]!r}; it accepts a whole number of MiB, such as 8192, or 0 for no limit"
         )
     return int(given) * MIB
 
@@ -28,11 +28,11 @@ class Settings:
     workers: int = 0
     """Processes that solve; 0: one for each core, at most four."""
     queue: int = 16
-    """Requests that may wait or be read while all workers are busy; the next one is told to come back."""
+    """Requests that may wait or be read while all workers are busy; the next one is answered 503."""
     visits: int = 8
     """Requests without a token that may wait or be read; the next one is answered 503. See `visits`."""
     visit_limit: int = 160 * MIB
-    """Largest answer to a request without a token, as estimated from what it asks for."""
+    """Largest answer to a request without a token, as estimated from the request."""
     json_limit: int = 16 * MIB
     file_limit: int = 64 * MIB
     header_limit: int = 16 * 1024
@@ -56,7 +56,7 @@ class Settings:
     largest_count: int = 1_000_000
     """Most points, pieces or faces an operation may be asked to make."""
     state: Path | str | None = None
-    """The file that sessions and jobs are kept in; none: they end with the server."""
+    """The file that sessions and jobs are stored in; None: they end with the server."""
     quota: int = field(default_factory=lambda: _quota())
     """Bytes that this file may take, by default the MiB of HOOKEAN_QUOTA, or 8 GiB; 0: any number."""
     backups: int = 3
@@ -78,11 +78,11 @@ class Settings:
     job_seconds: float = 24 * 3600.0
     """Longest relaxation of a job; a scene with a longer or no `time_limit` ends here."""
     dask: str = field(default_factory=lambda: os.environ.get("HOOKEAN_DASK", ""))
-    """Address of a Dask scheduler that sweeps are sent to, by default that of HOOKEAN_DASK; none: they stay here."""
+    """Address of a Dask scheduler that sweeps are sent to, by default that of HOOKEAN_DASK; None: they run here."""
     message_limit: int = 64 * 1024
     """Longest message of a client over a WebSocket."""
     token: str = field(default="", repr=False)
-    """What programs show to be let in; none: that of HOOKEAN_TOKEN, or a random one for each start."""
+    """The token of clients; default: that of HOOKEAN_TOKEN, or a random one for each start."""
     log: str = ""
     """`json`: a line of JSON for each request and event, as with HOOKEAN_LOG=json; else only what is wrong."""
     origins: tuple[str, ...] = ()

@@ -25,7 +25,7 @@ async function ask(path: string, options: RequestInit = {}): Promise<Response> {
   try {
     answer = await fetch(path, { credentials: "same-origin", ...options });
   } catch {
-    throw new Refused(0, "The service does not answer; is it still running?", "unreachable");
+    throw new Refused(0, "The service does not answer; check that it is running.", "unreachable");
   }
   if (answer.ok) return answer;
   const problem = (await answer.json().catch(() => ({}))) as Record<string, unknown>;

@@ -23,7 +23,7 @@ export interface Frame {
   reactions: Float32Array;
 }
 
-/** The frame in a binary message; an Error says why it is none of this version. */
+/** The frame in a binary message; throws an Error if it is not of this version. */
 export function decode(data: ArrayBuffer): Frame {
   if (data.byteLength < SIZE) throw new Error("The service sent a frame that is shorter than its header.");
   const head = header(new DataView(data));
@@ -43,11 +43,11 @@ export function decode(data: ArrayBuffer): Frame {
 /** How many numbers are left for the reactions. */
 function check(head: Header, length: number): number {
   if (head.magic !== MAGIC || head.version !== VERSION || head.size !== SIZE) {
-    throw new Error(`The service speaks version ${head.version} of frames and this page ${VERSION}: load it anew.`);
+    throw new Error(`The service sends frames of version ${head.version}, this page needs ${VERSION}: reload it.`);
   }
   const rest = (length - SIZE) / 4 - 3 * head.particles - head.springs;
   const known = (head.flags & ~(POSITIONS | SCALARS | REACTIONS)) === 0 && head.status < STATUSES.length;
   const whole = rest >= 0 && rest % 3 === 0 && rest > 0 === ((head.flags & REACTIONS) !== 0);
-  if (!known || !whole) throw new Error("The service sent a frame whose length is not what its header says.");
+  if (!known || !whole) throw new Error("The service sent a frame whose length differs from its header.");
   return rest;
 }

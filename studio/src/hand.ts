@@ -1,11 +1,11 @@
-// What a hand does with particles. Whoever points decides where; this decides which edits that makes.
+// Drags of particles. The caller gives the target; this makes the edits.
 import type { Anchor, Patch, Point } from "./model";
 import type { Session } from "./session";
 import { stats } from "./stats";
 
 let gestures = 0;
 
-/** A name for one gesture: its edits are taken back as one. */
+/** A name for one gesture: its edits are undone as one. */
 export const gesture = (what: string) => `${what}-${performance.timeOrigin.toString(36)}-${++gestures}`;
 
 /** The anchor that holds a particle. */

@@ -1,4 +1,4 @@
-// What the service tells of a session, as JSON has it. Arrays are lists.
+// What the service sends about a session, as JSON has it. Arrays are lists.
 import type { Status } from "./wire";
 
 export type Point = [number, number, number];
@@ -15,7 +15,7 @@ export interface Store {
   repairs?: { when: string; copy: string; losses: { key: string; what: string }[] }[];
 }
 
-/** How a session stands. */
+/** Status of a session. */
 export interface Summary {
   key: string;
   label: string;
@@ -30,7 +30,7 @@ export interface Summary {
   message: string;
   playing: boolean;
   particles: number;
-  /** Edits that can be taken back, and made again. */
+  /** Edits that can be undone, and made again. */
   undo: number;
   redo: number;
   awake: boolean;

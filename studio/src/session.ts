@@ -83,7 +83,7 @@ export class Session {
     return this.order(order).finally(() => (this.pausing -= 1));
   }
 
-  /** Edit or act for a control: what is refused is said instead of thrown. */
+  /** Edit or act for a control: refusals are shown instead of thrown. */
   async tell(what: Patch | Action, options: { frames?: number } = {}): Promise<boolean> {
     try {
       await (typeof what === "string" ? this.act(what, options) : this.edit(what));
@@ -139,7 +139,7 @@ export class Session {
   }
 
   private greeted(summary: Summary, tag: string): void {
-    // numbers of frames and revisions begin anew with the connection: the service may be another one
+    // numbers of frames and revisions begin again with the connection: the service may be another one
     this.acknowledged = stats.revisionAcknowledged = 0;
     this.described = -1;
     if (tag !== this.tag) this.frame = null;
@@ -154,7 +154,7 @@ export class Session {
     this.summary.value = summary;
     if (tag && tag !== this.tag) {
       this.tag = tag;
-      // a frame may come before the state that tells of its scene
+      // a frame may come before the state with its scene
       if (this.frame && this.frame.revision < summary.revision) this.frame = null;
     }
     void this.describe();
@@ -178,7 +178,7 @@ export class Session {
       });
       if (this.frame) this.show(this.frame);
     } catch {
-      // the connection tells what is the matter; the next state or tick asks again
+      // the connection shows what is wrong; the next state or tick asks again
     } finally {
       this.describing = false;
     }
@@ -230,7 +230,7 @@ export class Session {
     return new Promise((resolve, reject) => {
       if (this.socket?.readyState !== WebSocket.OPEN) {
         const broken = this.connection.value === "broken" && this.said.value;
-        reject(new api.Refused(0, broken || "Not done: there is no connection to the service now.", "unreachable"));
+        reject(new api.Refused(0, broken || "Not done: no connection to the service.", "unreachable"));
         return;
       }
       const id = ++this.orders;
@@ -267,7 +267,7 @@ export class Session {
   private async closing(socket: WebSocket, event: CloseEvent): Promise<void> {
     if (socket !== this.socket || this.closed || this.connection.value === "broken") return;
     this.unacknowledged = [];
-    this.lose("The connection was lost before the service answered; it is not known whether this was done.");
+    this.lose("The connection was lost before the service answered; this may or may not have been done.");
     this.connection.value = event.code === 4404 ? "gone" : "lost";
     if (event.code === 4404) return;
     if (event.code === 4429) this.said.value = event.reason;

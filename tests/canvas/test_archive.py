@@ -172,7 +172,7 @@ WRONG = [
 def test_a_value_not_of_its_type_is_refused_with_its_place(type: Type, value: object) -> None:
     chunk = Chunk("Root").put("Size", type, value, index=2)
     for write in (archive.to_bytes, archive.to_xml):
-        with pytest.raises(InputError, match=rf"^Root/Size\[2\]: is .*, which is no {type.label}\.$"):
+        with pytest.raises(InputError, match=rf"^Root/Size\[2\]: is .*, which is not a {type.label}\.$"):
             write(chunk)
 
 
@@ -187,9 +187,9 @@ def test_chunks_find_replace_and_refuse_what_stands_twice() -> None:
     root.add("Object", 1)
     assert root.chunk("Object", 0) is first and root.chunk("Object") is None
     assert [chunk.label for chunk in root.walk()] == ["Root", "Object[0]", "Container", "Object[1]"]
-    with pytest.raises(ValueError, match=r"Root holds a chunk Object\[1\] already"):
+    with pytest.raises(ValueError, match=r"Root already has a chunk Object\[1\]"):
         root.add("Object", 1)
     root.items.append(Item("Count", 0, Type.INT32, 4))
     for write in (archive.to_bytes, archive.to_xml):
-        with pytest.raises(InputError, match=r"^Root/Count\[0\]: stands twice in its chunk"):
+        with pytest.raises(InputError, match=r"^Root/Count\[0\]: occurs twice in its chunk"):
             write(root)

@@ -171,7 +171,7 @@ def test_a_package_is_a_zip_with_a_manifest(dist, tag, flavour):
 @pytest.mark.parametrize("version", ["1.0", "1.0.0rc1", "v1.0.0"])
 def test_a_version_that_the_package_manager_refuses_is_told(version):
     """Semantic versions only."""
-    with pytest.raises(InputError, match="no semantic version"):
+    with pytest.raises(InputError, match="not a semantic version"):
         yak.manifest(version, "words")
 
 

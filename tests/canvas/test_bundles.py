@@ -64,14 +64,14 @@ def ghpython(**changes: object) -> dict[str, object]:
     ("changes", "said"),
     [
         ({"name": None}, "lacks name"),
-        ({"subcategory": "Meshes"}, "subcategory 'Meshes' is none of Engine, Forces, Geometry, Mesh, COMPAS"),
-        ({"exposure": 3}, "exposure 3 is none of"),
-        ({"colour": "red"}, "does not know colour"),
+        ({"subcategory": "Meshes"}, "subcategory 'Meshes' is not one of Engine, Forces, Geometry, Mesh, COMPAS"),
+        ({"exposure": 3}, "exposure 3 is not one of"),
+        ({"colour": "red"}, "has unknown keys colour"),
         ({"ghpython": {"isAdvancedMode": True}}, "components are plain scripts"),
-        (ghpython(typeHintID="points"), "typeHintID 'points' is none of none, ghdoc, float"),
-        (ghpython(scriptParamAccess="branch"), "scriptParamAccess 'branch' is none of item, list, tree"),
-        (ghpython(nickname="2nd"), "'2nd' is no variable name"),
-        (ghpython(nickname="class"), "'class' is no variable name"),
+        (ghpython(typeHintID="points"), "typeHintID 'points' is not one of none, ghdoc, float"),
+        (ghpython(scriptParamAccess="branch"), "scriptParamAccess 'branch' is not one of item, list, tree"),
+        (ghpython(nickname="2nd"), "'2nd' is not a variable name"),
+        (ghpython(nickname="class"), "'class' is not a variable name"),
         (ghpython(flatten=True, graft=True), "flatten and graft are both true"),
         ({"ghpython": {"inputParameters": [PARAMETER], "outputParameters": [PARAMETER]}}, "_points given twice"),
     ],
@@ -120,7 +120,7 @@ def test_metadata_that_is_no_json_is_told(tmp_path):
     """Where the text breaks off is part of the sentence."""
     place = bundle(tmp_path)
     (place / "metadata.json").write_text("{")
-    with pytest.raises(InputError, match=r"Widget/metadata.json: is no JSON.*line 1"):
+    with pytest.raises(InputError, match=r"Widget/metadata.json: is not valid JSON.*line 1"):
         bundles.read(place)
 
 

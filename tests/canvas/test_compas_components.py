@@ -102,7 +102,7 @@ def test_what_does_not_fit_is_one_sentence(told: dict[str, Any]) -> None:
         "no mesh": ("Error", "Pointcloud or Point is expected, not str."),
         "no attribute": ("Error", 'has no attribute "ea"; set it for all edges, or give a number.'),
         "no load": ("Error", "No vertex has a load in px, py, pz [force]"),
-        "no vertex": ("Error", "99 is no vertex of the mesh; its 25 keys are 0 to 24."),
+        "no vertex": ("Error", "99 is not a vertex of the mesh; its 25 keys are 0 to 24."),
         "no force": ("Warning", "Forces are missing; connect COMPAS Springs."),
         "no structures": ("Warning", "Structures are missing; connect a COMPAS Mesh or Graph."),
         "no force at all": ("Error", 'the text "load" is none'),

@@ -90,7 +90,7 @@ def test_wrong_names_are_refused_with_the_right_ones() -> None:
     ends = d.native("End Points", curve=point)
     with pytest.raises(KeyError, match="it has Start, End"):
         ends["Middle"]
-    with pytest.raises(KeyError, match="name one of Start, End"):
+    with pytest.raises(KeyError, match="select one of Start, End"):
         d.native("Line", start_point=ends)
 
 
@@ -104,7 +104,7 @@ def test_an_input_can_flatten_what_reaches_it() -> None:
 
 def test_what_is_no_definition_is_refused_by_name(tmp_path: Path) -> None:
     archive.write(archive.Chunk("Root"), tmp_path / "empty.ghx")
-    with pytest.raises(InputError, match="no Grasshopper definition"):
+    with pytest.raises(InputError, match="not a Grasshopper definition"):
         graph.read(tmp_path / "empty.ghx")
 
 

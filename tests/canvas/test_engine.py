@@ -275,7 +275,7 @@ def test_points_that_meet_no_particle_are_named_and_drawn(home: Home) -> None:
     [said] = sentences(cable.engine, "Warning")
     assert said == (
         "Anchor 2 of anchors_, branch {0}: its point met no particle; the nearest is 0.3 m away from (5.3, 0, 0), so "
-        "nothing is held there. Move it onto a particle or raise the tolerance in Settings."
+        "nothing is held there. Move it onto a particle, or raise the tolerance in Settings."
     )
     assert said in cable.out.report
     display = canvas_draw._displays[cable.player.key]
@@ -297,7 +297,7 @@ def test_a_load_is_one_sentence_and_anchors_of_which_none_meets_are_an_error(hom
     [said] = sentences(cable.engine, "Warning")
     assert said == (
         "Load: 6 of 11 points met no particle; the nearest is 1 m away from (5, 0, 0), so that part of the load is "
-        "left out. Move them onto particles or raise the tolerance in Settings."
+        "left out. Move them onto particles, or raise the tolerance in Settings."
     )
     assert cable.out.status.startswith("In equilibrium")
     astray = Cable()
@@ -305,7 +305,7 @@ def test_a_load_is_one_sentence_and_anchors_of_which_none_meets_are_an_error(hom
     astray.run(lambda out: bool(sentences(astray.engine, "Error")))
     [said] = sentences(astray.engine, "Error")
     assert said.startswith("Anchor 0 of anchors_, branch {0}: its point met no particle; the nearest is 0.5 m away")
-    assert "No anchor holds anything: move it onto a particle or raise the tolerance in Settings (and 1 more" in said
+    assert "No anchor holds a particle: move it onto a particle, or raise the tolerance in Settings (and 1 more" in said
     astray.anchors = [point(0, 0, 0), point(10, 0, 0)]
     astray.run()
     assert not sentences(astray.engine) and astray.out.reactions.Branch(0)[0] is not None
@@ -378,8 +378,11 @@ def test_inputs_that_belong_elsewhere_are_refused(home: Home) -> None:
     said = {
         "_forces: anchors are connected here; they belong to another input.": ([text], None),
         "_forces is missing; connect the outputs of force components.": (None, None),
-        '_forces: the text "hello" is none; connect the output of one of our components.': (["hello"], None),
-        "A Line is no point; connect points.": (cable.forces(), [line((0, 0, 0), (1, 0, 0))]),
+        '_forces: the text "hello" is not a hookean object; connect the output of a hookean component.': (
+            ["hello"],
+            None,
+        ),
+        "A Line is not a point; connect points.": (cable.forces(), [line((0, 0, 0), (1, 0, 0))]),
     }
     for sentence, (forces, anchors) in said.items():
         cable.bench.solve(cable.engine, lambda f=forces, a=anchors: canvas.engine(cable.engine, f, a))

@@ -165,8 +165,8 @@ def test_sliders_toggles_lists_and_panels_give_their_values_and_can_be_set() -> 
     other = ran(d, Whole="7", Part="0.126", On="false", Pattern="None", Small="2")
     assert values(other, "found") == {"{0}": ["7 0.13 False 0 '2'"]}
     for name, value, said in [
-        ("Whole", "11", "goes from 0 to 10"), ("On", "perhaps", "give True or False"),
-        ("Pattern", "Some", "none of its choices Both, None"), ("Wide", "1", "Part, Pattern"),
+        ("Whole", "11", "ranges from 0 to 10"), ("On", "perhaps", "give True or False"),
+        ("Pattern", "Some", "not one of its choices Both, None"), ("Wide", "1", "Part, Pattern"),
     ]:  # fmt: skip
         with pytest.raises(InputError, match=said):
             ran(d, **{name: value})
@@ -277,7 +277,7 @@ def test_the_command_prints_panels_and_says_by_its_code_whether_all_is_well(tmp_
     found = shell.invoke(app, ["run", str(bad), "--set", "X=4", "--json"])
     assert found.exit_code == 0 and json.loads(found.stdout)["panels"] == {"twice": {"{0}": [8]}}
     found = shell.invoke(app, ["run", str(bad), "--set", "Y=4"])
-    assert found.exit_code == 2 and found.stderr.startswith("hookean: Y: nothing that can be set has this name")
+    assert found.exit_code == 2 and found.stderr.startswith("hookean: Y: no input that can be set has this name")
 
 
 def test_a_drawing_shows_where_things_stand(tmp_path: Path) -> None:

@@ -145,7 +145,7 @@ def test_an_engine_without_anchors_warns_at_the_start_and_when_it_has_flown_apar
     falling.anchors, falling.settings = None, {"solver": solver, "fast": True}
     falling.hold()
     [said] = sentences(falling.engine)
-    assert said.startswith("Nothing holds the form in z, and its loads do not cancel there: it falls. Connect anchors")
+    assert said.startswith("The form is unsupported in z, and its loads do not cancel there: it falls. Connect anchors")
     falling.run()
     assert falling.player.frame()["status"] == "diverged"
     told = sentences(falling.engine, "Warning")
@@ -162,7 +162,7 @@ def test_a_sweep_without_anchors_warns(home: Home) -> None:
     made = Placed("Sweep", bench)
     given_ = {"_parameters": ["Springs.stiffness"], "_values": tree([1000.0, 2000.0]), "_run": True}
     made.run(**inputs, **given_)
-    assert any(one.startswith("Nothing holds the form in z") for one in sentences(made.ghenv, "Warning"))
+    assert any(one.startswith("The form is unsupported in z") for one in sentences(made.ghenv, "Warning"))
     assert sentences(made.ghenv, "Error") == []
 
 
@@ -176,5 +176,5 @@ def test_a_compas_structure_without_anchors_warns(home: Home) -> None:
     ]
     found = bench.run(relaxes, lambda: compas_canvas.relax(relaxes, mesh, parts))
     said = sentences(relaxes, "Warning")
-    assert said[0].startswith("Nothing holds the form in z") and sentences(relaxes, "Error") == []
+    assert said[0].startswith("The form is unsupported in z") and sentences(relaxes, "Error") == []
     assert said[0] in found.report

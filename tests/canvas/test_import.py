@@ -87,7 +87,7 @@ def test_a_classic_definition_is_translated_whole_with_its_ids_groups_and_timer(
     for part in parts(before):
         known = COMPONENTS.get(part.guid) if part.guid else None
         assert kinds[part.id] == (PYTHON3_SCRIPT if known else part.guid)
-    assert "Timer is not needed" in report.text()
+    assert "Timer is no longer needed" in report.text()
 
 
 def test_objects_stay_where_they_stand() -> None:
@@ -315,7 +315,7 @@ def test_clusters_and_scripts_that_use_kangaroo_are_named() -> None:
     _, report = kangaroo.translate(root)
     assert [what for what, _ in report.stays] == ["Scripted", "Bad", "Shut"]
     told = [why for _, why in report.stays]
-    assert "uses Kangaroo's solver" in told[0] and "holds Smooth" in told[1] and "cannot be looked into" in told[2]
+    assert "uses Kangaroo's solver" in told[0] and "holds Smooth" in told[1] and "cannot be opened" in told[2]
 
 
 def test_a_classic_component_that_is_a_cluster_of_others_is_translated_by_its_name() -> None:
@@ -477,11 +477,11 @@ def test_bad_files_are_refused_in_one_sentence(tmp_path: Path) -> None:
     archive.write(Chunk("Root"), tmp_path / "empty.ghx")
     shell = CliRunner()
     for words, said in [
-        ([str(source), "-o", str(source)], "is the file to be translated itself"),
+        ([str(source), "-o", str(source)], "is the input file"),
         ([str(source), "-o", str(tmp_path / "x.txt")], "end in .gh"),
         ([str(tmp_path / "none.gh")], "cannot be read"),
         ([str(tmp_path / "words.gh")], "words.gh"),
-        ([str(tmp_path / "empty.ghx")], "no Grasshopper definition"),
+        ([str(tmp_path / "empty.ghx")], "not a Grasshopper definition"),
     ]:
         found = shell.invoke(app, ["import", *words])
         assert found.exit_code == 2 and said in found.stderr and found.stderr.count("\n") == 1

@@ -129,7 +129,7 @@ def nested() -> bytes:
     [
         (hidden_goals(), "a cluster that holds Smooth of Kangaroo"),
         (nested(), "a cluster that holds a cluster that holds Smooth of Kangaroo"),
-        (b"locked", "a cluster that cannot be looked into"),
+        (b"locked", "a cluster that cannot be opened"),
     ],
     ids=["goals", "nested", "locked"],
 )

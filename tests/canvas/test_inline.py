@@ -164,9 +164,9 @@ def test_a_client_that_cannot_be_inlined_is_told(tmp_path):
         inline.inlined(COUNTING, "rhino7", place)
     place = client(tmp_path / "nameless", "1.0.0")
     (place / "__init__.py").write_text("")
-    with pytest.raises(InputError, match="says no `__version__"):
+    with pytest.raises(InputError, match="has no `__version__"):
         inline.inlined(COUNTING, "rhino7", place)
-    with pytest.raises(InputError, match="'rhino6' is none of rhino8, rhino7"):
+    with pytest.raises(InputError, match="'rhino6' is not one of rhino8, rhino7"):
         inline.inlined(COUNTING, "rhino6")  # type: ignore[arg-type]
 
 

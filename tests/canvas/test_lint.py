@@ -20,7 +20,7 @@ SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 EVERY = 1 if SOAK else 8
 """User objects are compiled by a Python 2.7 one by one: each of them in the long run, some in the short."""
 
-KNOWN = {"LB Versioner.ghuser": ["output 'Vviiiiiz!' is no name a script can use"]}
+KNOWN = {"LB Versioner.ghuser": ["output 'Vviiiiiz!' is not a name that a script can use"]}
 """What really is odd in released files."""
 
 
@@ -138,13 +138,13 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     ),
     "an id twice": (
         lambda r: port(r).put("InstanceGuid", Type.GUID, guid(5)),
-        "stands 2 times: object 1 (Python 3 Script) InputParam[0], object 2 (Panel)",
+        "occurs 2 times: object 1 (Python 3 Script) InputParam[0], object 2 (Panel)",
     ),
     "a wire from nowhere": (
         lambda r: container(r, 2).put("Source", Type.GUID, guid(77), 0),
-        "the wire into 'Panel' comes from 00000000-0000-0000-0000-00000000004d, no output here",
+        "the wire into 'Panel' comes from 00000000-0000-0000-0000-00000000004d, not an output here",
     ),
-    "a wire from an input": (lambda r: container(r, 2).put("Source", Type.GUID, guid(3), 0), "no output here"),
+    "a wire from an input": (lambda r: container(r, 2).put("Source", Type.GUID, guid(3), 0), "not an output here"),
     "count of wires": (lambda r: port(r).put("SourceCount", Type.INT32, 0), "(x) counts 0 in SourceCount, but holds 1"),
     "a circle of wires": (
         lambda r: container(r, 0).put("Source", Type.GUID, guid(4), 0).put("SourceCount", Type.INT32, 1),
@@ -152,7 +152,7 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     ),
     "an unknown component": (
         lambda r: objects(r).chunks[2].put("GUID", Type.GUID, guid(123)),
-        "object 2 (Panel): its id 00000000-0000-0000-0000-00000000007b is not known",
+        "object 2 (Panel): its id 00000000-0000-0000-0000-00000000007b is unknown",
     ),
     "a wrong name": (
         lambda r: objects(r).chunks[2].put("Name", Type.STRING, "Pannel"),
@@ -176,7 +176,7 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     ),
     "an unknown kind of input": (
         lambda r: at(container(r, 1), "ParameterData").put("InputId", Type.GUID, guid(5), 0),
-        "InputId[0] is 00000000-0000-0000-0000-000000000005, which is no known kind of parameter",
+        "InputId[0] is 00000000-0000-0000-0000-000000000005, which is an unknown kind of parameter",
     ),
     "an unknown hint": (lambda r: port(r).put("TypeHintID", Type.GUID, guid(5)), "input 'x' has the type hint 0000"),
     "a converter of another hint": (
@@ -185,7 +185,7 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     ),
     "a name no script can use": (
         lambda r: port(r).put("NickName", Type.STRING, "x y"),
-        "input 'x y' is no name a script",
+        "input 'x y' is not a name that a script",
     ),
     "code that does not compile": (
         lambda r: script(r).put("Text", Type.STRING, encoded("a = (1\n")),
@@ -203,7 +203,7 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     "no code": (lambda r: drop(container(r, 1), "Script"), "holds no script"),
     "a slider beyond its end": (
         lambda r: at(container(r, 0), "Slider").put("Value", Type.DOUBLE, 9.5),
-        "object 0 (Number Slider): the slider stands at 9.5, outside its limits 0 to 9",
+        "object 0 (Number Slider): the slider has the value 9.5, outside its limits 0 to 9",
     ),
     "count of a branch": (
         lambda r: at(container(r, 3), "PersistentData", ("Branch", 0)).put("Count", Type.INT32, 5),
@@ -234,7 +234,7 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     "no version": (lambda r: drop(r, "ArchiveVersion"), "the archive has no ArchiveVersion"),
     "no header": (lambda r: drop(at(r, "Definition"), "DocumentHeader"), "the definition has no DocumentHeader"),
     "no objects": (lambda r: drop(at(r, "Definition"), "DefinitionObjects"), "the definition has no DefinitionObjects"),
-    "another root": (lambda r: setattr(r, "name", "Fragment"), "the archive is called 'Fragment', not 'Root'"),
+    "another root": (lambda r: setattr(r, "name", "Fragment"), "the archive has the name 'Fragment', not 'Root'"),
 }
 
 
@@ -269,7 +269,7 @@ def test_components_of_a_declared_library_pass() -> None:
 
 def test_an_archive_of_another_kind_is_said() -> None:
     assert lint_refused.refusals(Chunk("Root")) == lint.faults(Chunk("Root"))
-    assert lint.faults(Chunk("Root")) == ["the archive (Root) holds neither a definition nor a user object"]
+    assert lint.faults(Chunk("Root")) == ["the archive (Root) contains no definition and no user object"]
 
 
 # ------------------------------------------------------------------------------------------------------ real files
@@ -353,15 +353,15 @@ def twins() -> Chunk:
 @pytest.mark.parametrize(
     ("root", "says"),
     [
-        (user_object(BaseID=guid(4)), "its base 00000000-0000-0000-0000-000000000004 is not known"),
+        (user_object(BaseID=guid(4)), "its base 00000000-0000-0000-0000-000000000004 is unknown"),
         (user_object(Exposure=3), "its exposure is 3"),
-        (user_object(Icon=b"GIF89a"), "its icon is no PNG"),
+        (user_object(Icon=b"GIF89a"), "its icon is not a PNG"),
         (user_object(Icon=PNG[:-1] + b"\x40"), "its icon has 24 x 64 pixels, not 24 x 24"),
         (user_object(Object=b"xx"), "the object in it: "),
         (user_object(inner_with("a = (")), "the script does not compile as python 2: line 1"),
         (user_object(Chunk("UserObject")), "holds no script"),
-        (user_object(twins()), "the id 00000000-0000-0000-0000-000000000001 stands 2 times"),
-        (user_object(twins()), "input 'x' stands twice"),
+        (user_object(twins()), "the id 00000000-0000-0000-0000-000000000001 occurs 2 times"),
+        (user_object(twins()), "input 'x' occurs twice"),
     ],
 )
 def test_each_fault_of_a_user_object_is_named(root: Chunk, says: str) -> None:

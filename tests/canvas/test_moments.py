@@ -81,8 +81,8 @@ def test_shapes_are_the_frames_of_the_simulation(home: Home) -> None:
         ({"_times": None}, "Warning", "_times is missing; connect one moment or more"),
         ({"_forces": None}, "Warning", "_forces is missing"),
         ({"_times": [-1.0]}, "Error", "-1 is before the start"),
-        ({"_times": ["soon"]}, "Error", '_times: the text "soon" is no number'),
-        ({"solver": "newton"}, "Error", "newton has no time; moments need verlet or yoshida"),
+        ({"_times": ["soon"]}, "Error", '_times: the text "soon" is not a number'),
+        ({"solver": "newton"}, "Error", "newton has no physical time; moments need verlet or yoshida"),
         ({"anchor": (9, 9, 9)}, "Warning", "its point met no particle; the nearest is"),
     ],
 )

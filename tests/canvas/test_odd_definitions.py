@@ -131,9 +131,9 @@ def test_odd_definitions_are_drawn_and_every_other_command_ends(odd: Callable[[C
 
 def test_a_definition_without_places_and_a_picture_that_cannot_be_written_are_one_sentence(tmp_path: Path) -> None:
     file = saved(definition(), tmp_path)
-    assert "no object in it has a place on the canvas" in told("draw", file).stderr
+    assert "none of its objects has a place on the canvas" in told("draw", file).stderr
     archive.write(placed(), file)
-    for target, words in [("a.txt", "the picture is a .png file"), ("none/a.png", "cannot be written")]:
+    for target, words in [("a.txt", "give a name that ends in .png"), ("none/a.png", "cannot be written")]:
         found = CliRunner().invoke(app, ["draw", str(file), "-o", str(tmp_path / target)])
         assert (found.exit_code, found.stderr.count("\n")) == (2, 1) and words in found.stderr
 
@@ -145,7 +145,7 @@ def test_objects_without_a_place_are_named(tmp_path: Path) -> None:
     target = tmp_path / "odd.png"
     assert (found.exit_code, found.stderr) == (
         0,
-        f"{target}: without Python 3 Script, which the file gives no place on the canvas\n",
+        f"{target}: drawn without Python 3 Script; the file gives them no place on the canvas\n",
     )
     assert told("draw", saved(placed(), tmp_path)).stderr == ""
 

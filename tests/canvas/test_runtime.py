@@ -84,10 +84,10 @@ def test_curves_and_surfaces_come_back_as_they_were(rhino: Any) -> None:
 @pytest.mark.parametrize(
     ("fields", "level", "said"),
     [
-        ({"lines": None}, "Warning", "Springs: nothing says where it acts; connect lines, points or a mesh."),
+        ({"lines": None}, "Warning", "Springs: its place is missing; connect lines, points or a mesh."),
         ({"lines": ["hello"]}, "Error", 'The text "hello" is not straight; connect lines, polylines or meshes, or '
                                         "divide it first."),
-        ({"lines": 1, "stiffness": [float("nan")]}, "Error", "Springs, stiffness: nan is too large or no number."),
+        ({"lines": 1, "stiffness": [float("nan")]}, "Error", "Springs, stiffness: nan is too large or not a number."),
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_one_sentence(rhino: Any, fields: dict[str, Any], level: str, said: str) -> None:

@@ -249,11 +249,11 @@ def test_one_trouble_after_the_other(home: Home) -> None:
     """Every component says each of them, of which it looks again by itself, and works once there is a server. The form
     stays while there is none, and moves on from there; a server that was killed is started by the components."""
     canvas = Canvas()
-    each_says(canvas, "none can be started from here", "No hookean server runs")
+    each_says(canvas, "cannot start one", "No hookean server is running")
     with silent(home):
         each_says(canvas, "has not answered")
     with older(home):
-        each_says(canvas, "does not fit this component")
+        each_says(canvas, "is not compatible with this component")
         assert "99" in canvas.said("Engine")[0] and "hookean serve --stop" in canvas.said("Engine")[0]
     home.serve()
     canvas.until(canvas.works)
@@ -261,11 +261,11 @@ def test_one_trouble_after_the_other(home: Home) -> None:
     moving(canvas)
     with hanging(home):
         canvas.inputs["Divide"]["_count_"] = [5]  # what was asked before is known
-        each_says(canvas, "has not answered", "does not answer", "gone")
+        each_says(canvas, "has not answered", "does not answer", "was lost")
     moving(canvas)
     home.kill()
     canvas.inputs["Divide"]["_count_"] = [6]
-    each_says(canvas, "is starting", "gone", "No hookean server runs", "does not answer", "has not answered")
+    each_says(canvas, "is starting", "was lost", "No hookean server is running", "does not answer", "has not answered")
     assert canvas.outputs["Engine"]["particles"]
     canvas.inputs["Engine"]["settings_"] = [settings(drag=5.0)]
     canvas.until(canvas.works)

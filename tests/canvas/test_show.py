@@ -160,7 +160,7 @@ def test_a_user_object_is_shown_with_what_is_packed_in_it(tmp_path: Path) -> Non
     object = ["GhPython Script", "  in  x (float)", "  out a (float)", "  script in python 2, 2 lines"]
     assert shown.splitlines()[-6:] == ["  " + line for line in [*object, "    print 2", "    a = x"]]
     archive.write(user_object(Object=b"xx"), tmp_path / "b.ghuser")
-    assert "\n  the object in it: ends in the middle" in run("show", tmp_path / "b.ghuser").output
+    assert "\n  the object in it: is incomplete" in run("show", tmp_path / "b.ghuser").output
 
 
 def test_a_cluster_is_shown_with_the_definition_in_it() -> None:
@@ -212,7 +212,7 @@ def test_check_is_quiet_where_grasshopper_would_be_and_strict_says_the_rest(file
     told = bad.output.splitlines()
     assert told[0].endswith("good.ghx: no faults")
     assert all(line.startswith(f"{file}: ") for line in told[1:])
-    assert any("no output here" in line for line in told) and any("is not known" in line for line in told)
+    assert any("not an output here" in line for line in told) and any("is unknown" in line for line in told)
 
 
 def test_check_prints_a_line_for_each_refusal_and_exits_with_1(tmp_path: Path) -> None:
@@ -242,7 +242,7 @@ def test_what_is_no_archive_is_one_line_and_exit_code_2(command: str, tmp_path: 
     (tmp_path / "a.gh").write_text("no archive")
     result = run(command, tmp_path / "a.gh")
     assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr.startswith("hookean: ") and "is no Grasshopper archive" in result.stderr
+    assert result.stderr.startswith("hookean: ") and "is not a Grasshopper archive" in result.stderr
     assert result.stderr.count("\n") == 1
 
 

@@ -245,20 +245,20 @@ def test_duplicate_lines(rhino: Any) -> None:
     ("name", "inputs", "sentence"),
     [
         ("Divide", {}, "Curve is missing; connect one."),
-        ("Divide", {"_curve": ["x"]}, 'The text "x" is no curve; connect a curve.'),
+        ("Divide", {"_curve": ["x"]}, 'The text "x" is not a curve; connect a curve.'),
         ("Divide", {"_curve": 1, "_count_": [0]}, "Count: 0 given; a whole number from 1 on is expected."),
         ("Divide", {"_curve": 1, "_count_": [2.5]}, "Count: 2.5 given; a whole number from 1 on is expected."),
-        ("Divide", {"_curve": 1, "_count_": ["many"]}, 'Count: the text "many" is no number.'),
+        ("Divide", {"_curve": 1, "_count_": ["many"]}, 'Count: the text "many" is not a number.'),
         ("Shatter", {"_curve": []}, "Curve is missing; connect one."),
         ("Catenary", {"_start": ["0,0,0"], "_end": ["1,0,0"]}, "Length is missing; connect it."),
         ("MeshEdges", {"_mesh": []}, "Mesh is missing; connect it."),
-        ("MeshVertices", {"_mesh": ["x"]}, 'The text "x" is no mesh; connect a mesh.'),
+        ("MeshVertices", {"_mesh": ["x"]}, 'The text "x" is not a mesh; connect a mesh.'),
         ("Diagonals", {"_mesh": 2, "_pattern_": [3]},
-         "Pattern: 3 is not known; give one of 0 both, 1 one, 2 other."),
+         "Pattern: 3 is unknown; give one of 0 both, 1 one, 2 other."),
         ("RhinoFile", {}, "File is missing; give the path of a .3dm file."),
         ("RhinoFile", {"_file": ["model.3dm"]},
-         'File: "model.3dm" counts from the folder of the definition; save that first, or give a whole path.'),
-        ("RhinoFile", {"_file": ["/nowhere/model.3dm"]}, "File: there is none at /nowhere/model.3dm; check the path."),
+         'File: "model.3dm" is relative to the definition; save the definition first, or give an absolute path.'),
+        ("RhinoFile", {"_file": ["/nowhere/model.3dm"]}, "File: /nowhere/model.3dm does not exist; check the path."),
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_one_sentence(rhino: Any, name: str, inputs: dict[str, Any], sentence: str) -> None:
@@ -298,7 +298,7 @@ def test_a_rhino_file_says_what_there_is(tmp_path: Path) -> None:
     try:
         model = str(EXAMPLES / "9.7-anchors-moved" / "model.3dm")
         assert said("RhinoFile", _file=[model], layer_=["right", "roof"]) == (
-            'Layer: nothing visible is on "roof"; there are "cable", "left", "right".'
+            'Layer: no visible object is on "roof"; there are "cable", "left", "right".'
         )
         lines = run("RhinoFile", _file=[model], layer_=["cable"])
         assert len(lines["lines"]) == 1 and len(lines["curves"]) == 1

@@ -163,16 +163,16 @@ def test_partial_results_and_a_change_that_cancels(home: Home) -> None:
 
 
 FAULTS: list[tuple[dict[str, Any], str]] = [
-    ({"_parameters": None}, "_parameters is missing; name what changes, such as Springs.stiffness."),
-    ({"_parameters": ["stiffness"]}, 'Parameters: the text "stiffness" is none; give the name of a force or settings, '
-                                     "a dot and what changes."),
+    ({"_parameters": None}, "_parameters is missing; give names of fields, such as Springs.stiffness."),
+    ({"_parameters": ["stiffness"]}, 'Parameters: the text "stiffness" is not a parameter; give the name of a force or '
+                                     "settings, a dot and a field."),
     ({"_values": None}, "Values: 0 branches for 1 parameters; give a branch of values for each parameter."),
-    ({"_values": [1.0], "_mode_": ["all"]}, 'Mode: the text "all" is not known; give one of 0 product, 1 zip.'),
+    ({"_values": [1.0], "_mode_": ["all"]}, 'Mode: the text "all" is unknown; give one of 0 product, 1 zip.'),
     ({"scene_": None}, "_forces is missing; connect the outputs of force components, or a scene."),
-    ({"scene_": "{"}, "Scene: it is no JSON text of a scene."),
-    ({"results_": ["force"]}, 'Results: there is no "force"; there are iterations, residual, energy, displacement, '
+    ({"scene_": "{"}, "Scene: it is not the JSON text of a scene."),
+    ({"results_": ["force"]}, 'Results: unknown "force"; known: iterations, residual, energy, displacement, '
                               "reaction, springs.smallest, springs.largest, unary.smallest, unary.largest."),
-    ({"_parameters": ["0.stiffnes"]}, "0 stiffnes: \"stiffnes\" is no field of springs; did you mean "
+    ({"_parameters": ["0.stiffnes"]}, "0 stiffnes: springs has no field \"stiffnes\"; did you mean "
                                       "stiffness?"),
 ]  # fmt: skip
 

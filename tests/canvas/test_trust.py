@@ -74,12 +74,12 @@ def test_a_file_that_was_not_run_before_is_refused(person: Person) -> None:
     refused = person.command("run", str(file))
     assert refused.returncode == 2 and refused.stdout == "" and person.times == 0 and not person.remembered.exists()
     assert refused.stderr.count("\n") == 1
-    assert "runs as you" in refused.stderr and "--trust" in refused.stderr and "show --code" in refused.stderr
+    assert "runs with your rights" in refused.stderr and "--trust" in refused.stderr and "show --code" in refused.stderr
     trusted = person.command("run", str(file), "--trust")
     assert (trusted.returncode, trusted.stdout) == (0, "twice: 12\n") and person.times == 1
-    assert "runs as you" in trusted.stderr
+    assert "runs with your rights" in trusted.stderr
     again = person.run(file)
-    assert (again.exit_code, again.stdout) == (0, "twice: 12\n") and "runs as you" in again.stderr
+    assert (again.exit_code, again.stdout) == (0, "twice: 12\n") and "runs with your rights" in again.stderr
     shutil.copy(file, person.folder / "b.ghx")
     assert person.run(person.folder / "b.ghx").exit_code == 0 and person.times == 3
     changed = person.definition(more=" Changed.")
@@ -115,7 +115,7 @@ def test_what_is_shipped_is_trusted_by_its_digest(
     data = path.read_bytes()
     found = graph.parse(data, path)
     trust.require(found, data, tmp_path / "copy.ghx", False)
-    assert (trust.scripts(found) > 0) == ("as you" in capsys.readouterr().err)
+    assert (trust.scripts(found) > 0) == ("with your rights" in capsys.readouterr().err)
     if trust.scripts(found):
         with pytest.raises(trust.InputError, match="--trust"):
             trust.require(found, data + b" ", path, False)

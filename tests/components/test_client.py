@@ -162,7 +162,7 @@ def test_frames_show_each_edit(client: hookean_client.Client) -> None:
 def test_frames_of_no_session_end_with_a_sentence(client: hookean_client.Client) -> None:
     frames = client.session("nobody").frames()
     wait_for(lambda: frames.ended)
-    assert "no session of this key" in frames.message and frames.latest() is None
+    assert "no session with this key" in frames.message and frames.latest() is None
     assert frames.wait(timeout=5.0) is None
 
 
@@ -434,7 +434,7 @@ def test_frames_start_no_server(home: Home) -> None:
     assert frames.wait(timeout=HANG) is not None
     client.post("/v1/shutdown")
     wait_for(lambda: not home.told)
-    wait_for(lambda: "No hookean server runs" in frames.message)
+    wait_for(lambda: "No hookean server is running" in frames.message)
     assert not home.told and not frames.ended
     frames.close()
 

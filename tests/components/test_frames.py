@@ -172,7 +172,10 @@ def test_every_size(size: int) -> None:
 @pytest.mark.parametrize(
     ("raw", "sentence"),
     [
-        (part(8, struct.pack(">H", 4404) + b"There is no session of this key."), "There is no session of this key."),
+        (
+            part(8, struct.pack(">H", 4404) + b"There is no session with this key."),
+            "There is no session with this key.",
+        ),
         (part(8, struct.pack(">H", 1012)), "1012"),
         (part(8, b""), "1005"),
     ],
@@ -203,7 +206,7 @@ def test_a_close_says_why(raw: bytes, sentence: str) -> None:
 def test_what_is_no_websocket_is_refused(raw: bytes) -> None:
     link, theirs = pair()
     theirs.sendall(raw)
-    with pytest.raises(ValueError, match="part of no message"):
+    with pytest.raises(ValueError, match="invalid message"):
         link.receive()
     end(link, theirs)
 
@@ -249,7 +252,7 @@ def test_the_answer_to_the_handshake_is_checked(accept: str) -> None:
         if accept == "right":
             assert Link(connection, "/v1/sessions/a/frames", "token").receive() == (1, b"{}")
         else:
-            with pytest.raises(ValueError, match="no WebSocket"):
+            with pytest.raises(ValueError, match="not a WebSocket"):
                 Link(connection, "/v1/sessions/a/frames", "token")
         connection.close()
         thread.join()

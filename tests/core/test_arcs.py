@@ -65,7 +65,7 @@ def test_the_arc_of_length_20_in_50_pieces() -> None:
 @pytest.mark.parametrize("b", [(0.5, 0, 0), (2, 0, 0), (0, 0, 0), (1, 0, 0), (0.5, 1e-12, 0)])
 def test_points_in_a_row_are_refused(b: Any) -> None:
     """Collinear, outside the ends, or on one of them."""
-    with pytest.raises(InputError, match="b: the three points lie in a row"):
+    with pytest.raises(InputError, match="b: the three points are in line"):
         arc([0, 0, 0], b, [1, 0, 0], 4)
     with pytest.raises(InputError, match="in one place"):
         arc([1, 1, 1], [1, 1, 1], [1, 1, 1], 4)
@@ -80,7 +80,7 @@ def test_points_in_a_row_are_refused(b: Any) -> None:
         (lambda: arc([0, 0, 0], [1, 1, 1], [2, 0, 0], 0), "count: 0 given"),
         (lambda: interpolate([[0, 0, 0]], 4), "points: shape"),
         (lambda: interpolate("x", 4), "points: rows"),
-        (lambda: interpolate([[0, 0, 0]] * 3, 4), "points: all points in one place"),
+        (lambda: interpolate([[0, 0, 0]] * 3, 4), "points: all points coincide"),
         (lambda: interpolate([[0, 0, 0], [1, 0, 0]], 4, degree=0), "degree: 0 given"),
         (lambda: interpolate([[0, 0, 0], [1, 0, 0]], 2.5), "count: 2.5 given"),  # type: ignore[arg-type]
     ],

@@ -202,5 +202,5 @@ def test_a_spring_that_begins_without_length_is_told() -> None:
     springs = {"kind": "springs", "particles": [[0, 1], [1, 2]], "rest_length": [1.0, 2.0]}
     spec = {"particles": [[0, 0, 0], [0, 0, 0], [2, 0, 0]], "anchors": [{"particles": [0, 2]}]}
     said = relax(Scene.read({**spec, "forces": [springs]})).report.warnings
-    assert len(said) == 1 and said[0].startswith("/forces/0: 1 of 2 elements begin without length (first: element 0)")
+    assert len(said) == 1 and said[0].startswith("/forces/0: 1 of 2 elements have zero length (first: element 0)")
     assert not relax(Scene.read({**spec, "forces": [{**springs, "rest_length": 0.0}]})).report.warnings

@@ -167,7 +167,7 @@ def test_straight_cables() -> None:
         ({"length": -1.0}, "length: -1.0 given"),
         ({"count": 0}, "count: 0 given"),
         ({"count": True}, "count: True given"),
-        ({"gravity": (0, 0, 0)}, "gravity: a vector without length"),
+        ({"gravity": (0, 0, 0)}, "gravity: a zero vector"),
         ({"gravity": "down"}, "gravity: 'down' given"),
         ({"start": (0, 0)}, "start: .* x, y, z expected"),
         ({"end": (0, 0, float("inf"))}, "end: .* finite"),

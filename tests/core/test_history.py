@@ -27,7 +27,7 @@ def test_undo_and_redo_move_between_the_same_setups():
     assert running.redo() == 6
     assert running.state.free[2].sum() == 0
     assert np.array_equal(running.state.x[2], [4, 0, 1])
-    with pytest.raises(InputError, match="no edit that could be made again"):
+    with pytest.raises(InputError, match="no edit to be redone"):
         running.redo()
 
 
@@ -118,7 +118,7 @@ def test_a_pull_is_one_edit_and_leaves_the_particle_free():
     assert held(running) == before and running.state.free[2].all()
     running.undo()
     running.undo()
-    with pytest.raises(InputError, match="taken back"):
+    with pytest.raises(InputError, match="undone"):
         running.undo()
 
 

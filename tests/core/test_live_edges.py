@@ -90,7 +90,7 @@ def test_a_refused_patch_leaves_everything_as_it_was():
     simulation = Simulation(chain(solver="relaxation"))
     simulation.step()
     before = simulation.state.copy()
-    with pytest.raises(InputError, match="force_density needs"):
+    with pytest.raises(InputError, match="force_density supports"):
         simulation.patch({"settings": {"solver": "force_density"}, "pin": [{"particles": [1]}]})
     assert simulation.scene.settings.solver == simulation.solver.name == "relaxation"
     assert simulation.state.revision == 0
@@ -199,7 +199,7 @@ def test_a_diverged_run_takes_its_yielding_back():
     )
     assert result.status is Status.DIVERGED
     assert np.abs(result.force("springs")["force"]).max() < 1e9 * 0.1
-    assert " held for " in result.message
+    assert " were stable for " in result.message
 
 
 def test_a_spring_of_rest_length_0_does_not_yield():
@@ -276,7 +276,7 @@ def test_names_must_say_which():
     base = cable().model_dump()
     base["forces"] += ({**base["forces"][0], "name": "cable"},)
     simulation = Simulation(Scene(**base))
-    for key, says in (("", "no force"), ("cable", "say which by number"), ("²", "no force"), ("99", "no force")):
+    for key, says in (("", "no force"), ("cable", "select one by number"), ("²", "no force"), ("99", "no force")):
         with pytest.raises(InputError, match=says):
             simulation.patch({"forces": {key: {"stiffness": 1}}})
 
@@ -306,7 +306,7 @@ def test_a_coarse_rounding_floor_is_no_equilibrium():
     scene["forces"][1]["vector"] = [0, 0, -1e-6]
     result = relax(Scene(**scene))
     assert result.rounding_floor > 1
-    assert not result.converged and "Rounding alone leaves a residual" in result.message
+    assert not result.converged and "Rounding alone causes a residual" in result.message
 
 
 def test_messages_remember_the_run_they_speak_of():

@@ -241,7 +241,7 @@ def test_refusals(tmp_path: Path) -> None:
     assert "does not exist" in refused(tmp_path / "no" / "p.png")
     assert "is a folder" in refused(tmp_path)
     assert ".png" in refused(tmp_path / "p.jpg")
-    assert "odd characters" in refused(Path("a\0b.png"))
+    assert "invalid in file names" in refused(Path("a\0b.png"))
     assert "isometric" in refused(tmp_path / "p.png", view="sideways")
     assert "angles" in refused(tmp_path / "p.png", view=(1, 2, 3))
     assert "finite" in refused(tmp_path / "p.png", view=(float("nan"), 0.0))

@@ -258,10 +258,10 @@ def test_a_script_that_does_not_fit_says_where(script: dict, pointer: str):
 
 def test_a_script_needs_a_solver_that_knows_time():
     """Dynamic relaxation has iterations, no seconds."""
-    with pytest.raises(InputError, match="knows no time"):
+    with pytest.raises(InputError, match="has no physical time"):
         Simulation(cable(solver="relaxation"), RAISED)
     running = Simulation(cable(), RAISED)
-    with pytest.raises(InputError, match="knows no time"):
+    with pytest.raises(InputError, match="has no physical time"):
         running.patch({"settings": {"solver": "momentum"}})
 
 

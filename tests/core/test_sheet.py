@@ -361,7 +361,7 @@ def test_carried_curves_appear(tmp_path: Path, words: list[str]) -> None:
 RESULT = relax(cable())
 X = RESULT.particles
 REFUSALS: list[tuple[str, Any, dict[str, Any]]] = [
-    ("panels: none given", [], {}),
+    ("panels: is empty", [], {}),
     ("panels/0: is a int", [3], {}),
     ("panels/1/view: 'sideways' given", [Panel(RESULT), Panel(RESULT, view="sideways")], {}),
     (r"panels/0/frame 'a': has the shape \(5, 3\); give \(6, 3\)", [Panel(RESULT, frames={"a": X[1:]})], {}),

@@ -342,4 +342,4 @@ def test_s1_the_chapters_own_step_would_explode_and_that_is_told():
     """k = 5000 and D = 500 with 0.01 s: a warning that names a step that holds, and the one used here is below it."""
     (warning,) = Simulation(ball(time_step=0.01)).system.report.warnings
     assert warning.startswith("/settings/time_step: 0.01 s is too large")
-    assert 0.002 < float(warning.split("Steps up to ")[1].split(" s hold")[0]) < 0.01
+    assert 0.002 < float(warning.split("Steps up to ")[1].split(" s are stable")[0]) < 0.01

@@ -78,7 +78,7 @@ def test_patches_may_be_listed() -> None:
 @pytest.mark.parametrize(
     ("value", "pointer", "said"),
     [
-        ({}, "/", "has lists of values"),
+        ({}, "/", "needs lists of values"),
         ({"forces": {"net": {"stiffness": []}}}, "/forces/net/stiffness", "at least one"),
         ({"forces": {"a/b": {"stiffness": []}}}, "/forces/a~1b/stiffness", "at least one"),
         ({"forces": {"net": {"stiffness": 3}}}, "/forces/net/stiffness", "a list expected"),

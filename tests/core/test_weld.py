@@ -73,7 +73,7 @@ def test_loads_and_anchors_create_no_particles_and_are_told_when_they_miss():
     assert (load.pointer, anchor.pointer) == ("/forces/1/points", "/anchors/1/points")
     assert load.sentence == (
         "wind: 1 of 2 points met no particle; the nearest is 4.47214 m away from (3, 4, 0). Move it onto a particle, "
-        "raise weld_tolerance, or set strict to false to go on with what did meet"
+        "raise weld_tolerance, or set strict to false to continue without them"
     )
     assert str(caught.value) == f"/forces/1/points: {load.sentence} (and 1 more fault)"
 
@@ -127,8 +127,8 @@ def test_anchors_of_which_none_meets_are_an_error_always(strict: bool):
         compile(Scene.read({**net, "anchors": stray}))
     assert [fault.pointer for fault in caught.value.faults] == ["/anchors/0/points", "/anchors/1/points"]
     assert caught.value.faults[0].sentence == (
-        "a: its point met no particle; the nearest is 0.5 m away from (0, 0, 0.5). No anchor holds anything: move it "
-        "onto a particle or raise weld_tolerance"
+        "a: its point met no particle; the nearest is 0.5 m away from (0, 0, 0.5). No anchor holds a particle: move it "
+        "onto a particle, or raise weld_tolerance"
     )
     one_meets = {**net, "anchors": [*stray, {"particles": []}, {"points": [[2, 2, 0]]}], "strict": False}
     assert len(compile(Scene.read(one_meets)).report.missed) == 2
@@ -263,7 +263,11 @@ def test_a_load_on_what_nothing_touches_is_a_warning(
     said = [w for w in compile(Scene.read(spec)).report.warnings if "carries a load" in w]
     alone = sorted(set() if floor else loads - sprung - pulled - held)
     more = f" (and {len(alone) - 1} more)" if len(alone) > 1 else ""
-    first = f"particle {alone[0]} carries a load but no spring, other force or anchor holds it" if alone else ""
+    first = (
+        f"particle {alone[0]} carries a load but is unsupported: no spring, other force or anchor holds it"
+        if alone
+        else ""
+    )
     assert said == ([first + more] if alone else [])
 
 

@@ -153,7 +153,7 @@ def test_capped_cylinder_is_refused_by_its_name() -> None:
         (r.Sphere(r.Point3d(0, 0, 0), 1).ToNurbsSurface(), 4, 2.5, "^v: 2.5 faces"),
         (r.Sphere(r.Point3d(0, 0, 0), 1).ToNurbsSurface(), 2, 4, "at least 3"),
         (patch(np.full((3, 3, 3), np.nan)), 2, 2, "not finite"),
-        (patch(np.full((3, 3, 3), 5.0)), 2, 2, "no size"),
+        (patch(np.full((3, 3, 3), 5.0)), 2, 2, "no area"),
         ("a surface", 2, 2, "not a surface"),
     ],
 )

@@ -256,5 +256,5 @@ def test_a_document_alone_is_a_scene_with_its_boundary_held() -> None:
 
 def test_a_mesh_of_the_name_of_a_document_is_told() -> None:
     value = {"meshes": {"geometry 0": {}}, "geometry": [document(Mesh.from_meshgrid(1.0, nx=1))], "forces": []}
-    with pytest.raises(InputError, match="stands in the way"):
+    with pytest.raises(InputError, match="is in use; rename that mesh"):
         compas_json.plain_scene(value)

@@ -114,7 +114,7 @@ def test_one_wrong_bit_names_the_object(version: int, place: int, label: str) ->
             continue
         silent += not notes
         same = scan(bytes(changed)).objects[place].label == record.label  # the bit may be one of the name
-        assert not notes or not same or notes[0].startswith(called) or "known kind" in notes[0], notes
+        assert not notes or not same or notes[0].startswith(called) or "unknown kind" in notes[0], notes
     assert silent < 15
 
 

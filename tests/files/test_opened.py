@@ -74,7 +74,7 @@ def test_points_taken_as_anchors_that_meet_nothing_are_warnings() -> None:
     scene, _ = opened(compas.data.json_dumps(document), "a.json")
     [said] = relax(scene).report.left_out()
     assert said.startswith("/anchors/0/points: points: 1 of 2 points met no particle; the nearest is 4 m away")
-    with pytest.raises(InputError, match="No anchor holds anything"):
+    with pytest.raises(InputError, match="No anchor holds a particle"):
         relax(opened(compas.data.json_dumps([document[0], Pointcloud([[5, 0, 0]])]), "a.json")[0])
 
 
@@ -142,30 +142,30 @@ def test_words_of_the_format() -> None:
 def test_what_has_no_extent_is_left_out_and_that_is_said() -> None:
     found = read((SHEET + "f 1 1 2\nf 1 2 1\nl 1 1\n").encode())
     assert len(found.meshes[0][1].faces) == 4 and not found.lines
-    assert found.warnings == ["3 faces or lines without extent left out"]
+    assert found.warnings == ["3 faces or lines of zero size left out"]
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("v 0 0\n", "line 1: a vertex has three coordinates"),
-        ("v 0 0 x\n", "line 1: a vertex has three coordinates"),
-        ("v 0 0 1_0\n", "line 1: a vertex has three coordinates"),
+        ("v 0 0\n", "line 1: a vertex needs three coordinates"),
+        ("v 0 0 x\n", "line 1: a vertex needs three coordinates"),
+        ("v 0 0 1_0\n", "line 1: a vertex needs three coordinates"),
         ("\nv 0 0 nan\n", "line 2: a coordinate is not finite"),
         ("v 0 0 1e300\n", "line 1: a coordinate is not finite, or larger than 1e+12"),
-        (GRID + "f 1 2 0\n", 'line 10: "0" is no vertex'),
-        (GRID + "f 1 2 x\n", 'line 10: "x" is no vertex'),
-        (GRID + "f 1 2 1.5\n", 'line 10: "1.5" is no vertex'),
+        (GRID + "f 1 2 0\n", 'line 10: "0" is not a vertex number'),
+        (GRID + "f 1 2 x\n", 'line 10: "x" is not a vertex number'),
+        (GRID + "f 1 2 1.5\n", 'line 10: "1.5" is not a vertex number'),
         (GRID + "f 1 2 10\n", "line 10: vertex 10 does not exist; there are 9"),
         (GRID + "f 1 2 -10\n", "line 10: vertex -10 does not exist; there are 9 before this line"),
-        (GRID + "f 1 2\n", "line 10: a face of 2 vertices; it has at least 3"),
-        (GRID + "l 1\n", "line 10: a line of 1 vertices; it has at least 2 vertices"),
-        (GRID + "p\n", "line 10: a point of 0 vertices; it has at least 1 vertex"),
+        (GRID + "f 1 2\n", "line 10: a face of 2 vertices given; it needs at least 3"),
+        (GRID + "l 1\n", "line 10: a line of 1 vertices given; it needs at least 2 vertices"),
+        (GRID + "p\n", "line 10: a point of 0 vertices given; it needs at least 1 vertex"),
         (GRID + "f 1 \\\n 9 \\\n 3 7 1 2 8\n", "line 10: this face crosses itself"),
-        (GRID, "holds neither lines nor faces"),
-        ("# nothing\n", "holds no vertices"),
-        ("", "holds no vertices"),
-        ("\0\1\2", "holds no vertices"),
+        (GRID, "has no lines or faces"),
+        ("# nothing\n", "has no vertices"),
+        ("", "has no vertices"),
+        ("\0\1\2", "has no vertices"),
     ],
 )
 def test_a_fault_is_a_sentence_with_its_line(text: str, said: str) -> None:
@@ -207,7 +207,7 @@ def test_documents_of_compas_are_taken_as_drawn() -> None:
     scene, warnings = opened(compas.data.json_dumps([*more, Pointcloud([[0, 0, 0]])]), "a.json")
     assert anchors(scene) == {"points": [(0, 0, 0)]}
     (said,) = warnings
-    assert said.startswith("not taken of the file: 2 documents") and "Frame" in said and "Vector" in said
+    assert said.startswith("not read from the file: 2 documents") and "Frame" in said and "Vector" in said
     sheet = Mesh.from_meshgrid(2, 2)
     scene, warnings = opened(compas.data.json_dumps([sheet]), "a.json")
     assert len(anchors(scene)["naked vertices"]) == 8 and not warnings
@@ -238,10 +238,10 @@ def test_a_scene_is_as_it_says() -> None:
     [
         ({"forces": [{"kind": "sprngs"}]}, "/forces/0", "sprngs"),
         ([{"dtype": "compas.geometry/Line", "data": {"start": [0, 0, 0]}}], "/0/data/end", "three numbers"),
-        ({"dtype": "compas.datastructures/Volmesh", "data": {}}, "/dtype", "accepted are"),
-        ([{"dtype": "os/system", "data": "x"}], "", "neither lines nor faces"),
+        ({"dtype": "compas.datastructures/Volmesh", "data": {}}, "/dtype", "supported are"),
+        ([{"dtype": "os/system", "data": "x"}], "", "no lines or faces"),
         ([1, 2], "/0", "COMPAS document"),
-        ([], "", "neither lines nor faces"),
+        ([], "", "no lines or faces"),
         ({"status": "converged", "particles": []}, "/", "result"),
         (7, "/", ""),
     ],

@@ -95,10 +95,10 @@ def test_ids_and_names_with_commas(draw: Callable[..., Any]) -> None:
         ("layer:ropes", '"cables"'),
         ("name:rope", '"tie"'),
         ("text:colour", '"EA"'),
-        ("id:nonsense", "no object id"),
-        ("cables", "no selector"),
-        ("colour:red", "no selector"),
-        ("ends:layer:cables", "belongs to points"),
+        ("id:nonsense", "not an object id"),
+        ("cables", "not a selector"),
+        ("colour:red", "not a selector"),
+        ("ends:layer:cables", "allowed in points = only"),
         ("layer:shade", "hidden"),
         ("layer:dots", "lines and curves"),
     ],
@@ -217,8 +217,8 @@ def test_geometry_rides_along(draw: Callable[..., Any]) -> None:
         ],
     }
     understood = understand(model, recipe)
-    assert any("geometry[2] lines that rides along: 1 line " in line for line in understood.lines)
-    assert any("curve that rides along" in line for line in understood.lines)
+    assert any("geometry[2] lines that is carried along: 1 line " in line for line in understood.lines)
+    assert any("carried curve" in line for line in understood.lines)
     deck, bow, lines = understood.built.scene.geometry
     assert (deck.name, deck.points.tolist()) == ("edge", LINE.tolist())
     assert (bow.degree, len(bow.points), len(bow.knots)) == (arc.Degree, len(arc.Points), len(arc.Knots))
@@ -260,7 +260,7 @@ def test_a_file_without_units_takes_those_of_the_recipe(tmp_path: Path) -> None:
     assert file.Write(str(tmp_path / "none.3dm"), 8)
     understood = understand(threedm.read(tmp_path / "none.3dm"), {"units": {"length": "cm"}, **springs(lines="*")})
     assert understood.built.scene.forces[0].lines[0, 1, 0] == 10.0
-    assert any("taken as cm" in line for line in understood.lines)
+    assert any("read as cm" in line for line in understood.lines)
 
 
 def test_recipes_are_toml_or_json() -> None:

@@ -110,7 +110,7 @@ def test_where_nothing_is_named_curves_are_springs_held_at_loose_ends(draw: Call
     scene = understood.built.scene
     assert len(scene.forces[0].lines) == 3
     assert sorted(scene.anchors[0].points.tolist()) == [[-1, -1, 0], [-1, 1, 0], [1, 0, 0]]
-    assert "no layer is named" in understood.lines[0] and "loose ends" in understood.lines[0]
+    assert "no layer has a name" in understood.lines[0] and "loose ends" in understood.lines[0]
 
 
 def test_where_nothing_is_named_points_are_anchors_and_open_meshes_membranes(draw: Callable[..., Any]) -> None:
@@ -132,7 +132,7 @@ def test_curved_things_get_the_default_division(draw: Callable[..., Any]) -> Non
 
 def test_a_file_of_nothing_to_relax_is_told(draw: Callable[..., Any]) -> None:
     understood = understand(draw(NewObject(np.zeros(3), "Default")))
-    assert understood.nothing.startswith("holds nothing to relax")
+    assert understood.nothing.startswith("has nothing to relax")
     assert understood.lines[-1].endswith(understood.nothing)
     assert understand(draw(NewObject(LINE, "springs"))).nothing == ""
 
@@ -166,7 +166,7 @@ def test_what_is_left_out_or_misspelt_is_noted(draw: Callable[..., Any]) -> None
     assert "user text stifness" in notes and "did you mean stiffness?" in notes
     loop = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 0]])
     bare = understand(draw(NewObject(loop, "springs")))
-    assert "nothing is held at all" in bare.notes
+    assert "nothing is held" in bare.notes
     assert "nothing is held" in bare.lines and "nothing is held" in bare.lines[0]
     caught = understand(draw(NewObject(loop, "springs"), NewObject(LINE[0], "floor")))
     assert not [note for note in caught.notes if "held" in note]

@@ -53,7 +53,7 @@ def test_springs_stretched_absurdly_tell_the_size_and_the_units(draw: Callable[.
     (note,) = relax_file(path, None, recipe).warnings
     assert note == (
         'springs of "net" stretch to 11 times their rest length: the model measures 2 x 0 x 0 mm, and its numbers '
-        "count in m and N; make stiffness and loads fit the size"
+        "are in m and N; adjust stiffness and loads to the size"
     )
     assert relax_file(path, None, recipe.replace("[20, 0, 0]", "[17, 0, 0]")).warnings == []
 
@@ -62,11 +62,11 @@ def test_explain_tells_size_units_and_names(draw: Callable[..., Path]):
     path = draw(NewObject(SQUARE, "net", "sail"), unit="Millimeters")
     recipe = parse_tables('[[forces]]\nkind = "springs"\nmesh = "layer:net"', "r")
     lines = understand(threedm.read(path), recipe).lines
-    assert "size: 2 x 4 x 0.5 mm; stiffness and loads must fit it" in lines
+    assert "size: 2 x 4 x 0.5 mm; stiffness and loads must suit it" in lines
     assert "no units in the recipe: its lengths are mm, its forces N, stiffness N/mm" in lines
     assert 'layer net: 1 Mesh "sail" -> springs' in lines and "nothing is held" in lines
     lines = understand(threedm.read(path), {**recipe, "units": {"length": "m"}}).lines
-    assert "size: 2 x 4 x 0.5 mm, 1 mm taken as 0.001 m; stiffness and loads must fit it" in lines
+    assert "size: 2 x 4 x 0.5 mm, 1 mm read as 0.001 m; stiffness and loads must suit it" in lines
     assert not [line for line in lines if "no units" in line]
 
 
@@ -79,7 +79,7 @@ def test_a_load_on_held_particles_alone_is_noted(draw: Callable[..., Path]):
     anchors = [{points = "ends:*"}]
     """
     path = draw(NewObject(LINE, "cable"))
-    assert relax_file(path, None, recipe).warnings == ['load "snow" acts on held particles alone and moves nothing']
+    assert relax_file(path, None, recipe).warnings == ['load "snow" acts on held particles only, so it has no effect']
     assert relax_file(path, None, recipe.replace('anchors = [{points = "ends:*"}]',
                                                  'anchors = [{points = "start:*"}]')).warnings == []  # fmt: skip
 
@@ -87,7 +87,7 @@ def test_a_load_on_held_particles_alone_is_noted(draw: Callable[..., Path]):
 @pytest.mark.parametrize(
     ("layers", "selector", "said"),
     [
-        (["", ""], "layer:membrane", 'its objects lie on no layer: select them with "*", name:NAME or id:UUID'),
+        (["", ""], "layer:membrane", 'its objects have no layer: select them with "*", name:NAME or id:UUID'),
         (["", ""], "ends:layer:membrane", 'select them with "ends:*", ends:name:NAME or ends:id:UUID'),
         (["Default"], "layer:membrane", 'its only layer with visible objects is "Default": write "layer:Default", or'),
         (["Default"], "ends:layer:x", 'write "ends:layer:Default", or "ends:*"'),
@@ -121,18 +121,18 @@ def unlayered(path: Path) -> Path:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("rest_factor = 0,5", ": rest_factor = 0,5; decimals take a point: 0.5"),
-        ("rest_factor = 0,5 # soft", "decimals take a point: 0.5"),
+        ("rest_factor = 0,5", ": rest_factor = 0,5; write decimals with a point: 0.5"),
+        ("rest_factor = 0,5 # soft", "write decimals with a point: 0.5"),
         ("stiffness 1000", "line 4"),
         ("stiffness 1000", ": stiffness 1000"),
         (
             'rest_factor = "0.5"',
-            '/forces/0/rest_factor: the text "0.5" given; a number takes no quotes: rest_factor = 0.5',
+            '/forces/0/rest_factor: the text "0.5" given; write the number without quotes: rest_factor = 0.5',
         ),
-        ('rest_factor = "0,5"', "a number takes no quotes: rest_factor = 0.5"),
-        ('surface = "layer:nowhere"', '/forces/0/surface: "surface" is no field of springs; did you mean mesh?'),
-        ("stifness = 3", '"stifness" is no field of springs; did you mean stiffness?'),
-        ("colour = 3", '"colour" is no field of springs; it has '),
+        ('rest_factor = "0,5"', "write the number without quotes: rest_factor = 0.5"),
+        ('surface = "layer:nowhere"', '/forces/0/surface: springs has no field "surface"; did you mean mesh?'),
+        ("stifness = 3", 'springs has no field "stifness"; did you mean stiffness?'),
+        ("colour = 3", 'springs has no field "colour"; its fields: '),
     ],
 )
 def test_values_and_names_that_mean_something_else(draw: Callable[..., Path], line: str, said: str):
@@ -144,12 +144,18 @@ def test_values_and_names_that_mean_something_else(draw: Callable[..., Path], li
 @pytest.mark.parametrize(
     ("recipe", "said"),
     [
-        ('[[forces]]\nkind = "load"', 'kind "load" is none; did you mean unary (a load on each of its points)'),
+        ('[[forces]]\nkind = "load"', 'unknown kind "load"; did you mean unary (a load on each of its points)'),
         ('[[forces]]\nkind = "Gravity"', "or self_weight?"),
         ('[[forces]]\nkind = "unary"\npoints = "*"\nvector = -0.002', "such as vector = [0, 0, -0.002]"),
         ('[forces]\nkind = "springs"', "/forces: give tables, in TOML each under [[forces]]"),
-        ('[[anchors]]\npoints = "ends:*"', "the file has 1 Brep; here go curves; for points of meshes and surfaces"),
-        ('[[anchors]]\npoints = "ends:layer:skin"', "finds 1 Brep; here go curves; for points of meshes and surfaces"),
+        (
+            '[[anchors]]\npoints = "ends:*"',
+            "the file has 1 Brep; allowed are curves; for points of meshes and surfaces",
+        ),
+        (
+            '[[anchors]]\npoints = "ends:layer:skin"',
+            "finds 1 Brep; allowed are curves; for points of meshes and surfaces",
+        ),
         ('[[forces]]\nkind = "springs"\nlines = "*"', "for the edges of a mesh or surface give mesh = instead of"),
         ('[[anchors]]\npoints = "corners:*"\ndivide = [8, 8]', "closed meshes have none"),
         ('[[anchors]]\npoints = "naked:layer:skin"\ndivide = [8, 8]', "closed meshes have none"),
@@ -165,5 +171,5 @@ def test_tables_that_mean_something_else(draw: Callable[..., Path], recipe: str,
 
 
 def test_a_text_that_is_no_recipe_is_told_by_its_name():
-    with pytest.raises(InputError, match=r"README\.md: is no TOML or JSON; give a file that ends in \.toml or \.json"):
+    with pytest.raises(InputError, match=r"README\.md: is not TOML or JSON; give a file that ends in \.toml or \.json"):
         parse_tables("# hookean\n\nform finding", "README.md")

@@ -305,7 +305,7 @@ def test_faults_of_a_recipe_are_told_with_its_name(cable: Path) -> None:
     assert bare.value.pointer == "/forces/0/lines"
     other = cable.with_name("scene.json")
     other.write_text("{}")
-    with pytest.raises(InputError, match="recipes go with"):
+    with pytest.raises(InputError, match="recipes are for"):
         relax_file(other, None, CABLE)
 
 
@@ -344,7 +344,7 @@ def test_a_file_read_by_its_layers_takes_the_rest_of_the_scene_from_a_recipe(tmp
     assert len(found.result.reactions["particles"]) == 1
     found = relax_file(source, None, "weld_tolerance = 0.2\n[settings]\nsolver = 'relaxation'", recipe_name="r.toml")
     assert len(found.result.reactions["particles"]) == 2 and found.result.solver == "relaxation"
-    with pytest.raises(InputError, match=r"^r.toml /units: .*layer names decide, in m, N and s"):
+    with pytest.raises(InputError, match=r"^r.toml /units: .*uses layer names, in m, N and s"):
         relax_file(source, None, 'units = {length = "mm"}', recipe_name="r.toml")
 
 
@@ -405,7 +405,7 @@ def test_limits_that_hold_say_nothing_and_units_count(cable: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("max_forse = 1", "no such limit"),
+        ("max_forse = 1", "unknown limit"),
         ("max_force = 'much'", "give a number"),
         ("max_force = nan", "give a number"),
         ("[force]\ncable = 1", "table"),
@@ -505,9 +505,9 @@ def test_wrong_files_are_called_what_they_are(cable: Path, tmp_path: Path) -> No
     relax_file(cable, tmp_path / "w.json", CABLE)
     with pytest.raises(InputError, match="is a result, not a scene"):
         relax_file(tmp_path / "w.json")
-    with pytest.raises(InputError, match="is a recipe; give it with -r"):
+    with pytest.raises(InputError, match="is a recipe; pass it with -r"):
         relax_file(tmp_path / "good.toml")
-    with pytest.raises(InputError, match=r"written to .*missing, a folder"):
+    with pytest.raises(InputError, match=r"its folder .*missing does not exist"):
         relax_file(cable, tmp_path / "missing" / "out.3dm", CABLE)
     stiff = drawn(tmp_path / "s.3dm", [NewObject(LINE, "springs", user_text={"stiffness": "stiff"})])
     with pytest.raises(InputError, match=r"^s\.3dm: LineCurve .*user text stiffness"):

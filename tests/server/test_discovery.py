@@ -94,7 +94,7 @@ def test_a_second_one_joins_the_first(home: Home) -> None:
     url, before = home.told["url"], home.told
     for options in ((), ("--port", "0"), ("--port", str(home.told["port"])), ("--any-port",)):
         joined = home.command("serve", *options)
-        assert joined.returncode == 0 and f"already serves at {url} (process {process.pid})" in joined.stdout
+        assert joined.returncode == 0 and f"is already running at {url} (process {process.pid})" in joined.stdout
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -118,7 +118,7 @@ def test_of_many_that_start_at_once_one_serves(home: Home, count: int) -> None:
         for process in processes:
             if process is not left:
                 assert process.returncode == 0
-                assert "already serves" in process.communicate()[0]
+                assert "is already running" in process.communicate()[0]
         left.terminate()
         assert left.wait(HANG) == 0
 

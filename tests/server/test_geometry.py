@@ -1,4 +1,4 @@
-"""What is drawn in a .3dm file, over HTTP: the numbers that rhino3dm reads from it."""
+"""The geometry in a .3dm file, over HTTP: the numbers that rhino3dm reads from it."""
 
 from __future__ import annotations
 

@@ -191,7 +191,7 @@ def test_numbers_are_in_the_units_of_the_model(hops: httpx.Client, unit: str) ->
 
 def test_an_unknown_unit_is_told(hops: httpx.Client) -> None:
     said = hops.post("/solve", json={**cable(), "modelunits": "Parsecs"}).json()["warnings"]
-    assert said == ["The unit of this model is not known here; its lengths are taken as metres."]
+    assert said == ["The unit of this model is unknown; its lengths are read as metres."]
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -226,11 +226,11 @@ def test_defaults_stand_in(hops: httpx.Client) -> None:
 FAULTY: dict[str, tuple[Any, str]] = {
     "no lines": (without("Lines"), "Lines is missing; connect at least one line"),
     "no load": (without("Load"), "Load is missing; connect one vector"),
-    "two stiffnesses": (cable(Stiffness=branch("System.Double", 1.0, 2.0)), "Stiffness takes one number; 2 are given"),
+    "two stiffnesses": (cable(Stiffness=branch("System.Double", 1.0, 2.0)), "Stiffness accepts one number; 2 given"),
     "text": (cable(Stiffness=branch("System.String", "soft")), "/Stiffness: a finite number is expected"),
     "a negative factor": (
         cable(**{"Rest factor": branch("System.Double", -1.0)}),
-        "Rest factor: -1 is given; allowed is 0 and more",
+        "Rest factor: -1 given; 0 and more allowed",
     ),
     "a point as line": (cable(Lines=branch("Rhino.Geometry.Point3d", point((0, 0, 0)))), "/Lines: geometry as Hops"),
     "damaged geometry": (
@@ -238,7 +238,7 @@ FAULTY: dict[str, tuple[Any, str]] = {
         "/Lines: rhino3dm cannot decode this",
     ),
     "no JSON inside": (cable(Stiffness={"{0}": [{"type": "System.Double", "data": "NaN"}]}), "is not a number"),
-    "no function": (asked("nope", {}), "there is no such function; there are /relax, /relax_mesh"),
+    "no function": (asked("nope", {}), "unknown function; known: /relax, /relax_mesh"),
     "no tree": ({**cable(), "values": [{"ParamName": "Lines", "InnerTree": 1}]}, "branches are lists"),
     "no values": ({"pointer": "relax"}, "a list of values"),
     "a list": ([], "a list of values"),
@@ -261,7 +261,7 @@ def test_every_recorded_request_is_answered_in_json(hops: httpx.Client, recorded
     for request in recorded["requests"].values():
         answer = hops.post("/solve", json=request, headers={"content-type": "application/json; charset=utf-8"})
         assert answer.status_code == 422
-        assert read(answer) == {} and answer.json()["errors"][0].startswith("/pointer: there is no such function")
+        assert read(answer) == {} and answer.json()["errors"][0].startswith("/pointer: unknown function")
 
 
 def test_what_is_not_reached_is_a_warning(hops: httpx.Client) -> None:
@@ -270,7 +270,7 @@ def test_what_is_not_reached_is_a_warning(hops: httpx.Client) -> None:
     answer = hops.post("/solve", json=stray)
     assert answer.status_code == 200 and "1 of 3 points met no particle" in answer.json()["warnings"][0]
     lost = hops.post("/solve", json=cable(Anchors=branch("Rhino.Geometry.Point3d", point((5, 5, 5)))))
-    assert lost.status_code == 422 and "No anchor holds anything" in lost.json()["errors"][0]
+    assert lost.status_code == 422 and "No anchor holds a particle" in lost.json()["errors"][0]
 
 
 def test_no_page_may_call(served: Served, hops: httpx.Client) -> None:

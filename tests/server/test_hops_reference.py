@@ -157,9 +157,9 @@ def test_errors_are_json_always(ours: Service, recorded: dict[str, Any]) -> None
     boom = described("boom", ours)
     assert boom.post(recorded["requests"]["boom"]).errors == ["/A: no cables"]
     (unknown,) = boom.post(recorded["requests"]["unknown"]).errors
-    assert "there is no such function; there are /add" in unknown
+    assert "unknown function; known: /add" in unknown
     nowhere = Component(ours.call, "/nope")
-    assert nowhere.errors == ["There is no function of this name; GET / of this server lists those there are."]
+    assert nowhere.errors == ["There is no function with this name; GET / of this server lists all."]
     assert nowhere.inputs == nowhere.outputs == []
     for method, path, status in (("GET", "/nope", 404), ("GET", "/solve", 405), ("PUT", "/solve", 401)):
         answer = ours.call(method, path)

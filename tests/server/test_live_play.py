@@ -140,7 +140,7 @@ def test_the_same_start_and_edits_end_at_the_same_iteration(server: Served, solv
 
 
 def stepped(slice_of: float, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
-    """How a session stands after each of its steps of a frame, where slices of computing are this long [s]."""
+    """Status of a session after each of its steps of a frame, where slices of computing are this long [s]."""
     monkeypatch.setattr(host, "SLICE", slice_of)
     ours, theirs = multiprocessing.Pipe()
 

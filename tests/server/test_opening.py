@@ -106,7 +106,7 @@ def test_what_was_told_of_a_file_outlives_the_server(tmp_path: Path) -> None:
     second = Served(state=state, workers=1)
     try:
         listed = second.client.get("/v1/sessions").json()["sessions"]
-        told = ["not taken of the file: normals, materials"]
+        told = ["not read from the file: normals, materials"]
         assert {one["key"]: one["warnings"] for one in listed} == {"a": told, "b": [], "c": told}
         second.client.post("/v1/sessions/a/step")
         assert second.client.get("/v1/sessions/a").json()["warnings"] == told
@@ -122,7 +122,7 @@ def test_what_was_told_of_a_file_outlives_the_server(tmp_path: Path) -> None:
         ("a.json", '{"forces": [{"kind": "springs", "lines": 7}]}', "/file/forces/0/lines", ""),
         ("a.json", "{", "/file", "not valid JSON"),
         ("a.json", "[" * 5000, "/", ""),
-        ("a.json", '[{"dtype": "builtins/eval", "data": "1"}]', "/file", "neither lines nor faces"),
+        ("a.json", '[{"dtype": "builtins/eval", "data": "1"}]', "/file", "no lines or faces"),
         ("a.stl", "solid", "/file", "give a .3dm, .obj, .json or .npz file"),
         ("a.3dm", SHEET, "/file", ""),
         ("../../etc/passwd", "root:x:0:0", "/file", "give a .3dm, .obj, .json or .npz file"),

@@ -330,7 +330,7 @@ def test_a_taken_port_is_named_with_its_owner(served: Served) -> None:
     done = forking.run(MODULE, str(served.port))
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.count("\n") == 1
-    assert f"Port {served.port} is taken" in done.stderr and f"(process {served.process.pid})" in done.stderr
+    assert f"Port {served.port} is in use" in done.stderr and f"(process {served.process.pid})" in done.stderr
 
 
 def test_the_owner_of_a_port_without_psutil(monkeypatch: pytest.MonkeyPatch) -> None:

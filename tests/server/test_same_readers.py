@@ -141,7 +141,7 @@ def test_an_obj_file_is_relaxed_by_the_command(tmp_path: Path, target: str) -> N
 def test_commands_name_what_is_wrong_with_a_file(tmp_path: Path) -> None:
     """The file, the line, what is allowed: in one line, and exit code 2."""
     faults = {
-        "a.obj": ("v 0 0\n", "a.obj: line 1: a vertex has three coordinates"),
+        "a.obj": ("v 0 0\n", "a.obj: line 1: a vertex needs three coordinates"),
         "lid.obj": (
             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
             "lid.obj: the mesh is closed",
@@ -150,7 +150,7 @@ def test_commands_name_what_is_wrong_with_a_file(tmp_path: Path) -> None:
         "a.stl": ("solid\n", "a.stl cannot be opened; give a .3dm, .obj, .json or .npz file"),
         "b.json": ('{"forces": [{"kind": "springs", "lines": 7}]}', "b.json /forces/0/lines"),
         "c.json": ('{"status": "converged", "particles": []}', "c.json is a result, not a scene"),
-        "d.json": ("[]", "d.json holds neither lines nor faces"),
+        "d.json": ("[]", "d.json has no lines or faces"),
     }
     for name, (text, said) in faults.items():
         path = tmp_path / name
@@ -160,7 +160,7 @@ def test_commands_name_what_is_wrong_with_a_file(tmp_path: Path) -> None:
             assert (done.exit_code, said in done.stderr) == (2, True), (command, name, done.stderr)
             assert len(done.stderr.splitlines()) == 1
     done = CliRunner().invoke(app, ["relax", str(tmp_path / "a.obj"), "-r", str(find("9.24").folder / "recipe.toml")])
-    assert done.exit_code == 2 and "recipes go with .3dm files" in done.stderr
+    assert done.exit_code == 2 and "recipes are for .3dm files" in done.stderr
 
 
 def test_what_nothing_holds_opens_in_the_studio_and_is_not_relaxed(client: httpx.Client) -> None:
@@ -176,8 +176,8 @@ def test_the_command_explains_what_it_reads(tmp_path: Path) -> None:
     path = tmp_path / "rope.obj"
     path.write_text(ROPE)
     done = CliRunner().invoke(app, ["relax", str(path), "--explain"])
-    assert done.exit_code == 0 and "rope.obj: an OBJ file, taken as drawn, with springs" in done.output
-    assert "not taken of the file: normals" in done.output
+    assert done.exit_code == 0 and "rope.obj: an OBJ file, read as drawn, with springs" in done.output
+    assert "not read from the file: normals" in done.output
 
 
 def test_the_list_of_readers_is_the_only_one() -> None:

@@ -102,7 +102,7 @@ def test_told_to_stop_with_sockets_open_and_work_running(home: Home) -> None:
         wait_for(lambda: watcher.frames > 3 and asks.get("/v1/health").json()["workers"]["busy"])
         pids = family(process.pid)
         done = home.command("serve", "--stop")
-    assert (done.returncode, done.stderr) == (0, "") and url in done.stdout and "are kept" in done.stdout
+    assert (done.returncode, done.stderr) == (0, "") and url in done.stdout and "are saved" in done.stdout
     _, said = process.communicate(timeout=HANG)
     assert process.returncode == 0 and "Traceback" not in said, said
     solving.join(HANG)
@@ -164,7 +164,7 @@ def test_an_end_that_hangs_is_cut_short(home: Home) -> None:
     pids = family(process.pid)
     process.terminate()
     _, said = process.communicate(timeout=HANG)
-    assert process.returncode == 0 and "cut short" in said
+    assert process.returncode == 0 and "was forced" in said
     wait_for(lambda: not any(living(pid) for pid in pids))
     assert not home.told
 

@@ -328,7 +328,7 @@ def test_the_commands_of_a_store(opened: Callable[..., Store], tmp_path: Path) -
     for number in range(3):
         do(store, put(str(number), MB))
     store.close()
-    assert "is whole" in (said := command(tmp_path, "check")).stdout and said.returncode == 0
+    assert "is not damaged" in (said := command(tmp_path, "check")).stdout and said.returncode == 0
     assert command(tmp_path, "backup", str(tmp_path / "copy.db")).returncode == 0
     assert "exists" in (said := command(tmp_path, "backup", str(tmp_path / "copy.db"))).stderr and said.returncode == 2
     assert command(tmp_path, "compact").returncode == 0

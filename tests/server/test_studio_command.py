@@ -72,7 +72,7 @@ def test_a_file_is_shown_by_a_service_that_runs(home: Home, tmp_path: Path) -> N
     file = tmp_path / "süd roof.obj"
     file.write_text(SHEET + "vn 0 0 1\n")
     shown = home.command("studio", str(file), "--no-browser")
-    assert shown.returncode == 0 and "not taken of the file: normals" in shown.stderr, shown
+    assert shown.returncode == 0 and "not read from the file: normals" in shown.stderr, shown
     [key] = parse_qs(urlsplit(shown.stdout.strip()).fragment)["s"]
     with lets_in(shown.stdout.strip()) as client:
         session = client.get(f"/v1/sessions/{key}").json()
@@ -180,7 +180,7 @@ def test_files_of_commands_that_were_killed_are_removed(home: Home) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("bad.obj", "v 0 0\n", "bad.obj: line 1: a vertex has three coordinates"),
+        ("bad.obj", "v 0 0\n", "bad.obj: line 1: a vertex needs three coordinates"),
         ("none.obj", None, "none.obj cannot be read"),
         ("a.stl", "solid", "give a .3dm, .obj, .json or .npz file"),
     ],

@@ -112,7 +112,7 @@ def test_the_link_shows_the_same_scene(membrane: Studio, open_studio: Opened):
     """Copied, and opened in another window of the same browser."""
     membrane.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     membrane.press("Copy link")
-    membrane.page.get_by_text("The link is in the clipboard").wait_for()
+    membrane.page.get_by_text("The link was copied").wait_for()
     link = membrane.page.evaluate("() => navigator.clipboard.readText()")
     assert membrane.key in link and membrane.service.token not in link
     other = open_studio()

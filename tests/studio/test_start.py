@@ -121,7 +121,7 @@ def test_a_session_that_another_program_made_is_listed_and_shown(studio: Studio)
 def test_a_session_is_forgotten_when_that_is_confirmed(studio: Studio):
     studio.service.put("forgotten", CABLE)
     studio.page.on("dialog", lambda dialog: dialog.accept())
-    studio.page.get_by_role("button", name="Forget forgotten").click()
+    studio.page.get_by_role("button", name="Delete forgotten").click()
     studio.page.get_by_role("link", name="forgotten", exact=True).wait_for(state="detached")
     assert "forgotten" not in [session["key"] for session in studio.service.summaries()]
 

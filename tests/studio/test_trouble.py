@@ -70,13 +70,13 @@ def test_a_session_that_is_forgotten_elsewhere_is_told_to_be_gone(tab: Studio):
     tab.service.put("short-lived", CABLE)
     tab.open("short-lived")
     tab.service.client.delete("/v1/sessions/short-lived")
-    tab.page.get_by_text("Gone", exact=True).wait_for()
+    tab.page.get_by_text("Not found", exact=True).wait_for()
 
 
 def test_a_link_to_no_session_says_so(tab: Studio):
     tab.allowed = ["404", "WebSocket"]
     tab.page.goto(f"{tab.service.url}/#s=never-made")
-    tab.page.get_by_text("Gone", exact=True).wait_for()
+    tab.page.get_by_text("Not found", exact=True).wait_for()
 
 
 def test_two_people_edit_one_session(open_studio: Opened):
@@ -147,7 +147,7 @@ def test_a_frame_that_cannot_be_read_is_told_of(tab: Studio):
     tab.drag(0, 40, 30)
     tab.until(lambda: service.summary("broken")["revision"] > revision)
     wire.sockets[-1].send(b"no frame")
-    page.get_by_text("Not readable").wait_for()
+    page.get_by_text("Not compatible").wait_for()
     told = page.get_by_text("a frame that is shorter than its header")
     told.wait_for()
     page.wait_for_timeout(500)

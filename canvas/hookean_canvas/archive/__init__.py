@@ -38,7 +38,7 @@ def read_bytes(path: str | Path, limit: int = MOST_BYTES) -> bytes:
     except OSError as error:
         raise InputError(str(path), f"cannot be read: {error.strerror or error}.") from None
     if len(data) > limit:
-        raise InputError(str(path), f"has more than the {limit} bytes allowed; take large geometry out of the file.")
+        raise InputError(str(path), f"has more than the {limit} bytes allowed; remove large geometry from the file.")
     return data
 
 

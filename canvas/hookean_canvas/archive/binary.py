@@ -79,14 +79,14 @@ def inflate(data: bytes, name: str = "archive", limit: int = MOST_BYTES) -> byte
         plain = unpacker.decompress(data, limit + 1)
     except zlib.error:
         raise InputError(
-            name, "is no Grasshopper archive, or a damaged one (no raw deflate stream and no XML); save it again."
+            name, "is not a Grasshopper archive, or is damaged (no raw deflate stream and no XML); save it again."
         ) from None
     if len(plain) > limit:
-        raise InputError(name, f"unpacks to more than the {limit} bytes allowed; take large geometry out of the file.")
+        raise InputError(name, f"unpacks to more than the {limit} bytes allowed; remove large geometry from the file.")
     if not unpacker.eof:
-        raise InputError(name, f"ends in the middle: it is cut after {len(data)} bytes; copy it again.")
+        raise InputError(name, f"is incomplete: it ends after {len(data)} bytes; copy it again.")
     if unpacker.unused_data:
-        raise InputError(name, f"has {len(unpacker.unused_data)} bytes behind the end of the archive; copy it again.")
+        raise InputError(name, f"has {len(unpacker.unused_data)} bytes after the end of the archive; copy it again.")
     return plain
 
 
@@ -102,7 +102,7 @@ def to_plain(chunk: Chunk) -> bytes:
 
 def _write_chunk(chunk: Chunk, out: list[bytes], place: tuple[str, ...]) -> None:
     if len(place) > DEEPEST:
-        raise InputError(placed(place[:3]) + "/…", f"chunks lie more than {DEEPEST} deep; GH_IO nests them by hand.")
+        raise InputError(placed(place[:3]) + "/…", f"chunks are nested more than {DEEPEST} deep, the limit of GH_IO.")
     counts = _INT32.pack(len(chunk.items)) + _INT32.pack(len(chunk.chunks))
     out.append(_string(chunk.name, place) + _index(chunk.index, place) + counts)
     for item in in_order(chunk, place):
@@ -128,7 +128,7 @@ def _index(index: int, place: tuple[str, ...]) -> bytes:
     try:
         return _INT32.pack(index)
     except struct.error:
-        raise InputError(placed(place), f"has the index {_short(index)}, which is no 32-bit whole number.") from None
+        raise InputError(placed(place), f"has the index {_short(index)}, which is not a 32-bit whole number.") from None
 
 
 def _value(item: Item, place: tuple[str, ...]) -> bytes:
@@ -137,7 +137,7 @@ def _value(item: Item, place: tuple[str, ...]) -> bytes:
     try:
         return pack(item.type, item.value)
     except (struct.error, TypeError, ValueError, OverflowError, AttributeError):
-        raise InputError(placed(place), f"is {_short(item.value)}, which is no {Type(item.type).label}.") from None
+        raise InputError(placed(place), f"is {_short(item.value)}, which is not a {Type(item.type).label}.") from None
 
 
 def pack(type: Type, value: Any) -> bytes:
@@ -181,7 +181,7 @@ def _short(value: Any) -> str:
 
 
 def of_plain(plain: bytes, name: str = "archive") -> Chunk:
-    """The chunk in unpacked bytes; InputError says where they are damaged."""
+    """The chunk in unpacked bytes; raises InputError with the place of damage."""
     reader = _Reader(plain, name)
     chunk = reader.chunk(())
     if reader.position < len(plain):
@@ -202,7 +202,7 @@ class _Reader:
         name, index = self._string(place), self._int(place)
         place = (*place, labelled(name, index))
         if len(place) > DEEPEST:
-            raise self._damage(place[:3], f"chunks lie more than {DEEPEST} deep")
+            raise self._damage(place[:3], f"chunks are nested more than {DEEPEST} deep")
         items, chunks = self._int(place), self._int(place)
         room = len(self.data) - self.position
         if items < 0 or chunks < 0 or items * _LEAST_ITEM + chunks * _LEAST_CHUNK > room:
@@ -214,7 +214,7 @@ class _Reader:
         chunk.items = [self._item(place) for _ in range(items)]
         again = twin(chunk.items)
         if again is not None:
-            raise self._damage((*place, labelled(again.name, again.index)), "the item stands twice in its chunk")
+            raise self._damage((*place, labelled(again.name, again.index)), "the item occurs twice in its chunk")
         chunk.chunks = [self.chunk(place) for _ in range(chunks)]
         return chunk
 
@@ -224,7 +224,7 @@ class _Reader:
         try:
             type = Type(code)
         except ValueError:
-            raise self._damage(here, f"type code {code} is none of GH_IO's") from None
+            raise self._damage(here, f"type code {code} is unknown to GH_IO") from None
         return Item(name, index, type, self._value(type, here))
 
     def _value(self, type: Type, place: tuple[str, ...]) -> Any:
@@ -283,7 +283,7 @@ class _Reader:
     def _take(self, count: int, place: tuple[str, ...]) -> bytes:
         end = self.position + count
         if count < 0 or end > len(self.data):
-            raise self._damage(place, f"{count} bytes are due, {len(self.data) - self.position} are left")
+            raise self._damage(place, f"{count} bytes are expected, {len(self.data) - self.position} are left")
         self.position, start = end, self.position
         return self.data[start:end]
 

@@ -60,7 +60,7 @@ class Type(IntEnum):
 
 @dataclass(slots=True)
 class Item:
-    """A typed value under a name; `index` is -1 where the name stands alone. `Type` says what the value may be."""
+    """A typed value under a name; `index` is -1 where the name stands alone. `Type` has the allowed values."""
 
     name: str
     index: int
@@ -107,7 +107,7 @@ class Chunk:
     def add(self, name: str, index: int = -1) -> Chunk:
         """Append an empty chunk and return it; ValueError where one of that name and index is there."""
         if self.chunk(name, index) is not None:
-            raise ValueError(f"{self.label} holds a chunk {labelled(name, index)} already")
+            raise ValueError(f"{self.label} already has a chunk {labelled(name, index)}")
         self.chunks.append(Chunk(name, index))
         return self.chunks[-1]
 
@@ -146,7 +146,7 @@ def in_order(chunk: Chunk, place: tuple[str, ...]) -> list[Item]:
     again = twin(chunk.items)
     if again is not None:
         where = placed((*place, labelled(again.name, again.index)))
-        raise InputError(where, "stands twice in its chunk; names are unique together with their index.")
+        raise InputError(where, "occurs twice in its chunk; name and index together must be unique.")
     return sorted(chunk.items, key=sort_key)
 
 

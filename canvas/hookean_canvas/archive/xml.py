@@ -68,7 +68,7 @@ def of_xml(data: bytes | str, name: str = "archive", limit: int = MOST_BYTES) ->
     """
     data = data.encode() if isinstance(data, str) else data
     if len(data) > limit:
-        raise InputError(name, f"has {len(data)} bytes, {limit} are allowed; take large geometry out of the file.")
+        raise InputError(name, f"has {len(data)} bytes, {limit} are allowed; remove large geometry from the file.")
     root = _parse(data, name)
     if root.tag not in ("Archive", "Fragment"):
         raise InputError(name, f"is XML, but no Grasshopper archive: it starts with <{root.tag}>, not <Archive>.")
@@ -80,7 +80,7 @@ def of_xml(data: bytes | str, name: str = "archive", limit: int = MOST_BYTES) ->
 
 def _write_chunk(chunk: Chunk, out: list[str], place: tuple[str, ...], tag: str = "chunk") -> None:
     if len(place) > DEEPEST:
-        raise InputError(placed(place[:3]) + "/…", f"chunks lie more than {DEEPEST} deep; write it flatter.")
+        raise InputError(placed(place[:3]) + "/…", f"chunks are nested more than {DEEPEST} deep; write it flatter.")
     indent = "  " * (2 * len(place) - 2)
     out.append(f"{indent}<{tag} name={_attribute(chunk.name, place)}{_index(chunk.index)}>")
     if chunk.items:
@@ -129,7 +129,7 @@ def _body(item: Item, place: tuple[str, ...]) -> str:
     try:
         packed = pack(item.type, value)
     except (struct.error, TypeError, ValueError, OverflowError, AttributeError):
-        raise InputError(placed(place), f"is {value!r:.60}, which is no {item.type.label}.") from None
+        raise InputError(placed(place), f"is {value!r:.60}, which is not a {item.type.label}.") from None
     match item.type:
         case Type.BOOL:
             return "true" if value else "false"
@@ -211,7 +211,7 @@ class _Reader:
         chunk = Chunk(name, index)
         place = (*place, chunk.label)
         if len(place) > DEEPEST:
-            raise self._damage(place[:3], f"chunks lie more than {DEEPEST} deep")
+            raise self._damage(place[:3], f"chunks are nested more than {DEEPEST} deep")
         for group in element:
             if group.tag not in ("items", "chunks"):
                 raise self._damage(place, f"<{group.tag}> is neither <items> nor <chunks>")
@@ -224,7 +224,7 @@ class _Reader:
                     raise self._damage(place, f"<{part.tag}> stands in <{group.tag}>")
         again = twin(chunk.items)
         if again is not None:
-            raise self._damage((*place, labelled(again.name, again.index)), "the item stands twice in its chunk")
+            raise self._damage((*place, labelled(again.name, again.index)), "the item occurs twice in its chunk")
         return chunk
 
     def _item(self, element: Element, place: tuple[str, ...]) -> Item:
@@ -234,7 +234,7 @@ class _Reader:
         try:
             type = Type(int(code))
         except ValueError:
-            raise self._damage(here, f"type code {code!r} is none of GH_IO's") from None
+            raise self._damage(here, f"type code {code!r} is unknown to GH_IO") from None
         try:
             return Item(name, index, type, _value(type, element))
         except (ValueError, ArithmeticError, struct.error):
@@ -252,7 +252,7 @@ class _Reader:
 
 
 def _value(type: Type, element: Element) -> Any:
-    """The value of an item; ValueError and its like where the text is none of its type."""
+    """The value of an item; raises ValueError and the like if the text is not of its type."""
     text = element.text or ""
     if type is Type.STRING:
         return text

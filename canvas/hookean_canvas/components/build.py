@@ -34,7 +34,7 @@ class Built:
 def build(output: Path, bundles: list[Bundle] | None = None) -> Built:
     """Write `rhino8/*.ghuser`, `rhino7/*.ghuser` and a package of each to the folder `output`.
 
-    The folders rhino8 and rhino7 are written anew; the same bundles give the same bytes. InputError where a bundle is
+    The folders rhino8 and rhino7 are replaced; the same bundles give the same bytes. InputError where a bundle is
     wrong, or where a file as read back does not pass `lint.faults`.
     """
     bundles = read_all() if bundles is None else bundles

@@ -92,21 +92,25 @@ def read_all(place: Path | None = None) -> list[Bundle]:
 
 
 def read(place: Path | str) -> Bundle:
-    """One bundle, by its folder or by the name of a shipped one; InputError says what is wrong with it."""
+    """One bundle, by its folder or by the name of a shipped one; raises InputError with its fault."""
     place = folder() / place if isinstance(place, str) and "/" not in place else Path(place)
     missing = [name for name in FILES if not (place / name).is_file()]
     if missing:
-        raise InputError(place.name, f"is no whole bundle: {', '.join(missing)} missing; it needs {', '.join(FILES)}.")
+        raise InputError(
+            place.name, f"is not a complete bundle: {', '.join(missing)} missing; it needs {', '.join(FILES)}."
+        )
     icon = (place / "icon.png").read_bytes()
     if icon[:8] != b"\x89PNG\r\n\x1a\n" or icon[16:24] != bytes((0, 0, 0, 24, 0, 0, 0, 24)):
-        raise InputError(f"{place.name}/icon.png", "is no PNG of 24 x 24 pixels; `components/generate.py` draws one.")
+        raise InputError(
+            f"{place.name}/icon.png", "is not a PNG of 24 x 24 pixels; `components/generate.py` draws one."
+        )
     code = (place / "code.py").read_text(encoding="utf-8")
     _check_code(f"{place.name}/code.py", code)
     where = f"{place.name}/metadata.json"
     try:
         metadata = json.loads((place / "metadata.json").read_text(encoding="utf-8"))
     except ValueError as error:
-        raise InputError(where, f"is no JSON: {error}.") from None
+        raise InputError(where, f"is not valid JSON: {error}.") from None
     return _bundle(place.name, where, metadata, code, icon)
 
 
@@ -120,9 +124,9 @@ def _bundle(name: str, where: str, metadata: dict[str, Any], code: str, icon: by
     python = metadata.get("ghpython", {})
     _known(f"{where}, ghpython", python, _PYTHON | {"inputParameters", "outputParameters"}, ())
     if metadata["subcategory"] not in SUBCATEGORIES:
-        raise InputError(where, f"subcategory {metadata['subcategory']!r} is none of {', '.join(SUBCATEGORIES)}.")
+        raise InputError(where, f"subcategory {metadata['subcategory']!r} is not one of {', '.join(SUBCATEGORIES)}.")
     if metadata.get("exposure", 2) not in EXPOSURES:
-        raise InputError(where, f"exposure {metadata['exposure']!r} is none of {', '.join(map(str, EXPOSURES))}.")
+        raise InputError(where, f"exposure {metadata['exposure']!r} is not one of {', '.join(map(str, EXPOSURES))}.")
     if python.get("isAdvancedMode"):
         raise InputError(where, "isAdvancedMode is true; components are plain scripts, the same in every Rhino.")
     inputs = _parameters(f"{where}, inputParameters", python.get("inputParameters", []))
@@ -155,13 +159,13 @@ def _parameters(where: str, entries: Iterable[dict[str, Any]]) -> tuple[Paramete
         _known(here, entry, _PARAMETER, ("name",))
         name = entry.get("nickname", entry["name"])
         if not name.isidentifier() or keyword.iskeyword(name):
-            raise InputError(here, f"nickname {name!r} is no variable name; the script reads the input by it.")
+            raise InputError(here, f"nickname {name!r} is not a variable name, by which the script reads the input.")
         if entry.get("typeHintID", "none") not in HINTS:
-            raise InputError(here, f"typeHintID {entry['typeHintID']!r} is none of {', '.join(HINTS)}.")
+            raise InputError(here, f"typeHintID {entry['typeHintID']!r} is not one of {', '.join(HINTS)}.")
         access = entry.get("scriptParamAccess", "item")
         access = ("item", "list", "tree").index(access) if access in ("item", "list", "tree") else access
         if access not in (0, 1, 2):
-            raise InputError(here, f"scriptParamAccess {access!r} is none of item, list, tree.")
+            raise InputError(here, f"scriptParamAccess {access!r} is not one of item, list, tree.")
         if entry.get("flatten") and entry.get("graft"):
             raise InputError(here, "flatten and graft are both true; give one.")
         found.append(
@@ -183,7 +187,7 @@ def _parameters(where: str, entries: Iterable[dict[str, Any]]) -> tuple[Paramete
 def _known(where: str, given: dict[str, Any], allowed: set[str], required: Iterable[str]) -> None:
     unknown = sorted(set(given) - allowed)
     if unknown:
-        raise InputError(where, f"does not know {', '.join(unknown)}; allowed are {', '.join(sorted(allowed))}.")
+        raise InputError(where, f"has unknown keys {', '.join(unknown)}; allowed are {', '.join(sorted(allowed))}.")
     missing = [key for key in required if not given.get(key)]
     if missing:
         raise InputError(where, f"lacks {', '.join(missing)}.")
@@ -199,4 +203,4 @@ def _check_code(where: str, code: str) -> None:
     except SyntaxError as error:
         raise InputError(f"{where}:{error.lineno}", f"does not compile: {error.msg}.") from None
     if not ast.get_docstring(tree):
-        raise InputError(where, "has no docstring; it is what a right click shows as help.")
+        raise InputError(where, "has no docstring, which a right click shows as help.")

@@ -200,7 +200,7 @@ TOLD: dict[tuple[str, str], str] = {
     ("shell", "mesh"): "The mesh that bends; its vertices become particles",
     ("soapfilm", "mesh"): "The mesh that is the film; its vertices become particles",
 }
-"""Tooltips where the canvas takes something else than the field says."""
+"""Tooltips where the canvas accepts other data than the field."""
 
 
 def _said(value: Any) -> str:

@@ -65,7 +65,7 @@ def inlined(code: str, flavour: Flavour = "rhino8", client: Path | None = None) 
     InputError where an import of the client is written in a way that cannot be redirected.
     """
     if flavour not in FLAVOURS:
-        raise InputError("flavour", f"{flavour!r} is none of {', '.join(FLAVOURS)}.")
+        raise InputError("flavour", f"{flavour!r} is not one of {', '.join(FLAVOURS)}.")
     sources = _sources(client or _installed())
     stamp, version = _stamped(sources)
     names, packed = _pack(sources, tuple(carried(code, dict(sources))))
@@ -167,7 +167,7 @@ def _stamped(files: tuple[tuple[str, str], ...]) -> tuple[str, str]:
             raise InputError(f"{CLIENT}/{name}.py", "is not ASCII, which Python 2.7 cannot read.")
     found = re.search(r'(?m)^__version__ = "([^"]+)"', sources["__init__"])
     if not found:
-        raise InputError(f"{CLIENT}/__init__.py", 'says no `__version__ = "..."`.')
+        raise InputError(f"{CLIENT}/__init__.py", 'has no `__version__ = "..."`.')
     version = found.group(1)
     digest = hashlib.sha256(json.dumps(sources, sort_keys=True).encode()).hexdigest()[:12]
     return f"{CLIENT}_{re.sub('[^0-9]', '_', version)}_{digest}", version

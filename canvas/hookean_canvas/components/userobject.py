@@ -37,7 +37,7 @@ def identity(bundle: Bundle, flavour: Flavour) -> UUID:
 
 
 def file_name(bundle: Bundle) -> str:
-    """The name of its file, told apart from other plug-ins' in a folder they share."""
+    """The name of its file, distinct from other plug-ins' in a shared folder."""
     return f"Hookean_{bundle.folder}.ghuser"
 
 

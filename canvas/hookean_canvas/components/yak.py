@@ -24,9 +24,9 @@ def file_name(version: str, tag: str) -> str:
 
 
 def manifest(version: str, description: str) -> str:
-    """The text of manifest.yml; InputError where the version is none that the package manager takes."""
+    """The text of manifest.yml; raises InputError for a version that the package manager does not accept."""
     if not re.fullmatch(r"\d+\.\d+\.\d+(-[0-9A-Za-z.-]+)?", version):
-        raise InputError("version", f"{version!r} is no semantic version; write it like 1.2.3 or 1.2.3-beta.1.")
+        raise InputError("version", f"{version!r} is not a semantic version; write it like 1.2.3 or 1.2.3-beta.1.")
     lines = [f"name: {NAME}", f"version: {version}", "authors:", "  - hookean"]
     lines += [f"description: {json.dumps(description)}", "keywords:", *(f"  - {word}" for word in KEYWORDS)]
     return "\n".join([*lines, "icon: icon.png"]) + "\n"

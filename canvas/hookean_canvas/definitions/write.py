@@ -103,7 +103,7 @@ class Definition:
     @contextmanager
     def group(self, title: str, note: str = "") -> Iterator[None]:
         """What is made inside stands in a group of this title, with a note over it where one is given."""
-        assert self._inside is None, "groups do not hold groups"
+        assert self._inside is None, "groups cannot contain groups"
         self._inside = (title, [], [])
         self._groups.append(self._inside)
         if note:
@@ -247,7 +247,7 @@ class Definition:
         return root
 
     def save(self, path: Path) -> None:
-        """Write the definition; the suffix says whether as XML (.ghx) or binary (.gh)."""
+        """Write the definition; the suffix selects XML (.ghx) or binary (.gh)."""
         archive.write(self.archive(), path)
 
     def _id(self, kind: str, name: str) -> UUID:
@@ -376,9 +376,11 @@ def _output(source: Any, kind: str, key: str) -> Output:
         return source
     if isinstance(source, Made):
         if len(source.outputs) != 1:
-            raise KeyError(f"{kind}, {key}: {source.kind} has several outputs, name one of {', '.join(source.outputs)}")
+            raise KeyError(
+                f"{kind}, {key}: {source.kind} has several outputs; select one of {', '.join(source.outputs)}"
+            )
         return source[next(iter(source.outputs))]
-    raise TypeError(f"{kind}, {key}: {source!r} is no object on the canvas; use a slider, a panel or an output")
+    raise TypeError(f"{kind}, {key}: {source!r} is not an object on the canvas; use a slider, a panel or an output")
 
 
 def _size(nickname: str, inputs: Sequence[str], outputs: Sequence[str]) -> tuple[float, float]:

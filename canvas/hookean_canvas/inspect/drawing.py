@@ -33,11 +33,11 @@ def draw(graph: Graph, path: Path) -> list[str]:
     from matplotlib.figure import Figure
 
     if path.suffix.lower() != ".png":
-        raise InputError(str(path), f"ends in {path.suffix!r}; the picture is a .png file")
+        raise InputError(str(path), f"ends in {path.suffix!r}; give a name that ends in .png")
     shown = [node for node in graph.nodes if node.bounds is not None]
     if not shown:
         raise InputError(
-            str(graph.file or graph.name), "no object in it has a place on the canvas; there is no picture"
+            str(graph.file or graph.name), "none of its objects has a place on the canvas, so no picture was drawn"
         )
     left, top, right, bottom = _around(shown, 50.0)
     size = np.array([right - left, bottom - top])

@@ -21,7 +21,7 @@ from hookean_canvas.inspect.lint_code import script_faults
 from hookean_canvas.inspect.lint_refused import OUTER, miscounted, missing, named, refusals
 
 EXPOSURES = {-1, *(2**power for power in range(1, 9))}
-"""Where on its tab a user object may stand: hidden, or in one of the rows."""
+"""Where on its tab a user object may be: hidden, or in one of the rows."""
 OBSCURE = 2**16
 """Added to an exposure, or alone: only in the unfolded tab."""
 
@@ -54,7 +54,7 @@ def _definition_faults(root: Chunk) -> Iterator[str]:
     definition = root.chunk("Definition")
     assert definition is not None
     if root.name != "Root":
-        yield f"the archive is called {root.name!r}, not 'Root'"
+        yield f"the archive has the name {root.name!r}, not 'Root'"
     yield from missing(root, "the archive", {"ArchiveVersion": Type.VERSION})
     yield from missing(definition, "the definition", {"plugin_version": Type.VERSION})
     header = definition.chunk("DocumentHeader")
@@ -100,7 +100,7 @@ def _kind_faults(part: Part, libraries: set[object]) -> Iterator[str]:
     names = guids.NAMES.get(guid)
     if names is None:
         if library is None or library in guids.LIBRARIES:
-            yield f"its id {guid} is not known, and no library is named that would know it"
+            yield f"its id {guid} is unknown, and the file names no library for it"
     elif guid not in guids.RENAMED and part.name not in names:
         yield f"its id {guid} is that of {names[0]!r}, not of {part.name!r}"
 
@@ -138,7 +138,7 @@ def _own_faults(guid: UUID | None, container: Chunk) -> Iterator[str]:
             yield from missing(slider, "the slider", dict.fromkeys(("Min", "Max", "Value"), Type.DOUBLE))
             low, high, value = (given(slider, name, 0.0) for name in ("Min", "Max", "Value"))
             if not low <= value <= high:
-                yield f"the slider stands at {value:g}, outside its limits {low:g} to {high:g}"
+                yield f"the slider has the value {value:g}, outside its limits {low:g} to {high:g}"
     elif guid == guids.VALUE_LIST:
         yield from miscounted(container, "the list", "ListCount", "ListItem")
 
@@ -151,7 +151,7 @@ def _id_faults(found: list[Part]) -> Iterator[str]:
             places.setdefault(guid, []).append(f"object {number} ({part.label}){label}")
     for guid, where in places.items():
         if len(where) > 1:
-            yield f"the id {guid} stands {len(where)} times: {', '.join(where)}"
+            yield f"the id {guid} occurs {len(where)} times: {', '.join(where)}"
 
 
 def _ids(part: Part) -> Iterator[tuple[str, UUID]]:
@@ -180,7 +180,8 @@ def _wire_faults(found: list[Part]) -> Iterator[str]:
                     feeds.setdefault(number, set()).add(owners[source])
                 else:
                     name = port.value("NickName", default="")
-                    yield f"object {number} ({part.label}): the wire into {name!r} comes from {source}, no output here"
+                    where = f"object {number} ({part.label})"
+                    yield f"{where}: the wire into {name!r} comes from {source}, not an output here"
     try:
         TopologicalSorter(feeds).prepare()
     except CycleError as error:
@@ -217,10 +218,10 @@ def _user_object_faults(root: Chunk) -> Iterator[str]:
     yield from missing(root, "the user object", {name: _OUTER[name] for name in _OUTER.keys() - OUTER.keys()})
     base = root.value("BaseID")
     if base not in guids.NAMES:
-        yield f"its base {base} is not known"
+        yield f"its base {base} is unknown"
     exposure = given(root, "Exposure", 2)
     if exposure != OBSCURE and exposure not in EXPOSURES and exposure - OBSCURE not in EXPOSURES - {-1}:
-        yield f"its exposure is {exposure}, which is none of {sorted(EXPOSURES)}, {OBSCURE} added or not"
+        yield f"its exposure is {exposure}, which is not one of {sorted(EXPOSURES)}, with or without {OBSCURE}"
     yield from _icon_faults(given(root, "Icon", b""))
     try:
         inner = of_bytes(given(root, "Object", b""), "the object in it")
@@ -230,7 +231,7 @@ def _user_object_faults(root: Chunk) -> Iterator[str]:
     yield from _port_faults(inner)
     ids = [port.value("InstanceGuid") for port in (*inputs(inner), *outputs(inner)) if port is not inner]
     yield from (
-        f"the id {guid} stands {ids.count(guid)} times" for guid in sorted({*ids}, key=str) if ids.count(guid) > 1
+        f"the id {guid} occurs {ids.count(guid)} times" for guid in sorted({*ids}, key=str) if ids.count(guid) > 1
     )
     if base in SCRIPTS:
         yield from script_faults(base, inner)
@@ -239,6 +240,6 @@ def _user_object_faults(root: Chunk) -> Iterator[str]:
 
 def _icon_faults(icon: bytes) -> Iterator[str]:
     if icon[:8] != b"\x89PNG\r\n\x1a\n":
-        yield "its icon is no PNG"
+        yield "its icon is not a PNG"
     elif (int.from_bytes(icon[16:20]), int.from_bytes(icon[20:24])) != (24, 24):
         yield f"its icon has {int.from_bytes(icon[16:20])} x {int.from_bytes(icon[20:24])} pixels, not 24 x 24"

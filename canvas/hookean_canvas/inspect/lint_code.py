@@ -52,7 +52,7 @@ def script_faults(component: UUID | None, container: Chunk) -> Iterator[str]:
     data = container.chunk("ParameterData")
     for item in data.items if data is not None else []:
         if item.name in ("InputId", "OutputId") and item.value not in guids.NAMES:
-            yield f"{labelled(item.name, item.index)} is {item.value}, which is no known kind of parameter"
+            yield f"{labelled(item.name, item.index)} is {item.value}, which is an unknown kind of parameter"
     for port in inputs(container):
         yield from _hint_faults(port)
 
@@ -82,7 +82,7 @@ def _python3(text: str) -> str:
 
 
 def _python2(text: str) -> str | None:
-    """What Python 2.7 says of it: "" where it compiles; None where there is no Python 2.7."""
+    """The error of Python 2.7: "" where it compiles; None where there is no Python 2.7."""
     interpreter = python2()
     if interpreter is None:
         return None
@@ -114,8 +114,8 @@ def _name_faults(container: Chunk) -> Iterator[str]:
     """A Python script knows its inputs and outputs by their nicknames: each has to be a name, and once."""
     for side, ports in (("input", inputs(container)), ("output", outputs(container))):
         names = [str(port.value("NickName", default="")) for port in ports]
-        yield from (f"{side} {name!r} is no name a script can use" for name in names if not name.isidentifier())
-        yield from (f"{side} {name!r} stands twice" for name in sorted(set(names)) if names.count(name) > 1)
+        yield from (f"{side} {name!r} is not a name that a script can use" for name in names if not name.isidentifier())
+        yield from (f"{side} {name!r} occurs twice" for name in sorted(set(names)) if names.count(name) > 1)
 
 
 def _hint_faults(port: Chunk) -> Iterator[str]:
@@ -125,7 +125,7 @@ def _hint_faults(port: Chunk) -> Iterator[str]:
         return
     hint = guids.hint(given) if isinstance(given, UUID) else None
     if hint is None:
-        yield f"input {name!r} has the type hint {given}, which is not known"
+        yield f"input {name!r} has the type hint {given}, which is unknown"
         return
     converter = port.chunk("ConverterData")
     if converter is None or hint not in guids.CONVERTERS:

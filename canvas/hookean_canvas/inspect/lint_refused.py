@@ -27,7 +27,7 @@ def refusals(root: Chunk) -> list[str]:
         return list(_of_definition(root))
     if root.name == "UserObject" and root.item("Object") is not None:
         return list(_of_user_object(root))
-    return [f"the archive ({root.label}) holds neither a definition nor a user object"]
+    return [f"the archive ({root.label}) contains no definition and no user object"]
 
 
 def missing(chunk: Chunk, where: str, wanted: dict[str, Type]) -> Iterator[str]:

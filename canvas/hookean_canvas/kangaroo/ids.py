@@ -219,7 +219,7 @@ def hidden(thing: Chunk, of: dict[UUID, Generation], depth: int = 0) -> str | No
         except InputError:
             inside = None
         if inside is None:
-            return "a cluster that cannot be looked into; it may hold components of Kangaroo"
+            return "a cluster that cannot be opened; it may hold components of Kangaroo"
         names = _names(inside, of, depth + 1)
         return f"a cluster that holds {', '.join(names)} of Kangaroo" if names else None
     if thing.value("GUID") != CLUSTER and any(_imports(chunk) for chunk in container.walk()):

@@ -170,7 +170,7 @@ def single(port: Chunk) -> Any:
 
 
 def usual(slot: Slot, value: Any) -> bool:
-    """Whether a value is what our input has by itself; its tooltip says so."""
+    """Whether a value is what our input has by itself; from its tooltip."""
     found = re.search(r"Default: (.+?)\.(?=\s|$)", slot.description)
     if found is None:
         return False

@@ -27,7 +27,7 @@ class Importing:
         definition = root.chunk("Definition")
         objects = definition.chunk("DefinitionObjects") if definition is not None else None
         if definition is None or objects is None:
-            raise InputError(report.name, "this is no Grasshopper definition; give a .gh or .ghx file")
+            raise InputError(report.name, "this is not a Grasshopper definition; give a .gh or .ghx file")
         sound(root, report.name)
         self.root, self.objects, self.report = root, objects, report
         self.libraries = libraries(definition)

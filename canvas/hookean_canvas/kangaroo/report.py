@@ -71,7 +71,7 @@ def _together(stays: list[tuple[str, str]]) -> list[str]:
 
 
 def _told_once(swapped: list[tuple[str, str, str]]) -> list[str]:
-    """What differs is said with the first component of its kind."""
+    """Differences are reported with the first component of its kind."""
     said: set[str] = set()
     lines = []
     for what, by, differs in swapped:

@@ -149,7 +149,7 @@ class Swapping:
             if value in SOLVERS:
                 self._hold(port, slot, SOLVERS[value])
             else:
-                self._gone(old, "there is no such solver here; the Engine chooses one", value)
+                self._gone(old, "unknown solver; the Engine chooses one", value)
         elif slot.name.strip("_") == "upper_cutoff" and isinstance(value, (int, float)) and value < 0:
             lower = next(p for p in inputs(self.made[0]) if p.value("Name") == "_lower_cutoff_")
             self._hold(lower, slot, -value)

@@ -225,7 +225,7 @@ def _cluster(container: Chunk, of: dict[UUID, Generation], depth: int) -> str:
     except InputError:
         inside = None
     if inside is None:
-        return "a cluster that cannot be looked into"
+        return "a cluster that cannot be opened"
     definition = inside.chunk("Definition") or inside
     generations, named = of | libraries(definition), plugins(definition)
     held: list[str] = []

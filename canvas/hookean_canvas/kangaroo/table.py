@@ -32,7 +32,7 @@ class Swap:
     """What a component of Kangaroo is swapped for.
 
     `pieces`: the first stands in its place. `differs`: a sentence. `without`: why an input has no counterpart.
-    `usual`: what Kangaroo types into such an input, which says nothing. `needs`: inputs that tell which version it is.
+    `usual`: what Kangaroo types into such an input, which says nothing. `needs`: inputs that identify the version.
     `unless`: inputs that must be empty, each with the reason.
     """
 

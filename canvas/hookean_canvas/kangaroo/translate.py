@@ -37,7 +37,7 @@ def import_file(source: Path, target: Path | None = None) -> tuple[Path, Report]
     """
     target = target or source.with_name(f"{source.stem}-hookean.ghx")
     if target.resolve() == source.resolve():
-        raise InputError(str(target), "is the file to be translated itself; give another name")
+        raise InputError(str(target), "is the input file; give another name")
     translated, report = translate(archive.read(source), source.name)
     archive.write(translated, target)
     return target, report
@@ -84,7 +84,7 @@ def _rename(work: Importing) -> None:
             and engines & {i.value for i in part.container.items if i.name == "Target"}
         ):
             work.report.notes.append(
-                f"{part.label} is not needed any more; the Engine solves again by itself while it runs"
+                f"{part.label} is no longer needed; the Engine solves again by itself while it runs"
             )
 
 
@@ -103,7 +103,7 @@ def _count(work: Importing) -> None:
         if (start, end) in after:
             report.kept += 1
         else:
-            why = work.because.get(wire[1]) or work.because.get(wire[0]) or "its end is gone"
+            why = work.because.get(wire[1]) or work.because.get(wire[0]) or "its end was removed"
             report.lost.append((work.streams.told(wire), why))
     report.wires = len(work.streams.wires)
     report.notes += [
@@ -145,7 +145,9 @@ def _crowded(work: Importing) -> None:
     swapped = [part for part in parts(work.root) if work.known.get(id(part.chunk)) and part.guid == PYTHON3_SCRIPT]
     crowded = [part.label for part in swapped if part.container and work.space.covered(part.container)]
     if crowded:
-        work.report.notes.append(f"larger than before, and over a neighbour: {', '.join(crowded)}; drag them apart")
+        work.report.notes.append(
+            f"larger than before, and overlapping a neighbour: {', '.join(crowded)}; drag them apart"
+        )
 
 
 def _panel(work: Importing) -> None:

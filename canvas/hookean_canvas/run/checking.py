@@ -51,7 +51,7 @@ class Checked:
         """Why it is not as it should be; empty where it is."""
         found = [f"{m.component}: {m.text}" for m in self.outcome.messages if m.level == "error"]
         if not self.outcome.at_rest:
-            found.append(f"it was not at rest after {self.outcome.solutions} solutions; give it more --seconds")
+            found.append(f"it was not at rest after {self.outcome.solutions} solutions; raise --seconds")
         return found + [str(one) for one in self.compared if not one.holds]
 
     def as_json(self) -> dict[str, Any]:
@@ -75,7 +75,7 @@ def check(
     """Run a definition and compare it; with settings other than its own nothing is compared.
 
     `trust`: False where its scripts may run only if they are trusted already, True where they are from now on (see
-    `trust.require`); None: whoever calls this has judged them. InputError where it cannot be read or run.
+    `trust.require`); None: the caller has checked them. InputError where it cannot be read or run.
     """
     data = archive.read_bytes(path)
     definition = graph.parse(data, path)
@@ -157,5 +157,5 @@ def run(path: Path, texts: list[str], as_json: bool, seconds: float, trust: bool
         holding = sum(one.holds for one in checked.compared)
         print(f"{holding} of {len(checked.compared)} numbers of expected.json are as expected")
     for fault in checked.faults:
-        print(f"not as it should be: {fault}", file=sys.stderr)
+        print(f"fault: {fault}", file=sys.stderr)
     return 1 if checked.faults else 0

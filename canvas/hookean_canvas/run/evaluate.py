@@ -43,7 +43,7 @@ LONGEST_WAIT = 1.0  # s between scheduled solutions, however long one asks to wa
 
 @dataclass
 class Message:
-    """What a component says: its name, `error`, `warning` or `remark`, and the sentence."""
+    """A message of a component: its name, `error`, `warning` or `remark`, and the sentence."""
 
     component: str
     level: str
@@ -321,7 +321,7 @@ def _settings(graph: Graph, given: Mapping[str, str]) -> dict[UUID, Any]:
         nodes = [node for node in settable if node.nickname == name]
         if not nodes:
             known = ", ".join(sorted(node.nickname for node in settable))
-            raise InputError(name, f"nothing that can be set has this name; there are {known}")
+            raise InputError(name, f"no input that can be set has this name; there are {known}")
         for node in nodes:
             found[node.id] = _set_value(node, text)
     return found
@@ -334,19 +334,20 @@ def _set_value(node: Node, text: str) -> Any:
         items = [c for c in node.container.chunks if c.name == "ListItem"]
         names = {typed(c, "Name", ""): typed(c, "Expression", "") for c in items}
         if text not in names:
-            raise InputError(node.nickname, f"{text} is none of its choices {', '.join(names)}")
+            raise InputError(node.nickname, f"{text} is not one of its choices {', '.join(names)}")
         return _expression(names[text])
     try:
         value = as_kind("boolean" if node.guid == BOOLEAN_TOGGLE else "number", text)
     except Unfit:
         raise InputError(
-            node.nickname, f"{text} is no {'truth; give True or False' if node.guid == BOOLEAN_TOGGLE else 'number'}"
+            node.nickname,
+            f"{text} is not a {'truth value; give True or False' if node.guid == BOOLEAN_TOGGLE else 'number'}",
         ) from None
     slider = node.container.chunk("Slider")
     if slider is not None:
         low, high = typed(slider, "Min", -math.inf), typed(slider, "Max", math.inf)
         if not low <= value <= high:
-            raise InputError(node.nickname, f"{text} is outside the slider, which goes from {low:g} to {high:g}")
+            raise InputError(node.nickname, f"{text} is outside the slider, which ranges from {low:g} to {high:g}")
         return _slid(slider, value)
     return value
 

@@ -120,7 +120,7 @@ class Graph:
                     ready.append(after)
         if len(ready) < len(self.nodes):
             circle = ", ".join(sorted(node.label for node in self.nodes if missing[node.id]))
-            raise InputError("wires", f"they run in a circle through {circle}; take one of them away")
+            raise InputError("wires", f"they run in a circle through {circle}; remove one of them")
         return ready
 
     def _times(self) -> list[int]:
@@ -146,7 +146,7 @@ def of(root: Chunk, where: str = "definition") -> Graph:
     definition = root.chunk("Definition")
     objects = definition.chunk("DefinitionObjects") if definition is not None else None
     if definition is None or objects is None:
-        raise InputError(where, "this is no Grasshopper definition; give a .ghx or .gh file")
+        raise InputError(where, "this is not a Grasshopper definition; give a .ghx or .gh file")
     header = definition.chunk("DocumentHeader")
     properties = definition.chunk("DefinitionProperties")
     graph = Graph(

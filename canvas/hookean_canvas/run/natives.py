@@ -1,6 +1,6 @@
 """Stand-ins for Grasshopper's own components and parameters, so that definitions run without it.
 
-Each says what it does as Grasshopper's documentation says it: the component's description and those of its inputs, as
+Each is described as in Grasshopper's documentation: the component's description and those of its inputs, as
 shown by its tooltip and by the component index (https://grasshopperdocs.com). Ids: `guids`, and public definitions.
 """
 

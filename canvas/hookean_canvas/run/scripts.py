@@ -43,7 +43,7 @@ def code_of(node: Node) -> str | None:
     try:
         return base64.b64decode(str(script.value("Text")), validate=True).decode("utf-8")
     except (binascii.Error, ValueError):
-        raise InputError(node.label, "its code is no base64 of UTF-8; the file is damaged") from None
+        raise InputError(node.label, "its code is not base64 of UTF-8; the file is damaged") from None
 
 
 class Script:

@@ -5,7 +5,7 @@
     ghenv = stand_in.Environment(stand_in.Component("Engine", inputs=["_forces"]))
 
 Geometry only carries its numbers: points, lines, polylines, NURBS curves and surfaces, meshes. Members are named and
-behave as McNeel's documentation of RhinoCommon and the Grasshopper SDK says, no more than components use. This file is
+behave as in McNeel's documentation of RhinoCommon and the Grasshopper SDK, no more than components use. This file is
 alone: standard library, Python 2.7 to 3.13, and can be loaded by its path.
 """
 

@@ -1,6 +1,6 @@
 """Which definitions may be run: their scripts run as the person who runs them, with all that this person may do.
 
-A file is trusted by the digest of its bytes: one that is shipped with hookean, or that the person has said so of once
+A file is trusted by the digest of its bytes: one that is shipped with hookean, or that the user has trusted once
 (`--trust`), which is remembered in the person's data folder; with HOOKEAN_TRUST=1 every file is. The bytes that are
 judged are those that are run.
 """
@@ -35,9 +35,9 @@ def require(graph: Graph, data: bytes, file: Path, given: bool) -> None:
     count = scripts(graph)
     if not count:
         return
-    what = f"its {count} scripts run as you, with all that you may do" if count > 1 else "its script runs as you"
+    what = f"its {count} scripts run with your rights" if count > 1 else "its script runs with your rights"
     if not (given or os.environ.get(VARIABLE) == "1" or _is_shipped(data) or digest(data) in _remembered()):
-        advice = f"read what it does with `hookean canvas show --code {file.name}`, then add --trust to run it"
+        advice = f"read it with `hookean canvas show --code {file.name}`, then add --trust to run it"
         raise InputError(str(file), f"was not run here before, and {what}; {advice}")
     if given:
         _remember(data)
@@ -76,7 +76,7 @@ def _remember(data: bytes) -> None:
     if digest(data) in _remembered():
         return
     flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
-    why = "it is not a file that you alone can write to"
+    why = "it is not a file that only you can write to"
     try:
         _place().parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         with os.fdopen(os.open(_place(), flags, 0o600), "a", encoding="ascii") as file:

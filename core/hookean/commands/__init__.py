@@ -1,1 +1,1 @@
-"""What the commands of the command line do, imported when one runs."""
+"""The commands of the command line, each imported when it runs."""

@@ -1,4 +1,4 @@
-"""What commands of the command line have in common.
+"""Shared code of all commands of the command line.
 
 A command is a `typer.Typer` that the group `hookean.commands` of the entry points names (see pyproject.toml), in any
 package. It starts light: what it needs is imported when it runs.
@@ -18,13 +18,13 @@ T = TypeVar("T")
 
 
 def new(**settings: Any) -> typer.Typer:
-    """A command, or a group of commands, without anything in it."""
+    """An empty command, or group of commands."""
     return typer.Typer(add_completion=False, pretty_exceptions_enable=False, **settings)
 
 
 def taking(options: type[T], run: Callable[[T], int]) -> typer.Typer:
-    """A command whose options are the fields of a dataclass, annotated as typer takes them; its docstring is the help,
-    and what `run` returns the exit code."""
+    """A command whose options are the fields of a dataclass, annotated for typer; its docstring is the help text,
+    and `run` returns the exit code."""
 
     def called(**given: Any) -> None:
         raise typer.Exit(run(options(**given)))
@@ -40,6 +40,6 @@ def taking(options: type[T], run: Callable[[T], int]) -> typer.Typer:
 
 
 def fail(error: InputError) -> NoReturn:
-    """Print what is wrong in one line and stop with 2."""
+    """Print the error in one line and exit with 2."""
     typer.echo(f"hookean: {' '.join(str(error).split())}", err=True)
     raise typer.Exit(2)

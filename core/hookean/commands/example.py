@@ -24,20 +24,23 @@ app = command.new()
 @app.command()
 def example(
     figure: Annotated[
-        str | None, typer.Argument(help="Figure or name, such as 9.11, or the folder of a copy; without it a list")
+        str | None, typer.Argument(help="Figure or name, such as 9.11, or the folder of a copy; default: list all")
     ] = None,
-    picture: Annotated[str | None, typer.Option(metavar="PATH", help="Draw it to this .png file or folder/")] = None,
+    picture: Annotated[
+        str | None, typer.Option(metavar="PATH", help="Draw the result to this .png file or folder/")
+    ] = None,
     copy: Annotated[
-        str | None, typer.Option(metavar="FOLDER", help="Copy it to this new folder, or into one that is there")
+        str | None,
+        typer.Option(metavar="FOLDER", help="Copy the example to this new folder, or into this existing one"),
     ] = None,
     all_to: Annotated[
-        Path | None, typer.Option("--figures", help="Run and draw all, a folder for each in this one")
+        Path | None, typer.Option("--figures", help="Run and draw all examples, each into a subfolder of this folder")
     ] = None,
 ) -> None:
     """List the figures of the chapter that hookean implements, or run one and check its numbers.
 
-    Exits with 0 if all numbers are as expected, 1 if one is not, 2 for bad input. A copy may give other numbers: they
-    are printed beside those it had.
+    Exits with 0 if all numbers are as expected, 1 if one is not, 2 for bad input. A changed copy may give other
+    numbers: they are printed beside the original ones.
     """
     if all_to is not None:
         raise typer.Exit(figures(all_to))
@@ -47,7 +50,7 @@ def example(
 
 
 def listing() -> int:
-    """All examples in a table; one line each where it goes to a file or a pipe."""
+    """All examples in a table; one line each if the output is a file or a pipe."""
     from rich.console import Console
     from rich.table import Table
 
@@ -64,13 +67,13 @@ def listing() -> int:
         wide = [max(len(row[column]) for row in rows) for column in (0, 1)]
         for figure, name, title in rows:
             typer.echo(f"{figure:<{wide[0]}}  {name:<{wide[1]}}  {title}")
-    typer.echo("\nhookean example 9.11 runs one, --picture draws it, --copy takes its folder along to change it.")
+    typer.echo("\nRun one with: hookean example 9.11 (--picture draws it, --copy copies its folder for you to change)")
     return FULFILLED
 
 
 def run(wanted: str | None, picture: str | None, copy: str | None) -> int:
-    """Run an example, or a copy of one that was changed: its numbers beside those expected; 1 where one of an example
-    that was not changed is off."""
+    """Run an example, or a copy of one that was changed: its numbers beside those expected; returns 1
+    if a number of an unchanged example is off."""
     from hookean.commands.examples import find
 
     try:
@@ -92,15 +95,15 @@ def run(wanted: str | None, picture: str | None, copy: str | None) -> int:
     except InputError as error:
         return bad(error)
     typer.echo(f"{example.name}: {expected.title}\n")
-    missed = _told(example, outcome)
+    missed = _report(example, outcome)
     for message in outcome.failures:
-        typer.echo(f"\nhookean: a run of it ended otherwise: {message}", err=True)
+        typer.echo(f"\nhookean: one of its runs did not converge: {message}", err=True)
     typer.echo(f"\ninput, picture and README: {example.folder}" + (f"\npicture: {drawn}" if drawn is not None else ""))
     return MISSED if missed and example.original else FULFILLED
 
 
-def _told(example: Example, outcome: Outcome) -> int:
-    """Print the numbers of a run; how many of them are off."""
+def _report(example: Example, outcome: Outcome) -> int:
+    """Print the numbers of a run; returns how many of them are off."""
     numbers, known = outcome.numbers, example.expected.numbers
     wide, missed = max(map(len, (*known, *numbers))), 0
     for name, number in numbers.items():
@@ -120,8 +123,8 @@ def _told(example: Example, outcome: Outcome) -> int:
 
 
 def figures(target: Path) -> int:
-    """Run all examples, check their numbers, draw each to `target/NAME/picture.png` and write the gallery; 1 where a
-    number is off."""
+    """Run all examples, check their numbers, draw each to `target/NAME/picture.png` and write the gallery; returns 1
+    if a number is off."""
     from hookean.commands.examples import examples, gallery
 
     missed = 0
@@ -138,8 +141,10 @@ def figures(target: Path) -> int:
         missed += len(wrong)
         (target / example.name).mkdir(exist_ok=True)
         example.draw(outcome, target / example.name / "picture.png")
-        said = f"not as expected: {', '.join(wrong)}" if wrong else f"{len(example.expected.numbers)} numbers hold"
-        typer.echo(f"{example.name}: {said}")
+        checked = (
+            f"not as expected: {', '.join(wrong)}" if wrong else f"{len(example.expected.numbers)} numbers as expected"
+        )
+        typer.echo(f"{example.name}: {checked}")
     return MISSED if missed else FULFILLED
 
 
@@ -148,7 +153,7 @@ def _copy(example: Example, target: Path) -> None:
 
     target = target / example.name if target.is_dir() else target
     if target.exists():
-        raise InputError(str(target), "is there already; give a folder that is not")
+        raise InputError(str(target), "exists already; give a new folder")
     try:
         shutil.copytree(example.folder, target, ignore=shutil.ignore_patterns("__pycache__", "oracle.py"))
     except OSError as error:

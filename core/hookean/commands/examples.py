@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Outcome:
     """What an example's `run` returns: its numbers by the names of expected.json, in the units given there, and what
-    its picture shows. `title` stands above the picture."""
+    its picture shows. `title` is the heading of the picture."""
 
     numbers: Mapping[str, float]
     panels: Sequence[Panel | Graph]
@@ -44,13 +44,13 @@ class Outcome:
 
     @property
     def failures(self) -> list[str]:
-        """What the runs in its panels say that ended neither at rest nor while moving."""
+        """Messages of the runs in its panels that ended neither at rest nor while moving."""
         results = [panel.result for panel in self.panels if isinstance(panel, Panel) and panel.result is not None]
         return [result.message for result in results if result.status not in ("converged", "running")]
 
 
 class Expected(BaseModel):
-    """A number an example is held to: `value` within `tolerance` (absolute, in `unit`), or bounds; and its `source`:
+    """An expected number of an example: `value` within `tolerance` (absolute, in `unit`), or bounds; and its `source`:
     `chapter: ...`, `closed form: ...` or `script NAME: ...`, a script beside it that does not import hookean."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -85,7 +85,7 @@ class Expected(BaseModel):
 
 
 class Expectations(BaseModel):
-    """The file expected.json: title, what to see and try in a sentence, figures of the chapter it stands for, numbers
+    """The file expected.json: title, what to see and try in a sentence, figures of the chapter it shows, numbers
     by name."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -238,7 +238,7 @@ def gallery(known: Sequence[Example]) -> str:
 
 
 def _figures(figures: Sequence[str]) -> str:
-    """Such as `Figure 9.4`, `Figures 9.4 and 9.6` or `Figures 9.23 to 9.25`; what is no number stays as it is."""
+    """Such as `Figure 9.4`, `Figures 9.4 and 9.6` or `Figures 9.23 to 9.25`; anything else is kept as it is."""
     first, *more = figures
     if not more or not all(re.fullmatch(r"\d+\.\d+", figure) for figure in figures):
         return f"Figure {first}" if first[0].isdigit() else first.capitalize()
@@ -266,12 +266,14 @@ def find(wanted: str) -> Example:
         return Example(Path(wanted).resolve())
     near = _near(named, [e.name for e in known])
     meant = f"; did you mean {' or '.join(near)}?" if near else ";"
-    raise InputError(wanted, f"no example has this figure or name{meant} hookean example lists all")
+    raise InputError(wanted, f"no example has this figure or name{meant} list all with: hookean example")
 
 
 def _beside(wanted: str) -> Example:
     if not (Path(wanted) / "example.py").is_file():
-        raise InputError(wanted, "is no folder with an example.py; hookean example 9.24 --copy FOLDER makes one")
+        raise InputError(
+            wanted, "is not a folder with an example.py; make one with: hookean example 9.24 --copy FOLDER"
+        )
     return Example(Path(wanted).resolve())
 
 

@@ -1,4 +1,4 @@
-"""Where commands write: files, folders named with a slash at their end, folders that are not there yet."""
+"""Where commands write: files, folders named with a slash at their end, folders that do not exist yet."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from hookean.errors import InputError
 
 
 def place(given: str | None, source: Path, ending: str, *, many: bool = False) -> Path | None:
-    """A file to write: what was given, or in a folder that was given the source's name with another ending.
+    """The file to write: the given one, or, in a given folder, the source's name with another ending.
 
-    A folder is what is one, or ends in a slash; for `many` sources it must be one, and a name without ending becomes
-    one. InputError where it cannot.
+    An existing folder or a path that ends in a slash is a folder. For `many` sources it must be one, and a name without
+    ending is one. Raises InputError for an existing file or a name with an ending then.
     """
     if given is None:
         return None
@@ -22,12 +22,12 @@ def place(given: str | None, source: Path, ending: str, *, many: bool = False) -
     if given.endswith(("/", os.sep)) or path.is_dir():
         return path / f"{source.stem}{ending}"
     if many and (path.exists() or path.suffix):
-        raise InputError(given, "is no folder; for many files give one")
+        raise InputError(given, "is not a folder; for several input files give one")
     return path / f"{source.stem}{ending}" if many else path
 
 
 def check(targets: Iterable[Path | None], sources: Iterable[Path | None]) -> None:
-    """InputError where a target is no possible file, is one of the sources, or another target."""
+    """Raises InputError if a target is an invalid path, one of the sources, or another target."""
     from hookean.atomic_write import check_target
 
     read, seen = [source for source in sources if source is not None], set[Path]()
@@ -43,7 +43,7 @@ def check(targets: Iterable[Path | None], sources: Iterable[Path | None]) -> Non
 
 @contextlib.contextmanager
 def folders(targets: Iterable[Path | None]) -> Iterator[None]:
-    """Makes the folders that targets lie in; takes those that stay empty away again where the work fails."""
+    """Makes the folders of the targets; removes those that stayed empty if the work fails."""
     made: list[Path] = []
     try:
         for target in targets:

@@ -27,13 +27,13 @@ SHOW_AFTER = 0.5  # seconds of solving before a progress line appears
 class Options:
     """Relax files: cables, nets and membranes go to equilibrium. The input is never changed.
 
-    Exits with 0 if all converged, 1 if a limit is exceeded, 2 for bad input, 3 where there is no equilibrium.
+    Exits with 0 if all converged, 1 if a limit is exceeded, 2 for bad input, 3 if no equilibrium was found.
 
     Without a recipe, the names of layers (springs, cables, membrane, anchors, loads, floor, geometry) and the user text
     of objects (stiffness, rest_factor, divide, load, axes ...) define the model; without such layers curves become
     springs and meshes membranes, held at loose ends and naked vertices. Numbers are in m, N and s.
-    --explain prints how each file is read. Folders to write to are made; where there are many files, or with a slash
-    at its end, a path is a folder, and the files in it are named as their input.
+    --explain prints how each file is read. Missing output folders are made. With several input files, or if it ends in
+    a slash, an output path is a folder, and files in it are named after their input.
     """
 
     files: Annotated[list[Path], typer.Argument(help=".3dm, .obj, .json or .npz files")]
@@ -42,18 +42,23 @@ class Options:
         typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file to write, or a folder/"),
     ] = None
     recipe: Annotated[
-        Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
+        Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); default: layer names define the model")
     ] = None
-    explain: Annotated[bool, typer.Option("--explain", help="Print how the files are read; solve nothing")] = False
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Print how the files would be interpreted, without solving")
+    ] = False
     report: Annotated[
-        str | None, typer.Option(metavar="PATH", help="Everything as JSON; a file or folder/, as for the next two")
+        str | None,
+        typer.Option(metavar="PATH", help="Write all results as JSON, to a file or folder/ (so do the next two)"),
     ] = None
-    csv: Annotated[str | None, typer.Option(metavar="PATH", help="A row for each element and reaction")] = None
-    picture: Annotated[str | None, typer.Option(metavar="PATH", help="A picture (PNG) of the result")] = None
-    check: Annotated[Path | None, typer.Option(help="Limits (TOML, JSON) of force, strain, displacement, reaction")] = (
-        None
-    )
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only what is wrong")] = False
+    csv: Annotated[
+        str | None, typer.Option(metavar="PATH", help="Write a table (CSV), a row for each element and reaction")
+    ] = None
+    picture: Annotated[str | None, typer.Option(metavar="PATH", help="Draw a picture (PNG) of the result")] = None
+    check: Annotated[
+        Path | None, typer.Option(help="Limits (TOML, JSON) of force, strain, displacement, reaction to check")
+    ] = None
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only print errors and notes")] = False
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,7 @@ class _Job:
 
 
 def run(options: Options) -> int:
-    """Relax every file; the exit code is the gravest: bad input, then not converged, then a limit exceeded."""
+    """Relax every file; the exit code is the most severe: bad input, then not converged, then a limit exceeded."""
     codes: list[int] = []
     try:
         recipe = None if options.recipe is None else text_of(options.recipe)
@@ -88,7 +93,7 @@ def run(options: Options) -> int:
         except InputError as error:
             codes.append(bad(error))
             if "nothing to relax" in error.sentence:
-                tell(job.source, forgotten(job.source, options.recipe))
+                print_notes(job.source, forgotten(job.source, options.recipe))
         except KeyboardInterrupt:
             typer.echo(f"hookean: {job.source.name}: stopped, nothing written", err=True)
             return STOPPED
@@ -116,7 +121,7 @@ def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] 
         from hookean.pictures.picture import render
 
         render(found.result, job.picture, scene=found.scene, title=job.source.stem)
-    tell(job.source, [*found.warnings, *forgotten(job.source, recipe)])
+    print_notes(job.source, [*found.warnings, *forgotten(job.source, recipe)])
     for sentence in found.exceeded:
         typer.echo(f"hookean: {job.source.name}: limit exceeded: {sentence}", err=True)
     if not found.result.converged:
@@ -128,7 +133,7 @@ def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] 
         return NOT_CONVERGED
     if not quiet:
         written = ", ".join(str(target) for target in job.targets if target is not None)
-        where = f"-> {written}" if written else "(nothing written: give -o)"
+        where = f"-> {written}" if written else "(nothing written; use -o to write a file)"
         typer.echo(f"{job.source.name}: {found.result.message} {where}")
         for line in summary(found):
             typer.echo(f"  {line}")
@@ -136,25 +141,25 @@ def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] 
 
 
 def summary(found: FileResult) -> list[str]:
-    """A few lines on a result: particles, how far they went, the forces of each table, reactions."""
+    """A few lines on a result: particles, largest displacement, forces of each table, reactions."""
     first, *more = found.result.summary()
     merged, unit, z = found.result.report.merged, found.result.units.length, found.result.particles[:, 2]
     where = [f"moved by up to {found.moved:.4g} {unit}; z from {z.min():.4g} to {z.max():.4g} {unit}"] if len(z) else []
     return [first, *([f"{merged} point{'s' * (merged != 1)} merged"] if merged else []), *where, *more]
 
 
-def tell(source: Path, notes: Sequence[str]) -> None:
+def print_notes(source: Path, notes: Sequence[str]) -> None:
     """Notes on a file, on standard error."""
     for sentence in notes:
         typer.echo(f"hookean: {source.name}: note: {sentence}", err=True)
 
 
 def forgotten(source: Path, recipe: Path | str | None) -> list[str]:
-    """A note where recipes lie beside a model that is read without one."""
+    """A note if there are recipes beside a model that is read without one."""
     beside = sorted(source.parent.glob("recipe*.toml"), key=lambda p: (p.name != "recipe.toml", p.name))
     if recipe is not None or source.suffix.lower() != ".3dm" or not beside:
         return []
-    return [f"{beside[0].name} lies beside it and is not used; give it with -r {beside[0]}"]
+    return [f"{beside[0].name} in the same folder is not used; to use it, add -r {beside[0]}"]
 
 
 def _explained(file: Path, recipe: str | None, name: str) -> int:
@@ -165,29 +170,32 @@ def _explained(file: Path, recipe: str | None, name: str) -> int:
     except InputError as error:
         return bad(error)
     typer.echo("\n".join(lines))
-    tell(file, forgotten(file, recipe))
+    print_notes(file, forgotten(file, recipe))
     return CONVERGED if fault is None else bad(fault)
 
 
 def bad(error: InputError) -> int:
-    """Say what is wrong in one line; the exit code for it."""
+    """Print an error in one line; returns the exit code for it."""
     # a sentence that goes on from what it is about needs no colon: "a.toml is a recipe"
     joint = " " if error.sentence.startswith(_VERBS) and not error.pointer.startswith("/") else ": "
-    said = f"{error.pointer}{joint}{error.sentence}" if error.pointer else error.sentence
-    typer.echo(f"hookean: {' '.join(said.split())}", err=True)
+    line = f"{error.pointer}{joint}{error.sentence}" if error.pointer else error.sentence
+    typer.echo(f"hookean: {' '.join(line.split())}", err=True)
     return BAD_INPUT
 
 
 def text_of(path: Path) -> str:
-    """The text in a file; InputError where there is none."""
+    """The text in a file; raises InputError if it cannot be read."""
     if path.suffix.lower() == ".3dm":
-        raise InputError(str(path), "is a Rhino model; swap: give it as the file to read, the recipe (.toml) with -r")
+        raise InputError(
+            str(path),
+            "is a Rhino model, not a recipe; swap the two: the model is an argument, the recipe (.toml) follows -r",
+        )
     try:
         return path.read_bytes().decode("utf-8")
     except UnicodeDecodeError:
-        raise InputError(str(path), "is not text in UTF-8; save it so") from None
+        raise InputError(str(path), "is not UTF-8 text; save it as UTF-8") from None
     except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or "no possible path"
+        why = getattr(error, "strerror", None) or "invalid path"
         raise InputError(str(path), f"cannot be read ({why}); check the path") from None
 
 
@@ -201,7 +209,7 @@ def _limits(path: Path | None) -> dict[str, Any] | None:
 
 
 def _jobs(options: Options) -> list[_Job]:
-    """Where each file goes; InputError before anything is solved where two would meet or one would be its input."""
+    """The output files of each input; raises InputError, before solving, if two are the same or one is an input."""
     many = len(options.files) > 1
     jobs = [
         _Job(
@@ -221,14 +229,14 @@ def _jobs(options: Options) -> list[_Job]:
 
 
 def check_picture(path: Path | None) -> None:
-    """InputError where a picture is to be anything but a PNG."""
+    """Raises InputError for a picture that is not a PNG."""
     if path is not None and path.suffix.lower() != ".png":
-        raise InputError(path.name, "is not a .png file; pictures are PNG, end the name so")
+        raise InputError(path.name, "is not a .png file; give a name that ends in .png")
 
 
 @contextlib.contextmanager
 def _progress(name: str, quiet: bool) -> Iterator[Callable[[int, float], None] | None]:
-    """A line that follows a long relaxation, on a terminal only."""
+    """A progress line of a long relaxation, on a terminal only."""
     if quiet or not sys.stderr.isatty():
         yield None
         return

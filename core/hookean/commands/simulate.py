@@ -31,13 +31,13 @@ SHAPES = 4  # drawn over each other, at most twice as many: more would crowd the
 class Options:
     """Run a file in motion: it bounces, anchors move, loads change. The input is never changed.
 
-    Ends at rest, after --frames, or with the stream; exits with 0 then, with 2 for bad input, with 3 if it diverged or
-    never came to rest, with 130 after Ctrl-C. The frames until then are written in each case.
+    Ends at rest, after --frames, or at the end of the stream, with exit code 0; 2: bad input, 3: diverged or never at
+    rest, 130: Ctrl-C. The frames until then are written in each case.
     """
 
     source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json or .npz file")]
     recipe: Annotated[
-        Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); without it layer names decide")
+        Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); default: layer names define the model")
     ] = None
     script: Annotated[
         Path | None, typer.Option(help="Paths of anchors and forces, and drives (TOML, JSON), in the scene's units")
@@ -45,22 +45,23 @@ class Options:
     stream: Annotated[str | None, typer.Option(help="Values over time for the drives (CSV); - is standard input")] = (
         None
     )
-    frames: Annotated[int | None, typer.Option(help="Stop after so many frames", min=0)] = None
+    frames: Annotated[int | None, typer.Option(help="Stop after this many frames", min=0)] = None
     csv: Annotated[
-        str | None, typer.Option(metavar="PATH", help="A row for each frame, as it comes; - is standard output")
+        str | None,
+        typer.Option(metavar="PATH", help="Write a row for each frame as it is computed; - is standard output"),
     ] = None
     picture: Annotated[
-        str | None, typer.Option(metavar="PATH", help="A picture (PNG) of the frames over each other")
+        str | None, typer.Option(metavar="PATH", help="Draw the frames over each other in a picture (PNG)")
     ] = None
     output: Annotated[
         str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file for the last shape")
     ] = None
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only what is wrong")] = False
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only print errors and notes")] = False
 
 
 @dataclass(frozen=True)
 class _Targets:
-    """Where it is written."""
+    """The files to write."""
 
     output: Path | None
     picture: Path | None
@@ -73,7 +74,7 @@ class _Targets:
 
 @dataclass
 class _Seen:
-    """What a run has shown so far: its last frame, and some shapes of the way by time."""
+    """The frames of a run so far: the last one, and some earlier shapes by time."""
 
     result: Result | None = None
     frames: int = 0
@@ -91,7 +92,7 @@ class _Seen:
 
 
 def run(options: Options) -> int:
-    """Run the file in motion; what was seen before bad input or Ctrl-C is written all the same."""
+    """Run the file in motion; frames before bad input or Ctrl-C are still written."""
     try:
         to = _targets(options)
         read, running = _ready(options)
@@ -217,7 +218,7 @@ def _forces(result: Result) -> list[tuple[str, str, float]]:
 
 @contextlib.contextmanager
 def _table(given: str | None, target: Path | None) -> Iterator[Callable[[list[Any]], None]]:
-    """Writes rows as they come, so that nothing is lost and a pipe sees each at once."""
+    """Writes each row at once, so that no row is lost and a pipe receives it immediately."""
     if given is None:
         yield lambda row: None
         return
@@ -248,20 +249,20 @@ def _conclude(options: Options, to: _Targets, read: Source, running: Simulation,
 
         frames = {f"{time:.4g} {result.units.time}": x for time, x in seen.shapes if time < result.time}
         sheet([Panel(result, read.scene, frames=frames)], to.picture, title=options.source.stem)
-    _tell(options, to, found, seen, code)
+    _print(options, to, found, seen, code)
 
 
-def _tell(options: Options, to: _Targets, found: FileResult, seen: _Seen, code: int) -> None:
+def _print(options: Options, to: _Targets, found: FileResult, seen: _Seen, code: int) -> None:
     result, name = found.result, options.source.name
-    relax.tell(options.source, [*found.warnings, *relax.forgotten(options.source, options.recipe)])
-    how = {STOPPED: "stopped", RESTLESS: "not at rest", BAD_INPUT: "broken off"}.get(code, "")
-    said = f"{seen.frames} frames, {result.time:.6g} {result.units.time}. {result.message}"
+    relax.print_notes(options.source, [*found.warnings, *relax.forgotten(options.source, options.recipe)])
+    how = {STOPPED: "stopped", RESTLESS: "not at rest", BAD_INPUT: "aborted"}.get(code, "")
+    ended = f"{seen.frames} frames, {result.time:.6g} {result.units.time}. {result.message}"
     if how:
-        typer.echo(f"hookean: {name}: {how} after {said}", err=True)
+        typer.echo(f"hookean: {name}: {how} after {ended}", err=True)
     elif not options.quiet:
         aside = options.csv == "-"  # which has standard output to itself
         written = ", ".join(str(target) for target in to.files if target is not None)
-        typer.echo(f"{name}: {said}{f' -> {written}' if written else ''}", err=aside)
+        typer.echo(f"{name}: {ended}{f' -> {written}' if written else ''}", err=aside)
         for line in relax.summary(found):
             typer.echo(f"  {line}", err=aside)
 

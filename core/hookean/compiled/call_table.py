@@ -1,7 +1,7 @@
 """Pointers: compiled kernels as addresses in a table, that loops call row by row.
 
 A loop that takes tables is compiled once for any number of kernels, and counts no references: numba hands functions and
-arrays to a loop one by one, and looks up their types anew at every call, which takes as long as a thousand iterations
+arrays to a loop one by one, and looks up their types again at every call, which takes as long as a thousand iterations
 of a small scene. Import this module only where numba is needed anyway.
 """
 

@@ -27,7 +27,9 @@ def arc(a: ArrayLike, b: ArrayLike, c: ArrayLike, count: int) -> Array:
     sides = [float(np.linalg.norm(s)) for s in (u, v, z - y)]
     # the sines of all three angles are this over two of the sides
     if not sine > _STRAIGHT * max(sides) * sorted(sides)[1]:
-        raise InputError("b", "the three points lie in a row or in one place; an arc needs a bend")
+        raise InputError(
+            "b", "the three points are in line or coincide; an arc needs three points that are not in line"
+        )
     normal /= sine
     to_centre = np.cross(u @ u * v - v @ v * u, normal) / (2.0 * sine)
     radius = float(np.linalg.norm(to_centre))
@@ -96,7 +98,7 @@ def interpolate(points: ArrayLike, count: int, degree: int = 3) -> Array:
     moved = np.concatenate([[True], chords > 1e-12 * chords.sum()])
     x = x[moved]
     if len(x) < 2:
-        raise InputError("points", "all points in one place given; a curve needs two places")
+        raise InputError("points", "all points coincide; a curve needs two different points")
     from scipy.interpolate import make_interp_spline
 
     reach = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])

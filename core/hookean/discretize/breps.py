@@ -21,7 +21,7 @@ _SAME = 1e-6  # relative to the size of the whole
 
 
 def mesh_faces(geometry: Any, u: int, v: int, name: str = "") -> Mesh:
-    """A rhino3dm Brep, BrepFace, Extrusion or surface as one mesh, normals outward as the Brep's faces say.
+    """A rhino3dm Brep, BrepFace, Extrusion or surface as one mesh, normals outward as of the Brep's faces.
 
     Untrimmed faces become u by v quads as `mesh_surface` makes them, and neighbours share the vertices
     of a shared edge. For that u and v may change places on a face, and where no exchange helps (the
@@ -54,7 +54,7 @@ def mesh_faces(geometry: Any, u: int, v: int, name: str = "") -> Mesh:
 def is_trimmed(face: Any) -> bool:
     """Whether a rhino3dm BrepFace covers less than its underlying surface.
 
-    A Brep of the face alone says so: it is a surface only if the face has one loop, all of it on the
+    A Brep of the face alone shows this: it is a surface only if the face has one loop, all of it on the
     four sides of the surface's domain.
     """
     alone = face.DuplicateFace(False)
@@ -140,7 +140,7 @@ def _cap(face: Any, points: Array, same: Index, chains: dict[int, Index], pointe
         ring: list[int] = []
         for trim in (loop.Trims[i] for i in range(loop.TrimCount)):
             if trim.EdgeIndex not in chains:
-                raise InputError(pointer, f"edge {trim.EdgeIndex} of a cap meets no wall; rebuild the extrusion")
+                raise InputError(pointer, f"edge {trim.EdgeIndex} of a cap does not meet a wall; rebuild the extrusion")
             chain = same[chains[trim.EdgeIndex]]
             ring.extend((chain[::-1] if trim.IsReversed else chain)[:-1].tolist())
         loops.append(np.array(ring))

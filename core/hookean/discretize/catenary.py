@@ -51,7 +51,7 @@ def catenaries(lines: ArrayLike, length: ArrayLike, *, count: int = 50, gravity:
         lengths = np.broadcast_to(np.array(length, dtype=float), (len(ends),))
         downs = np.broadcast_to(np.array(gravity, dtype=float), (len(ends), 3))
     except (TypeError, ValueError):
-        said = "cables, lengths and gravity directions do not fit; give one for all or one for each cable"
+        said = "the numbers of cables, lengths and gravity directions differ; give one for all or one for each cable"
         raise InputError("length", said) from None
     if ends.ndim != 3 or ends.shape[1:] != (2, 3):
         raise InputError("lines", f"shape {list(ends.shape)} given; pairs of points expected")
@@ -102,7 +102,7 @@ def catenary_of(a: float, x: ArrayLike) -> Floats:
         heights = np.asarray(above * np.cosh(across / above))
     if not np.isfinite(heights).all():
         furthest = float(np.abs(across).max())
-        raise InputError("x", f"{furthest:g} given with a = {above:g}; no height is that large, stay within 700 a")
+        raise InputError("x", f"{furthest:g} given with a = {above:g}; the height is too large; stay within 700 a")
     return heights
 
 
@@ -140,7 +140,7 @@ class _Shape(NamedTuple):
 def _hang(start: ArrayLike, end: ArrayLike, length: float, count: int, gravity: ArrayLike) -> _Shape:
     a, b, down = _point(start, "start"), _point(end, "end"), _point(gravity, "gravity")
     if not down.any():
-        raise InputError("gravity", "a vector without length given; give the direction in which the cable hangs")
+        raise InputError("gravity", "a zero vector given; give the direction in which the cable hangs")
     if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
         raise InputError("count", f"{count!r} given; the number of pieces is a whole number from 1 on")
     down = down / np.abs(down).max()
@@ -248,7 +248,7 @@ def _point(value: ArrayLike, name: str) -> Floats:
 
 
 def _number(value: Any, name: str, allowed: str) -> float:
-    """A finite number; InputError says what was given and what is allowed."""
+    """A finite number; raises InputError with the given value and the allowed ones."""
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):

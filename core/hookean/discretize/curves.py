@@ -87,7 +87,7 @@ def explode(polyline: Any) -> Array:
     if len(bent):
         raise InputError(
             "polyline",
-            f"its piece {bent[0]} is curved; explode takes straight pieces only, use shatter(curve, count)",
+            f"its piece {bent[0]} is curved; explode accepts straight pieces only; use shatter(curve, count)",
         )
     return np.stack([points[:, 0], points[:, -1]], axis=1)
 

@@ -139,7 +139,7 @@ def diagonals(mesh: Any, pattern: str = "both") -> Index:
     With "both" each quad gives a-c, then b-d. Triangles have none. Raises InputError for another pattern.
     """
     if pattern not in ("both", "one", "other"):
-        raise InputError("pattern", f'{pattern!r} is no pattern; give "both", "one" or "other"')
+        raise InputError("pattern", f'unknown pattern {pattern!r}; give "both", "one" or "other"')
     f = as_mesh(mesh).faces
     quads = f[f[:, 2] != f[:, 3]]
     pairs = np.stack([quads[:, [0, 2]], quads[:, [1, 3]]], axis=1)
@@ -232,7 +232,7 @@ def _quads(points: Array, faces: Iterable[Any]) -> Index:
         loop = np.array(corner)
         area = newell(points[loop])
         if not area.any():
-            raise InputError(f"mesh/faces/{number}", "it has no area; leave it out")
+            raise InputError(f"mesh/faces/{number}", "it has zero area; remove it")
         cut = triangulate(plane_coordinates(points, area), [loop])
         rows.extend([a, b, c, c] for a, b, c in cut.tolist())
     return np.array(rows, dtype=np.int64).reshape(-1, 4)

@@ -99,7 +99,7 @@ def _array(value: Any, name: str, dimensions: int) -> Array:
     try:
         found = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise InputError(name, "is no table of numbers; give numbers in rows of one length") from None
+        raise InputError(name, "is not a table of numbers; give numbers in rows of one length") from None
     if found.ndim != dimensions or (dimensions > 1 and found.shape[-1] != 3):
         wanted = {1: "a row of numbers", 2: "rows of x, y, z", 3: "rows of rows of x, y, z"}[dimensions]
         raise InputError(name, f"has the shape {list(found.shape)}; {wanted} expected")

@@ -63,7 +63,7 @@ def nurbs_pieces(points: Array, knots: Array, degree: int) -> Array:
             "knots must be points + degree + 1 and points more than the degree",
         )
     if not np.isfinite(knots).all() or (np.diff(knots) < 0).any():
-        raise InputError("curve", "its knots are not finite and in ascending order; rebuild the curve")
+        raise InputError("curve", "its knots are not finite or not in ascending order; rebuild the curve")
     spans = np.flatnonzero(knots[degree:n] < knots[degree + 1 : n + 1]) + degree
     out = np.empty((len(spans), degree + 1, 4))
     ends = np.stack([knots[spans], knots[spans + 1]])

@@ -23,7 +23,7 @@ def mesh_grid(surface: Any, u: int, v: int) -> Mesh:
     ids = merged_ids(grid)
     mesh = compact(grid.reshape(-1, 3), ids.ravel(), grid_faces(ids))
     if not len(mesh.faces):
-        raise InputError("u, v", f"{u} x {v} pieces of a closed surface leave no face; give at least 3 round it")
+        raise InputError("u, v", f"{u} x {v} pieces of a closed surface give no face; give at least 3 around it")
     return mesh
 
 
@@ -52,7 +52,7 @@ def sample(surface: Any, u: int, v: int) -> Array:
     if not np.isfinite(grid).all():
         raise InputError("surface", "a point of it is not finite; rebuild it")
     if not np.ptp(grid, axis=0).any():
-        raise InputError("surface", "it has no size: all its points are one; give a surface with area")
+        raise InputError("surface", "it has no area: all its points coincide; give a surface with area")
     return grid.reshape(u + 1, v + 1, 3)
 
 
@@ -78,7 +78,7 @@ def merged_ids(grid: Array) -> Index:
         g, i = (grid, ids) if axis == 0 else (grid.swapaxes(0, 1), ids.T)
         if np.abs(g[-1] - g[0]).max() <= near and not np.abs(g - g[:1]).max() <= near:
             if n < 3:
-                raise InputError("uv"[axis], f"{n} faces round a closed surface have no room; give at least 3")
+                raise InputError("uv"[axis], f"{n} faces around a closed surface given; give at least 3")
             i[-1] = i[0]
     for g, i in ((grid, ids), (grid.swapaxes(0, 1), ids.T)):
         for row in (0, -1):

@@ -19,13 +19,13 @@ def warp_weft(mesh: Any, strict: bool = True) -> tuple[Index, Index]:
 
     Opposite sides of a quad belong to one family, neighbouring sides to different ones. The first side
     of the first quad is warp; the rest follows from quad to quad over shared edges, breadth first, and
-    each part of the mesh that no quad connects starts anew. Then triangles: where a side borders a quad
+    each part of the mesh that no quad connects starts again. Then triangles: where a side borders a quad
     the other two take the opposite family, as meridians at a pole do. Triangles among themselves count
     as quads `(a, b, c, c)` with the side c-c collapsed: b-c and c-a are one family, a-b is the other.
 
     Such families exist only where every inner vertex has an even number of quads, strips that close
     do so untwisted, and no edge has conflicting neighbours. Elsewhere InputError names two quads that
-    disagree; with `strict=False` the family reached first stands, a deterministic answer.
+    disagree; with `strict=False` the family reached first is kept, a deterministic answer.
     """
     m = as_mesh(mesh)
     sides, first, which = _edges(m)
@@ -77,7 +77,7 @@ def _check(of: Index, quad: NDArray[np.bool_], family: Index) -> None:
         raise InputError(
             f"mesh/faces/{face}",
             f"warp and weft cannot agree between this quad and quad {other}; an inner vertex with an odd number "
-            "of quads or a twisted strip is in the way: remesh there, or pass strict=False",
+            "of quads or a twisted strip prevents it: remesh there, or pass strict=False",
         )
 
 

@@ -59,7 +59,7 @@ def is_document(value: Any) -> bool:
 def read(value: Any, pointer: str = "") -> Document:
     """The COMPAS document `value`, as `json.loads` gives it.
 
-    A document of a class derived from an accepted one is read as that (its `inheritance` says so). Raises InputError
+    A document of a class derived from an accepted one is read as that (see its `inheritance`). Raises InputError
     with a pointer under `pointer` for an unknown dtype or data that is not as compas 2 writes it.
     """
     if not is_document(value):
@@ -71,8 +71,8 @@ def read(value: Any, pointer: str = "") -> Document:
             document = _READERS[name](value["data"], f"{pointer}/data")
             given = value.get("name")
             return replace(document, name=given if isinstance(given, str) else "")
-    said = repr(value["dtype"])[:80] if isinstance(value["dtype"], str) else "something that is no text"
-    raise InputError(f"{pointer}/dtype", f"{said} is not read; accepted are {', '.join(_READERS)}")
+    said = repr(value["dtype"])[:80] if isinstance(value["dtype"], str) else "a value that is not text"
+    raise InputError(f"{pointer}/dtype", f"{said} is not supported; supported are {', '.join(_READERS)}")
 
 
 def mesh(vertices: ArrayLike, faces: Any, keys: Sequence[str] = (), name: str = "") -> dict[str, Any]:
@@ -208,7 +208,10 @@ def _carry_documents(scene: dict[str, Any], documents: dict[str | int, Document]
             name = f"geometry {i}"
             meshes = scene.get("meshes") or {}
             if not isinstance(meshes, dict) or name in meshes:
-                raise InputError("/meshes", f'a mesh named "{name}" stands in the way of the document /geometry/{i}')
+                raise InputError(
+                    "/meshes",
+                    f'the document /geometry/{i} needs the mesh name "{name}", which is in use; rename that mesh',
+                )
             scene["meshes"] = {**meshes, name: plain_mesh(value, f"/geometry/{i}")[1]}
             entry = {"name": document.name, "kind": "mesh", "mesh": name}
         elif document.kind in ("graph", "line"):
@@ -224,7 +227,7 @@ def plain_mesh(value: Any, pointer: str = "") -> tuple[Document, dict[str, Any]]
     """A Mesh document, and its `{"vertices", "faces"}` with faces of more than four sides cut into triangles."""
     document = read(value, pointer)
     if document.kind != "mesh":
-        raise InputError(f"{pointer}/dtype", f"a {document.kind} stands where a Mesh is expected")
+        raise InputError(f"{pointer}/dtype", f"a {document.kind} given; a Mesh expected")
     faces: Any = [list(f) for f in document.faces]
     if any(len(f) > 4 for f in faces):
         from hookean.discretize.meshes import as_mesh
@@ -267,7 +270,7 @@ def _mesh(data: Any, pointer: str) -> Document:
         except KeyError:
             raise InputError(at, "a vertex of this face does not exist in the mesh") from None
         if len(set(face)) < 3:
-            raise InputError(at, "a face has at least three different vertices")
+            raise InputError(at, "a face needs at least three different vertices")
         faces.append(face)
     return Document("mesh", points, faces=tuple(faces), keys=tuple(keys))
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from hookean.system.system import System
 
 SHAPE = "hookean-shape"
-CHANGED = "the document was changed after hookean wrote it: it is read as drawn, not as the scene stored in it"
+CHANGED = "the document was changed after hookean wrote it: it is read as drawn, and the scene stored in it is ignored"
 
 
 def document(system: System, state: State, scene: Scene) -> dict[str, Any]:

@@ -35,7 +35,7 @@ def plain(value: Any) -> Plain:
     """JSON values without COMPAS documents. InputError with a pointer where one of them is not as COMPAS writes it, or
     documents alone hold nothing to relax."""
     if isinstance(value, dict) and ({"result", "rows"} <= value.keys() or {"status", "particles"} <= value.keys()):
-        raise InputError("/", "is a result, not a scene; give the file it came from")
+        raise InputError("/", "is a result, not a scene; give the input file of that run")
     if isinstance(value, list):
         return _drawn(value)
     if not compas_json.is_document(value):
@@ -68,7 +68,7 @@ def _drawn(entries: list[Any], why: tuple[str, ...] = (), *, alone: bool = False
         else:
             _add(found, compas_json.read(entry, pointer), entry, pointer, other)
     if other:
-        found.warnings.append(f"not taken of the file: {count(len(other), 'document')} of {listed(other)}")
+        found.warnings.append(f"not read from the file: {count(len(other), 'document')} of {listed(other)}")
     scene, warnings, unheld = tables_of(found)
     return Plain(scene, warnings=(*why, *warnings), unheld=unheld)
 

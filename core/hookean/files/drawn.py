@@ -1,4 +1,4 @@
-"""What is drawn in a file that names no forces: a scene by the convention for .3dm files whose layers say nothing.
+"""What is drawn in a file that names no forces: a scene by the convention for .3dm files without such layers.
 
 Lines become springs (1000 N/m, as long as drawn), meshes membranes: springs of rest factor 0 along their edges. Points
 are anchors; where there are none, loose ends of lines and naked vertices of meshes are held.
@@ -27,8 +27,8 @@ WELD = (1e-3, 1e-5)  # what is nearer than this, in m and as part of the size, i
 
 @dataclass
 class Drawn:
-    """Meshes, lines `(m, 2, 3)` and points `(n, 3)` by the names they had (may be ""), in `unit`; `warnings` say what
-    of the file was not taken."""
+    """Meshes, lines `(m, 2, 3)` and points `(n, 3)` by the names they had (may be ""), in `unit`; `warnings`: what of
+    the file was not read."""
 
     meshes: list[tuple[str, Mesh]] = field(default_factory=list)
     lines: list[tuple[str, Floats]] = field(default_factory=list)
@@ -41,7 +41,7 @@ def tables_of(drawn: Drawn) -> tuple[dict[str, Any], list[str], str]:
     """The scene in m, N and s as plain values, warnings, and a sentence where nothing at all is held. InputError where
     there is nothing to relax."""
     if not drawn.meshes and not drawn.lines:
-        raise InputError("", "holds neither lines nor faces, so it cannot be relaxed")
+        raise InputError("", "has no lines or faces, so it cannot be relaxed")
     warnings = list(drawn.warnings)
     factor = METRES[drawn.unit]
     every = [m.vertices for _, m in drawn.meshes] + [p.reshape(-1, 3) for _, p in (*drawn.lines, *drawn.points)]
@@ -123,7 +123,7 @@ def _held(
         if len(alone):
             anchors.append({"name": "loose ends", "points": alone})
         elif not meshes:
-            loose.append("no line has a loose end, so nothing is held: pin something, or it falls together")
+            loose.append("no line has a loose end, so nothing is held: pin something, or it shrinks")
     naked = []
     for name, mesh in meshes:
         rim = naked_vertices(mesh)

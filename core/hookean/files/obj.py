@@ -11,8 +11,8 @@ from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 LACKS = (
-    "An OBJ file holds a shape and which particles are held, not forces, loads, stiffness, rest lengths and settings. "
-    "Opened again, lines are springs of 1000 N/m as long as drawn, faces are membranes."
+    "An OBJ file stores the shape and the held particles, not forces, loads, stiffness, rest lengths and settings. "
+    "When it is opened again, lines become springs of 1000 N/m as long as drawn, faces membranes."
 )
 
 

@@ -1,7 +1,7 @@
 """Wavefront OBJ read: vertices, faces, lines and points by the names of their objects and groups. Faults name the line.
 
 Read by own means: bytes of strangers meet nothing but a split into words. Faces of more than four corners are cut into
-triangles. Normals, textures, materials and free-form shapes are not taken; the warnings say so.
+triangles. Normals, textures, materials and free-form shapes are not read, with a warning.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ LONGEST_NAME = 80
 
 
 def read(data: bytes) -> Drawn:
-    """What an OBJ file holds, in m unless a comment says otherwise, as those that hookean writes do. InputError with
+    """What an OBJ file holds, in m unless a comment states otherwise, as those that hookean writes do. InputError with
     the number of the line."""
     reading = _Reading()
     for number, line in _lines(data):
@@ -94,7 +94,7 @@ class _Reading:
             fewest, name = _FEWEST[kind]
             if len(words) <= fewest:
                 least = count(fewest, "vertex", "vertices")
-                raise _fault(number, f"{name} of {len(words) - 1} vertices; it has at least {least}")
+                raise _fault(number, f"{name} of {len(words) - 1} vertices given; it needs at least {least}")
             corners = [self._vertex(word, number) for word in words[1:]]
             self.elements[kind].append(_Element(number, self.name, corners))
         elif kind in ("o", "g"):
@@ -109,7 +109,7 @@ class _Reading:
         except ValueError:
             index = 0
         if index == 0 or "_" in word:
-            raise _fault(number, f'"{word[:20]}" is no vertex; they are counted from 1, or back from -1')
+            raise _fault(number, f'"{word[:20]}" is not a vertex number; vertices are counted from 1, or back from -1')
         if index < -len(self.points):
             raise _fault(number, f"vertex {index} does not exist; there are {len(self.points)} before this line")
         return index - 1 if index > 0 else len(self.points) + index
@@ -117,7 +117,7 @@ class _Reading:
     def drawn(self) -> Drawn:
         """What was read, taken together by names."""
         if not self.points:
-            raise InputError("", "holds no vertices; it is no OBJ file, or an empty one")
+            raise InputError("", "has no vertices; it is not an OBJ file, or it is empty")
         points = np.array(self.points)
         for element in (e for kind in self.elements.values() for e in kind):
             if max(element.corners) >= len(points):
@@ -163,11 +163,11 @@ class _Reading:
         return [[corners[a], corners[b], corners[c], corners[c]] for a, b, c in cut.tolist()]
 
     def _warnings(self) -> list[str]:
-        said = [f"not taken of the file: {', '.join(list(self.left)[:8])}"] if self.left else []
+        said = [f"not read from the file: {', '.join(list(self.left)[:8])}"] if self.left else []
         if self.cut:
             said.append(f"{count(self.cut, 'face')} of more than four corners cut into triangles")
         if self.flat:
-            said.append(f"{count(self.flat, 'face or line', 'faces or lines')} without extent left out")
+            said.append(f"{count(self.flat, 'face or line', 'faces or lines')} of zero size left out")
         return said
 
 
@@ -181,7 +181,7 @@ def _position(words: list[str], number: int) -> list[float]:
     except ValueError:
         found = []
     if len(found) != 3 or any("_" in word for word in words[:3]):
-        raise _fault(number, "a vertex has three coordinates")
+        raise _fault(number, "a vertex needs three coordinates")
     if not all(math.isfinite(c) and abs(c) <= LARGEST for c in found):
         raise _fault(number, f"a coordinate is not finite, or larger than {LARGEST:g}")
     return found

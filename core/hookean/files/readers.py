@@ -1,6 +1,6 @@
 """The kinds of files that are read, in one list: for the command line, the studio and HTTP alike.
 
-A file is read by its ending, or else by how it begins; the same file gives the same scene whoever opens it. A new kind
+A file is read by its ending, or else by how it begins; the same file gives the same scene everywhere. A new kind
 is one line in `READERS`.
 """
 
@@ -34,7 +34,7 @@ class Source:
     Of a .3dm file, what its objects were built into; `factor` is a length of the file in the scene's unit, `unit` the
     file's. `compas` is the Mesh or Graph that the file is; `stored` is true where the scene is the one that hookean
     stored in a file of another format. `simulation` is the saved one, in the shape to go on from. `nothing` and
-    `unheld` are sentences on why it cannot be relaxed as it is: it holds nothing to relax, or nothing of it is held.
+    `unheld` are sentences on why it cannot be relaxed as it is: it has nothing to relax, or nothing of it is held.
     """
 
     scene: Scene
@@ -52,8 +52,8 @@ class Source:
 
 @dataclass(frozen=True)
 class Reader:
-    """A kind of file: its name in a sentence, its ending, how its bytes begin, and what reads them; `recipes` says
-    whether a recipe may go with it."""
+    """A kind of file: its name in a sentence, its ending, how its bytes begin, and what reads them; `recipes`:
+    whether it supports recipes."""
 
     name: str
     suffix: str
@@ -81,13 +81,15 @@ def read(data: bytes, name: str = "", recipe: Recipe | None = None, *, called: s
     """What the bytes of a file hold; `name` is the file's, by which its kind is known, `called` how faults call it ("":
     their pointers lead into the file alone).
 
-    Raises InputError: no such kind, a fault in the file (of OBJ with its line) or in the recipe.
+    Raises InputError: an unknown kind, a fault in the file (of OBJ with its line) or in the recipe.
     """
     refuse_pointer(data, called)
     with about(called):
         kind = reader(data, name)
     if recipe is not None and not kind.recipes:
-        raise InputError(called or "/recipe", f"is {kind.name}, which needs no recipe; recipes go with .3dm files")
+        raise InputError(
+            called or "/recipe", f"is {kind.name}, which does not support a recipe; recipes are for .3dm files"
+        )
     return kind.read(data, called, recipe)
 
 
@@ -97,7 +99,7 @@ def read_path(path: Path, recipe: Recipe | None = None) -> Source:
 
     name = path.name or str(path)
     if path.suffix.lower() == ".toml":
-        raise InputError(name, "is a recipe; give it with -r, and a .3dm file to relax")
+        raise InputError(name, "is a recipe; pass it with -r, and give a .3dm file to relax")
     return read(read_bytes(path, name), name, recipe, called=name)
 
 
@@ -148,7 +150,7 @@ def _stored(model: Model, called: str) -> Source:
 
     with about(called):
         scene = Scene.read(embedded.unpacked(model.text[embedded.KEY], ""))
-    source = _plain(scene, called, "the scene stored in this file, of which its objects are results,", (), "")
+    source = _plain(scene, called, "the scene stored in this file (its objects are results)", (), "")
     source.factor = (model.metres or METRES[scene.units.length]) / METRES[scene.units.length]
     source.stored, source.warnings = True, tuple(model.warnings)
     source.lines += model.warnings
@@ -163,7 +165,7 @@ def _obj(data: bytes, called: str, recipe: Recipe | None) -> Source:
     with about(called):
         tables, warnings, unheld = tables_of(obj_read.read(data))
         scene = Scene.read(tables)
-    return _plain(scene, called, "an OBJ file, taken as drawn,", tuple(warnings), unheld)
+    return _plain(scene, called, "an OBJ file, read as drawn,", tuple(warnings), unheld)
 
 
 def _json(data: bytes, called: str, recipe: Recipe | None) -> Source:
@@ -176,7 +178,7 @@ def _json(data: bytes, called: str, recipe: Recipe | None) -> Source:
         found = plain(value)
         scene = Scene.read(found.scene)
     drawn = isinstance(value, list) or "dtype" in value
-    what = "COMPAS documents, taken as drawn," if drawn else "a scene"
+    what = "COMPAS documents, read as drawn," if drawn else "a scene"
     what = what if found.whole is None else f"a COMPAS {found.whole.kind}"
     what = f"the scene stored in {what}" if found.stored else what
     source = _plain(scene, called, what, found.warnings, found.unheld)
@@ -219,4 +221,4 @@ READERS = (
     Reader("a JSON file", ".json", lambda begins: begins.startswith((b"{", b"[")), _json),
     Reader("a saved simulation", ".npz", lambda begins: begins.startswith(b"PK\x03\x04"), _saved),
 )
-"""Every kind of file that is read; of a file whose ending says nothing, the first that knows its bytes."""
+"""Every kind of file that is read; for an unknown ending the first that knows its bytes."""

@@ -161,7 +161,7 @@ def check_output(target: Path | None, source: Path, *, folder: bool = True) -> N
     if target is not None:
         check_target(target, source, folder=folder)
         if target.suffix.lower() not in WRITTEN:
-            raise InputError(target.name, f"must end in {', '.join(WRITTEN[:-1])} or {WRITTEN[-1]}; name the output so")
+            raise InputError(target.name, f"must end in {', '.join(WRITTEN[:-1])} or {WRITTEN[-1]}; rename the output")
 
 
 def open_file(source: Path, recipe_text: str | None = None, recipe_name: str = "") -> Source:
@@ -225,18 +225,18 @@ def _doubled(parts: list[tables.Section]) -> list[str]:
 
 
 def _overstretched(parts: list[tables.Section], built: Built | None) -> list[str]:
-    """A note for each force whose springs become absurdly long: most likely size and numbers do not fit."""
+    """A note for each force whose springs become absurdly long: most likely numbers and size do not match."""
     said = []
     for part in parts:
         longest = 1.0 + float(part.columns["strain"].max(initial=0.0)) if "strain" in part.columns else 1.0
         if longest > TOO_LONG:
             size = ""
             if built is not None and built.size:
-                counts = "its numbers count in"
+                counts = "its numbers are in"
                 size = f": the model measures {built.size}, and {counts} {built.scene.units.length} and "
                 size += str(built.scene.units.force)
-            told = f'springs of "{part.name}" stretch to {longest:.4g} times their rest length{size}'
-            said.append(f"{told}; make stiffness and loads fit the size")
+            stretched = f'springs of "{part.name}" stretch to {longest:.4g} times their rest length{size}'
+            said.append(f"{stretched}; adjust stiffness and loads to the size")
     return said
 
 
@@ -245,7 +245,9 @@ def _idle(parts: list[tables.Section], system: System) -> list[str]:
     held = (system.start().free == 0).all(axis=1)
     forces = system.scene.forces
     loads = [p for p in parts if p.number >= 0 and type(forces[p.number]).role == "load" and p.particles.size]
-    return [f'load "{p.name}" acts on held particles alone and moves nothing' for p in loads if held[p.particles].all()]
+    return [
+        f'load "{p.name}" acts on held particles only, so it has no effect' for p in loads if held[p.particles].all()
+    ]
 
 
 def _write(
@@ -268,12 +270,12 @@ def _write(
     where = [f"{item.layer} {item.name}".strip() for item in added.objects]
 
     def text(notes: Sequence[str]) -> dict[str, str]:
-        """What the document says of the result; what writing it adds to the warnings is among them."""
-        told(notes)
+        """The document text on the result, with the warnings that come with writing."""
+        note(notes)
         stored = {embedded.KEY: embedded.packed(read.scene)} if read.built is None else {}
         return document_text(found.result, found.warnings) | stored
 
-    def told(notes: Sequence[str]) -> None:
+    def note(notes: Sequence[str]) -> None:
         said = [re.sub(r"^/objects/(\d+): ", lambda m: f"result on layer {where[int(m[1])]}: ", n) for n in notes]
         found.warnings = list(dict.fromkeys([*found.warnings, *said]))
 
@@ -282,7 +284,7 @@ def _write(
     else:
         names = {short: name for name, short in UNIT_NAMES.items()}
         written = threedm.write_new(target, added, unit=names[read.scene.units.length], text=text)
-    told(written.warnings)
+    note(written.warnings)
     found.ids = [str(id) for id in written.ids]
 
 
@@ -312,7 +314,7 @@ def _json(value: Any) -> bytes:
 
 
 def _finite(value: Any) -> Any:
-    """JSON has no infinity and no NaN: null stands for both."""
+    """JSON has no infinity and no NaN: both become null."""
     if isinstance(value, dict):
         return {str(k): _finite(v) for k, v in value.items()}
     if isinstance(value, list | tuple):

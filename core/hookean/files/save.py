@@ -32,7 +32,7 @@ def save(result: Result, path: str | os.PathLike[str]) -> list[str]:
         render(result, target, scene=result.scene)
         return []
     if result.scene is None:
-        raise InputError("result", "has no scene, which files are written with; save a result of relax or simulate")
+        raise InputError("result", "has no scene, which writing a file needs; save a result of relax or simulate")
     from hookean.files.readers import Source
     from hookean.files.relax_file import check_output, conclude
 
@@ -65,5 +65,5 @@ def open(path: str | os.PathLike[str], recipe: str | os.PathLike[str] | Mapping[
     try:
         text = read_bytes(place, place.name).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(place.name, "is not text in UTF-8; save it so") from None
+        raise InputError(place.name, "is not UTF-8 text; save it as UTF-8") from None
     return read_path(Path(path), (text, place.name)).scene

@@ -23,4 +23,4 @@ def read(data: bytes, where: str = "") -> Simulation:
     except InputError as error:
         raise InputError(where, error.sentence) from None
     except (zipfile.BadZipFile, MemoryError, OSError, NotImplementedError):
-        raise InputError(where, "not a saved simulation; give a file that Simulation.save wrote") from None
+        raise InputError(where, "not a saved simulation; give a file written by Simulation.save") from None

@@ -1,6 +1,6 @@
 """Results as tables: rows keyed by the object they came from, CSV text, sums for each object, and limits.
 
-A limits file is TOML (or JSON). At the top stand limits of the whole model; `[force.NAME]`, `[layer.NAME]` and
+A limits file is TOML (or JSON). Limits of the whole model come first; `[force.NAME]`, `[layer.NAME]` and
 `[anchor.NAME]` hold for a force (its name or kind), a layer (path or name, sublayers included) or an anchor:
 
     max_force = 250          # tension of any element
@@ -194,7 +194,7 @@ def _unit(units: Units, dimension: str) -> str:
 
 
 def csv_text(table: Sequence[Row]) -> str:
-    """The rows as CSV with a header; numbers to the last digit, lines end in CR LF as RFC 4180 says. Text that begins
+    """The rows as CSV with a header; numbers to the last digit, lines end in CR LF as in RFC 4180. Text that begins
     like a formula has an apostrophe in front."""
     header = list(dict.fromkeys(key for row in table for key in row))
     out = io.StringIO()
@@ -245,7 +245,7 @@ def _known(table: Any, pointer: str, allowed: tuple[str, ...]) -> None:
         raise InputError(pointer, "give a table of limits")
     for key, value in table.items():
         if key not in allowed:
-            raise InputError(f"{pointer}/{key}", f"no such limit; there are {', '.join(allowed)}")
+            raise InputError(f"{pointer}/{key}", f"unknown limit; known: {', '.join(allowed)}")
         if key in LIMITS and (
             isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value)
         ):
@@ -334,7 +334,7 @@ def _check(
 
 
 def _values(part: Section, limit: str, moved: Floats) -> Floats | None:
-    """What a limit looks at, the larger the worse; None where the section has no such thing."""
+    """The value that a limit checks, the larger the worse; None if the section has no such value."""
     if limit == "max_displacement":
         far: Floats = moved[part.particles].max(axis=1, initial=0.0)
         return far

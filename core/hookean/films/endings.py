@@ -1,4 +1,4 @@
-"""Endings: whether the films of a run are still a shape, why they are none, and which was the last good one."""
+"""Endings: whether the films of a run are still a shape, why they are not, and which was the last good one."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ class Endings:
         number = next(p.number for p in group.parts if (group.block.indices[p.rows] == loose[0]).any())
         many = f" and {len(loose) - 1} more" if len(loose) > 1 else ""
         return (
-            f"/forces/{number}: nothing holds the film's edge at particle {loose[0]}{many}, and a film draws a free "
-            "edge back until nothing is left of it. Anchor the edge, or put springs along it; if it is a seam, "
-            "weld_tolerance is less than its gap"
+            f"/forces/{number}: the film's edge at particle {loose[0]}{many} is unsupported, and a free edge shrinks "
+            "until the film is gone. Anchor the edge, or put springs along it; if it is a seam, raise weld_tolerance "
+            "above its gap"
         )
 
     def look(self, system: System, state: State) -> str:
@@ -60,8 +60,8 @@ class Endings:
         size = float(block.parameters[:, SHARE] @ grown) / (float(block.parameters[:, SHARE] @ area) or 1.0)
         if size > BURST and not self._physical:
             return (
-                f"The films have burst: their area is more than {BURST:g} times what it was. Their tension does not "
-                "bear the pressure or the loads; lower these, or raise the tension"
+                f"The films have burst: their area is more than {BURST:g} times what it was. Their tension "
+                "cannot carry the pressure or the loads; lower these, or raise the tension"
             )
         if (now >= THINNEST * before).all() and size <= LARGEST:
             self.good = state.copy()
@@ -73,11 +73,11 @@ class Endings:
         own = thin[part.rows]
         a, b, c = group.block.indices[part.rows][int(np.argmax(own))]
         loaded = any(g.cls.role == "load" for g in system.groups)
-        bears, lower = (" or bears these loads", ", or lower the loads") if loaded else ("", "")
+        bears, lower = (" or carries these loads", ", or lower the loads") if loaded else ("", "")
         return (
             f"/forces/{part.number}: the film has collapsed: {int(own.sum())} of {len(own)} triangles have become "
             f"needles, the first at particles {a}, {b} and {c}. No film spans these edges{bears} from this start; "
-            f"bring the edges nearer to each other, or hold the film in between{lower}"
+            f"bring the edges nearer to each other, or support the film in between{lower}"
         )
 
 

@@ -34,7 +34,7 @@ class AnchorSpring(Force):
     kind: Literal["anchor_spring"] = "anchor_spring"
     particles: Maybe[IndexRows] = Field(default=None, description="Anchored particles")
     points: Maybe[Points] = Field(default=None, description="Coordinates of anchored particles")
-    targets: Maybe[Points] = Field(default=None, description="T [length], one for each; none: the start positions")
+    targets: Maybe[Points] = Field(default=None, description="T [length], one for each; default: the start positions")
     strength: NonNegatives = Field(default=10000.0, description="S [force/length]")
 
     formula: ClassVar[str] = "E = S |T - x|²/2"

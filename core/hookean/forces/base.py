@@ -39,7 +39,7 @@ class Block:
     """One force compiled to arrays: what its kernel reads. All C-contiguous.
 
     `indices` (m, arity) particles of each element; `parameters` (m, p); `memory` (m, q), what elements remember
-    (plastic rest lengths); `names` says which input each column of `parameters` came from, so that a patch
+    (plastic rest lengths); `names` has the input that each column of `parameters` came from, so that a patch
     can write it.
     """
 
@@ -78,7 +78,8 @@ class Places(Protocol):
         ...
 
     def geometry(self, name: str) -> tuple[Floats, Ints]:
-        """Vertices (n, 3) and faces (m, 4) of the scene's mesh `name`, as drawn; InputError if there is none."""
+        """Vertices (n, 3) and faces (m, 4) of the scene's mesh `name`, as drawn; raises InputError if it does not
+        exist."""
         ...
 
 
@@ -126,7 +127,7 @@ class Force(Model):
 
     @property
     def element_arity(self) -> int:
-        """How many particles an element has; a force whose elements differ by its inputs says so here."""
+        """How many particles an element has; a force whose elements differ by its inputs overrides this."""
         return self.arity
 
     @model_validator(mode="after")
@@ -134,13 +135,13 @@ class Force(Model):
         fields = [f for f in PLACES if f in type(self).model_fields]
         given = [f for f in fields if getattr(self, f) is not None]
         if len(given) > 1 or (fields and not given and not self.everywhere):
-            said = f"{' and '.join(given)} given" if given else "nothing says where it acts"
+            said = f"{' and '.join(given)} given" if given else "its place is missing"
             raise fault(f"{said}; give exactly one of {', '.join(fields)}")
         return self
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel; raises InputError where an element makes no sense."""
-        raise TypeError(f"{type(self).__name__} does not say how it compiles")
+        """Arrays for the kernel; raises InputError for an invalid element."""
+        raise TypeError(f"{type(self).__name__} does not define compile()")
 
     @classmethod
     def pack(
@@ -182,7 +183,7 @@ class Force(Model):
         """Write into the parameters of a block, if it matters, which particles (n,) the scene's anchors hold."""
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """What a result tells of each element, by the names and units of `outputs`.
+        """What a result reports of each element, by the names and units of `outputs`.
 
         `element_forces` (m, arity, 3): the force each element puts on each of its particles.
         """

@@ -141,7 +141,7 @@ class Bend(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Three particles a, b, c of each corner")
     points: Maybe[PointRows] = Field(default=None, description="Coordinates of a, b, c of each corner")
     stiffness: NonNegatives = Field(default=1.0, description="EI, bending stiffness [force length^2]")
-    rest_angle: Maybe[NonNegatives] = Field(default=None, description="phi0 [rad], 0 straight; none: the start angle")
+    rest_angle: Maybe[NonNegatives] = Field(default=None, description="phi0 [rad], 0 straight; default: start angle")
     angle_factor: NonNegatives = Field(default=1.0, description="Factor on the rest angle [-]; 0: straight")
 
     sections: Sections = Field(
@@ -157,7 +157,7 @@ class Bend(Force):
     kernel: ClassVar[Any] = staticmethod(bend_kernel)
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: EI / l, rest angle, factor, and the chains of `rod_chain`. Corners without length have
+        """Arrays for the kernel: EI / l, rest angle, factor, and the chains of `rod_chain`. Corners of zero length have
         no stiffness."""
         index = places.elements(self)
         u = places.x[index[:, 1]] - places.x[index[:, 0]]

@@ -149,7 +149,7 @@ class Floor(Force):
     kind: Literal["floor"] = "floor"
     point: Vector = Field(default=np.zeros(3), description="A point of the plane [length]")
     normal: Vector = Field(
-        default=np.array([0.0, 0.0, 1.0]), description="Direction to the free side; only its direction counts"
+        default=np.array([0.0, 0.0, 1.0]), description="Direction to the free side; its length is ignored"
     )
     restitution: float = Field(default=0.7, ge=0, le=1, description="Part of the speed kept in a rebound [-]")
     static_friction: float = Field(default=0.6, ge=0, le=1e12, description="mu_s [-]: holds up to mu_s N")

@@ -45,7 +45,7 @@ class Hinge(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Edge start, edge end, tip 1, tip 2 of each hinge")
     points: Maybe[PointRows] = Field(default=None, description="Coordinates of edge start, edge end, tip 1, tip 2")
     strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
-    rest_angle: Maybe[Reals] = Field(default=None, description="theta0 [rad], 0 flat; none: the start angle")
+    rest_angle: Maybe[Reals] = Field(default=None, description="theta0 [rad], 0 flat; default: the start angle")
     angle_factor: Reals = Field(default=1.0, description="Factor on the rest angle [-]; 0: flat")
 
     formula: ClassVar[str] = "E = S (θ - θ0)²/2"

@@ -92,7 +92,7 @@ class PowerLaw(Force):
     strength: Reals = Field(default=1.0, description="S [force/length^n]; positive: they repel each other")
     exponent: Reals = Field(default=-2.0, description="n [-]")
     cutoff: Reals = Field(
-        default=0.0, description="Acts below this distance only, if negative above it [length]; 0: always"
+        default=0.0, description="Acts only below this distance, if negative only above it [length]; 0: always"
     )
 
     formula: ClassVar[str] = "E = -S d^(n+1)/(n + 1)"

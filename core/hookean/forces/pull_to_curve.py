@@ -20,7 +20,7 @@ class PullToCurve(Force):
     (`discretize.divide`): a piece is off by length^2 / (8 radius) and askew by length / (2 radius), which holds back
     that part of a load as friction would. Of points equally near, that on the first piece is taken. Particles may
     slide along. One rests at a distance load / S from the curve; a strength of 0
-    pulls not at all (it is not a hard constraint). Source: classic Kangaroo's CurvePull; Ericson, Real-Time Collision
+    has no effect (it is not a hard constraint). Source: classic Kangaroo's CurvePull; Ericson, Real-Time Collision
     Detection, 2005, chapter 5 (closest points).
     """
 

@@ -30,7 +30,7 @@ class SelfWeight(Force):
     total: float | None = Field(default=None, description="Total weight [force], shared equally")
     per_length: Maybe[Reals] = Field(default=None, description="Weight per length [force/length]")
     direction: Vector = Field(
-        default=np.array([0.0, 0.0, -1.0]), description="Direction of gravity; its size does not count"
+        default=np.array([0.0, 0.0, -1.0]), description="Direction of gravity; its length is ignored"
     )
 
     formula: ClassVar[str] = "E = -W d·x"
@@ -51,9 +51,9 @@ class SelfWeight(Force):
         if self.per_length is not None and self.particles is None and self.lines is None and self.mesh is None:
             raise fault("per_length needs lines, pairs of particles or a mesh")
         if self.total is not None and self.lines is not None:
-            raise fault("lines go with per_length; give the particles or points that share a total", "/lines")
+            raise fault("lines need per_length; give particles or points for a total", "/lines")
         if self.per_length is not None and self.points is not None:
-            raise fault("points go with total; give the lines that have a weight per length", "/points")
+            raise fault("points need a total; give lines for a weight per length", "/points")
         return self
 
     @property

@@ -148,8 +148,8 @@ class SoapFilm(Force):
     special. The area does not depend on where in the film a vertex lies, so a film has no stiffness along itself, and
     its equilibrium is that across it. The part along the film does not count at vertices on which films act alone, with
     pressure, or with loads on whole faces; nor, at the edge of a film that is pulled to a curve, the part along the
-    edge, for sliding there does not change the film. At vertices of springs and other forces, all of it counts. An edge
-    that nothing holds draws back: such a film has no equilibrium. Nor has one between rings too far apart, or under too
+    edge, for sliding there does not change the film. At vertices of springs and other forces, all of it counts. An
+    unsupported edge draws back: such a film has no equilibrium. Nor has one between rings too far apart, or under too
     large a load on a single vertex; the run then ends as diverged, with its last good shape.
 
     Vertices stay evenly spread, whatever they were when drawn: the solver `auto` fills a rim by one linear solve, and
@@ -173,7 +173,7 @@ class SoapFilm(Force):
         default=1.0,
         ge=0,
         le=1e12,
-        description="How strongly vertices spread along a film, of T; at most 1 counts [-]",
+        description="Strength of the even spacing of vertices, as a part of T; at most 1 counts [-]",
     )
     warp: float = Field(default=0.0, ge=0, le=1e12, description="Pull of the warp yarns per start width [force/length]")
     weft: float = Field(default=0.0, ge=0, le=1e12, description="Pull of the weft yarns per start width [force/length]")

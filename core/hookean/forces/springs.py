@@ -223,7 +223,7 @@ class Springs(Force):
     edges: Edges = Field(default="all", description="Which edges of the mesh; diagonals of quads both, or one a face")
     stiffness: NonNegatives = Field(default=1000.0, description="k [force/length]")
     damping: NonNegatives = Field(default=10.0, description="c along the spring [force time/length]")
-    rest_length: Maybe[NonNegatives] = Field(default=None, description="L0 [length]; none: the start length")
+    rest_length: Maybe[NonNegatives] = Field(default=None, description="L0 [length]; default: the start length")
     rest_factor: NonNegatives = Field(default=1.0, description="Factor on the rest length [-]")
     upper_cutoff: NonNegatives = Field(default=0.0, description="Works only up to this length [length]; 0: always")
     lower_cutoff: NonNegatives = Field(default=0.0, description="Works only from this length on [length]; 0: always")

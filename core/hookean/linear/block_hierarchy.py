@@ -67,7 +67,7 @@ class Level:
 
 
 class Hierarchy:
-    """All levels over a pattern of blocks; `alive` (n,) tells which of its particles may move."""
+    """All levels over a pattern of blocks; `alive` (n,): which of its particles may move."""
 
     def __init__(self, starts: Ints, columns: Ints, weights: Floats, alive: NDArray[np.bool_]) -> None:
         self.levels = [Level(starts, columns)]

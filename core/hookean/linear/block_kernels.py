@@ -253,7 +253,7 @@ def spell_out(starts, columns, values, scale, matrix):  # type: ignore[no-untype
 def factor(matrix):  # type: ignore[no-untyped-def]
     """The Cholesky factor of a dense matrix, written into its lower triangle; False if it is not positive definite.
 
-    What hangs on nothing has no stiffness but for rounding, by which single precision must not be divided: it is held.
+    An unsupported part has no stiffness but for rounding, by which single precision must not be divided: it is held.
     """
     least = 0.0
     for i in range(matrix.shape[0]):

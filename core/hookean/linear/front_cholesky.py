@@ -44,7 +44,7 @@ def front(net: Laplacian, most: float = np.inf) -> Front | None:
 
 
 class Factor:
-    """The Cholesky factor of a net; not `sound` where something hangs on nothing, or rounding leaves it nothing.
+    """The Cholesky factor of a net; not `sound` if a part is unsupported, or rounding leaves it nothing.
 
     A panel of four columns is kept as rows of four, from its own first row to the farthest that one of them reaches:
     a row is one vector of the processor.

@@ -59,7 +59,7 @@ def coarser(net: Laplacian) -> tuple[Spreading, Laplacian] | None:
 
 
 def gather(starts, columns, values, diagonal, strongest, group):  # type: ignore[no-untyped-def]
-    """Number of aggregates; `group` (n,) tells that of each row, `strongest` (n,) its strongest connection.
+    """Number of aggregates; `group` (n,) is that of each row, `strongest` (n,) its strongest connection.
 
     First whole neighbourhoods of rows that have no neighbour in an aggregate yet; what is left joins the aggregate
     it is connected to best, or is one by itself.

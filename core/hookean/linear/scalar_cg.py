@@ -28,7 +28,7 @@ MOST = 300  # steps
 
 
 def solve(hierarchy: Hierarchy, b: Floats, goal: float) -> Floats | None:
-    """x (n, 4) with |b - A x| <= `goal` in each column; None where some of it hangs on nothing, or so many steps do not
+    """x (n, 4) with |b - A x| <= `goal` in each column; None if a part is unsupported, or so many steps do not
     do. `b` (n, 4) is what is left of it afterwards."""
     if not hierarchy.held:
         return None

@@ -3,7 +3,7 @@ where it will rest exactly.
 
 Each particle's own block of the tangent, inverted, takes out what is stiff along and soft across a net.
 Source: Hestenes and Stiefel, "Methods of conjugate gradients for solving linear systems", 1952; Strakos and Tichy, "On
-error estimation in the conjugate gradient method", 2002, for what the steps tell of the error.
+error estimation in the conjugate gradient method", 2002, for the error after each step.
 """
 
 from __future__ import annotations

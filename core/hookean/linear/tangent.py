@@ -22,7 +22,7 @@ PUSHED = 0.05  # of all connections: else the graph of the start does as well
 
 
 class Tangent:
-    """Blocks, and a hierarchy over them: gathered for the start of a system, and anew for the shape it has got where
+    """Blocks, and a hierarchy over them: gathered for the start of a system, and again for the shape it has got where
     that pushes; seldom, for it takes as long as ten steps of conjugate gradients. `steps` of these were taken, and
     `work` [passes over all springs] is what all took.
 

@@ -49,7 +49,7 @@ def _check_pair(pointer: str, pair: Any, graph: Graph) -> None:
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         raise InputError(pointer, "has a number that is not finite; give finite numbers")
     if (graph.x_log and (x <= 0).any()) or (graph.y_log and (y <= 0).any()):
-        raise InputError(pointer, "has numbers that are not positive on a logarithmic axis; leave them out")
+        raise InputError(pointer, "has numbers that are not positive on a logarithmic axis; remove them")
 
 
 def entries(graph: Graph) -> list[Entry]:

@@ -19,7 +19,7 @@ FOOT = 0.95
 
 
 def colour_bar(page: Page, box: Box, scale: Scale, words: str = "") -> None:
-    """The legend of forces: a bar that ends at the two extremes; `words` say what it stands for."""
+    """The legend of forces: a bar that ends at the two extremes; `words` are its title."""
     top = box.y + box.height
     page.text(box.x, top - 0.20, f"force [{scale.unit}]", weight="bold")
     low, high = scale.low, scale.high

@@ -59,9 +59,9 @@ def check_picture(path: str | os.PathLike[str]) -> None:
     check_target(path)
     name = os.fspath(path)
     if "\0" in name:
-        raise InputError("path", "has a character that no file name may have; check it for odd characters")
+        raise InputError("path", "has a character that is invalid in file names; check it")
     if not name.lower().endswith(".png"):
-        raise InputError(os.path.basename(name), "is not a .png file; pictures are PNG, end the name so.")
+        raise InputError(os.path.basename(name), "is not a .png file; give a name that ends in .png.")
 
 
 def drawn(
@@ -76,7 +76,7 @@ def drawn(
     if size is not None and (len(size) != 2 or not all(200 <= side <= 10_000 for side in size)):
         raise InputError("size", f"{size} given; two numbers of pixels from 200 to 10000 are allowed")
     if not len(panels):
-        raise InputError("panels", "none given; give at least one Panel or Graph")
+        raise InputError("panels", "is empty; give at least one Panel or Graph")
     if columns is not None and not 1 <= columns <= 12:
         raise InputError("columns", f"{columns} given; 1 to 12 are allowed")
     cells = [_cell(i, panel) for i, panel in enumerate(panels)]
@@ -101,4 +101,4 @@ def _cell(i: int, panel: Panel | Graph) -> Cell:
 
 def _is_png(data: bytes) -> None:
     if not data.startswith(b"\x89PNG"):
-        raise InputError("picture", "did not come out as PNG; try again with another version of matplotlib")
+        raise InputError("picture", "could not be written as PNG; try another version of matplotlib")

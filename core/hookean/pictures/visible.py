@@ -82,7 +82,7 @@ def collect(
     if result is None:
         if frames:
             raise InputError(
-                "panel", "has frames but no result; frames are drawn with the springs of a result, give it"
+                "panel", "has frames but no result; give the result, whose springs are drawn in each frame"
             )
         none = np.zeros((0, 2, 3))
         things = Things(Shape(np.zeros((0, 3))), np.zeros(0), np.zeros((0, 3)), none, none, curves=lines)

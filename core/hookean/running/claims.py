@@ -1,4 +1,4 @@
-"""What a result says of itself: one list, for the headers of HTTP, the document text of files and their comments.
+"""The fields that describe a result: one list, for the headers of HTTP, the document text of files and their comments.
 
 A field of `Result` becomes part of all of them by one line in `CLAIMS`.
 """
@@ -28,15 +28,15 @@ CLAIMS = (
     Claim("status", "", "How the run ended: converged, stalled, diverged, max_iterations or time_limit"),
     Claim("message", "", "One sentence about it"),
     Claim("residual", "", "Largest out-of-balance force divided by the scale of the forces [-]"),
-    Claim("rounding_floor", "", "The residual that rounding alone leaves [-]"),
+    Claim("rounding_floor", "", "The residual due to rounding alone [-]"),
     Claim("out_of_balance", "force", "The largest out-of-balance force, with its unit"),
-    Claim("stability", "", "Whether small disturbances die away: stable, unstable, mechanism or unknown"),
+    Claim("stability", "", "Whether small disturbances decay: stable, unstable, mechanism or unknown"),
     Claim("position_error", "length", "The largest movement that one more exact step would make, with its unit"),
     Claim("iterations", "", "Iterations of the solver"),
     Claim("time", "time", "Physical time at the end, with its unit"),
     Claim("solver", "", "The solver that was used"),
 )
-WARNINGS = "What to know about the input and the result"
+WARNINGS = "Warnings about the input and the result"
 MOST = 100  # warnings in the text of a document
 
 

@@ -1,7 +1,7 @@
 """Heating: energy that time steps that are too long feed into a motion, found while the shape is still a good one.
 
 Forces that have an energy exchange it with the motion, and damping takes some: nothing adds to the total, unless
-anchors are led. What the books of a run say is kept in `state.scratch`, so that a run that is resumed ends where it
+anchors are led. The books of a run are kept in `state.scratch`, so that a run that is resumed ends where it
 would have ended.
 """
 
@@ -35,8 +35,8 @@ START, LOWEST, SWING, BASE, TAKEN = range(5)
 
 
 def entered(system: System, state: State, found: Balance, *, driven: bool) -> tuple[float, float] | None:
-    """Energies of forces and of motion [force length], entered into the books of a run; None where nothing can be
-    said: anchors are led (`driven`), or a force has no energy."""
+    """Energies of forces and of motion [force length], entered into the books of a run; None if they are unknown:
+    anchors are led (`driven`), or a force has no energy."""
     led = driven or state.v[state.free == 0.0].any()
     if led or not all(group.cls.conservative for group in system.groups):
         state.scratch.pop("energy", None)
@@ -95,12 +95,12 @@ def gained(system: System, state: State, method: Solver, found: Balance, *, driv
         return ""
     unit = units.of("energy")
     # one digit: what changes from frame to frame is not reported again
-    part = f", {100.0 * gain / exchanged:,.1g} % of what it exchanges" if exchanged > least else ""
-    taken = f"; about {books[TAKEN]:.1g} {unit} were taken out of it again" if books[TAKEN] > 0.0 else ""
-    who = "steps have" if system.films is None else "steps, and what spreads the vertices of films evenly, have"
-    what = "use a smaller one, or leave it out"
+    part = f", {100.0 * gain / exchanged:,.1g} % of the energy it exchanges" if exchanged > least else ""
+    taken = f"; about {books[TAKEN]:.1g} {unit} were removed again" if books[TAKEN] > 0.0 else ""
+    who = "steps have" if system.films is None else "steps, and the even spacing of film vertices, have"
+    what = "use a smaller step, or omit it"
     if system.scene.settings.divide_steps:
-        what = "damping, or more mass at the lightest particles, keeps it lower"
+        what = "to reduce this, add damping, or mass at the lightest particles"
     return f"/settings/time_step: {who} added about {gain:.1g} {unit} to the energy of this motion{part}{taken}: {what}"
 
 

@@ -82,16 +82,16 @@ class History:
         self.after.clear()
 
     def undo(self, system: System, state: State) -> None:
-        """Take the last edit back; InputError where there is none."""
-        self._move(self.before, self.after, system, state, "taken back")
+        """Undo the last edit; raises InputError if there is no edit."""
+        self._move(self.before, self.after, system, state, "undone")
 
     def redo(self, system: System, state: State) -> None:
-        """Make the edit again that was taken back last; InputError where there is none."""
-        self._move(self.after, self.before, system, state, "made again")
+        """Redo the last undone edit; raises InputError if there is no such edit."""
+        self._move(self.after, self.before, system, state, "redone")
 
     def _move(self, source: list[Setup], target: list[Setup], system: System, state: State, verb: str) -> None:
         if not source:
-            raise InputError("", f"there is no edit that could be {verb}")
+            raise InputError("", f"there is no edit to be {verb}")
         target.append(Setup.of(system))
         source.pop().put_back(system, state)
         self.gesture = ""

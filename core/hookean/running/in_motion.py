@@ -28,5 +28,5 @@ def in_motion(scene: Scene) -> tuple[Scene, str]:
     changed: dict[str, float] = {"time_step": step, "divide_steps": True}
     if "sub_iterations" not in settings.model_fields_set:
         changed["sub_iterations"] = min(round(settings.sub_iterations * settings.time_step / step), MOST_STEPS)
-    said = f"time steps of {step:g} {scene.units.time} are used; longer ones explode with this stiffness and mass"
+    said = f"time steps of {step:g} {scene.units.time} are used; longer ones are unstable with this stiffness and mass"
     return scene.replaced(settings=settings.replaced(**changed)), said

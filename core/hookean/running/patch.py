@@ -26,8 +26,8 @@ class Move(Model):
     """An anchor moved, by its name or its number in the scene: to targets, or as a whole by a shift."""
 
     anchor: StrictStr | StrictInt = Field(description="Name or number of an anchor")
-    targets: Maybe[Points] = Field(default=None, description="Where its particles go [length], one each")
-    shift: Maybe[Vector] = Field(default=None, description="How far from where the scene holds them [length]")
+    targets: Maybe[Points] = Field(default=None, description="New positions of its particles [length], one each")
+    shift: Maybe[Vector] = Field(default=None, description="Shift from where the scene holds them [length]")
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -45,12 +45,12 @@ class Patch(Model):
     one, on particles that are there already; names and numbers of forces are those before the patch.
     """
 
-    pin: Parts[Anchor] = Field(default=(), description="Particles to hold from now on")
-    release: Indices = Field(default=np.zeros(0, np.int64), description="Particles to free")
+    pin: Parts[Anchor] = Field(default=(), description="Particles to hold")
+    release: Indices = Field(default=np.zeros(0, np.int64), description="Particles to release")
     move: Parts[Move] = Field(default=(), description="Anchors to move")
     forces: dict[str, dict[str, Any]] = Field(default={}, description="New values by force and column")
     settings: dict[str, Any] = Field(default={}, description="New values of settings")
-    add: Parts[AnyForce] = Field(default=(), description="Forces to add; their particles are those that run")
+    add: Parts[AnyForce] = Field(default=(), description="Forces to add, on existing particles")
     remove: tuple[StrictStr | StrictInt, ...] = Field(default=(), description="Names or numbers of forces to remove")
 
     @property
@@ -120,7 +120,7 @@ def _rows(system: System, group: Group, part: Part) -> Floats:
     met = (fresh.indices >= 0).all(axis=1)
     indices, parameters = fresh.indices[met], fresh.parameters[met]
     if not np.array_equal(indices, group.block.indices[part.rows]):
-        raise InputError(f"/forces/{part.number}", "this changes which particles it acts on; send a new scene")
+        raise InputError(f"/forces/{part.number}", "this field sets which particles it acts on; send a new scene")
     return parameters
 
 
@@ -178,7 +178,7 @@ def _thin(anchor: Held, particles: Any) -> None:
 def home(system: System, held: Held, pointer: str) -> Floats:
     """Where the scene holds an anchor's particles (n, 3) [length]; InputError for one that the scene does not have."""
     if held.number < 0:
-        raise InputError(pointer, "this anchor was pinned while running and has no place in the scene; give targets")
+        raise InputError(pointer, "this anchor was pinned during the run and has no place in the scene; give targets")
     anchor = system.scene.anchors[held.number]
     if anchor.targets is None:
         return system.x[held.particles]
@@ -195,10 +195,12 @@ def named(held: list[Held], wanted: str | int, pointer: str) -> Held:
     if len(found) == 1:
         return found[0]
     if found:
-        raise InputError(pointer, f"{len(found)} anchors are called {wanted!r}; say which by number")
+        raise InputError(pointer, f"{len(found)} anchors have the name {wanted!r}; select one by number")
     names = ", ".join(repr(h.name) for h in held if h.name)
     numbers = ", ".join(str(h.number) for h in held if h.number >= 0)
-    raise InputError(pointer, f"{wanted!r} is no anchor; there are {names or 'no names'}, numbers {numbers or 'none'}")
+    raise InputError(
+        pointer, f"unknown anchor {wanted!r}; there are {names or 'no names'}, numbers {numbers or 'none'}"
+    )
 
 
 def _exist(particles: Any, count: int, pointer: str) -> None:
@@ -215,7 +217,7 @@ def changed_forces(scene: Scene, given_values: Mapping[str, Mapping[str, Any]]) 
         number = _numbered(scene, key, f"/forces/{key}")
         fixed = [n for n in values if n in (*PLACES, "kind", "edges")]
         if fixed:
-            raise InputError(f"/forces/{key}/{fixed[0]}", "cannot change while it runs; send the changed scene anew")
+            raise InputError(f"/forces/{key}/{fixed[0]}", "cannot change during a run; send the changed scene")
         old = changed.get(number, scene.forces[number])
         given = {n: getattr(old, n) for n in old.model_fields_set}
         try:
@@ -231,7 +233,7 @@ def _numbered(scene: Scene, wanted: str | int, pointer: str) -> int:
     key = str(wanted)
     named = [i for i, f in enumerate(scene.forces) if f.name == wanted and key]
     if len(named) > 1:
-        raise InputError(pointer, f"{len(named)} forces have this name; say which by number")
+        raise InputError(pointer, f"{len(named)} forces have this name; select one by number")
     number = named[0] if named else int(key) if key.isascii() and key.isdigit() else -1
     if not 0 <= number < len(scene.forces):
         names = ", ".join(repr(f.name) for f in scene.forces if f.name) or "no names"
@@ -243,7 +245,7 @@ def _settings(system: System, patch: Patch) -> Settings:
     old = system.scene.settings
     for name in patch.settings:
         if name == "floor":
-            raise InputError("/settings/floor", "cannot change while it runs; send the changed scene anew")
+            raise InputError("/settings/floor", "cannot change during a run; send the changed scene")
     kept = {n: getattr(old, n) for n in old.model_fields_set}
     try:
         return Settings.model_validate({**kept, **Settings.changes(patch.settings)})

@@ -77,7 +77,7 @@ class Result:
 
     @property
     def converged(self) -> bool:
-        """Whether the shape is in equilibrium within the tolerance, or as near as float64 can tell."""
+        """Whether the shape is in equilibrium within the tolerance, or as near as float64 allows."""
         return self.status is Status.CONVERGED
 
     def force(self, name: str) -> dict[str, Any]:

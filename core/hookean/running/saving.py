@@ -27,7 +27,7 @@ def opened(path: str | Path | IO[bytes], mode: str) -> contextlib.AbstractContex
 
 def no_simulation(path: str | Path | IO[bytes]) -> InputError:
     where = str(path) if isinstance(path, str | Path) else "file"
-    return InputError(where, "not a saved simulation; give a file that Simulation.save wrote")
+    return InputError(where, "not a saved simulation; give a file written by Simulation.save")
 
 
 def arrays_of(held: list[Held]) -> dict[str, NDArray[Any]]:

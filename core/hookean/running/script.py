@@ -55,7 +55,7 @@ def _times(value: Any) -> Floats:
         raise fault("a list of one or more times expected")
     late = np.flatnonzero(np.diff(array) <= 0)
     if len(late):
-        raise fault("times must grow from one to the next", f"/{late[0] + 1}")
+        raise fault("times must increase from one to the next", f"/{late[0] + 1}")
     return array
 
 
@@ -76,8 +76,8 @@ class AnchorPath(Model):
     """Where an anchor goes: shifted as a whole, or each of its particles to targets of its own."""
 
     anchor: StrictStr | StrictInt = Field(description="Name or number of an anchor")
-    times: Times = Field(description="Growing times (k,) [time]")
-    shifts: Maybe[Points] = Field(default=None, description="(k, 3) from where the scene holds it [length]")
+    times: Times = Field(description="Increasing times (k,) [time]")
+    shifts: Maybe[Points] = Field(default=None, description="(k, 3) shifts from where the scene holds it [length]")
     targets: Maybe[Rows] = Field(default=None, description="(k, particles, 3) [length]")
 
     @model_validator(mode="after")
@@ -108,9 +108,9 @@ class ForcePath(Model):
     """A column of a force over time."""
 
     force: StrictStr | StrictInt = Field(description="Name or number of a force")
-    column: StrictStr = Field(description="Its column")
-    times: Times = Field(description="Growing times (k,) [time]")
-    values: Rows = Field(description="(k,) or (k, ...) values, each as the column takes it [its unit]")
+    column: StrictStr = Field(description="Column of the force")
+    times: Times = Field(description="Increasing times (k,) [time]")
+    values: Rows = Field(description="(k,) or (k, ...) values, each as the column accepts it [its unit]")
 
     @property
     def rows(self) -> Floats:
@@ -129,10 +129,10 @@ class Drive(Model):
     """A column of a force led by a stream: scale * value^power."""
 
     force: StrictStr | StrictInt = Field(description="Name or number of a force")
-    column: StrictStr = Field(description="Its column")
+    column: StrictStr = Field(description="Column of the force")
     source: StrictStr = Field(description="Column of the stream; with [unit] the unit is checked too")
-    scale: Values = Field(description="Number or array, as the column takes it [its unit / source^power]")
-    power: float = Field(default=1.0, ge=0, description="Power of the value [-]; wind pressure goes with 2")
+    scale: Values = Field(description="Number or array, as the column accepts it [its unit / source^power]")
+    power: float = Field(default=1.0, ge=0, description="Power of the value [-]; 2 for wind pressure")
 
     def value(self, row: Row) -> Any:
         """What the column becomes by a row; InputError where that is no number."""
@@ -144,7 +144,7 @@ class Drive(Model):
             led = np.full_like(self.scale, np.nan)
         if not np.isfinite(led).all():
             raise InputError(
-                row.place, f"{given:g} to the power {self.power:g} is no number to use; check {self.source}"
+                row.place, f"{given:g} to the power {self.power:g} is not a finite number; check {self.source}"
             )
         return plain(led)
 
@@ -152,8 +152,8 @@ class Drive(Model):
 class Script(Model):
     """What moves by itself while a simulation runs; see the head of `hookean.running.script`."""
 
-    anchors: Parts[AnchorPath] = Field(default=(), description="Anchors led along paths")
-    forces: Parts[ForcePath] = Field(default=(), description="Columns of forces led through values")
+    anchors: Parts[AnchorPath] = Field(default=(), description="Anchors moved along paths")
+    forces: Parts[ForcePath] = Field(default=(), description="Columns of forces that change over time")
     drives: Parts[Drive] = Field(default=(), description="Columns of forces driven by a stream")
 
     @classmethod
@@ -247,9 +247,9 @@ class Playing:
         self._led = [self._bound(path, f"/anchors/{i}", system) for i, path in enumerate(script.anchors)]
         self._fits(system)
         if script.drives and stream is None:
-            raise InputError("/drives", f"{script.drives[0].source} comes from a stream; give one")
+            raise InputError("/drives", f"{script.drives[0].source} needs a stream; give one")
         if stream is not None and not script.drives:
-            raise InputError("/drives", "a stream is given, but no drive says which force it leads; add one")
+            raise InputError("/drives", "a stream is given, but no drive uses it; add a drive")
         self._stream = None if stream is None else stream if isinstance(stream, Stream) else Stream(stream)
         self._started = False
         self.finished = False

@@ -113,7 +113,7 @@ class Simulation:
         self.solver = solver("verlet" if name == "auto" else name)
         refusal = self.solver.refuse(self.system)
         if self._playing is not None and not self.solver.physical:
-            refusal = f"{name} knows no time, and a script does; use verlet, yoshida or auto"
+            refusal = f"{name} has no physical time, which a script needs; use verlet, yoshida or auto"
         if refusal:
             raise InputError("/settings/solver", refusal)
         if warn:
@@ -252,7 +252,7 @@ class Simulation:
 
     @property
     def message(self) -> str:
-        """How it stands, in a sentence."""
+        """Its status, in a sentence."""
         if self.status is Status.RUNNING:
             found, unit = self.balance, self.scene.units.force
             said = f"Running: residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance."
@@ -372,7 +372,7 @@ class Simulation:
         """Go on from a state that `State.of` read back; its anchors are those of the system. ValueError where it is
         the state of another system."""
         if not state.fits(self.state):
-            raise ValueError("a state of another system")
+            raise ValueError("this state belongs to another system")
         goal, scale = state.scratch.get("goal"), state.force_scale
         self.state = state
         self._begin(start=False, warn=False)
@@ -393,7 +393,7 @@ class Simulation:
 
     @classmethod
     def load(cls, path: str | Path | IO[bytes], stream: Source | None = None) -> Simulation:
-        """The simulation that `save` wrote; it goes on bit for bit, with its stream given anew from the first row.
+        """The simulation that `save` wrote; it goes on bit for bit, with its stream given again from the first row.
         InputError where the file is not one."""
         try:
             with opened(path, "rb") as source, np.load(source, allow_pickle=False) as file:

@@ -48,7 +48,7 @@ class Stream:
     def rows(self, wanted: Iterable[str], time: str = "s") -> Iterator[Row]:
         """Rows with the columns `wanted` (`speed`, or with its unit `speed [m/s]`) and times in the unit `time`.
 
-        Raises InputError: no such column, or a row that is none, with its line. The header is read at once.
+        Raises InputError: an unknown column, or an invalid row, with its line. The header is read at once.
         """
         lines = self._lines()
         reader = csv.reader(lines)
@@ -83,23 +83,21 @@ class Stream:
                 blank = blank or place
                 continue
             if blank:
-                raise InputError(blank, "is empty; give a row of values, or leave the line out")
+                raise InputError(blank, "is empty; give a row of values, or remove the line")
             if len(cells) != len(columns):
                 names = ", ".join(name for name, _ in columns)
                 count = f"{len(cells)} value{'s' * (len(cells) > 1)} for {len(columns)} columns"
                 raise InputError(place, f"{count}; give one for each of {names}")
             now = _number(cells[clock], columns[clock], place) * factor
             if last is not None and now <= last:
-                raise InputError(
-                    place, f"time {cells[clock].strip()} is not after the row before; rows go forward in time"
-                )
+                raise InputError(place, f"time {cells[clock].strip()} is not after the row before; times must increase")
             first, last = now if first is None else first, now
             yield Row(now - first, {n: _number(cells[i], columns[i], place) for n, i in places.items()}, place)
         if first is None:
-            raise InputError(self.name, "has no row below its first line; give rows of values")
+            raise InputError(self.name, "has no row after its first line; give rows of values")
 
     def _place(self, columns: list[tuple[str, str]], wanted: str) -> int:
-        """Which column has this name, and unit if one is said."""
+        """The column with this name, and unit if one is given."""
         name, unit = _column(wanted)
         found = [i for i, column in enumerate(columns) if column[0] == name]
         if len(found) == 1 and unit in ("", columns[found[0]][1]):
@@ -107,15 +105,15 @@ class Stream:
         where = f"{self.name} line 1"
         shown = ", ".join(f"{n} [{u}]" if u else n or "a column without a name" for n, u in columns)
         if len(found) > 1:
-            raise InputError(where, f"{len(found)} columns are called {name}; give each its own name")
-        raise InputError(where, f"no column {wanted}; there are {shown}, separated by commas")
+            raise InputError(where, f"{len(found)} columns have the name {name}; give each its own name")
+        raise InputError(where, f"no column {wanted}; there are {shown} (separated by commas)")
 
     def _lines(self) -> Iterator[str]:
         if isinstance(self._source, Path) or self.again:
             try:
                 opened: Any = open(str(self._source), encoding="utf-8-sig", newline="")  # noqa: SIM115
             except (OSError, ValueError) as error:
-                why = getattr(error, "strerror", None) or "no possible path"
+                why = getattr(error, "strerror", None) or "invalid path"
                 raise InputError(self.name, f"cannot be read ({why}); check the path") from None
             return _each(opened)
         if self._source == "-":
@@ -149,5 +147,5 @@ def _number(cell: str, column: tuple[str, str], place: str) -> float:
 
 def _unreadable(error: Exception) -> str:
     if isinstance(error, UnicodeDecodeError):
-        return "is not text in UTF-8; save it so"
+        return "is not UTF-8 text; save it as UTF-8"
     return f"cannot be read as CSV ({error}); give values separated by commas"

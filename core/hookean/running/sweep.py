@@ -1,4 +1,4 @@
-"""Sweeps: one scene, lists of values, a row of figures for each. What one item is; running many is told elsewhere.
+"""Sweeps: one scene, lists of values, a row of figures for each. This module has one item; other modules run many.
 
     sweep = Sweep.read({"forces": {"net": {"rest_factor": [0.8, 0.9, 1.0]}}})
     table = Table(scene)
@@ -38,9 +38,9 @@ class Sweep(Model):
     forces: dict[str, dict[str, list[Any]]] = Field(default={}, description="Values by a force's name, and by column")
     settings: dict[str, list[Any]] = Field(default={}, description="Values by setting")
     mode: Literal["product", "zip"] = Field(
-        default="product", description="Every value with every other, the last list fastest; or the lists side by side"
+        default="product", description="All combinations, the last list fastest; or the lists side by side"
     )
-    patches: tuple[dict[str, Any], ...] | None = Field(default=None, description="The patches themselves")
+    patches: tuple[dict[str, Any], ...] | None = Field(default=None, description="A list of patches")
 
     @model_validator(mode="after")
     def _counted(self) -> Self:
@@ -48,11 +48,11 @@ class Sweep(Model):
         if self.patches is not None and (lists or not self.patches):
             raise fault("give either patches, at least one, or forces and settings", "/patches")
         if self.patches is None and not lists:
-            raise fault("a sweep has lists of values under forces or settings, or patches")
+            raise fault("a sweep needs lists of values under forces or settings, or patches")
         for path, values in lists:
             pointer = "/" + "/".join(step.replace("~", "~0").replace("/", "~1") for step in path)
             if not values:
-                raise fault("a list of values has at least one", pointer)
+                raise fault("a list of values needs at least one", pointer)
             if self.mode == "zip" and len(values) != len(lists[0][1]):
                 raise fault(f"{len(values)} values; the first list has {len(lists[0][1])}, and zip pairs them", pointer)
         if self.count > MOST:
@@ -125,7 +125,7 @@ class Table:
         self._said = list(self.system.report.warnings)
 
     def result(self, patch: Mapping[str, Any], cancelled: Cancelled | None = None) -> Result:
-        """The scene with a patch, relaxed from its start. InputError says what does not fit, as ever."""
+        """The scene with a patch, relaxed from its start. Raises InputError for an invalid patch."""
         system = self.system
         edit = Patch.read(dict(patch))
         state = system.start()

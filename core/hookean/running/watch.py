@@ -1,4 +1,4 @@
-"""Watching a run: judges it between bursts of iterations, and says when it is over and why."""
+"""Watching a run: judges it between bursts of iterations, and reports its end and the reason."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def seldom(system: System) -> int:
 
 
 class Watch:
-    """Looks at a run between bursts of iterations and says when it is over."""
+    """Checks a run between bursts of iterations and ends it."""
 
     def __init__(self, system: System, state: State, method: Solver) -> None:
         self.method = method
@@ -76,7 +76,7 @@ class Watch:
     def look(
         self, system: System, state: State, *, idle: bool = False, known: bool = False, driven: bool = False
     ) -> Status:
-        """Judge the state as it is now; `known` says that it is the one this began with, `driven` that a script moves
+        """Judge the state as it is now; `known`: it is the one this began with, `driven` that a script moves
         it."""
         self.last, self.rest, self.back = state.iteration, None, 0
         self.driven, self.flew, self._advised = driven, False, ""
@@ -142,7 +142,7 @@ class Watch:
             self.found = replace(self.found, energies=system.evaluate(state)[2])
 
     def _exploding(self, system: System, state: State, found: Balance, *, driven: bool) -> bool:
-        """Whether time steps are too long for the motion; else say which particle and force."""
+        """Whether time steps are too long for the motion; else records which particle and force."""
         particle = heated(system, state, self.method, found, driven=driven) if self.method.physical else None
         if particle is not None:
             self.fault = f"particle {particle}{_owner(system, particle)}"
@@ -209,7 +209,7 @@ class Watch:
         return bool((moving <= (self.tolerance + found.floors) * found.scales * self.size).all())
 
     def _sane(self, system: System, state: State) -> bool:
-        """Finite, and not a hundred thousand times the model's size away; else say which particle and force."""
+        """Finite, and not a hundred thousand times the model's size away; else records which particle and force."""
         if dispatch.compiled(within)(state.x, state.v, system.x, state.free, FAR * self.size):
             return True
         away = np.abs(state.x - system.x) * state.free
@@ -225,7 +225,7 @@ class Watch:
         return False
 
     def sentence(self, system: System, status: Status) -> str:
-        """What to tell a person of a run that ended with `status`."""
+        """The message of a run that ended with `status`."""
         found, unit = self.found, system.scene.units.force
         left = f"residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance"
         spent = self.last - self.first
@@ -242,7 +242,8 @@ class Watch:
         if status is Status.CANCELLED:
             return f"Cancelled after {spent} iterations: {left}."
         if status is Status.TIME_LIMIT:
-            return f"Out of time ({self.settings.time_limit:g} s) after {spent} iterations: {left}. Raise time_limit."
+            most = f"{self.settings.time_limit:g} s"
+            return f"Time limit ({most}) reached after {spent} iterations: {left}. Raise time_limit."
         advice = _adrift(system, found) or "Raise max_iterations"
         return f"Not in equilibrium after {spent} iterations: {left}. {advice}."
 
@@ -267,11 +268,11 @@ class Watch:
             return said
         if self.method.physical:
             return (
-                "The forces grow without bound there, and no time step holds: add damping, more mass, or less stiffness"
+                "The forces grow without bound, and no time step is stable: add damping or mass, or lower the stiffness"
             )
         other = "" if self.method.name == "auto" else "use auto, "
         return (
-            f"The solver {self.method.name} found no equilibrium from here: {other}see that every part is held along "
+            f"The solver {self.method.name} found no equilibrium from here: {other}check that every part is held along "
             "all axes on which it is loaded, or lower the loads"
         )
 
@@ -282,8 +283,8 @@ class Watch:
         if len(self.found.coarse):
             part = int(self.found.coarse[0])
             return (
-                f"Rounding alone leaves a residual of {self.found.floors[part]:.1g} in "
-                f"{_called(system, self.found, part)}: stiffness or coordinates are too large there for these forces. "
+                f"Rounding alone causes a residual of {self.found.floors[part]:.1g} in "
+                f"{_called(system, self.found, part)}: stiffness or coordinates are too large for these forces. "
                 "Move the model to the origin, or lower the stiffness"
             )
         if self.rest is not None and self.rest.position_error is not None:
@@ -309,7 +310,7 @@ def within(x, v, start, free, far):  # type: ignore[no-untyped-def]
 
 
 def _caveat(rest: Equilibrium | None) -> str:
-    """What a person must know of an equilibrium."""
+    """A sentence on an equilibrium that is not stable."""
     if rest is None or rest.stability not in (Stability.UNSTABLE, Stability.MECHANISM):
         return ""
     most = f"; particle {rest.soft_particle} moves most" if rest.soft_particle is not None else ""
@@ -327,7 +328,7 @@ def _overloaded(system: System, state: State, size: float) -> str:
     force, units = _owner(system, particle, role="load"), system.scene.units
     return (
         f"The load of {loads[particle]:.3g} {units.force} on particle {particle}{force} is too large for the stiffness "
-        f"of what holds it, which would stretch by {reach[particle]:.2g} {units.length}: lower the load, or raise the "
+        f"of its supports, which would stretch by {reach[particle]:.2g} {units.length}: lower the load, or raise the "
         "stiffness"
     )
 

@@ -1,4 +1,4 @@
-"""The catalogue of forces, made from their classes: what each is, takes and tells, for people and programs."""
+"""The catalogue of forces, made from their classes: summary, fields and outputs of each, for people and programs."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def entry(cls: type[Force], described: dict[str, Any] | None = None) -> dict[str
     """One force as plain values.
 
     `kind, title, summary, description, formula, role, conservative, damped, remembers, particles_per_element,
-    places` (the fields of which exactly one says where it acts), `everywhere` (none of them: on all particles),
+    places` (the fields of which exactly one gives its place), `everywhere` (none of them: on all particles),
     `fields` (name, description, unit, type, required, default, bounds, choices), `outputs` (name and unit of every
     column of a result) and `example`, a force of this kind for a scene.
     """
@@ -59,13 +59,13 @@ def entry(cls: type[Force], described: dict[str, Any] | None = None) -> dict[str
 
 
 def schema() -> dict[str, Any]:
-    """JSON schema of a scene; a force is told by its `kind`."""
+    """JSON schema of a scene; a force is identified by its `kind`."""
     return Scene.model_json_schema(schema_generator=_Schema)
 
 
 def page() -> str:
     """The page docs/forces.md."""
-    return "# Forces\n\nMade from the classes in `core/hookean/forces`: `make docs` writes this page.\n\n" + markdown()
+    return "# Forces\n\nGenerated from the classes in `core/hookean/forces` by `make docs`.\n\n" + markdown()
 
 
 def exports(text: str) -> str:
@@ -93,7 +93,7 @@ def write_exports() -> None:
 def markdown() -> str:
     """The catalogue as Markdown: a table of all forces, then one table of fields for each."""
     entries = catalogue()
-    lines = ["| kind | what it is | energy | acts on |", "| --- | --- | --- | --- |"]
+    lines = ["| kind | description | energy | acts on |", "| --- | --- | --- | --- |"]
     for e in entries:
         places = [*e["places"], *(["everything"] if e["everywhere"] else [])]
         lines.append(
@@ -106,9 +106,9 @@ def markdown() -> str:
             default = "required" if f["required"] else "" if f["default"] in (None, "") else f"`{_said(f['default'])}`"
             cells = (f"`{f['name']}`", f["unit"], default, _allowed(f), _cell(f["description"]))
             lines.append(f"| {' | '.join(cells)} |")
-        told = ", ".join(f"`{o['name']}` [{o['unit']}]" for o in e["outputs"])
-        if told:
-            lines += ["", f"A result tells {told} for every element."]
+        reported = ", ".join(f"`{o['name']}` [{o['unit']}]" for o in e["outputs"])
+        if reported:
+            lines += ["", f"A result reports {reported} for every element."]
     return "\n".join(lines) + "\n"
 
 

@@ -24,7 +24,7 @@ class Unmatched:
 
     @property
     def sentence(self) -> str:
-        """One line for a person."""
+        """One line on it."""
         spot = ", ".join(f"{c:.6g}" for c in self.point)
         return (
             f"{self.pointer}: no particle at ({spot}); the nearest is particle {self.nearest}, {self.distance:.6g} "
@@ -60,16 +60,16 @@ class Missed:
 
     @property
     def warning(self) -> str:
-        """One line for a person, where the scene goes on with what did meet."""
+        """The warning if the scene continues without them."""
         without = _WITHOUT.get(self.role, "nothing acts there")
-        return f"{self.pointer}: {self.sentence}, so {without}. {self._advice} or raise weld_tolerance"
+        return f"{self.pointer}: {self.sentence}, so {without}. {self._advice}, or raise weld_tolerance"
 
     def refusal(self, *, strict: bool) -> InputError:
-        """The error where it does not: it would go on but for `strict`, or else no anchor of the scene is held."""
+        """The error if it does not: the scene is `strict`, or no anchor of it meets a particle."""
         if strict:
-            advice = f"{self._advice}, raise weld_tolerance, or set strict to false to go on with what did meet"
+            advice = f"{self._advice}, raise weld_tolerance, or set strict to false to continue without them"
         else:
-            advice = f"No anchor holds anything: {self._advice.lower()} or raise weld_tolerance"
+            advice = f"No anchor holds a particle: {self._advice.lower()}, or raise weld_tolerance"
         return InputError(self.pointer, f"{self.sentence}. {advice}")
 
     @property
@@ -79,10 +79,10 @@ class Missed:
 
 @dataclass
 class Report:
-    """What was done to the description on the way to particles, and what a person should know before solving.
+    """What compiling a scene merged, moved or left out, and warnings to read before solving.
 
     `missed` has an entry for each force and anchor with points that met no particle, `unmatched` each of these points;
-    `warnings` has sentences on all else; `beside` counts the coordinates that were moved onto a particle nearby.
+    `warnings` has all other sentences; `beside` counts the coordinates that were moved onto a particle nearby.
     """
 
     merged: int = 0
@@ -102,14 +102,14 @@ class Report:
 
     def left_out(self) -> list[str]:
         """A sentence for each force and anchor with points that met no particle: the first few, and how many more."""
-        said = [missed.warning for missed in self.missed[:MOST_LISTED]]
+        lines = [missed.warning for missed in self.missed[:MOST_LISTED]]
         more = len(self.missed) - MOST_LISTED
-        return [*said, f"points of {more} more forces or anchors met no particle"] if more > 0 else said
+        return [*lines, f"points of {more} more forces or anchors met no particle"] if more > 0 else lines
 
     def sentences(self) -> list[str]:
-        """All that a person should know: what met no particle, warnings, how much was moved onto a particle."""
-        said = [*self.left_out(), *self.warnings]
+        """All sentences: what met no particle, warnings, how much was moved onto a particle."""
+        lines = [*self.left_out(), *self.warnings]
         if self.beside:
             what = "1 coordinate was" if self.beside == 1 else f"{self.beside} coordinates were"
-            said.append(f"{what} moved onto a particle nearby, within weld_tolerance")
-        return said
+            lines.append(f"{what} moved onto a particle nearby, within weld_tolerance")
+        return lines

@@ -66,7 +66,9 @@ class Anchor(Model):
     name: str = Field(default="", description="Name under which reactions list this anchor")
     particles: Maybe[Indices] = Field(default=None, description="Held particles")
     points: Maybe[Points] = Field(default=None, description="Coordinates of held particles")
-    targets: Maybe[Points] = Field(default=None, description="Where to hold them [length]; none: where they are")
+    targets: Maybe[Points] = Field(
+        default=None, description="Where to hold them [length]; default: at their start positions"
+    )
     axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = Field(default="xyz", description="Held directions")
 
     @model_validator(mode="after")
@@ -84,20 +86,22 @@ Anchors = Anchor
 
 
 class Geometry(Model):
-    """Geometry that rides along: each of its points that meets a particle moves with it.
+    """Carried geometry: each of its points that meets a particle moves with it.
 
     `points`, `polyline` and `curve` (control points of a NURBS curve) take points or particles; `lines` takes lines or
     pairs; `mesh` the name of one of the scene's meshes.
     """
 
     name: str = Field(default="", description="Name under which results list this geometry")
-    kind: Literal["points", "lines", "polyline", "curve", "mesh"] = Field(description="What it is")
+    kind: Literal["points", "lines", "polyline", "curve", "mesh"] = Field(description="Type of geometry")
     particles: Maybe[Indices] = Field(default=None, description="Particles it goes through (lines: start, end, ...)")
     points: Maybe[Points] = Field(default=None, description="Coordinates [length]")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines [length]")
     mesh: str | None = Field(default=None, description="Name of one of the scene's meshes")
     degree: int = Field(default=3, ge=1, le=11, description="Degree of a curve [-]")
-    knots: tuple[float, ...] | None = Field(default=None, description="Knots, as Rhino counts them; none: uniform")
+    knots: tuple[float, ...] | None = Field(
+        default=None, description="Knots, in the number that Rhino has; default: uniform"
+    )
     weights: Maybe[NonNegatives] = Field(default=None, description="Weights of a curve's control points [-]")
 
     @model_validator(mode="after")
@@ -105,27 +109,29 @@ class Geometry(Model):
         given = [f for f in ("particles", "points", "lines", "mesh") if getattr(self, f) is not None]
         allowed = {"lines": ["lines", "particles"], "mesh": ["mesh"]}.get(self.kind, ["points", "particles"])
         if len(given) != 1 or given[0] not in allowed:
-            raise fault(f"{' and '.join(given) or 'nothing'} given; {self.kind} takes one of {', '.join(allowed)}")
+            raise fault(f"{' and '.join(given) or 'nothing'} given; {self.kind} needs one of {', '.join(allowed)}")
         if self.kind == "lines" and self.particles is not None and len(self.particles) % 2:
-            raise fault("lines take an even number of particles: start, end, start, end", "/particles")
+            raise fault("lines need an even number of particles: start, end, start, end", "/particles")
         return self
 
 
 class Settings(Model):
     """How to solve. Defaults of time stepping are classic Kangaroo's."""
 
-    solver: Literal[SOLVERS] = Field(default="auto", description="Which solver; auto picks one and says which")  # type: ignore[valid-type]
+    solver: Literal[SOLVERS] = Field(default="auto", description="Solver; auto selects one and reports which")  # type: ignore[valid-type]
     tolerance: float = Field(default=1e-6, ge=0, le=1, description="Largest residual of a converged shape [-]")
     position_tolerance: float | None = Field(
         default=1e-6, ge=0, le=1, description="Largest position error / model size that auto accepts [-]; null: any"
     )
-    allow_unstable: bool = Field(default=False, description="Keep unstable equilibria, which auto and newton leave")
-    max_iterations: int = Field(default=100_000, ge=0, le=10**9, description="Stop after so many iterations")
-    time_limit: float | None = Field(default=None, ge=0, description="Stop after so many seconds of computing [s]")
+    allow_unstable: bool = Field(
+        default=False, description="Accept unstable equilibria; else auto and newton search for a stable one"
+    )
+    max_iterations: int = Field(default=100_000, ge=0, le=10**9, description="Largest number of iterations")
+    time_limit: float | None = Field(default=None, ge=0, description="Longest computing time [s]")
     time_step: float = Field(default=0.01, gt=0, description="Step of physical time [time]")
     divide_steps: bool = Field(
         default=True,
-        description="Take steps that are too long in parts; false where time_step is given and this is not",
+        description="Divide time steps that are too long; default: false if time_step is given",
     )
     sub_iterations: int = Field(default=20, ge=1, le=100_000, description="Time steps in a frame")
     drag: float = Field(default=1.0, ge=0, description="Viscous drag on every particle [force time/length]")
@@ -164,19 +170,23 @@ class Scene(Model):
     """
 
     units: Part[Units] = Field(default=Units(), description="Units of all numbers")
-    weld_tolerance: float = Field(default=0.001, ge=0, description="Coordinates this near are one particle [length]")
+    weld_tolerance: float = Field(
+        default=0.001, ge=0, description="Points within this distance become one particle [length]"
+    )
     strict: bool = Field(
-        default=True, description="Anchors and loads that meet no particle are errors; false: warnings"
+        default=True, description="Whether anchors and loads that meet no particle are errors; false: warnings"
     )
     particles: Points = Field(
         default=np.zeros((0, 3)), description="Start positions [length]; never merged or renumbered"
     )
-    masses: Positives = Field(default=1.0, description="Mass of given particles [force time^2/length]; welded ones: 1")
+    masses: Positives = Field(
+        default=1.0, description="Mass of the given particles [force time^2/length]; of welded ones 1"
+    )
     velocities: Maybe[Points] = Field(default=None, description="Start velocities [length/time], one for each particle")
     meshes: Named[MeshData] = Field(default={}, description="Meshes by name")
-    forces: Parts[AnyForce] = Field(default=(), description="What acts on the particles")
+    forces: Parts[AnyForce] = Field(default=(), description="Forces on the particles")
     anchors: Parts[Anchor] = Field(default=(), description="Particles that are held")
-    geometry: Parts[Geometry] = Field(default=(), description="Geometry that rides along")
+    geometry: Parts[Geometry] = Field(default=(), description="Geometry that moves with the particles")
     settings: Part[Settings] = Field(default=Settings(), description="How to solve")
 
     @classmethod
@@ -205,7 +215,7 @@ class Scene(Model):
         return [
             f"particles: {len(self.particles)} given; points within {self.weld_tolerance:g} {units.length} become one",
             f"forces: {', '.join(forces) or 'none'}",
-            f"anchors: {len(self.anchors)}, meshes: {len(self.meshes)}, geometry carried: {len(self.geometry)}",
+            f"anchors: {len(self.anchors)}, meshes: {len(self.meshes)}, carried geometry: {len(self.geometry)}",
             f"solver: {self.settings.solver}, tolerance {self.settings.tolerance:g} [-]",
             f"units: {units.length}, {units.force}, {units.time}",
         ]
@@ -266,30 +276,30 @@ def faults(error: ValidationError) -> list[InputError]:
 
 
 def _sentence(entry: Any, root: type[Model] | None) -> str:
-    """What pydantic found, in our words: what was given, what is allowed."""
+    """An error of pydantic as a sentence: what was given, what is allowed."""
     kind, context, given = entry["type"], entry.get("ctx", {}), _shown(entry["input"])
     if kind in ("extra_forbidden", "missing"):
         name, owner = str(entry["loc"][-1]), _owner(root, entry["loc"][:-1])
         if owner is None:
-            return f"{_shown(name)} is not known here" if kind == "extra_forbidden" else f"{name} is needed"
+            return f"unknown field {_shown(name)}" if kind == "extra_forbidden" else f"{name} is required"
         if kind == "missing":
             field = owner.model_fields.get(name)
-            return f"{name} is needed: {field.description}" if field and field.description else f"{name} is needed"
-        return f"{_shown(name)} is no field of {_called(owner)}; {_meant(name, list(owner.model_fields), 'it has')}"
+            return f"{name} is required: {field.description}" if field and field.description else f"{name} is required"
+        return f"{_called(owner)} has no field {_shown(name)}; {_meant(name, list(owner.model_fields), 'its fields:')}"
     if kind == "union_tag_invalid":
         known = re.findall(r"'([^']*)'", context["expected_tags"])
-        return f"kind {_shown(context['tag'])} is none; {_meant(context['tag'], known, 'there are', always=True)}"
+        return f"unknown kind {_shown(context['tag'])}; {_meant(context['tag'], known, 'known:', always=True)}"
     if kind == "union_tag_not_found":
-        return f"kind is needed; there are {', '.join(KINDS)}"
+        return f"kind is required; known: {', '.join(KINDS)}"
     if kind == "literal_error":
         allowed = re.findall(r"'([^']*)'", context["expected"])
-        return f"{given} given; {_meant(str(entry['input']), allowed, 'one of', always=True)}"
+        return f"{given} given; {_meant(str(entry['input']), allowed, 'allowed:', always=True)}"
     for rule, key, words in _LIMITS:
         if kind == rule:
             return f"{given} given; {words} {context[key]:g} allowed"
     expected = next((words for start, words in _EXPECTED.items() if kind.startswith(start)), "")
     if isinstance(entry["input"], str):
-        given = "a text"  # which may be anything, and long
+        given = "a text"  # it may be anything, and long
     return f"{given} given; {expected} expected" if expected else str(entry["msg"])
 
 
@@ -319,11 +329,11 @@ def _meant(given: Any, known: list[str], introduction: str, *, always: bool = Fa
     listed = f"{introduction} {', '.join(known)}"
     if nearest is None:
         return listed
-    return f"{listed}; did you mean {nearest}?" if always else f"did you mean {nearest}?"
+    return f"did you mean {nearest}? ({listed})" if always else f"did you mean {nearest}?"
 
 
 def _shown(value: Any) -> str:
-    """A given value as JSON, if it is short; else what it is."""
+    """A given value as JSON, if it is short; else its type."""
     if isinstance(value, str | int | float) or value is None:
         text = json.dumps(value if not isinstance(value, str) else value[:60])
         return text if len(text) <= 80 else f"{text[:60]}..."
@@ -333,7 +343,7 @@ def _shown(value: Any) -> str:
 
 
 def _called(model: type[Model]) -> str:
-    """What a person calls a model: the kind of a force, else its name."""
+    """The name of a model in sentences: the kind of a force, else its name."""
     if issubclass(model, Force):
         return str(model.model_fields["kind"].default)
     return "mesh" if model is MeshData else model.__name__.lower()

@@ -61,11 +61,11 @@ def _not_toml(text: str, name: str, said: str) -> InputError:
     """What is wrong with a text that is no TOML: the line it names, and a decimal comma there."""
     suffix = Path(name).suffix.lower()
     if suffix not in (".toml", ".json", ""):
-        return InputError(name, "is no TOML or JSON; give a file that ends in .toml or .json")
+        return InputError(name, "is not TOML or JSON; give a file that ends in .toml or .json")
     place = re.search(r"at line (\d+)", said)
     lines = text.splitlines()
     line = lines[int(place[1]) - 1].strip() if place and int(place[1]) <= len(lines) else ""
     comma = re.search(r"=\s*([-+]?\d+),(\d+)\s*(?:#.*)?$", line)
-    hint = f"; decimals take a point: {comma[1]}.{comma[2]}" if comma else ""
+    hint = f"; write decimals with a point: {comma[1]}.{comma[2]}" if comma else ""
     quoted = f": {line[:80]}" if line else ""
     return InputError(name, f"not valid TOML: {said}{quoted}{hint}")

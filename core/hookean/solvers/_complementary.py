@@ -61,14 +61,14 @@ class Method(Solver):
     def refuse(self, system: System) -> str:
         """A sentence unless springs have no limits and all else is linear."""
         if system.contacts:
-            return "a floor has no complementary energy; take auto"
+            return "a floor has no complementary energy; use auto"
         for group in system.groups:
             if group.cls is AnchorSpring or group.cls.kernel is unary_kernel:
                 continue
             if group.cls is not Springs:
-                return f"{group.cls.__name__} is not a spring; take auto"
+                return f"{group.cls.__name__} is not a spring; use auto"
             if (group.block.parameters[:, 4:] != 0).any():
-                return "a spring has a cutoff or plasticity; take auto"
+                return "a spring has a cutoff or plasticity; use auto"
         return ""
 
     def start(self, system: System, state: State) -> None:
@@ -138,7 +138,7 @@ def _linear(system: System, state: State) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class Net:
-    """Springs of a system, the free particles first: `particles` says which is which."""
+    """Springs of a system, the free particles first: `particles` has their numbers."""
 
     particles: Ints
     ends: Ints  # (m, 2) by their places among `particles`, lower first

@@ -1,4 +1,4 @@
-"""Auto: picks by the scene, and says what it picked.
+"""Auto: picks by the scene, and reports its choice.
 
 Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities, soap films
 Newton steps across them, large nets of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose
@@ -27,7 +27,7 @@ LARGEST_FILM = 1_000_000  # particles, of some five gigabytes
 LARGEST_BLOCKS = 3_000_000  # entries of all element blocks; a shell's have 36 x 36 each
 LEAST_MULTILEVEL = 4_000  # particles from which on multigrid is quicker than relaxation
 MANY = 30_000  # particles from which on relaxation takes minutes, and creases as well
-CREASED = "Some springs push, and may crease the net: other shapes of it may be at rest, too."
+CREASED = "Some springs are in compression and may wrinkle the net; other equilibrium shapes may exist."
 FIRST_NEWTON = 4_000
 NEWTON_STEPS = 60
 SHARP_STEPS = 1_000  # from near an equilibrium: along a curved path, if need be
@@ -158,7 +158,7 @@ class Method(Solver):
         return done
 
     def _finish(self, system: System, state: State, count: int, goal: float) -> int:
-        """Newton steps from here; relaxation afterwards starts afresh, and waits twice as long before the next."""
+        """Newton steps from here; relaxation afterwards starts again, and waits twice as long before the next."""
         done = self._newton.advance(system, state, min(count, self._newton.longest, self._steps), goal)
         self._steps = self._steps - done if done else 0
         self.work += done

@@ -43,7 +43,7 @@ class Method(Solver):
     def refuse(self, system: System) -> str:
         """A sentence unless every internal force is linear."""
         if system.contacts:
-            return "a floor is not linear; force_density needs springs of rest length 0 alone"
+            return "a floor is not linear; force_density supports springs of rest length 0 only"
         linear = False
         for group in system.groups:
             if group.cls.role == "load" and group.cls.conservative:
@@ -52,10 +52,10 @@ class Method(Solver):
                 linear = True
                 continue
             if group.cls is not Springs:
-                return f"{group.cls.__name__} is not linear; force_density needs springs of rest length 0 alone"
+                return f"{group.cls.__name__} is not linear; force_density supports springs of rest length 0 only"
             p = group.block.parameters
             if (p[:, 2] * p[:, 3] != 0).any() or (p[:, 4:] != 0).any():
-                return "a spring has a rest length, a cutoff or plasticity; force_density needs rest length 0 alone"
+                return "a spring has a rest length, a cutoff or plasticity; force_density supports rest length 0 only"
             linear = linear or bool(len(p))
         return "" if linear else "there is no spring"
 
@@ -69,7 +69,7 @@ class Method(Solver):
         self.certain, self._solved = False, []
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
-        """Solve K dx = f on the free axes; none done where some particles hang on nothing that is held."""
+        """Solve K dx = f on the free axes; none done if some particles are unsupported."""
         if count < 1:
             return 0
         f, _, _ = system.evaluate(state)

@@ -69,8 +69,8 @@ class Method(Solver):
     def refuse(self, system: System) -> str:
         """A sentence where there are films, or where a particle meets a floor: what slides or sticks has no tangent."""
         if system.films is not None:
-            return "multilevel has no steps across soap films; use auto, which has"
-        return "multilevel has no tangent for a floor; use auto or relaxation" if system.contacts else ""
+            return "multilevel does not support soap films; use auto"
+        return "multilevel does not support floors; use auto or relaxation" if system.contacts else ""
 
     def start(self, system: System, state: State) -> None:
         """Start from rest, with Newton steps."""

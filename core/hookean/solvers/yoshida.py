@@ -29,5 +29,5 @@ class Method(verlet.Method):
     def refuse(self, system: System) -> str:
         """A step back in time cannot bounce."""
         if system.contacts:
-            return "yoshida steps back in time inside a step and cannot bounce on a floor; use verlet"
+            return "yoshida goes back in time within a step, so it does not support floors; use verlet"
         return ""

@@ -155,7 +155,7 @@ def _by_modes(system: System, state: State, found: Balance, method: Solver | Non
 
 
 def _concluded(modes: Modes, found: Balance) -> Equilibrium:
-    """What modes say."""
+    """The stability that follows from the modes."""
     if modes.reason:
         return unknown(modes.reason)
     errors = None if modes.moved is None else _largest(modes.moved, found)

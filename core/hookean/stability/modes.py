@@ -261,7 +261,8 @@ def _softest(shifted: Callable[[float], Floats], factors: Factors, size: int, co
 def _decided(
     scaled: Scaled, below: int, near: int, softest: Callable[[int], Floats], solve: Callable[[], Floats]
 ) -> Modes:
-    """What the softest modes say: `below` are below zero for certain, and `near` so near that rounding may hide it."""
+    """The verdict of the softest modes: `below` are below zero for certain, and `near` so near that rounding may hide
+    it."""
     several = below + near <= SEVERAL
     energies, noise = scaled.energies(modes := softest(below + near if several else 1))
     values, turned = np.linalg.eigh(energies)
@@ -292,7 +293,7 @@ def iterated(system: System, state: State, found: Balance, tangent: Tangent | No
 
     tangent = tangent or Tangent(system, state)
     if not tangent.hierarchy.coarse:
-        return Modes(reason=f"{len(state.x)} particles are too many to factor, and their net does not gather")
+        return Modes(reason=f"{len(state.x)} particles are too many to factor, and their net cannot be coarsened")
     positive = tangent.take_up(system, state, 0.0)
     if positive:
         moved, steps, positive = tangent.settle(_stirred(found.forces * state.free, state.free), STEPS, Steps())

@@ -24,7 +24,7 @@ FEW = 1e-3  # so few push where supports are points, and have no room to buckle
 
 
 def suits(system: System) -> bool:
-    """Whether a system is of plain springs and constant loads alone, whose shape of least energy can be told."""
+    """Whether a system is of plain springs and constant loads alone, whose shape of least energy is known."""
     plain = False
     for group in system.groups:
         if group.cls is Springs:

@@ -28,7 +28,7 @@ SLACK = 1e-12  # part of the stiffness along an element that its tension must ad
 
 def taut(system: System, state: State, free: Floats) -> bool:
     """Whether elements that pull hold all axes with `free` (n, 3) above 0, and none pushes: then the tangent is
-    positive definite. False says nothing."""
+    positive definite. False proves nothing."""
     n = len(free)
     parent, held = np.arange(n), np.zeros(n, np.int64)
     for group, memory in zip(system.groups, state.memory, strict=True):

@@ -121,8 +121,8 @@ def warning(system: System, state: State, method: Solver) -> str:
     cause, less = _cause(system, state, rates)
     return (
         f"/settings/time_step: {settings.time_step:g} {unit} is too large for {cause}. Steps up to "
-        f"{floored(holds):.4g} {unit} hold {where}, {floored(stable):.4g} {unit} in small ones: use one, or leave "
-        f"time_step out{less}"
+        f"{floored(holds):.4g} {unit} are stable {where}, {floored(stable):.4g} {unit} in small ones: use one of "
+        f"these, or omit time_step{less}"
     )
 
 
@@ -135,11 +135,11 @@ def too_long(system: System, state: State, method: Solver, held: tuple[float, fl
     cause, less = _cause(system, state, rates) if settings.time_step > stable else ("this motion", "")
     step, time = held
     small = f", {floored(stable):.4g} {unit} in small ones" if stable < np.inf else ""
-    said = f"Steps of {step:.4g} {unit} held for {time:.4g} {unit} of the same motion{small}: use one"
+    advice = f"Steps of {step:.4g} {unit} were stable for {time:.4g} {unit} of the same motion{small}: use one"
     if step == 0.0:
-        said = f"No step is known that holds{small and ', steps up to ' + small[2:]}: use a smaller one"
+        advice = f"No stable step is known{small and '; steps up to ' + small[2:]}: use a smaller one"
     given = f"/settings/time_step: {settings.time_step:g} {unit}"
-    return f"{given} is too large for {cause}. {said}, or leave time_step out{less}"
+    return f"{given} is too large for {cause}. {advice}, or omit time_step{less}"
 
 
 def roomy(system: System, state: State, method: Solver) -> float:
@@ -158,7 +158,7 @@ def _cause(system: System, state: State, rates: tuple[float, float, float]) -> t
     what = "damping" if 0.5 * (rates[1] + rates[2]) > np.sqrt(rates[0]) else "stiffness"
     where = _greatest(system, state, what)
     what = "drag" if where == "/settings/drag" else what
-    return f"this mass and the {what} of {where}; the motion will explode", f", or take more mass or less {what}"
+    return f"this mass and the {what} of {where}; the motion will be unstable", f", or use more mass or less {what}"
 
 
 def _greatest(system: System, state: State, what: str) -> str:
@@ -231,8 +231,8 @@ def slowed(system: System, parts: int) -> str:
     step, unit = system.scene.settings.time_step, system.scene.units.time
     return (
         f"/settings/time_step: each step covers {step * most / parts:.3g} {unit}, not {step:g} {unit}: motion is "
-        f"{parts / most:.3g} times slower than asked for. Steps that hold with this stiffness, damping and mass are "
-        f"{step / parts:.3g} {unit} long, and {most:,} are taken; take more mass or less stiffness for more"
+        f"{parts / most:.3g} times slower than asked for. Stable steps with this stiffness, damping and mass are "
+        f"{step / parts:.3g} {unit} long, and {most:,} are computed; use more mass or less stiffness for more"
     )
 
 
@@ -329,7 +329,7 @@ def _largest(operator: Any) -> float:
 
 
 def floored(value: float) -> float:
-    """Rounded down to four digits, so that the number told is itself safe."""
+    """Rounded down to four digits, so that the number reported is itself safe."""
     digits = 10.0 ** (np.floor(np.log10(value)) - 3)
     return float(np.floor(value / digits * (1 + 1e-12)) * digits)
 

@@ -1,7 +1,7 @@
 """Particle numbers of a running system as a scene has them: by number, or by where the particles start.
 
-A scene numbers the particles that it gives; those welded from coordinates have no number in it, but a place. Whoever
-points at a running system has numbers of all of them.
+A scene numbers the particles that it gives; those welded from coordinates have no number in it, but a place. Clients of
+a running system has numbers of all of them.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def addressed(system: System, scene: Scene, particles: Ints, *, points: bool = T
     """The fields `particles` or `points` by which `scene`, of the same particles as `system`, refers to `particles`
     (any shape), and the scene that does.
 
-    `points` says whether coordinates may stand for them. Where they may not, or where two particles of the scene start
+    `points`: whether coordinates may stand for them. Where they may not, or where two particles of the scene start
     at one place, the scene returned gives all particles of the system, in their order.
     """
     if not particles.size or int(particles.max()) < len(scene.particles):

@@ -80,7 +80,7 @@ def _packed(group: Group, memory: Floats, damped: bool) -> tuple[Any, Any, Any]:
 
 
 class Seen:
-    """Remembers what the forces of a system are made of, to say whether any of it has changed."""
+    """Remembers what the forces of a system are made of, to detect changes."""
 
     def __init__(self) -> None:
         self._system: System | None = None

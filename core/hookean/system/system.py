@@ -264,9 +264,9 @@ def hold(state: State, anchor: Held) -> None:
 
 
 def compile(scene: Scene) -> System:
-    """Compile a scene; InputError where parts of it do not fit together, or where it is none."""
+    """Compile a scene; raises InputError if its parts are inconsistent, or it is not a Scene."""
     if not isinstance(scene, Scene):
-        said = f"a Scene is wanted, not a {type(scene).__name__}; make one with hookean.Scene.read(...)"
+        said = f"a Scene is expected, not a {type(scene).__name__}; make one with hookean.Scene.read(...)"
         raise InputError("scene", said)
     welded = Welded(scene)
     x = welded.x
@@ -386,7 +386,7 @@ def _rests(block: Block) -> Floats:
 
 
 def _warn(system: System) -> None:
-    """Say what will surprise: springs without length, loads on particles nothing holds."""
+    """Warnings before a run: springs of zero length, loads on unsupported particles."""
     warnings = system.report.warnings
     touched = np.zeros(len(system.x), dtype=np.int8)
     for group in system.groups:
@@ -403,8 +403,8 @@ def _warn(system: System) -> None:
                 )
             if short:
                 warnings.append(
-                    f"/forces/{part.number}: {short} of {len(closed)} elements begin without length (first: element "
-                    f"{int(np.argmax(closed))}), so that they push in no direction; move their ends apart"
+                    f"/forces/{part.number}: {short} of {len(closed)} elements have zero length (first: element "
+                    f"{int(np.argmax(closed))}), so their forces have no direction; move their ends apart"
                 )
     for anchor in system.held:
         if (anchor.free == 0).all():
@@ -412,7 +412,7 @@ def _warn(system: System) -> None:
     alone = np.flatnonzero((system.load_count > 0) & (touched == 0))
     if len(alone) and not system.contacts:
         warnings.append(
-            f"particle {alone[0]} carries a load but no spring, other force or anchor holds it"
+            f"particle {alone[0]} carries a load but is unsupported: no spring, other force or anchor holds it"
             + (f" (and {len(alone) - 1} more)" if len(alone) > 1 else "")
         )
     if sum(len(group.parts) for group in system.groups if group.cls.role == "internal") > 1:

@@ -53,7 +53,7 @@ def rewire(system: System, state: State, scene: Scene, *, added: int = 0) -> Non
     except InputError as error:
         raise _of_patch(error, len(scene.forces) - added) from None
     if not np.array_equal(fresh.x, system.x):
-        raise InputError("", "with these forces the scene has other particles; send the changed scene instead")
+        raise InputError("", "these forces change the particles of the scene; send the changed scene instead")
     Wiring.of(fresh).put_into(system, state)
     system.scene = scene
 
@@ -80,7 +80,7 @@ def _placed(system: System, scene: Scene, force: Force, pointer: str) -> tuple[S
             missed = np.flatnonzero(system.places.meet(points).ravel() < 0)
             if len(missed):
                 spot = ", ".join(f"{c:.6g}" for c in points.reshape(-1, 3)[missed[0]])
-                said = f"no particle starts at ({spot}); a running system gets no new particles, so send a new scene"
+                said = f"no particle starts at ({spot}), and a running system cannot add particles; send a new scene"
                 raise InputError(f"{pointer}/{name}", said)
     particles = getattr(force, "particles", None)
     if particles is None:

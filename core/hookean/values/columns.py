@@ -76,7 +76,7 @@ def _decoded(value: Any) -> NDArray[Any]:
     if isinstance(value, str | bytes) or value is None:
         raise fault(f"{type(value).__name__} given where numbers are expected")
     if isinstance(value, list | tuple) and _mixes_truth(value):
-        raise fault("whole or decimal numbers are expected, without true or false between them", _truth(value))
+        raise fault("whole or decimal numbers are expected, not true or false", _truth(value))
     try:
         return np.asarray(value)
     except (ValueError, TypeError, OverflowError):
@@ -84,7 +84,7 @@ def _decoded(value: Any) -> NDArray[Any]:
 
 
 def _mixes_truth(value: Any) -> bool:
-    """Whether true or false stand among numbers: numpy would take them for 1 and 0."""
+    """Whether there is true or false among numbers: numpy would convert them to 1 and 0."""
     while value:
         kinds = set(map(type, value))
         if bool in kinds:
@@ -131,14 +131,14 @@ def _first(mask: NDArray[Any]) -> str:
 def _real(value: Any) -> NDArray[np.float64]:
     array = _decoded(value)
     if array.dtype == object or array.dtype.kind not in "fiu":
-        raise fault("numbers are expected, without text, true or false, or null between them", _odd(value))
+        raise fault("numbers are expected, not text, true, false or null", _odd(value))
     array = np.array(array, dtype=np.float64, order="C")
     bad = ~np.isfinite(array)
     if bad.any():
         raise fault("not a finite number", _first(bad))
     large = np.abs(array) > LARGEST
     if large.any():
-        raise fault(f"larger than {LARGEST:g}, the limit of what can be computed with", _first(large))
+        raise fault(f"larger than the limit, {LARGEST:g}", _first(large))
     array.flags.writeable = False
     return array
 
@@ -194,7 +194,7 @@ def _whole(value: Any) -> NDArray[np.int64]:
     if array.dtype == object or array.dtype.kind not in "iu":
         raise fault("whole numbers are expected; particles are counted from 0", _not_whole(value))
     if array.dtype.kind == "u" and (array > 2**62).any():
-        raise fault("larger than any particle can be", _first(array > 2**62))
+        raise fault("larger than any possible particle number", _first(array > 2**62))
     negative = array < 0
     if negative.any():
         spot = _first(negative)

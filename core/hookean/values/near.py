@@ -70,7 +70,7 @@ class Few:
         """Distances (m, k) of the nearest points to each place, nearest first, and which they are.
 
         Beyond the last point the distance is infinite and the number that of all points. A bound makes nothing quicker
-        here, and points beyond it are told.
+        here, and points beyond it are reported.
         """
         n = len(self.points)
         near, which = np.full((len(places), k), np.inf), np.full((len(places), k), n, dtype=np.int64)

@@ -28,7 +28,12 @@ _TIME = item(
 _SHAPE = (scenes.PARTICLES, scenes.SPRINGS, scenes.FORCES, scenes.REACTIONS, scenes.SUPPORTS, scenes.LENGTH, _SAG,
           scenes.LARGEST, scenes.STATUS)  # fmt: skip
 _ENDS = optional(
-    Parameter("Anchors", "A", "Point", "Where it is held: first, last and those between; none: (0, 0, 0), (10, 0, 0)")
+    Parameter(
+        "Anchors",
+        "A",
+        "Point",
+        "Points where it is held: first, last and those between; default: (0, 0, 0), (10, 0, 0)",
+    )
 )
 _DAMPING = item("Damping", "c", "Number", "Damping of every spring [N s/model unit]", minimum=0.0)
 _DRAG = item("Drag", "b", "Number", "Drag on every particle [N s/model unit]", minimum=0.0)
@@ -141,7 +146,7 @@ FUNCTIONS: dict[str, Function] = {
         (
             item("Spring", "Sp", "Line", "The spring"),
             item("Length", "L", "Number", "Its length [model unit]"),
-            item("Extension", "X", "Number", "By how much it is longer [model unit]"),
+            item("Extension", "X", "Number", "Its elongation [model unit]"),
             scenes.STATUS,
         ),
     ),

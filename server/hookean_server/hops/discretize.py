@@ -53,7 +53,7 @@ _OPTIONS = {
     "u": ("U", "U", "Faces along u"),
     "v": ("V", "V", "Faces along v"),
     "angle": ("Angle", "A", "Corners have an inside angle below this [rad]"),
-    "tolerance": ("Tolerance", "T", "What lies nearer than this is one [model unit]"),
+    "tolerance": ("Tolerance", "T", "Points nearer than this become one [model unit]"),
     "strict": ("Strict", "S", "True: a mesh without two families is an error; False: the family reached first"),
     "degree": ("Degree", "D", "Degree of the curve"),
     "pattern": ("Pattern", "P", "both, one or other diagonal of each quad"),
@@ -150,12 +150,12 @@ _SUMMARIES = {
     "threads": "The edges of a mesh of quads in two families, and which of them are on the boundary",
     "diagonals": "Diagonals of the quads of a mesh",
     "triangles": "A mesh with every quad cut along its shorter diagonal",
-    "weld": "A mesh with near vertices made one",
-    "remove_duplicate_points": "Points without those that are the same",
-    "remove_duplicate_lines": "Lines without those that are the same, either way round",
+    "weld": "A mesh with near vertices merged",
+    "remove_duplicate_points": "Points without duplicates",
+    "remove_duplicate_lines": "Lines without duplicates, in either direction",
 }
 
 FUNCTIONS: dict[str, Function] = {
     name: _function(name, operation, _SUMMARIES[name]) for name, operation in OPERATIONS.items() if name in _SUMMARIES
 }
-"""Functions by the names of their operations. The catenary is one of its own."""
+"""Functions by the names of their operations. The catenary has its own function."""

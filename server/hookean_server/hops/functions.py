@@ -35,7 +35,7 @@ FUNCTIONS: Mapping[str, Function] = {
 
 
 def solve(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
-    """The answer to POST /solve. Raises InputError with a sentence a person at the canvas understands."""
+    """The answer to POST /solve. Raises InputError with a sentence for the canvas."""
     clock = Clock()
     value = parse(body)
     if not isinstance(value, dict) or not isinstance(value.get("values"), list):
@@ -43,7 +43,7 @@ def solve(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
     name = str(value.get("pointer")).strip("/")
     if name not in FUNCTIONS:
         known = ", ".join(f"/{one}" for one in FUNCTIONS)
-        raise InputError("/pointer", f"there is no such function; there are {known}")
+        raise InputError("/pointer", f"unknown function; known: {known}")
     function = FUNCTIONS[name]
     inputs = Inputs(function, value, min(LONGEST, options["seconds"]), options["largest"], options["bytes"])
     clock.lap("decode")

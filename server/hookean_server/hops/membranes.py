@@ -20,7 +20,7 @@ _SIZE = item("Size", "L", "Number", "Side of the square [model unit]", minimum=1
 _DIVISIONS = count("Divisions", "N", "Faces along each side", None, 150)
 _HELD = item("Held", "H", "Text", "corners or rim", choices=("corners", "rim"))
 _ANCHORS = optional(
-    Parameter("Anchors", "A", "Point", "Vertices that are held instead, at [model unit]; none: as held")
+    Parameter("Anchors", "A", "Point", "Vertices that are held instead, at [model unit]; default: as Held")
 )
 _SAG = item("Sag", "D", "Number", "How far the middle vertex lies below the plane z = 0 [model unit]")
 _DEEPEST = item("Deepest", "Dm", "Number", "How far the lowest vertex lies below the plane z = 0 [model unit]")

@@ -70,9 +70,9 @@ class Parameter:
         low, high = self.minimum, self.maximum
         if low is not None and value < low or high is not None and value > high:
             allowed = f"{low:g} to {high:g}" if None not in (low, high) else f"{low:g} and more"
-            raise InputError(f"/{self.name}", f"{value:g} is given; allowed is {allowed}")
+            raise InputError(f"/{self.name}", f"{value:g} given; {allowed} allowed")
         if self.choices and value not in self.choices:
-            raise InputError(f"/{self.name}", f"this text is not known; it is one of {', '.join(self.choices)}")
+            raise InputError(f"/{self.name}", f"unknown text; allowed: {', '.join(self.choices)}")
         return value
 
 
@@ -140,7 +140,7 @@ def _tree(parameter: Parameter, value: Any) -> dict[str, Any]:
 def _afford(needed: int, most: int, where: str) -> None:
     if needed > most:
         said = f"the answer would have about {needed / 1e6:.0f} MB; at most {most / 1e6:.0f} MB are allowed"
-        raise InputError(where, f"{said}. Ask for fewer pieces, or for a part at a time")
+        raise InputError(where, f"{said}. Request fewer pieces, or one part at a time")
 
 
 class Inputs:
@@ -153,7 +153,7 @@ class Inputs:
         units = str(value.get("modelunits") or "Meters")
         self.units = UNITS.get(units, "m")
         if units not in UNITS:
-            self.warnings.append("The unit of this model is not known here; its lengths are taken as metres.")
+            self.warnings.append("The unit of this model is unknown; its lengths are read as metres.")
         tolerance: Any = value.get("absolutetolerance")
         self.tolerance = float(tolerance) if type(tolerance) in (int, float) and 0 < tolerance < 1e9 else 0.001
         self._parameters = {p.name: p for p in function.inputs}
@@ -219,7 +219,7 @@ class Inputs:
         if not found:
             raise InputError(f"/{name}", f"{name} is missing; connect one {parameter.kind.lower()}")
         if len(found) > 1:
-            raise InputError(f"/{name}", f"{name} takes one {parameter.kind.lower()}; {len(found)} are given")
+            raise InputError(f"/{name}", f"{name} accepts one {parameter.kind.lower()}; {len(found)} given")
         return parameter.check(found[0])
 
     def _value(self, parameter: Parameter) -> Any:

@@ -60,7 +60,9 @@ def _catenary(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
     rise = float(chord @ gravity / np.linalg.norm(gravity))
     shape = parameter(np.sqrt(max(chord @ chord - rise**2, 0.0)), length, rise)
     if not np.isfinite(shape):
-        raise InputError("/Length", f"{length:g} is the distance of A and B: the cable is straight; give a longer one")
+        raise InputError(
+            "/Length", f"{length:g} given, the distance of A and B: the cable is straight; give a longer one"
+        )
     return {
         "Curve": points,
         "Points": points,
@@ -97,7 +99,7 @@ FUNCTIONS: dict[str, Function] = {
         "The edges of a mesh become springs and go to equilibrium",
         (
             item("Mesh", "M", "Mesh", "The mesh"),
-            optional(Parameter("Anchors", "A", "Point", "Vertices that are held; none: those at the boundary")),
+            optional(Parameter("Anchors", "A", "Point", "Held vertices; default: those on the boundary")),
             *_FORCED,
         ),
         (scenes.MESH, Parameter("Edges", "L", "Line", "Springs in equilibrium"), *_FOUND),
@@ -110,9 +112,9 @@ FUNCTIONS: dict[str, Function] = {
         (
             item("A", "A", "Point", "Start of the cable [model unit]"),
             item("B", "B", "Point", "End of the cable [model unit]"),
-            item("Length", "L", "Number", "Length of the cable [model unit], more than A and B are apart", 12.0,
+            item("Length", "L", "Number", "Length of the cable [model unit], more than the distance of A and B", 12.0,
                  minimum=0.0, maximum=1e9),
-            optional(Parameter("Gravity", "G", "Vector", "Direction in which it hangs [-]; none: down", most=1)),
+            optional(Parameter("Gravity", "G", "Vector", "Direction in which it hangs [-]; default: down", most=1)),
             count("Pieces", "N", "Pieces of equal length", 60, 10_000),
             item("Weight", "W", "Number", "Weight [N/model unit]", 1.0, minimum=1e-9),
         ),
@@ -122,7 +124,7 @@ FUNCTIONS: dict[str, Function] = {
             item("Parameter", "a", "Number", "a of the curve [model unit]; its horizontal pull is weight times a"),
             item("Depth", "D", "Number", "How far the lowest point of the curve lies below A [model unit]"),
             Parameter("Tensions", "T", "Number", "Tension at each point [N]"),
-            item("Largest tension", "Tm", "Number", "The largest of them [N]"),
+            item("Largest tension", "Tm", "Number", "The largest tension [N]"),
         ),
         _catenary,
         "Catenaries",

@@ -23,7 +23,7 @@ router = APIRouter(tags=["hops"])
 @router.get("/", summary="The page, or Hops' list of functions", **openapi.hops_list())
 @marked(Access.HOPS)
 async def root(request: Request) -> Response:
-    """A browser, which asks for text/html, gets the page; Hops, which does not say, gets its functions."""
+    """Browsers, which ask for text/html, get the page; Hops, which names no type, gets its functions."""
     if "text/html" in request.headers.get("accept", ""):
         return start_page(request)
     return JSONResponse([function.described(name) for name, function in FUNCTIONS.items()], headers={"vary": "Accept"})
@@ -45,5 +45,5 @@ async def described(function: str) -> dict[str, Any]:
     if function == "solve":
         raise Problem("method-not-allowed", "Functions are run with POST /solve.", headers={"allow": "POST"})
     if function not in FUNCTIONS:
-        raise Problem("not-found", "There is no function of this name; GET / of this server lists those there are.")
+        raise Problem("not-found", "There is no function with this name; GET / of this server lists all.")
     return FUNCTIONS[function].described(function)

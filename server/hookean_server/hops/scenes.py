@@ -15,7 +15,7 @@ from hookean_server.problems import Problem
 from hookean_server.workers.task import Cancelled
 
 PARTICLES = Parameter("Particles", "Pt", "Point", "Particles in equilibrium [model unit]")
-SPRINGS = Parameter("Springs", "L", "Line", "Springs in equilibrium, in the order of what they were made of")
+SPRINGS = Parameter("Springs", "L", "Line", "Springs in equilibrium, in the order of the input")
 MESH = item("Mesh", "M", "Mesh", "The mesh in equilibrium")
 FORCES = Parameter("Forces", "F", "Number", "Force of every spring [N], tension positive")
 REACTIONS = Parameter("Reactions", "Re", "Vector", "Force of every anchor on its particle [N]")
@@ -98,8 +98,8 @@ def _placed(inputs: Inputs, scene: Scene, **settings: Any) -> Scene:
 
 
 def out_of_time(inputs: Inputs) -> Problem:
-    """A result cut off by the clock is none: it would be kept for ever, and a quicker machine has another."""
-    said = f"Not done within {inputs.seconds:g} s; give a coarser model, less time, or a higher tolerance."
+    """A result cut off by the clock is an error: it would be kept for ever, and a quicker machine has another."""
+    said = f"Not finished within {inputs.seconds:g} s; give a coarser model, less time, or a higher tolerance."
     return Problem("out-of-time", said)
 
 

@@ -1,1 +1,1 @@
-"""What all endpoints share: who gets in, limits, headers, schemas, logs and metrics."""
+"""What all endpoints share: authentication, limits, headers, schemas, logs and metrics."""

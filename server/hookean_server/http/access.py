@@ -1,7 +1,7 @@
 """Which operations are open without a token, and which operation an address is.
 
 An operation is closed unless its endpoint is marked here, so a new one is closed. The guard finds it in the
-application's own routes: an alias of an address is the same operation, or none.
+application's own routes: an alias of an address is the same operation.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ class Access(Enum):
     TOKEN = "clients with the token, or with a cookie of this server from its own page"
     PROGRAM = "clients with the token itself"
     CODE = "clients with the token itself, or with an unused code"
-    OPEN = "everybody on this machine"
-    HOPS = "everybody on this machine but web pages: Hops has no token"
+    OPEN = "all programs on this machine"
+    HOPS = "all programs on this machine except web pages: Hops has no token"
 
 
 _MARKED: dict[Callable[..., Any], Access] = {}
@@ -55,7 +55,7 @@ class Table:
         return of(self.endpoint(method, path))
 
     def endpoint(self, method: str, path: str) -> Callable[..., Any] | None:
-        """What answers a request; None where nothing does. HEAD is answered as GET."""
+        """The route that answers a request; None if there is no such route. HEAD is answered as GET."""
         method = "GET" if method == "HEAD" else method
         found = (r.endpoint for r in self.routes if method in (r.methods or ()) and r.path_regex.match(path))
         return next(found, None)
@@ -66,12 +66,12 @@ class Table:
         return of(next(found, None))
 
     def methods(self, path: str) -> list[str]:
-        """What an address takes, in order of the alphabet."""
+        """The methods of an address, in alphabetical order."""
         found = {method for route in self._closest(path) for method in route.methods or ()}
         return sorted(found | {"HEAD"} if "GET" in found else found)
 
     def is_for_hops(self, path: str) -> bool:
-        """Whether an address is one of Hops' own, whatever is asked of it."""
+        """Whether an address is one of Hops' own, whatever its method."""
         return any(of(route.endpoint) is Access.HOPS for route in self._closest(path))
 
     def _closest(self, path: str) -> list[Route]:

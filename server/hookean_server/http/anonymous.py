@@ -41,7 +41,7 @@ class Visits:
     @contextmanager
     def _place(self) -> Iterator[Visit]:
         if self.taken >= self.room:
-            said = f"{self.taken} requests without a token are being worked on or waiting; come back in a second."
+            said = f"{self.taken} requests without a token are running or waiting; retry in a second."
             raise Problem("busy", said, headers={"retry-after": "1"})
         visit = Visit(self.turns)
         self.taken += 1

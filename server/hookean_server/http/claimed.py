@@ -1,4 +1,4 @@
-"""What a result says of itself, as headers of an answer: a client need not read a body to know how a run ended."""
+"""The fields of a result as headers of an answer, so that clients know how a run ended without the body."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def headers(result: Result, warnings: Sequence[str] = ()) -> dict[str, str]:
 
 
 def warned(warnings: Sequence[str]) -> dict[str, str]:
-    """The header of warnings: a JSON list of sentences in ASCII; the last counts those that there is no room for."""
+    """The header of warnings: a JSON list of sentences in ASCII; the last counts those that do not fit."""
     every = [w if len(w) <= LONGEST_WARNING else w[: LONGEST_WARNING - 3] + "..." for w in dict.fromkeys(warnings)]
     if not every:
         return {}

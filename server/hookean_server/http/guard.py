@@ -1,4 +1,4 @@
-"""Who may: hosts, origins and tokens, checked for requests and WebSockets alike before anything is read."""
+"""Authentication: hosts, origins and tokens of requests and WebSockets, checked before anything is read."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ EXPOSED = ", ".join(("etag", "location", "retry-after", "server-timing", "x-requ
 
 
 class Guard:
-    """Refuses other hosts, other sites' pages, and whoever has no token; compressed bodies and huge headers too."""
+    """Refuses other hosts, pages of other sites, clients without the token, compressed bodies and huge headers."""
 
     def __init__(self, app: ASGIApp, settings: Settings, tokens: Tokens, table: Table) -> None:
         self.app, self.settings, self.tokens, self.table = app, settings, tokens, table
@@ -43,7 +43,7 @@ class Guard:
         headers = _Headers(scope)
         self._check_host(scope, headers)
         if not access.is_plain(scope["path"]):
-            raise Problem("not-found", "There is nothing at this address; GET /v1/openapi.json lists every one.")
+            raise Problem("not-found", "This address does not exist; GET /v1/openapi.json lists every one.")
         if scope.get("preflight"):  # of a listed origin; the answer's headers are added further out
             await send({"type": "http.response.start", "status": 204, "headers": []})
             await send({"type": "http.response.body", "body": b""})
@@ -53,7 +53,7 @@ class Guard:
         self._check_origin(scope, headers, needed)
         entry, renewal = self._entry(scope, headers, needed)
         if any(encoding not in ("identity", "") for encoding in headers.all(b"content-encoding")):
-            said = "The body is compressed; send it as it is, without Content-Encoding."
+            said = "The body is compressed; send it uncompressed, without Content-Encoding."
             raise Problem("unsupported-media", said)
         if entry is None:
             await self.app(scope, receive, send)
@@ -64,7 +64,7 @@ class Guard:
 
     def _check_host(self, scope: Scope, headers: _Headers) -> None:
         if headers.size > self.settings.header_limit:
-            raise Problem("headers-too-large", f"At most {self.settings.header_limit} bytes of headers are taken.")
+            raise Problem("headers-too-large", f"At most {self.settings.header_limit} bytes of headers are accepted.")
         hosts = headers.all(b"host")
         if len(hosts) != 1 or not self._ours(hosts[0], scope):
             raise Problem("forbidden-host", "Address this service as 127.0.0.1, localhost or [::1] with its port.")
@@ -79,17 +79,17 @@ class Guard:
     def _check_origin(self, scope: Scope, headers: _Headers, needed: Access) -> None:
         origins, sites = headers.all(b"origin"), headers.all(b"sec-fetch-site")
         if origins and needed is Access.HOPS:
-            raise Problem("forbidden-origin", "Hops' calls are for Hops: pages of any origin are refused.")
+            raise Problem("forbidden-origin", "These addresses are for Hops only; web pages may not use them.")
         if scope["type"] == "http" and scope["method"] in SAFE:
             return
         if len(origins) > 1 or any(o != headers.own and o not in self.origins for o in origins):
-            raise Problem("forbidden-origin", "This came from a page of another origin, which may not do this.")
+            raise Problem("forbidden-origin", "Pages of another origin may not send this request.")
         if not _same_site(sites) and not (origins and origins[0] in self.origins):
-            raise Problem("forbidden-origin", "This came from a page of another site, which may not do this.")
+            raise Problem("forbidden-origin", "Pages of another site may not send this request.")
 
     def _entry(self, scope: Scope, headers: _Headers, needed: Access) -> tuple[Entry | None, str]:
-        """Who sends this, and a new value for their cookie where it is time; nobody where that does not matter. Raises
-        the problem `unauthorized`."""
+        """The client that sends this, and a new value for its cookie if due; None for open operations. Raises the
+        problem `unauthorized`."""
         if needed in (Access.OPEN, Access.HOPS):
             return None, ""
         given = headers.all(b"authorization", lower=False)
@@ -103,7 +103,7 @@ class Guard:
         if entry is None:
             raise Problem(
                 "unauthorized",
-                "Send the service's token: Authorization: Bearer, with what the command `hookean token` prints.",
+                "Requests need the service's token: Authorization: Bearer TOKEN; `hookean token` prints it.",
                 headers={"www-authenticate": 'Bearer realm="hookean"'},
             )
         return entry, renewal

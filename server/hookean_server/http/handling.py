@@ -30,8 +30,8 @@ async def read_json(request: Request) -> bytes:
 
 
 async def compute(request: Request, task: str, options: dict[str, Any], *, once: Any = False) -> Response:
-    """Run a task on the JSON body of a request. `once`: whether to replace the worker afterwards, or a function of
-    the body that says so."""
+    """Run a task on the JSON body of a request. `once`: whether to replace the worker afterwards, or a function of the
+    body that returns this."""
     pool, settings = _service(request)
     with pool.place():
         job = _job(settings, task, options, await read_json(request), once)
@@ -57,7 +57,7 @@ async def compute_upload(request: Request, task: str, options: dict[str, Any], *
 
 
 async def uploaded_scene(request: Request) -> tuple[bytes, list[str]]:
-    """The scene, as JSON, of the file in a form, and what a person should know of the file."""
+    """The scene, as JSON, of the file in a form, and the notes on the file."""
     reply = await _uploaded(request, "scene", {})
     return reply.body, json.loads(reply.head["headers"].get("hookean-warnings", "[]"))
 

@@ -116,7 +116,7 @@ class Paced:
 
 class Connection(H11Protocol):
     """One connection: takes little at a time, gives headers a time to arrive and answers a time to be read, answers
-    what is no HTTP as a problem."""
+    what is not HTTP with a problem."""
 
     header_seconds = 30.0
     write_seconds = 30.0
@@ -156,8 +156,8 @@ class Connection(H11Protocol):
         super().resume_writing()
 
     def send_400_response(self, msg: str) -> None:
-        """What is no HTTP."""
-        problem = Problem("bad-request", "This is no HTTP request, or its headers are too large.")
+        """Bytes that are not HTTP."""
+        problem = Problem("bad-request", "This is not an HTTP request, or its headers are too large.")
         body = problem.body("urn:uuid:00000000-0000-0000-0000-000000000000")
         own = {"content-type": MEDIA_TYPE, "content-length": str(len(body)), "connection": "close", **ALWAYS}
         headers = [*self.server_state.default_headers, *((k.encode(), v.encode()) for k, v in own.items())]
@@ -195,7 +195,7 @@ class Socket(WebSocketsSansIOProtocol):
 
 
 def _too_large(limit: int) -> Problem:
-    return Problem("too-large", f"At most {limit} bytes are taken.", [("/", f"more than {limit} bytes given")])
+    return Problem("too-large", f"At most {limit} bytes are accepted.", [("/", f"more than {limit} bytes given")])
 
 
 def media_type(headers: Any) -> str:

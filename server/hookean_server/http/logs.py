@@ -1,4 +1,4 @@
-"""What is logged: with HOOKEAN_LOG=json one line of JSON for each request and event, else only what is wrong.
+"""What is logged: with HOOKEAN_LOG=json one line of JSON for each request and event, else only errors.
 
 A line names the request, its route's template, status and time; of a session a hash of its key. Never a token, an
 address as it was sent, a body or a coordinate.
@@ -100,7 +100,7 @@ def begin(given: str = "", *, queued: bool = False) -> bool:
 
 
 def short_hash(text: str) -> str:
-    """A name for something whose own name is not told."""
+    """A name for something whose own name is secret."""
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 

@@ -33,7 +33,7 @@ class Metrics:
         self.registry.register(_Present(state))
 
     def request(self, method: str, route: str, status: int, seconds: float, problem: str) -> None:
-        """A request has ended; WebSockets count as rejected only, for they last as long as somebody watches."""
+        """A request has ended; WebSockets count as rejected only, as they last as long as a client watches."""
         if method != "WEBSOCKET":
             self.requests.labels(self.method(method), route, str(status)).observe(seconds)
         if problem:
@@ -50,7 +50,7 @@ class Metrics:
 
 
 class _Present:
-    """What stands at the moment of asking."""
+    """The figures at the time of the request."""
 
     def __init__(self, state: Any) -> None:
         self.state = state
@@ -59,15 +59,15 @@ class _Present:
         """Sessions, jobs, workers, frames, the queue and the store."""
         pool, sessions, store = self.state.pool, self.state.sessions, self.state.store
         live = list(sessions.sessions.values())
-        yield _by_state("sessions", "Sessions by how they stand", Count(_standing(one) for one in live))
+        yield _by_state("sessions", "Sessions by status", Count(_standing(one) for one in live))
         awake = sum(one.process is not None for one in live)
         sweeps = self.state.jobs.local.pool
         workers = Count(pool.states()) + Count(sweeps.states())
         states = dict.fromkeys(pool.states(), 0) | workers | {"session": awake}
-        yield _by_state("workers", "Processes by what they do", states)
-        yield _by_state("jobs", "Jobs by how they stand", self.state.jobs.states())
+        yield _by_state("workers", "Processes by activity", states)
+        yield _by_state("jobs", "Jobs by status", self.state.jobs.states())
         yield _counted("frames_sent", "Frames sent to clients", sessions.frames_sent)
-        yield _counted("frames_skipped", "Frames that slow clients did not get", sessions.frames_skipped)
+        yield _counted("frames_skipped", "Frames dropped for slow clients", sessions.frames_skipped)
         queue = max(0, pool.taken - pool.settings.lanes)
         yield GaugeMetricFamily("queue_depth", "Requests that wait for a worker", value=queue)
         yield GaugeMetricFamily("checkpoint_seconds", "Time of the last write to the store [s]", value=store.seconds)

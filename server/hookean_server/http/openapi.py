@@ -68,7 +68,7 @@ def _form(file: str) -> dict[str, Any]:
             "file": {"type": "string", "format": "binary", "description": file},
             "recipe": {
                 "type": "string",
-                "description": "What to make of a .3dm file, as TOML or JSON text; none: as drawn",
+                "description": "Recipe for a .3dm file, as TOML or JSON text; default: read as drawn",
             },
         },
         "required": ["file"],
@@ -76,7 +76,7 @@ def _form(file: str) -> dict[str, Any]:
 
 
 def relax() -> dict[str, Any]:
-    """What the route of `/v1/relax` says of itself."""
+    """Description of the route `/v1/relax`."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/Result"}}}
     scene = {"$ref": "#/components/schemas/Scene"}
     found = problems(success, computed=True, headers=claimed.described())
@@ -84,14 +84,14 @@ def relax() -> dict[str, Any]:
 
 
 def example_scene() -> dict[str, Any]:
-    """What the route of an example's scene says of itself."""
+    """Description of the route of an example's scene."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/Scene"}}}
     found = problems(success)
     return {"responses": {**found, **{code: problems(computed=True)[code] for code in (503, 504)}}}
 
 
 def relax_file() -> dict[str, Any]:
-    """What the route of `/v1/relax/3dm` says of itself."""
+    """Description of the route `/v1/relax/3dm`."""
     success = {
         "model/vnd.3dm": {"schema": {"type": "string", "format": "binary"}},
         "application/json": {"schema": {"type": "object"}},
@@ -103,7 +103,7 @@ def relax_file() -> dict[str, Any]:
 
 
 def discretize(name: str) -> dict[str, Any]:
-    """What the route of one operation says of itself."""
+    """Description of the route of one operation."""
     takes, gives = operation_schema(name)
     success = {"application/json": {"schema": gives}}
     return {
@@ -116,7 +116,7 @@ def discretize(name: str) -> dict[str, Any]:
 
 
 def session_body(*codes: int) -> dict[str, Any]:
-    """What routes say of themselves that make a session of a scene or a file."""
+    """Description of the routes that make a session of a scene or a file."""
     found = problems(None, live=True)
     found.update({code: {"description": "The session", "content": SESSION} for code in codes})
     extra = _takes({"$ref": "#/components/schemas/Scene"}, EXAMPLES["relax"])
@@ -126,7 +126,7 @@ def session_body(*codes: int) -> dict[str, Any]:
 
 
 def edit() -> dict[str, Any]:
-    """What the route of edits says of itself."""
+    """Description of the route of edits."""
     examples = {
         "a load": {"forces": {"1": {"vector": [0.0, 0.0, -5.0]}}},
         "a pin": {"pin": [{"particles": [2]}]},
@@ -147,7 +147,7 @@ def forgotten() -> dict[int | str, dict[str, Any]]:
 
 
 def branched() -> dict[str, Any]:
-    """What the route of branches says of itself."""
+    """Description of the route of branches."""
     return {"responses": {**problems(None, live=True), 201: {"description": "The branch", "content": SESSION}}}
 
 
@@ -159,42 +159,42 @@ def exported(*codes: int) -> dict[int | str, dict[str, Any]]:
 
 
 def shutdown() -> dict[str, Any]:
-    """What the route of `/v1/shutdown` says of itself."""
+    """Description of the route `/v1/shutdown`."""
     success = {"schema": {"type": "object", "properties": {"status": {"const": "stopping"}}, "required": ["status"]}}
-    told = {202: {"description": "It ends", "content": {"application/json": success}}}
+    told = {202: {"description": "The service stops", "content": {"application/json": success}}}
     return {"responses": {**problems(None, computed=True), **told}}
 
 
 def code() -> dict[str, Any]:
-    """What the route of codes says of itself."""
+    """Description of the route of codes."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/Code"}}}
     return {"responses": {**problems(), 201: {"description": "The code", "content": success}}}
 
 
 def hops_list() -> dict[str, Any]:
-    """What GET / says of itself."""
+    """Description of GET /."""
     listed = {"type": "array", "items": {"$ref": "#/components/schemas/HopsFunction"}}
     page = {"schema": {"type": "string"}}
     return {"responses": problems({"application/json": {"schema": listed}, "text/html": page}, open_to_all=True)}
 
 
 def hops_description() -> dict[str, Any]:
-    """What GET /<name> says of itself."""
+    """Description of GET /<name>."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsFunction"}}}
-    found = _told_to_hops(problems(success, open_to_all=True))
+    found = _for_hops(problems(success, open_to_all=True))
     either = {"anyOf": [{"$ref": f"#/components/schemas/{name}"} for name in ("HopsProblem", "Problem")]}
     found[404] = {**found[404], "content": {MEDIA_TYPE: {"schema": either}}}  # a name with a slash is none
     return {"responses": found}
 
 
 def hops_solve() -> dict[str, Any]:
-    """What POST /solve says of itself: its problems have what Hops shows, as sentences."""
+    """Description of POST /solve: its problems have the sentences that Hops shows."""
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/HopsAnswer"}}}
-    found = _told_to_hops(problems(success, computed=True, open_to_all=True))
+    found = _for_hops(problems(success, computed=True, open_to_all=True))
     return {"responses": found, "openapi_extra": _takes({"$ref": "#/components/schemas/HopsRequest"}, EXAMPLES["hops"])}
 
 
-def _told_to_hops(found: dict[int | str, dict[str, Any]]) -> dict[int | str, dict[str, Any]]:
+def _for_hops(found: dict[int | str, dict[str, Any]]) -> dict[int | str, dict[str, Any]]:
     """Responses whose problems are as Hops reads them."""
     problem = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/HopsProblem"}}}
     return {
@@ -220,7 +220,7 @@ def _build(app: FastAPI) -> dict[str, Any]:
         title="hookean",
         version=hookean.__version__,
         summary="Particle-spring form finding on this machine",
-        description="Bodies are JSON unless said otherwise; every failure is a problem document (RFC 9457).",
+        description="Bodies are JSON unless stated otherwise; every failure is a problem document (RFC 9457).",
         routes=app.routes,
     )
     _secure(app, document)
@@ -239,24 +239,24 @@ def _build(app: FastAPI) -> dict[str, Any]:
 
 
 def _secure(app: FastAPI, document: dict[str, Any]) -> None:
-    """Say of every operation who may call it, as the guard has it."""
+    """Add to every operation the clients that may call it, as the guard has them."""
     table, settings = app.state.table, app.state.settings
     document.setdefault("components", {})["securitySchemes"] = {
         "token": {
             "type": "http",
             "scheme": "bearer",
-            "description": "What `hookean token` prints; another one for each start of the service",
+            "description": "The token that `hookean token` prints; it changes with each start of the service",
         },
         "code": {
             "type": "http",
             "scheme": "bearer",
-            "description": "A code of POST /v1/login/codes, which is good for one log-in within a minute",
+            "description": "A code of POST /v1/login/codes, valid for one log-in within a minute",
         },
         "cookie": {
             "type": "apiKey",
             "in": "cookie",
             "name": cookie_name(settings.port),
-            "description": "Of POST /v1/login, for the service's own page; the name has the service's port",
+            "description": "From POST /v1/login, for the service's own page; its name contains the service's port",
         },
     }
     by: dict[Access, list[dict[str, list[str]]]] = {

@@ -1,4 +1,4 @@
-"""Problems on their way out: whatever is raised becomes a problem document with the number of its request."""
+"""Problems on their way out: every exception becomes a problem document with the number of its request."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LINGER = 2.0  # seconds in which a refused client may take notice before its con
 
 
 class Problems:
-    """Numbers the request and turns whatever is raised into a problem document."""
+    """Numbers the request and turns every exception into a problem document."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -54,14 +54,16 @@ class Problems:
         except asyncio.CancelledError:
             # only the shutdown cancels requests: those that did not end by themselves in its grace time
             if scope["type"] == "http" and not started:
-                gone = Problem("shutting-down", "The service stopped before this was done.")
+                gone = Problem("shutting-down", "The service stopped before this was finished.")
                 with suppress(asyncio.CancelledError, OSError):
                     await answer(gone, scope, numbered)
         except Exception:
             log.exception("%s failed", instance)
             if scope["type"] != "http" or started:
                 raise
-            await refuse(Problem("internal", "The service failed; its log tells more."), scope, receive, numbered)
+            await refuse(
+                Problem("internal", "Internal error; the log of the service has the details."), scope, receive, numbered
+            )
 
 
 async def answer(problem: Problem, scope: Scope, send: Send, *, more: bool = False) -> None:

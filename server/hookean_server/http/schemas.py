@@ -1,4 +1,4 @@
-"""Schemas of what is no pydantic model, and examples; the tests run every example."""
+"""Schemas that are not pydantic models, and examples; the tests run every example."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
     },
     "CompasDocument": {
         **_object(dtype={"type": "string"}, data={}),
-        "description": f"A document as COMPAS 2 writes it; read are {', '.join(ACCEPTED)}",
+        "description": f"A document as COMPAS 2 writes it; supported: {', '.join(ACCEPTED)}",
     },
     "RhinoObject": {
         **_object(version={"type": "integer"}, archive3dm={"type": "integer"}, opennurbs={"type": "integer"}),
@@ -54,7 +54,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
     },
     "NurbsCurve": {
         **_optional(_object(degree=_DEGREE, points=_POINTS, knots=_ARRAY), weights=_ARRAY),
-        "description": "A NURBS curve; points + degree + 1 knots, or without the first and the last as in Rhino",
+        "description": "A NURBS curve; points + degree + 1 knots, or two less (first and last) as in Rhino",
     },
     "NurbsSurface": {
         **_optional(
@@ -116,13 +116,13 @@ SCHEMAS: dict[str, dict[str, Any]] = {
     "Store": {
         "type": "object",
         "properties": {
-            "bytes": {"type": "integer", "description": "What sessions and jobs take on disk"},
-            "quota": {"type": "integer", "description": "What they may take; 0: any number"},
+            "bytes": {"type": "integer", "description": "Size of sessions and jobs on disk"},
+            "quota": {"type": "integer", "description": "Largest size; 0: no limit"},
             "warnings": {"type": "array", "items": _TEXT},
-            "losses": {"type": "integer", "description": "Sessions and jobs of which something is lost"},
+            "losses": {"type": "integer", "description": "Sessions and jobs with losses"},
             "repairs": {
                 "type": "array",
-                "description": "For clients with the token: each repair whose copy of the damaged files is still there",
+                "description": "For clients with the token: each repair whose copy of the damaged files still exists",
                 "items": _object(
                     when=_TEXT,
                     why=_TEXT,
@@ -147,7 +147,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         geometry={"type": "array", "items": _object(name={"type": "string"}, kind={"type": "string"})},
         forces={
             "type": "array",
-            "description": "For each force of the scene its columns, see GET /v1/forces",
+            "description": "Columns of each force of the scene, see GET /v1/forces",
             "items": _object(kind={"type": "string"}, name={"type": "string"}),
         },
         reactions={**_AT, "description": "Forces of the anchors on their particles"},
@@ -161,14 +161,17 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "additionalProperties": {"type": "array"},
         },
         stability={"enum": ["stable", "unstable", "mechanism", "unknown"]},
-        stability_reason={"type": "string", "description": "Why it is not stable, or not known; empty if stable"},
+        stability_reason={"type": "string", "description": "Why it is unstable or unknown; empty if stable"},
         soft_particle={"type": ["integer", "null"], "description": "The particle that moves most in the softest mode"},
-        soft_modes={"type": ["integer", "null"], "description": "How many modes are unstable, or meet no resistance"},
+        soft_modes={
+            "type": ["integer", "null"],
+            "description": "Number of modes that are unstable or have no stiffness",
+        },
         position_error={
             "type": ["number", "null"],
-            "description": "The largest movement that one more exact step would make [length]; null where not known",
+            "description": "The largest movement that one more exact step would make [length]; null if unknown",
         },
-        position_reason={"type": "string", "description": "Why the position error is not known; empty if it is"},
+        position_reason={"type": "string", "description": "Why the position error is unknown; empty if known"},
         energy={"type": "object", "additionalProperties": {"type": ["number", "null"]}},
         iterations={"type": "integer"},
         time=_NUMBER,
@@ -184,26 +187,26 @@ SCHEMAS: dict[str, dict[str, Any]] = {
 }
 SCHEMAS["Session"] = {
     "type": "object",
-    "description": "How a session stands",
+    "description": "Status of a session",
     "properties": {
         "key": {"type": "string"},
         "label": {"type": "string"},
         "etag": {"type": "string", "description": "Its ETag: of this creation, revision and shape"},
-        "revision": {"type": "integer", "description": "Counts edits"},
+        "revision": {"type": "integer", "description": "Number of edits"},
         "iteration": {"type": "integer"},
         "time": {**_NUMBER, "description": "[time]"},
         "residual": {**_NUMBER, "description": "[-]"},
         "status": {"enum": [str(status) for status in Status]},
-        "message": {"type": "string", "description": "One sentence about it"},
+        "message": {"type": "string", "description": "One sentence on its status"},
         "particles": {"type": "integer"},
         "playing": {"type": "boolean"},
-        "undo": {"type": "integer", "description": "Edits that can be taken back"},
+        "undo": {"type": "integer", "description": "Edits that can be undone"},
         "redo": {"type": "integer"},
         "awake": {"type": "boolean", "description": "Whether it has a process"},
         "created": _NUMBER,
         "energy": {"type": ["number", "null"], "description": "Of all forces and of motion [force length]"},
         "units": {"$ref": "#/components/schemas/Units"},
-        "warnings": {**_SENTENCES, "description": "On the file it was made of, and on the scene as it is now"},
+        "warnings": {**_SENTENCES, "description": "Notes on the file it was made of, and on the present scene"},
     },
     "required": ["key", "label", "revision", "status", "message", "particles", "playing", "warnings", "awake"],
 }
@@ -223,7 +226,7 @@ SCHEMAS["Edit"] = {
         "add": {
             "type": "array",
             "items": {"type": "object"},
-            "description": "Forces as a scene has them, on particles that are there",
+            "description": "Forces as in a scene, on existing particles",
         },
         "remove": {
             "type": "array",

@@ -1,6 +1,6 @@
-"""What lets in: one token for each start of the server, cookies that a page gets for it, and codes for one log-in.
+"""Authentication: one token for each start of the server, cookies that a page gets for it, and codes for one log-in.
 
-Programs send `Authorization: Bearer <token>`. A page is opened as `/#t=<token or code>`: the part behind # stays in
+Programs send `Authorization: Bearer <token>`. A page is opened as `/#t=<token or code>`: the part after # stays in
 the browser; its script sends it once to `/v1/login` and gets a cookie that scripts cannot read. All of it ends with the
 server; a cookie is good for its port alone and for hours, and is renewed while it is used.
 """
@@ -27,7 +27,7 @@ CODE_LIFE = 60.0  # seconds
 
 
 class Unfit(ValueError):
-    """A token that cannot be one; the sentence says what it takes."""
+    """An invalid token; the sentence names the allowed ones."""
 
 
 def chosen(given: str = "") -> str:
@@ -38,13 +38,13 @@ def chosen(given: str = "") -> str:
     named = os.environ.pop(VARIABLE, "")
     token = given or named or secrets.token_urlsafe(32)
     if not re.fullmatch(rf"[A-Za-z0-9._~+/-]{{{SHORTEST},200}}=*", token):
-        raise Unfit(f"{VARIABLE} takes {SHORTEST} to 200 letters, digits and . _ ~ + / -.")
+        raise Unfit(f"{VARIABLE} accepts {SHORTEST} to 200 letters, digits and . _ ~ + / -.")
     return token
 
 
 @dataclass(eq=False)
 class Entry:
-    """Somebody who was let in. `ended`: is no more, so that what goes on for them ends."""
+    """An authenticated client. `ended`: it is logged out, and its streams end."""
 
     used: float = 0.0
     ended: asyncio.Event = field(default_factory=asyncio.Event)
@@ -69,7 +69,7 @@ class Tokens:
         self._codes: dict[str, float] = {}  # when each ends, by its hash
 
     def renew(self) -> None:
-        """Log everybody out, for good: another token, no cookie, no code. Raises OSError, and changes nothing, where
+        """Log all clients out: a new token, no cookies, no codes. Raises OSError, and changes nothing, where
         clients cannot be given the new one."""
         token, proof = secrets.token_urlsafe(32), secrets.token_hex(32)
         self.publish(token, proof)
@@ -80,7 +80,7 @@ class Tokens:
             entry.ended.set()
 
     def named(self, authorization: str) -> Entry | None:
-        """Who sends this header Authorization; None where it does not hold the token."""
+        """The client that sends this header Authorization; None if it does not have the token."""
         return self._bearer if hmac.compare_digest(_given(authorization).encode(), self.token.encode()) else None
 
     def proven(self, instance: str, address: str, port: int, nonce: str) -> str:
@@ -92,7 +92,7 @@ class Tokens:
     # codes
 
     def code(self) -> str:
-        """A code that stands for the token once, for one log-in within a minute."""
+        """A code that replaces the token for one log-in within a minute."""
         self._forget_codes()
         code = secrets.token_urlsafe(32)
         self._codes[_hash(code)] = time.monotonic() + CODE_LIFE
@@ -106,7 +106,7 @@ class Tokens:
         return known in self._codes
 
     def spend(self, authorization: str) -> Entry | None:
-        """Who sends this header Authorization; None where it does not hold a code that waits. It waits no more."""
+        """The client that sends this header Authorization; None if it has no unused code. The code is then used."""
         self._forget_codes()
         return self._bearer if self._codes.pop(_hash(_given(authorization)), None) is not None else None
 
@@ -125,8 +125,8 @@ class Tokens:
         return self._signed(name, who)
 
     def logged_in(self, name: str, values: Iterable[str]) -> tuple[Entry | None, str]:
-        """Who sends one of these values of the cookie, None where they are no good, or not any more; and a new value,
-        empty where the one sent is good for longer."""
+        """The client that sends one of these values of the cookie, None if they are invalid or expired; a new value,
+        empty if the one sent stays valid."""
         now = time.monotonic()
         for value in values:
             who, given = self._read(name, value)
@@ -151,7 +151,7 @@ class Tokens:
         return f"{said}.{self._mac(name, said)}"
 
     def _read(self, name: str, value: str) -> tuple[str, float]:
-        """Who has this value of a cookie, and when it was given; nobody where this server did not give it."""
+        """The client with this value of a cookie, and when it was issued; None if this server did not issue it."""
         said, _, mac = value.rpartition(".")
         if not hmac.compare_digest(mac.encode(), self._mac(name, said).encode()):
             return "", 0.0
@@ -173,7 +173,7 @@ def _hash(value: str) -> str:
 
 
 def cookie_name(port: object) -> str:
-    """Browsers send a cookie to every port of a host: the name tells servers apart."""
+    """Browsers send a cookie to every port of a host: the name distinguishes servers."""
     return f"hookean-{port}"
 
 

@@ -104,7 +104,7 @@ class Cluster:
                     raise Problem("busy", LOST)
                 if asyncio.get_running_loop().time() > until:
                     await self._end_worker(client, key)
-                    raise Problem("out-of-time", f"This was not done in {seconds:g} s and has been stopped.")
+                    raise Problem("out-of-time", f"This was not finished in {seconds:g} s and has been stopped.")
             return _rows(result, client)
         except asyncio.CancelledError:
             with suppress(Exception):
@@ -116,7 +116,7 @@ class Cluster:
             held.release()
 
     async def _end_worker(self, client: Any, key: str) -> None:
-        """Start the worker anew that hangs on a task."""
+        """Restart the worker that hangs on a task."""
         with suppress(Exception):
             busy = [worker for worker, keys in (await client.processing()).items() if key in map(str, keys)]
             await client.restart_workers(busy, timeout=CONNECT, raise_for_error=False)
@@ -150,7 +150,7 @@ async def _result(future: Any) -> list[bytes]:
 
 
 def _rows(result: asyncio.Future[list[bytes]], client: Any) -> list[bytes]:
-    """What was found; `busy` where the cluster must be mended first, else whoever worked on it was lost."""
+    """What was found; `busy` where the cluster must be mended first, else its worker was lost."""
     if result.cancelled():
         raise Problem("busy", LOST)
     error = result.exception()
@@ -159,7 +159,9 @@ def _rows(result: asyncio.Future[list[bytes]], client: Any) -> list[bytes]:
     if isinstance(error, Problem):
         raise error
     if isinstance(error, ImportError):
-        raise Problem("busy", "The workers of the Dask cluster have no hookean; install the service's version there.")
+        raise Problem(
+            "busy", "The workers of the Dask cluster do not have hookean; install the service's version there."
+        )
     if client.status != "running" or isinstance(error, OSError | FutureCancelled):
         raise Problem("busy", LOST)
     raise Problem("worker-lost", "The workers of the cluster that worked on this ended.")

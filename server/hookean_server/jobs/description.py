@@ -1,4 +1,4 @@
-"""What the description of the API says of jobs."""
+"""The description of jobs in the API."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _JOB = {
     "id": _TEXT,
     "kind": {"enum": ["relaxation", "sweep"]},
     "status": {"enum": STATUSES},
-    "message": {"type": "string", "description": "One sentence about it"},
+    "message": {"type": "string", "description": "One sentence on its status"},
     "total": {"type": "integer", "minimum": 1, "description": "Items"},
     "done": {"type": "integer", "minimum": 0, "description": "Items that are solved"},
     "failed": {"type": "integer", "minimum": 0, "description": "Items that could not be solved"},
-    "created": {"type": "number", "description": "When it was taken [s since 1970]"},
+    "created": {"type": "number", "description": "Time of the request [s since 1970]"},
 }
 _ROW: dict[str, Any] = {
     "type": "object",
@@ -64,7 +64,11 @@ SCHEMAS["JobTable"] = {
     "properties": {
         **SCHEMAS["Job"]["properties"],
         "parameters": {"type": "array", "items": _TEXT},
-        "warnings": {"type": "array", "items": _TEXT, "description": "On the scene: what met no particle, for example"},
+        "warnings": {
+            "type": "array",
+            "items": _TEXT,
+            "description": "Warnings on the scene, such as points that met no particle",
+        },
         "columns": {
             "type": "array",
             "items": {"type": "object", "properties": {"name": _TEXT, "unit": _TEXT}, "required": ["name", "unit"]},
@@ -97,15 +101,15 @@ def _json(name: str) -> dict[str, Any]:
 
 
 def created() -> dict[str, Any]:
-    """What the route that takes jobs says of itself."""
+    """Description of the route that creates jobs."""
     headers = {
         "Location": {"description": "Address of the job", "schema": _TEXT},
         "Idempotency-Replayed": {
-            "description": "`true` where this request was answered before",
+            "description": "`true` if this request was answered before",
             "schema": {"const": "true"},
         },
     }
-    accepted = {202: {"description": "It is kept and will be done", "content": _json("Job"), "headers": headers}}
+    accepted = {202: {"description": "It is stored and will run", "content": _json("Job"), "headers": headers}}
     body = {"requestBody": {"required": True, "content": _json("JobRequest")}}
     return {"responses": {**problems(None, live=True), **accepted}, "openapi_extra": body}
 
@@ -117,13 +121,13 @@ def told(name: str) -> dict[int | str, dict[str, Any]]:
 
 def cancelled() -> dict[int | str, dict[str, Any]]:
     """Responses of the end of a job."""
-    return {**problems(None, live=True), 204: {"description": "It ends, or has ended"}}
+    return {**problems(None, live=True), 204: {"description": "It is ending, or has ended"}}
 
 
 def streamed() -> dict[int | str, dict[str, Any]]:
     """Responses of the events of a job."""
     found = problems({"text/event-stream": {"schema": _TEXT}}, live=True)
-    return {**found, 204: {"description": "All events have been seen"}}
+    return {**found, 204: {"description": "All events have been sent"}}
 
 
 def table() -> dict[int | str, dict[str, Any]]:

@@ -22,7 +22,7 @@ class Executor(Protocol):
 
     async def batch(self, request: bytes, numbers: list[int], seconds: float) -> list[bytes]:
         """Rows of items in their order, as many as were done; each may take `seconds`. Cancelling this stops them.
-        Raises Problem where whoever worked on them was lost."""
+        Raises Problem if their worker was lost."""
 
     async def close(self) -> None:
         """Let go of everything."""

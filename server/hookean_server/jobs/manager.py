@@ -1,4 +1,4 @@
-"""All jobs of a server: taken, run, told of, cancelled, brought back after a restart, forgotten."""
+"""All jobs of a server: created, run, reported, cancelled, restored after a restart, deleted."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Jobs:
     def find(self, job: str) -> Live:
         """The job of an id; raises `not-found`."""
         if job not in self.jobs:
-            raise Problem("not-found", "There is no job of this id; GET /v1/jobs lists those there are.")
+            raise Problem("not-found", "There is no job with this id; GET /v1/jobs lists all.")
         self._used.add(job)
         return self.jobs[job]
 
@@ -96,7 +96,7 @@ class Jobs:
             if before is None:
                 return *(await self._add(body, key, digest)), False
             if before.digest != digest:
-                said = "This Idempotency-Key was given with another body before; take another key for another request."
+                said = "This Idempotency-Key was used with another body before; use another key for another request."
                 raise Problem("key-reused", said)
             return before.location, before.body, True
 
@@ -129,10 +129,10 @@ class Jobs:
             after = found[-1].number
 
     async def about(self, live: Live) -> tuple[dict[str, Any], bytes]:
-        """What tells of a job's table, and its request."""
+        """The header of a job's table, and its request."""
         found: tuple[dict[str, Any], bytes] | None = await self.store.run(rows.request(live.kept.id))
         if found is None:
-            raise Problem("not-found", "This job has been forgotten.")
+            raise Problem("not-found", "This job has been deleted.")
         return found
 
     # inside
@@ -140,7 +140,7 @@ class Jobs:
     async def _add(self, body: bytes, key: str, digest: str) -> tuple[str, bytes]:
         unfinished = sum(not live.ended for live in self.jobs.values()) + self.coming
         if unfinished >= self.settings.jobs:
-            said = f"{unfinished} jobs are waiting or running, as many as are taken; cancel one, or come back later."
+            said = f"{unfinished} jobs are waiting or running, the most allowed; cancel one, or retry later."
             raise Problem("job-limit", said, headers={"retry-after": "10"})
         self.coming += 1
         try:
@@ -184,7 +184,11 @@ class Jobs:
                 return
             if not isinstance(error, Problem):
                 log.exception("a job failed")
-            said = error.detail if isinstance(error, Problem) else "The service failed on this job; its log tells more."
+            said = (
+                error.detail
+                if isinstance(error, Problem)
+                else "Internal error on this job; the log of the service has the details."
+            )
             status, message = "failed", said
         live.ending = True
         if live.cancelled:

@@ -28,15 +28,15 @@ def _jobs(request: Request) -> Jobs:
     return found
 
 
-@router.post("/v1/jobs", status_code=202, summary="Relax for long, or sweep", **description.created())
+@router.post("/v1/jobs", status_code=202, summary="Relax in the background, or sweep", **description.created())
 async def create(
     request: Request,
     idempotency_key: Annotated[
-        str | None, Header(description="The same key with the same body is the same job, for a day")
+        str | None, Header(description="For a day, the same key with the same body is the same job")
     ] = None,
 ) -> Response:
     """A scene is relaxed in the background, for as long as it takes; with a `sweep` once for each of its items. It is
-    kept when this is answered, and goes on after a restart."""
+    stored before this is answered, and continues after a restart."""
     key = idempotency_key or ""
     if idempotency_key is not None and not re.fullmatch(r"[\x21-\x7e]{1,255}", key):
         said = "1 to 255 visible ASCII characters are expected"
@@ -53,7 +53,7 @@ async def listing(request: Request) -> dict[str, Any]:
     return {"jobs": [summary(live) for live in _jobs(request).jobs.values()]}
 
 
-@router.get("/v1/jobs/{job}", summary="How a job stands", responses=description.told("Job"))
+@router.get("/v1/jobs/{job}", summary="Status of a job", responses=description.told("Job"))
 async def read(request: Request, job: Id) -> dict[str, Any]:
     """How many items are done; of a relaxation also how far it is."""
     return summary(_jobs(request).find(job))
@@ -61,8 +61,8 @@ async def read(request: Request, job: Id) -> dict[str, Any]:
 
 @router.delete("/v1/jobs/{job}", status_code=204, summary="Cancel a job", responses=description.cancelled())
 async def cancel(request: Request, job: Id) -> Response:
-    """It ends within two seconds, whatever its workers do; what it has found stays readable. A job that has ended
-    stays as it is."""
+    """It ends within two seconds, whatever its workers do; its results so far can be read. A job that has ended
+    is not changed."""
     await _jobs(request).cancel(job)
     return Response(status_code=204)
 
@@ -76,7 +76,9 @@ async def cancel(request: Request, job: Id) -> Response:
 async def events(
     request: Request,
     job: Id,
-    last_event_id: Annotated[str | None, Header(description="Events after this one are sent; none: all")] = None,
+    last_event_id: Annotated[
+        str | None, Header(description="Only events after this one are sent; default: all")
+    ] = None,
 ) -> Response:
     """`progress` of a relaxation (iteration, residual), `item` with the row of each item that is done, and once `done`,
     `failed` or `cancelled` with the job; a comment each 15 s. After the last one it answers 204, which ends an
@@ -101,7 +103,7 @@ async def results(
     request: Request,
     job: Id,
     form: Annotated[
-        Literal["json", "csv"] | None, Query(alias="format", description="Default: as the header Accept has it")
+        Literal["json", "csv"] | None, Query(alias="format", description="Default: by the header Accept")
     ] = None,
 ) -> Response:
     """A row of figures for each item that is done, in the order of the sweep; readable while it runs."""
@@ -116,7 +118,7 @@ async def results(
     return StreamingResponse(tables.as_json(live, about, jobs.pages(live)), 200, _KEEP, "application/json")
 
 
-@router.get("/v1/jobs/{job}/results/{number}", summary="All of one item", responses=description.item())
+@router.get("/v1/jobs/{job}/results/{number}", summary="The whole result of one item", responses=description.item())
 async def result(
     request: Request,
     job: Id,

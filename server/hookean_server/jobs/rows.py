@@ -97,7 +97,7 @@ def answered(key: str) -> Work:
 
 
 def request(job: str) -> Work:
-    """What tells of a job's table, and its request; None where there is no such job."""
+    """The header of a job's table, and its request; None if the job does not exist."""
 
     def work(db: Database) -> tuple[dict[str, Any], bytes] | None:
         row = db.execute("SELECT request FROM requests WHERE job = ?", (job,)).fetchone()

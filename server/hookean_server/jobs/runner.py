@@ -1,5 +1,5 @@
 """Running jobs: the items of a sweep in batches, a relaxation with its progress. What is done is stored before it is
-shown; whoever is lost on the way is replaced, and what they had not done is done again."""
+shown; a lost worker is replaced, and its unfinished items are done again."""
 
 from __future__ import annotations
 
@@ -90,13 +90,13 @@ class Runner:
             except BaseExceptionGroup as several:
                 raise several.exceptions[0] from None
         if kept.failed == kept.total:
-            return "failed", "None of the items could be solved; each row says why."
+            return "failed", "No item could be solved; each row has the reason."
         return "done", f"{kept.done} of {kept.total} items are solved" + (
             f", {kept.failed} failed." if kept.failed else "."
         )
 
     async def _reach(self, live: Live) -> None:
-        """Wait until the executor takes batches, and say so while it does not."""
+        """Wait until the executor takes batches, and report this while it does not."""
         while True:
             try:
                 await self.executor.ready()
@@ -136,7 +136,7 @@ class Runner:
             if tries[number] < TRIES:
                 pending.suspects.append(number)
                 return []
-            said = f"Given up after {TRIES} tries: {problem.detail}"
+            said = f"Stopped after {TRIES} tries: {problem.detail}"
             lines = [await asyncio.to_thread(work.failed, request, number, said)]
         pending.back(numbers[len(lines) :])
         return [(n, "failed" if _is_failed(line) else "done", line) for n, line in zip(numbers, lines, strict=False)]
@@ -177,7 +177,7 @@ class Runner:
             iteration = json.loads(said).get("iteration", -1)
             tries, reached = (tries + 1, reached) if iteration <= reached else (1, iteration)
             if tries > TRIES:
-                return "failed", f"Given up after {TRIES} tries; the last shape is kept."
+                return "failed", f"Stopped after {TRIES} tries; the last shape is kept."
             options = {"size": len(request), "seconds": self.settings.job_seconds}
             job = Job("relaxation", options, request + state, self.settings.solve_seconds, notice=NOTICE)
             try:

@@ -80,11 +80,11 @@ async def events(jobs: Jobs, live: Live, after: int) -> AsyncIterator[bytes]:
         if ended:
             yield _event(last + 1, live.kept.status, json.dumps(summary(live)).encode())
             return
-        if not await _told(jobs, news):
+        if not await _written(jobs, news):
             yield b": still here\n\n"
 
 
-async def _told(jobs: Jobs, news: asyncio.Event) -> bool:
+async def _written(jobs: Jobs, news: asyncio.Event) -> bool:
     """Wait for news; whether there are any before the next heartbeat is due."""
     waited = 0.0
     while waited < HEARTBEAT:

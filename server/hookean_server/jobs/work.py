@@ -44,13 +44,13 @@ _local = threading.local()
 
 
 def check(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
-    """A request as it is kept, checked up to its first item; the header `about` tells of its table."""
+    """A request as it is kept, checked up to its first item; the header `about` describes its table."""
     value = parse(body)
     if not isinstance(value, dict):
-        raise InputError("/", "an object with a scene, and perhaps a sweep, is expected")
+        raise InputError("/", "an object with a scene, and optionally a sweep, is expected")
     for name in value:
         if name not in ("scene", "sweep"):
-            raise InputError(f"/{name}", "this is not known here; known are scene and sweep")
+            raise InputError(f"/{name}", "unknown field; known: scene, sweep")
     if "scene" not in value:
         raise InputError("/scene", "this is required")
     system, plain = _scene(value["scene"])
@@ -152,7 +152,7 @@ def _row(table: Table, sweep: Sweep, number: int, seconds: float, cancelled: Can
         return _failed(number, given, "This needs more memory than one worker may use.")
     except Exception:
         log.exception("an item of a sweep failed")
-        return _failed(number, given, "The service failed on this item; its log tells more.")
+        return _failed(number, given, "Internal error on this item; the log of the service has the details.")
     return {"number": number, "parameters": given, **figures(result, table.system)}
 
 
@@ -190,7 +190,7 @@ def item(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
 
 
 def relaxation(options: dict[str, Any], body: bytes, link: Any) -> Done:
-    """Relax the scene of a request, from the state behind it where there is one; tells of progress on the way.
+    """Relax the scene of a request, from the state behind it where there is one; reports progress.
 
     The answer is a row, a line feed and the whole result; of one that was cancelled, which is in a hurry, its state.
     """
@@ -210,7 +210,7 @@ def relaxation(options: dict[str, Any], body: bytes, link: Any) -> Done:
 
 
 class _Teller:
-    """Tells the server of iteration and residual a few times a second, and once a second of the state."""
+    """Reports iteration and residual to the server a few times a second, and once a second the state."""
 
     def __init__(self, state: State, say: Callable[..., None] | None) -> None:
         self.state, self.say = state, say

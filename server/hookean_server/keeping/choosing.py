@@ -117,8 +117,8 @@ def _head(
     said: Owner | None,
     whole: bool,
 ) -> None:
-    """The row of a session: as it was; or of another creation, so that no ETag matches that somebody has of what is
-    lost, with a revision that nobody has seen, where edits are lost."""
+    """The row of a session: as it was; or of another creation, so that no ETag that a client has of lost
+    data matches, with an unused revision, if edits are lost."""
     before = said.revision if said is not None else _named("sessions", row)["revision"] if row is not None else last
     if row is not None and (whole or last == before == _named("sessions", row)["revision"]):
         chosen.rows.append(("sessions", row))
@@ -137,9 +137,9 @@ def _lost(parts: dict[str, Any], edits: dict[int, Any], last: int, number: int, 
     if max(before, beyond) > last:
         found.append(f"edits after revision {last} are lost, up to revision {max(before, beyond)}")
     if not shape or "states" not in parts:
-        found.append("its last shape is lost, so it goes on from an earlier one")
+        found.append("its last shape is lost, so it continues from an earlier one")
     if "sessions" not in parts:
-        found.append("when it was made is lost")
+        found.append("its creation time is lost")
     if "notes" not in parts:
         found.append("the notes on its file are lost")
     if not found and said is not None:
@@ -172,7 +172,7 @@ def _job(chosen: Chosen, key: str, rows: list[Row], said: Owner | None) -> None:
 
 
 def owner_of(rows: Iterable[Row]) -> Owner:
-    """What the manifest would say of these rows."""
+    """The manifest entry of these rows."""
     owner = Owner()
     for name, row in rows:
         table = TABLES[name]

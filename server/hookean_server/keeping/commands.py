@@ -25,20 +25,20 @@ app = new()
 @app.command()
 def store(
     action: Annotated[str, typer.Argument(help="check, salvage, backup or compact")],
-    target: Annotated[Path | None, typer.Argument(help="Of backup: the file to write; of the others: none")] = None,
+    target: Annotated[Path | None, typer.Argument(help="The file to write; for backup only")] = None,
 ) -> None:
-    """Look after the file in which the service keeps sessions and jobs.
+    """Check, repair, copy or compact the file in which the service stores sessions and jobs.
 
-    check: is it whole, and what was lost from it? salvage: repair it, keeping a copy. backup: copy it to a file, while
-    the service runs or not. compact: give unused space back. Exits with 0 if all is well, 1 if something is damaged or
-    lost, 2 where the action is not possible. HOOKEAN_STATE moves the folder of the file.
+    check: print damage and losses. salvage: repair the file and keep a copy. backup: copy it to another file,
+    also while the service runs. compact: free unused space. Exits with 0 if nothing is damaged or lost, 1 if something
+    is, 2 if the action is not possible. HOOKEAN_STATE sets the folder of the file.
     """
     raise typer.Exit(run(action, folder() / SESSIONS, target))
 
 
 def run(action: str, path: Path, target: Path | None) -> int:
-    """Do one of the actions on the store at `path`; the exit code: 0 if all is well, 1 if something is damaged or lost,
-    2 where it is not possible."""
+    """Run an action on the store at `path`; the exit code: 0 if nothing is damaged or lost, 1 if something is,
+    2 if the action is not possible."""
     actions: dict[str, Callable[[Path, Path | None], int]] = {
         "check": check,
         "salvage": salvage,
@@ -48,7 +48,7 @@ def run(action: str, path: Path, target: Path | None) -> int:
     if action not in actions:
         return _refuse(f'unknown action "{action}" (known: {", ".join(actions)})')
     if target is not None and action != "backup":
-        return _refuse(f"{action} accepts no file; only backup writes one")
+        return _refuse(f"{action} does not accept a file; only backup writes one")
     if not path.parent.is_dir() or not any(path.parent.glob(f"{path.name}*")):
         return _refuse(f"there is no store at {path}")
     try:
@@ -60,13 +60,13 @@ def run(action: str, path: Path, target: Path | None) -> int:
 
 
 def check(path: Path, target: Path | None = None) -> int:
-    """Print whether the store is whole, and all losses of repairs whose copies are still there. Changes nothing."""
+    """Print whether the store is damaged, and all losses of repairs whose copies still exist. Changes nothing."""
     said = manifest.read(manifest.place(path))  # before the file: a server may write meanwhile
     refuse_later(path, said)
     found = 0
     try:
         note = inspect(path, said)
-        print(note or f"{path} is whole.")
+        print(note or f"{path} is not damaged.")
         found = int(bool(note))
     except Broken as broken:
         print(f"{path} is damaged: {broken}. `hookean store salvage` or the next start of the service repairs it.")
@@ -101,7 +101,7 @@ def backup(path: Path, target: Path | None = None) -> int:
 
 
 def compact(path: Path, target: Path | None = None) -> int:
-    """Give the space without use back to the system."""
+    """Free unused space."""
     with _alone(path):
         opened = open_store(path)
         before = path.stat().st_size
@@ -111,7 +111,7 @@ def compact(path: Path, target: Path | None = None) -> int:
             db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
         if opened.manifest is not None:
             opened.manifest.close()
-    print(f"{path} takes {path.stat().st_size / 1e6:.1f} MB; it took {before / 1e6:.1f} MB.")
+    print(f"The size of {path} is {path.stat().st_size / 1e6:.1f} MB; it was {before / 1e6:.1f} MB.")
     return 0
 
 

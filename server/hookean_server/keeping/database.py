@@ -25,7 +25,7 @@ class Database(sqlite3.Connection):
     touched: dict[Key, Owner | None]
     seq: int
     quota: int
-    """Bytes that the file may take; 0: any."""
+    """Bytes that the file may take; 0: no limit."""
 
     def keep(self, table: str, **values: Any) -> None:
         """Insert a row, or put it in place of the one with its key. Raises the problems `over-quota`, `too-large`."""
@@ -67,7 +67,7 @@ class Database(sqlite3.Connection):
             return
         if len(last) > LARGEST:
             size, most = len(last) / 1e6, LARGEST / 1e6
-            raise Problem("too-large", f"This takes {size:,.0f} MB; one scene or result may take {most:,.0f} MB.")
+            raise Problem("too-large", f"This has {size:,.0f} MB; one scene or result may have {most:,.0f} MB.")
         if not self.quota or self.size + len(last) <= self.quota:
             return
         used = self.size
@@ -76,7 +76,7 @@ class Database(sqlite3.Connection):
         before = self.execute(query, row[: len(table.key)]).fetchone()
         if used + len(last) - (before[0] or 0 if before else 0) > self.quota:
             said = (
-                f"The store has {used / 1e6:,.1f} MB of the {self.quota / 1e6:,.1f} MB it may take, and this needs "
+                f"The store has {used / 1e6:,.1f} MB of the {self.quota / 1e6:,.1f} MB allowed, and this needs "
                 f"{len(last) / 1e6:,.1f} MB. Delete sessions or jobs, or raise HOOKEAN_QUOTA."
             )
             raise Problem("over-quota", said)

@@ -66,7 +66,9 @@ def _sessions(old: sqlite3.Connection, new: Database, losses: list[Loss]) -> Non
         if last < row["revision"]:
             losses.append(Loss("session", key, f"{called}: edits after revision {last} are lost."))
         elif row["state"] is not None and state is None:
-            losses.append(Loss("session", key, f"{called}: its last shape is lost, so it goes on from an earlier one."))
+            losses.append(
+                Loss("session", key, f"{called}: its last shape is lost, so it continues from an earlier one.")
+            )
 
 
 def _jobs(old: sqlite3.Connection, new: Database, losses: list[Loss]) -> None:

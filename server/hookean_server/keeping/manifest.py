@@ -56,7 +56,7 @@ class Owner:
 
 @dataclass
 class Read:
-    """What a manifest says."""
+    """The contents of a manifest."""
 
     store: str = ""
     version: int = 0

@@ -35,7 +35,7 @@ REPORT = "report.json"
 
 
 class Refused(OSError):
-    """A store that this version does not open; the sentence says why and what to do."""
+    """A store that this version does not open; the sentence has the reason and the remedy."""
 
 
 class Broken(Exception):
@@ -53,7 +53,7 @@ class Report:
 
     @property
     def sentence(self) -> str:
-        """What a person should know."""
+        """The report in a sentence, with the names of losses."""
         lost = f"{len(self.losses)} losses" if len(self.losses) != 1 else "1 loss"
         what = f"{lost}: {' '.join(loss.what for loss in self.losses)}" if self.losses else "Nothing is lost."
         return f"{self.head} {what} The damaged files are kept in {self.copy}."
@@ -112,7 +112,7 @@ def _opened(path: Path) -> Opened:
 def reopened(path: Path, opened: Opened) -> Opened:
     """The same store where its file was deleted, or another one put in its place, while it is open: all that it holds
     is written to that place again. What was put there stays beside it. Raises OSError or sqlite3.Error."""
-    log.error("%s was deleted or replaced while in use; it is written again", path.name)
+    log.error("%s was deleted or replaced while in use; it is being rewritten", path.name)
     new = path.with_name(path.name + NEW)
     new.unlink(missing_ok=True)
     opened.db.execute("VACUUM INTO ?", (str(new),))
@@ -135,8 +135,8 @@ def refuse_later(path: Path, said: Read | None) -> int:
     version = _version(path, said)
     if version > VERSION:
         raise Refused(
-            f"{path} was written by a later version of hookean (store version {version}; this one reads up to "
-            f"{VERSION}). Install that version, or give this one another folder by HOOKEAN_STATE. Nothing was changed."
+            f"{path} was written by a later version of hookean (store version {version}; this one supports up to "
+            f"{VERSION}). Install that version, or set HOOKEAN_STATE to another folder. Nothing was changed."
         )
     return version
 
@@ -224,7 +224,7 @@ def _structure(db: Database) -> None:
     for table in TABLES.values():
         for row in db.execute(f"SELECT {', '.join(table.columns)} FROM {table.name}"):
             if not table.whole(row):
-                raise Broken(f"a row of {table.name} is not as it was written")
+                raise Broken(f"a row of {table.name} differs from its checksum")
 
 
 def _complete(db: Database, said: Read | None) -> str:
@@ -246,7 +246,7 @@ def _complete(db: Database, said: Read | None) -> str:
         if mine is not None and known is not None and mine.same(known):
             continue
         if said.whole or (mine is not None and mine.seq <= (known.seq if known is not None else 0)):
-            raise Broken(f"{key[0]} {key[1]} is not as its manifest says")
+            raise Broken(f"{key[0]} {key[1]} differs from its manifest")
         if mine is None:  # the line of its deletion may be what cannot be read
             missing.append(f"{key[0]} {key[1]}")
     if said.whole:
@@ -297,7 +297,7 @@ def _report(values: dict[str, Any]) -> Report:
 
 def _log(report: Report) -> None:
     """The log has only the number of losses: names are for clients that may read the sessions."""
-    log.error("%s It has %d losses, which `hookean store check` names.", report.head, len(report.losses))
+    log.error("%s It has %d losses; `hookean store check` lists them.", report.head, len(report.losses))
 
 
 def _rows(path: Path, folders: list[Path], said: Read | None) -> Iterator[pages.Row]:

@@ -1,4 +1,4 @@
-"""What `hookean serve` does: joins the server that runs, or starts one, or stops it."""
+"""`hookean serve`: joins the running server, or starts one, or stops it."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ WAIT = 20.0  # seconds for another server of this user to start or to end
 
 @dataclass(frozen=True)
 class Options:
-    """Start the local service: the same over HTTP, until Ctrl-C. There is one for each user, which keeps the sessions.
+    """Start the local HTTP service, until Ctrl-C. Each user has one server, which keeps the sessions.
 
-    Where one runs already, its address is printed. HOOKEAN_STATE moves the folder in which it is found.
+    If a server is already running, prints its address. HOOKEAN_STATE sets the folder of its address and sessions.
     """
 
     host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1"
     port: Annotated[
-        int | None, typer.Option(help="Port to listen on; 0: any free one; default 8765", min=0, max=65535)
+        int | None, typer.Option(help="Port to listen on; 0: any free port; default 8765", min=0, max=65535)
     ] = None
-    any_port: Annotated[bool, typer.Option("--any-port", help="Take any free port where this one is taken")] = False
-    no_keep: Annotated[bool, typer.Option("--no-keep", help="Keep no sessions when it ends")] = False
-    stop: Annotated[bool, typer.Option("--stop", help="Stop the service that runs")] = False
-    parent_pid: Annotated[int, typer.Option(help="End with this process", min=0)] = 0
-    idle_exit: Annotated[float, typer.Option(help="End after so many minutes without use; 0: never", min=0)] = 0.0
+    any_port: Annotated[bool, typer.Option("--any-port", help="Use any free port if this one is in use")] = False
+    no_keep: Annotated[bool, typer.Option("--no-keep", help="Do not save sessions when it ends")] = False
+    stop: Annotated[bool, typer.Option("--stop", help="Stop the running service")] = False
+    parent_pid: Annotated[int, typer.Option(help="Process id; stop when this process ends", min=0)] = 0
+    idle_exit: Annotated[float, typer.Option(help="Stop after this many minutes without use; 0: never", min=0)] = 0.0
 
 
 def run(options: Options) -> int:
-    """Serve until told to end; the exit code: 0 after a clean end or where one runs already, 2 where it cannot be."""
+    """Serve until a stop is requested; the exit code: 0 after a clean end or if a server runs, 2 if it cannot start."""
     if options.stop:
         return stop()
     place = folder()
@@ -59,7 +59,9 @@ def run(options: Options) -> int:
     except Distrusted as error:
         return refuse(str(error))
     except OSError as error:
-        return refuse(f"{place} cannot be written ({error.strerror}); set HOOKEAN_STATE to a folder of yours.")
+        return refuse(
+            f"{place} cannot be written ({error.strerror}); set HOOKEAN_STATE to a folder that you can write to."
+        )
     if options.port and options.no_keep and find(place) is not None:
         return _serve(options, None)  # a second one, for itself
     until = time.monotonic() + WAIT
@@ -71,7 +73,9 @@ def run(options: Options) -> int:
             break
         except Held:
             if time.monotonic() > until:
-                return refuse(f"Another hookean server has {place / LOCK} and does not answer; end it first.")
+                return refuse(
+                    f"Another hookean server holds {place / LOCK} and does not answer; end its process first."
+                )
             time.sleep(0.1)
         except OSError as error:
             return refuse(f"{place / LOCK} cannot be written ({error.strerror}).")
@@ -93,7 +97,7 @@ def stop() -> int:
         if not (place / LOCK).exists() or _free(place):
             print("No hookean server is running.")
             return 0
-        print("A hookean server is starting, or does not answer; try again, or end its process.", file=sys.stderr)
+        print("A hookean server is starting or does not answer; try again, or end its process.", file=sys.stderr)
         return 1
     ask(found, "POST", "/v1/shutdown")
     until = time.monotonic() + WAIT
@@ -102,20 +106,20 @@ def stop() -> int:
             print(f"The hookean server at {found.url} (process {found.pid}) has not ended.", file=sys.stderr)
             return 1
         time.sleep(0.05)
-    print(f"The hookean server at {found.url} has ended" + ("; its sessions are kept." if found.keeps else "."))
+    print(f"The hookean server at {found.url} has ended" + ("; its sessions are saved." if found.keeps else "."))
     return 0
 
 
 def _join(found: Found, options: Options) -> int:
     if options.port in (None, 0, found.port) or options.any_port:
         print(
-            f"hookean already serves at {found.url} (process {found.pid}). `hookean studio` shows it in a browser, "
-            "`hookean serve --stop` ends it."
+            f"A hookean server is already running at {found.url} (process {found.pid}). `hookean studio` opens it in a "
+            "browser, `hookean serve --stop` stops it."
         )
         return 0
     return refuse(
-        f"hookean already serves at {found.url} (process {found.pid}) and keeps the sessions of this user. Use that "
-        "one, end it with `hookean serve --stop`, or add --no-keep for a second one that keeps nothing."
+        f"A hookean server with the sessions of this user is already running at {found.url} (process {found.pid}). Use "
+        "it, stop it with `hookean serve --stop`, or add --no-keep for a second server that saves nothing."
     )
 
 
@@ -148,7 +152,7 @@ def _free(place: Path) -> bool:
 
 
 def refuse(sentence: str) -> int:
-    """Print why something is not possible; the exit code."""
+    """Print why something failed; returns the exit code."""
     print(sentence, file=sys.stderr, flush=True)
     return 2
 

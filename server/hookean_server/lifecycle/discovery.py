@@ -62,27 +62,27 @@ class Found:
     """Whether sessions outlive it."""
 
     def write(self, place: Path) -> None:
-        """Say it to clients of this user."""
+        """Write the file that clients of this user read."""
         _write(place / SERVER, asdict(self))
 
     def remove(self, place: Path) -> None:
-        """Take the file away, if it is ours."""
-        told = _read(place / SERVER)
-        if told is not None and told.get("instance") == self.instance:
+        """Remove the file, if this server wrote it."""
+        written = _read(place / SERVER)
+        if written is not None and written.get("instance") == self.instance:
             with suppress(OSError):
                 (place / SERVER).unlink()
 
 
 class Distrusted(OSError):
-    """A folder, or a file in it, that other users could have written; the sentence says what to do."""
+    """A folder, or a file in it, that other users could have written; the sentence gives the remedy."""
 
 
 def check(place: Path) -> None:
-    """Raise Distrusted where other users may write to the folder, or have put their file in it; a folder that there is
-    not is fine."""
+    """Raise Distrusted if other users can write to the folder, or wrote a file in it; a missing folder is
+    accepted."""
     if not hasattr(os, "getuid"):
         return
-    advice = f"see who made it, then remove it, or set {VARIABLE} to a folder that is yours alone."
+    advice = f"check who made it, then remove it, or set {VARIABLE} to a folder that is yours alone."
     try:
         about = place.stat()
     except OSError:
@@ -279,8 +279,8 @@ def alive(pid: int) -> bool:
 
 
 def birth(pid: int) -> str:
-    """What tells a process from a later one of the same number; "" where the system does not say, "ended" for one that
-    waits to be collected."""
+    """Distinguishes a process from a later one with the same number; "" if the system has no such information, "ended"
+    for one that waits to be collected."""
     try:
         cells = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     except (OSError, IndexError):

@@ -1,4 +1,4 @@
-"""How the server ends: at a signal, when told to, with its parent, when nobody uses it; in three seconds at most."""
+"""How the server ends: at a signal, on request, with its parent process, when unused; in three seconds at most."""
 
 from __future__ import annotations
 
@@ -30,27 +30,27 @@ UNCOUNTED = {"/v1/health", "/v1/proof", "/metrics"}  # asking these is not using
 router = APIRouter(tags=["about"])
 
 
-@router.post("/v1/shutdown", status_code=202, summary="End the service", **openapi.shutdown())
+@router.post("/v1/shutdown", status_code=202, summary="Stop the service", **openapi.shutdown())
 async def shutdown(request: Request) -> JSONResponse:
-    """Sessions are kept as they are, sockets are closed with 1012, solves end; it takes three seconds at most."""
+    """Sessions are saved, sockets are closed with 1012, solves end; this takes three seconds at most."""
     request.app.state.end()
     return JSONResponse({"status": "stopping"}, 202)
 
 
 class Server(uvicorn.Server):
-    """A server that ends its solves when it is told to end, and ends without raising the signal again."""
+    """A server that cancels its solves when it ends, and ends without raising the signal again."""
 
     def __init__(self, config: uvicorn.Config, app: FastAPI) -> None:
         super().__init__(config)
         self.app = app
         self.on_start: Callable[[], None] = lambda: None
         self.on_end: Callable[[], None] = lambda: None
-        self.cut = threading.Timer(LONGEST, self._cut_short)
+        self.cut = threading.Timer(LONGEST, self._force_end)
         self.cut.daemon = True
         app.state.end = self.end
 
     async def startup(self, sockets: list[socket] | None = None) -> None:
-        """Start, and say so."""
+        """Start, then call `on_start`."""
         await super().startup(sockets=sockets)
         self.on_start()
 
@@ -75,8 +75,11 @@ class Server(uvicorn.Server):
         self.app.state.pool.close()
         self.cut.cancel()
 
-    def _cut_short(self) -> None:
-        print(f"hookean: not ended in {LONGEST:g} s, so cut short; what was acknowledged is kept", file=sys.stderr)
+    def _force_end(self) -> None:
+        print(
+            f"hookean: shutdown took longer than {LONGEST:g} s and was forced; acknowledged edits are saved",
+            file=sys.stderr,
+        )
         self._leave(0)
 
     def _leave(self, code: int) -> None:
@@ -112,7 +115,7 @@ class Server(uvicorn.Server):
 
 
 class Activity:
-    """Outermost: notices whether anybody uses the service."""
+    """The outermost middleware: records whether the service is used."""
 
     def __init__(self, app: FastAPI) -> None:
         self.app: ASGIApp = app

@@ -27,13 +27,12 @@ def serve(
     parent_pid: int = 0,
     idle_seconds: float = 0.0,
 ) -> int:
-    """Serve until Ctrl-C or SIGTERM; the exit code: 0 after a clean end, 2 where the port or the file of sessions
-    cannot be had.
+    """Serve until Ctrl-C or SIGTERM; the exit code: 0 after a clean end, 2 if the port or the file of sessions
+    is not available.
 
-    Prints the address and what to try. Port 0 takes any free one; `any_port`: any free one if `port` is taken. A
-    folder `place` is told where the server is, for clients to find. It ends with the process `parent_pid`, and after
-    `idle_seconds` without use. A host beyond this machine is told about: what is said to the service, the token too,
-    can be read on the way.
+    Prints the address and an example. Port 0: any free port; `any_port`: any free port if `port` is in use. The
+    address is written to the folder `place`, for clients to find. It ends with the process `parent_pid`, and after
+    `idle_seconds` without use. A host beyond this machine gives a warning: traffic is not encrypted, nor is the token.
     """
     settings = settings or Settings()
     try:
@@ -48,7 +47,8 @@ def serve(
     if host not in LOOPBACK:
         settings = replace(settings, hosts=(*settings.hosts, host))
         print(
-            f"Warning: {host} can be reached from other machines, and nothing said to it is encrypted.", file=sys.stderr
+            f"Warning: other machines can connect to {host}, and traffic (with the token) is not encrypted.",
+            file=sys.stderr,
         )
     code = 0
     try:
@@ -73,13 +73,15 @@ def _own(state: Path) -> Lock:
         state.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         return Lock(state.with_name(state.name + ".lock"))
     except Held:
-        raise Held(f"Another hookean server keeps its sessions in {state}; end it, or give this one another.") from None
+        raise Held(
+            f"Another hookean server keeps its sessions in {state}; stop it, or give this one another file."
+        ) from None
     except OSError as error:
         raise Held(f"Sessions cannot be kept in {state} ({error.strerror}).") from None
 
 
 def _start_fork_server() -> None:
-    """Start the process that workers are forked from deaf to Ctrl-C, which reaches the whole group, from its birth."""
+    """Start the process that workers are forked from. It ignores Ctrl-C, which goes to the whole group."""
     if not FORKED:
         return
     from multiprocessing import forkserver, resource_tracker

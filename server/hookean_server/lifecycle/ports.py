@@ -1,4 +1,4 @@
-"""Taking a port, and saying who has it where it is taken."""
+"""Opens a port, or reports which program uses it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ _IN_USE = (errno.EADDRINUSE, getattr(errno, "WSAEADDRINUSE", errno.EADDRINUSE))
 
 
 class Taken(OSError):
-    """The port cannot be had; the sentence says why."""
+    """The port is not available; the sentence gives the reason."""
 
 
 def take(host: str, port: int, *, or_any: bool = False) -> socket.socket:
-    """A listening socket; port 0 takes any, and with `or_any` any where this one is taken. Raises Taken with one
+    """A listening socket; port 0: any free port; with `or_any` also if this one is in use. Raises Taken with one
     sentence."""
     try:
         return _take(host, port)
@@ -47,16 +47,16 @@ def _why(host: str, port: int, error: Exception) -> str:
     if getattr(error, "errno", None) in _IN_USE:
         holder = owner(port)
         return (
-            f"Port {port} is taken by {holder or 'another program'}; stop it, or choose another with --port "
+            f"Port {port} is in use by {holder or 'another program'}; stop it, or choose another with --port "
             "(make: PORT=9000 make run)."
         )
     if getattr(error, "errno", None) == errno.EACCES:
-        return f"Port {port} may not be used by this user; choose one above 1023 with --port."
-    return f"{host}:{port} cannot be listened on ({getattr(error, 'strerror', None) or error}); choose another address."
+        return f"This user may not listen on port {port}; choose one above 1023 with --port."
+    return f"Cannot listen on {host}:{port} ({getattr(error, 'strerror', None) or error}); choose another address."
 
 
 def owner(port: int) -> str:
-    """Who listens on a TCP port, as `name (process 123)`; empty where that cannot be found out."""
+    """The program that listens on a TCP port, as `name (process 123)`; empty if unknown."""
     for ask in (_by_psutil, _by_proc):
         with suppress(Exception):
             if found := ask(port):

@@ -1,4 +1,4 @@
-"""Running the service on a socket until it is told to stop."""
+"""Running the service on a socket until a stop is requested."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
 
     def on_start() -> None:
         publish(tokens.token, tokens.proof)
-        _say(found.url)
+        _print_address(found.url)
         for report in app.state.store.reports:
             print(report.sentence, file=sys.stderr, flush=True)
 
@@ -80,7 +80,7 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
 
 
 def _found(instance: str, settings: Settings, proof: str, address: str) -> Found:
-    """What clients read. An address, not a name: others may listen at another address of the same name."""
+    """What clients read. An address, not a name: other programs may listen at another address of the same name."""
     name = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(address, address)
     url = f"http://{f'[{name}]' if ':' in name else name}:{settings.port}"
     return Found(
@@ -89,15 +89,15 @@ def _found(instance: str, settings: Settings, proof: str, address: str) -> Found
     )  # fmt: skip
 
 
-def _say(url: str) -> None:
-    """Where it is, and what to try. The token stays out of sight."""
+def _print_address(url: str) -> None:
+    """Print the address and an example, without the token."""
     scene = '{"particles": [[0,0,0],[1,0,0],[2,0,0]], "anchors": [{"particles": [0,2]}], "forces": ['
     scene += (
         '{"kind": "springs", "particles": [[0,1],[1,2]]}, {"kind": "unary", "particles": [1], "vector": [0,0,-9]}]}'
     )
     command = shlex.quote(shutil.which("hookean") or str(Path(sys.executable).with_name("hookean")))
-    print(f"hookean serves at {url} (Ctrl-C ends it). To look at it in a browser: hookean studio. Try:")
-    # by a pipe, as everybody on this machine can read what a command is given as arguments
+    print(f"hookean serves at {url} (Ctrl-C stops it). Open it in a browser with: hookean studio. Example request:")
+    # by a pipe, as every user of this machine can read the arguments of a command
     print(
         f"  {command} token --header | curl {url}/v1/relax -H @- -H 'Content-Type: application/json' -d '{scene}'",
         flush=True,

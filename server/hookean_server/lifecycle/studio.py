@@ -1,4 +1,4 @@
-"""What `hookean studio` does: joins or starts the service, makes a session of a file, and opens a browser on it."""
+"""`hookean studio`: joins or starts the service, makes a session of a file, and opens it in a browser."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ REDIRECT = """<!doctype html>
 
 
 class Refused(Exception):
-    """Why there is no session of a file, in a sentence."""
+    """A file that cannot be opened; the sentence gives the reason."""
 
 
 app = new()
@@ -50,21 +50,21 @@ app = new()
 @app.command()
 def studio(
     file: Annotated[
-        Path | None, typer.Argument(help=".3dm, .obj, .json or .npz file to open; none: the start page")
+        Path | None, typer.Argument(help=".3dm, .obj, .json or .npz file to open; default: the start page")
     ] = None,
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only")] = False,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address")] = False,
 ) -> None:
-    """Look at simulations and play with them in a browser. Starts the service, or joins the one that runs.
+    """View and edit simulations in a browser. Starts the service, or joins the running one.
 
-    A .json file has a scene or COMPAS documents; what names no forces is taken as drawn. A file that has not changed is
-    opened as it was left. What follows the # of the address lets the browser in: keep it to yourself.
+    A .json file holds a scene or COMPAS documents; geometry without forces is read as drawn. An unchanged file opens
+    as you left it. The part after the # of the address authenticates the browser: do not share it.
     """
     raise typer.Exit(run(file, not no_browser))
 
 
 def run(file: Path | None, browser: bool) -> int:
     """Show a file, or the start page, in a browser; without `browser` only its address. The exit code: that of the
-    server where one was started for it, 2 where the file cannot be opened, else 0."""
+    server if one was started for it, 2 if the file cannot be opened, else 0."""
     try:
         check(folder())
     except Distrusted as error:
@@ -81,7 +81,7 @@ def run(file: Path | None, browser: bool) -> int:
 
 
 def _served(file: Path | None, data: bytes | None, browser: bool) -> int:
-    """Serve until told to end; what is to be shown is shown once the server answers."""
+    """Serve until a stop is requested; the page is opened once the server answers."""
     codes: list[int] = []
     over = threading.Event()
 
@@ -128,8 +128,8 @@ def _show(found: Found, file: Path | None, data: bytes | None, browser: bool) ->
 
 def _opened_by_file(found: Found, session: str) -> bool:
     """Whether a browser was opened. It is given a file that only this user can read, which leads it to the page with a
-    code that is good for one log-in: everybody on this machine can read what a program is given as arguments. The file
-    is there until the code was used, or its time is over."""
+    code that is valid for one log-in: every user of this machine can read the arguments of a program. The file exists
+    until the code is used or expires."""
     made = ask(found, "POST", "/v1/login/codes")
     if made is None:
         raise Refused(f"The service at {found.url} does not answer; try again.")
@@ -145,14 +145,17 @@ def _opened_by_file(found: Found, session: str) -> bool:
         print(f"The studio is open in a browser, at {found.url}.", flush=True)
         with suppress(KeyboardInterrupt):
             if not _used(found, code, until):
-                print("No page has logged in; open the address that `hookean token --url` prints.", file=sys.stderr)
+                print(
+                    "The browser has not logged in; open the address that `hookean token --url` prints.",
+                    file=sys.stderr,
+                )
         return True
     finally:
         path.unlink(missing_ok=True)
 
 
 def _used(found: Found, code: str, until: float) -> bool:
-    """Wait until a code was used, or the server has ended; whether that was in time."""
+    """Wait until a code was used, or the server has ended; returns whether it was in time."""
     known = hashlib.sha256(code.encode()).hexdigest()
     while ask(found, "GET", f"/v1/login/codes/{known}") is not None:
         if time.monotonic() > until - 2 * PAUSE:
@@ -170,8 +173,8 @@ def _sweep() -> None:
 
 
 def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
-    """The key of a file's session and what is to be known of the file. As long as the file stays the same it has the
-    same session, with what was changed there by hand. Raises Refused."""
+    """The key of a file's session and the notes on the file. While the file stays the same it has the same session,
+    with the edits made there. Raises Refused."""
     content = hashlib.sha256(str(file.resolve()).encode() + b"\0" + data).hexdigest()[:12]
     key = f"{re.sub(r'[^A-Za-z0-9._-]+', '-', file.stem)[:80]}-{content}"
     if ask(found, "GET", f"/v1/sessions/{key}") is not None:

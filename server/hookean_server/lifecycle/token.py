@@ -1,4 +1,4 @@
-"""What `hookean token` does: prints what lets a program or a browser in."""
+"""`hookean token`: prints the token that authenticates programs and browsers."""
 
 from __future__ import annotations
 
@@ -18,23 +18,27 @@ app = new()
 
 @app.command()
 def token(
-    url: Annotated[bool, typer.Option("--url", help="The address that lets a browser in, instead")] = False,
-    header: Annotated[bool, typer.Option("--header", help="The header for curl -H @-, instead")] = False,
-    renew: Annotated[bool, typer.Option("--renew", help="Log everybody out: give the service another token")] = False,
+    url: Annotated[
+        bool, typer.Option("--url", help="Print the address to open in a browser, with the token in it")
+    ] = False,
+    header: Annotated[bool, typer.Option("--header", help="Print the header, for curl -H @-")] = False,
+    renew: Annotated[
+        bool, typer.Option("--renew", help="Replace the token of the running service, which logs all clients out")
+    ] = False,
 ) -> None:
-    """Print the token of the service: what HOOKEAN_TOKEN says, else that of the service that runs.
+    """Print the token of the service: HOOKEAN_TOKEN if it is set, else that of the running service.
 
-    Every start of the service has another token. --renew replaces it while the service runs: the old token, the log-ins
-    of all browsers and open connections end.
+    Every start of the service makes another token. --renew replaces it while the service runs: the old token, the
+    log-ins of all browsers and open connections become invalid.
     """
     raise typer.Exit(run(url, header, renew))
 
 
 def run(url: bool = False, header: bool = False, renew: bool = False) -> int:
-    """Print the token that HOOKEAN_TOKEN gives, else that of the running server; the exit code: 0, or 1 for neither.
+    """Print the token in HOOKEAN_TOKEN, else that of the running server; the exit code: 0, or 1 for neither.
 
-    `url`: the address that lets a browser in, instead; what follows its # stays in the browser. `header`: the header
-    that a program sends. `renew`: make the running server take another token first, which logs everybody out.
+    `url`: print the address with the token instead; browsers do not send the part after the #. `header`: print the
+    header that a program sends. `renew`: replace the token of the running server first, which logs all clients out.
     """
     place = folder()
     try:
@@ -48,9 +52,9 @@ def run(url: bool = False, header: bool = False, renew: bool = False) -> int:
         return 1
     if renew and found is not None:
         if ask(found, "POST", "/v1/token") is None or (found := find(place)) is None:
-            print("The token was not renewed: the server could not write its file, or has ended.", file=sys.stderr)
+            print("The token was not replaced: the server could not write its file, or has ended.", file=sys.stderr)
             return 1
-        print("Everybody is logged out; programs and pages need this token.", file=sys.stderr)
+        print("All clients are logged out; programs and pages need this token.", file=sys.stderr)
     known = given or (found.token if found is not None else "")
     at = found.url if found is not None else f"http://127.0.0.1:{PORT}"
     print(f"{at}/#t={known}" if url else f"Authorization: Bearer {known}" if header else known)

@@ -1,4 +1,4 @@
-"""What the service says of itself: health, the catalogue of forces, its problems, its description."""
+"""Information about the service: health, the catalogue of forces, its problems, its description."""
 
 from __future__ import annotations
 
@@ -20,13 +20,11 @@ from hookean_server.problems import CATALOGUE, Problem, not_stored, page
 router = APIRouter(tags=["about"])
 
 
-@router.get(
-    "/v1/health", summary="Whether the service is well", responses=openapi.problems(openapi.HEALTH, open_to_all=True)
-)
+@router.get("/v1/health", summary="Health of the service", responses=openapi.problems(openapi.HEALTH, open_to_all=True))
 @marked(Access.OPEN)
 async def health(request: Request) -> dict[str, Any]:
-    """Answers at once, whatever is being solved. `status`: `starting`, `ok`, `full` or `stopping`. `store`: what is
-    wrong with the file that keeps sessions and jobs, and how much of them is lost; with the token by name."""
+    """Answers at once, also while solving. `status`: `starting`, `ok`, `full` or `stopping`. `store`: damage of
+    the file of sessions and jobs, and the number of losses; with the token also their names."""
     state = request.app.state
     workers = state.pool.states()
     room = state.settings.lanes + state.settings.queue
@@ -60,7 +58,7 @@ async def forces(request: Request) -> Response:
 
 @router.get(
     "/problems/{slug}",
-    summary="What a problem means",
+    summary="Meaning of a problem",
     responses=openapi.problems(open_to_all=True),
     response_class=PlainTextResponse,
 )
@@ -68,7 +66,7 @@ async def forces(request: Request) -> Response:
 async def problem(slug: str) -> Response:
     """The page that a problem's `type` names."""
     if slug not in CATALOGUE:
-        raise Problem("not-found", f"There is no such problem; there are {', '.join(CATALOGUE)}.")
+        raise Problem("not-found", f"Unknown problem; known: {', '.join(CATALOGUE)}.")
     return PlainTextResponse(page(slug))
 
 
@@ -81,7 +79,7 @@ async def metrics(request: Request) -> Response:
 
 @router.get(
     "/v1/proof",
-    summary="Whether this is the server that wrote the file its clients read",
+    summary="Proof that this server wrote the file its clients read",
     responses=openapi.problems(openapi.PROOF, open_to_all=True, asked=True),
 )
 @marked(Access.OPEN)
@@ -99,17 +97,17 @@ async def proof(
 @router.post("/v1/login", status_code=204, summary="A cookie for a page", responses=openapi.problems())
 @marked(Access.CODE)
 async def login(request: Request) -> Response:
-    """For the page that was opened with the token, or a code, behind the # of its address: it sends that as programs
-    send the token, once, and its browser keeps a cookie that scripts cannot read and other sites' pages cannot use. It
-    ends with this start of the service, when it was not used for 12 hours, or when it is taken back."""
+    """For the page that was opened with the token, or a code, after the # of its address: it sends this once, as
+    programs send the token, and its browser keeps a cookie that scripts and pages of other sites cannot use. The
+    cookie is valid until the service stops, it was not used for 12 hours, or it is revoked."""
     name = cookie_name(_port(request))
     value = request.app.state.tokens.login(name)
     return Response(status_code=204, headers={"set-cookie": set_cookie(name, value)})
 
 
-@router.delete("/v1/login", status_code=204, summary="Take the cookie back", responses=openapi.problems())
+@router.delete("/v1/login", status_code=204, summary="Log out a page", responses=openapi.problems())
 async def logout(request: Request) -> Response:
-    """The cookie is worth nothing from now on, wherever it is kept, and sockets that it opened are closed."""
+    """Revokes the cookie and closes the sockets that it opened."""
     name = cookie_name(_port(request))
     request.app.state.tokens.logout(name, cookies(request.headers.get("cookie", ""), name))
     return Response(status_code=204, headers={"set-cookie": set_cookie(name, "")})
@@ -118,7 +116,7 @@ async def logout(request: Request) -> Response:
 @router.post("/v1/login/codes", status_code=201, summary="A code for one log-in", **openapi.code())
 @marked(Access.PROGRAM)
 async def code(request: Request) -> JSONResponse:
-    """A code that a page may send to `/v1/login` in place of the token, once, within so many `seconds`."""
+    """A code that a page may send to `/v1/login` instead of the token, once, within `seconds`."""
     body = {"code": request.app.state.tokens.code(), "seconds": CODE_LIFE}
     return JSONResponse(body, 201, headers={"cache-control": "no-store"})
 
@@ -128,17 +126,17 @@ async def code(request: Request) -> JSONResponse:
 )
 @marked(Access.PROGRAM)
 async def code_waits(request: Request, sha256: str) -> Response:
-    """204 until it was used or its time is over, then 404. The code is named by its SHA-256, in hex."""
+    """204 until the code was used or has expired, then 404. The code is identified by its SHA-256, in hex."""
     if not request.app.state.tokens.waits(sha256):
         raise Problem("not-found", "Unknown or used code; run hookean studio again for a new one.")
     return Response(status_code=204)
 
 
-@router.post("/v1/token", status_code=204, summary="Log everybody out", responses=openapi.forgotten())
+@router.post("/v1/token", status_code=204, summary="Log out all clients", responses=openapi.forgotten())
 @marked(Access.PROGRAM)
 async def renew(request: Request) -> Response:
-    """The service has another token from now on, which clients of this user read in its file; this one, every cookie
-    and every code are worth nothing, and sockets and streams that they opened are closed."""
+    """Gives the service a new token, which clients of this user read in its file. The old token, every cookie and
+    every code become invalid, and their sockets and streams are closed."""
     try:
         request.app.state.tokens.renew()
     except OSError as error:

@@ -19,7 +19,7 @@ router = APIRouter(tags=["discretize"])
 
 @router.get("/v1/discretize", summary="The operations", responses=openapi.problems())
 async def operations() -> dict[str, Any]:
-    """Every operation with what it takes, its options and what it gives."""
+    """Every operation with its inputs, options and outputs."""
     return {
         "operations": [
             {
@@ -61,4 +61,4 @@ for _name in OPERATIONS:
 @router.post("/v1/discretize/{operation}", include_in_schema=False)
 async def unknown(operation: str) -> Response:
     """Any other operation."""
-    raise Problem("not-found", f"There is no such operation; there are {', '.join(OPERATIONS)}.")
+    raise Problem("not-found", f"Unknown operation; known: {', '.join(OPERATIONS)}.")

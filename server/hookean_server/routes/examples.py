@@ -17,13 +17,13 @@ from hookean_server.workers.pool import Job
 
 router = APIRouter(tags=["examples"])
 
-Id = Annotated[str, Path(description="Id of an example, as the list has it")]
+Id = Annotated[str, Path(description="Id of an example, from the list")]
 
 
-@router.get("/v1/examples", summary="The figures to begin with", responses=openapi.problems(openapi.GALLERY))
+@router.get("/v1/examples", summary="The examples", responses=openapi.problems(openapi.GALLERY))
 async def listing(request: Request) -> dict[str, Any]:
-    """Every figure that can be a session, in the order of the chapter: its id, what of the chapter it is, what it
-    shows, what to see and try in a sentence, and the addresses of its picture and its scene."""
+    """Every figure that can be a session, in the order of the chapter: its id, figure numbers, title,
+    a sentence on what to see and try, and the addresses of its picture and its scene."""
     return {
         "examples": [
             {
@@ -55,8 +55,8 @@ async def picture(request: Request, example: Id) -> Response:
 
 @router.get("/v1/examples/{example}/scene", summary="The scene of a figure", **openapi.example_scene())
 async def scene(request: Request, example: Id) -> Response:
-    """What `POST /v1/sessions` takes. Where the figure names no time step and the usual one would explode, it has one
-    that holds."""
+    """A body for `POST /v1/sessions`. If the figure gives no time step and the default would be unstable, it has a
+    stable one."""
     name = (await _found(example)).name
     pool, settings = request.app.state.pool, request.app.state.settings
     with pool.place():
@@ -67,5 +67,5 @@ async def scene(request: Request, example: Id) -> Response:
 async def _found(name: str) -> Example:
     known = await asyncio.to_thread(by_name)
     if name not in known:
-        raise Problem("not-found", "There is no such example; GET /v1/examples lists those there are.")
+        raise Problem("not-found", "Unknown example; GET /v1/examples lists all.")
     return known[name]

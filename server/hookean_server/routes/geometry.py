@@ -1,4 +1,4 @@
-"""What is drawn in a .3dm file, for programs that cannot read such files."""
+"""The geometry in a .3dm file, for programs that cannot read such files."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _OBJECT: dict[str, Any] = {
 }
 SCHEMAS["FileGeometry"] = {
     "type": "object",
-    "description": "What is drawn in a .3dm file",
+    "description": "The geometry in a .3dm file",
     "properties": {
         "name": _TEXT,
         "unit": {**_TEXT, "description": "Rhino's name of the unit, such as Millimeters"},
@@ -56,7 +56,7 @@ Divisions = Annotated[int | None, Query(ge=1, le=2000, description="Faces of a s
 
 @router.post(
     "/v1/geometry/3dm",
-    summary="What is drawn in a .3dm file",
+    summary="The geometry in a .3dm file",
     responses=problems(_SUCCESS, computed=True),
     openapi_extra=_TAKES,
 )
@@ -67,11 +67,11 @@ async def geometry(
     arrays: Annotated[Literal["list", "buffer"], Query(description="Arrays as lists or as base64")] = "list",
 ) -> Response:
     """Every object in the order of the file, by layer and name: points, lines, polylines, curves and surfaces as NURBS,
-    meshes. Blocks are expanded, what hookean added is left out. With `u` and `v` surfaces and Breps come as meshes,
-    too."""
+    meshes. Blocks are expanded, objects added by hookean left out. With `u` and `v` surfaces and Breps also come as
+    meshes."""
     if (u is None) != (v is None):
         name = "u" if u is None else "v"
-        raise Problem("invalid-input", "Give both u and v, or neither.", [(f"/{name}", "this is missing")])
+        raise Problem("invalid-input", "Give both u and v, or neither.", [(f"/{name}", "this is required")])
     largest = request.app.state.settings.largest_count
     if u is not None and v is not None and u * v > largest:
         said = f"this makes {u * v} faces; at most {largest} are allowed"

@@ -23,8 +23,8 @@ HEADERS = {
 }
 FOR_EVER = "public, max-age=31536000, immutable"
 NOT_BUILT = (
-    '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>hookean</title>\n<p>The page of hookean has not '
-    "been built here: run <code>python hatch_build.py</code> in the checkout, or install hookean, and reload.</p>\n"
+    '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>hookean</title>\n<p>The page of hookean is not '
+    "built: run <code>python hatch_build.py</code> in the checkout, or install hookean, and reload.</p>\n"
     "</html>\n"
 )
 

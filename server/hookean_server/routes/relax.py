@@ -24,24 +24,24 @@ Meshes = Annotated[
 
 @router.post("/v1/relax", summary="Relax a scene to equilibrium", **openapi.relax())
 async def relax(request: Request, arrays: Arrays = None, meshes: Meshes = None) -> Response:
-    """The shape in equilibrium and what holds it. Every run that ends by itself is an answer with status 200: one that
-    stalled, diverged or ran out of iterations or time has its last good shape, and says so in `status`, `message` and
-    the headers."""
+    """The shape in equilibrium, its forces and reactions. Every run that ends by itself has status 200: one
+    that stalled, diverged or reached its limit of iterations or time returns its last good shape and reports this in
+    `status`, `message` and the headers."""
     seconds = request.app.state.settings.solve_seconds
     return await compute(request, "relax", {"arrays": arrays, "meshes": meshes, "seconds": seconds})
 
 
-@router.post("/v1/relax/3dm", summary="Relax what is drawn in a .3dm file", **openapi.relax_file())
+@router.post("/v1/relax/3dm", summary="Relax the geometry in a .3dm file", **openapi.relax_file())
 async def relax_file(
     request: Request,
     answer: Annotated[
         Literal["file", "report"] | None,
-        Query(description="The relaxed file, or what was found as JSON; default: by the header Accept, else the file"),
+        Query(description="The relaxed file, or its results as JSON; default: by the header Accept, else the file"),
     ] = None,
 ) -> Response:
-    """The uploaded file with the relaxed shape added to it. Parts of the form: `file`, and optionally `recipe`. As of
-    `/v1/relax`, every run that ends by itself is an answer with status 200, with its last good shape: headers such as
-    `Hookean-Status` say how it ended, and so does the document text of the file (`hookean:status`)."""
+    """The uploaded file with the relaxed shape added to it. Parts of the form: `file`, and optionally `recipe`. As with
+    `/v1/relax`, every run that ends by itself is answered with status 200, with its last good shape: headers such as
+    `Hookean-Status` report how it ended, and so does the document text of the file (`hookean:status`)."""
     seconds = request.app.state.settings.file_seconds
     wanted = request.headers.get("accept", "").split(",")[0].split(";")[0].strip().lower()
     chosen = answer or ("report" if wanted == "application/json" else "file")

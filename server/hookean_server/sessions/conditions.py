@@ -18,8 +18,8 @@ from hookean_server.sessions.live import Live
 
 _TAG = r'(?:W/)?"[\x21\x23-\x7e\x80-\xff]*"'
 _LIST = re.compile(rf"[ \t]*(?:,[ \t]*)*{_TAG}(?:[ \t]*,(?:[ \t]*{_TAG})?)*[ \t]*")
-_MATCH = 'An ETag, a list of them, or *: only where the session has one of them; such as "0a1b2c3d4e5f6071-7-1f2e3d4c"'
-_NONE_MATCH = "An ETag, a list of them, or *: only where the session has none of them"
+_MATCH = 'An ETag, a list of them, or *: only if the session has one of them; such as "0a1b2c3d4e5f6071-7-1f2e3d4c"'
+_NONE_MATCH = "An ETag, a list of them, or *: only if the session has none of them"
 
 
 @dataclass(frozen=True)
@@ -38,12 +38,14 @@ class Conditions:
         """
         if live is None:
             if self.match is not None or self.unread:
-                raise Problem("stale-revision", "There is no session of this key, so that If-Match is not met.")
+                raise Problem("stale-revision", "There is no session with this key, so If-Match is not met.")
             return None
         now = _edition(live.etag())
         strong = [_edition(tag) for tag in self.match or [] if not tag.startswith("W/")]
         if self.match not in (None, "*") and now not in strong:
-            raise stale(live, f"If-Match is not met; the ETag of the session is {live.etag()}. Read it and edit again.")
+            raise stale(
+                live, f"If-Match is not met; the ETag of the session is {live.etag()}. Read it and repeat the edit."
+            )
         weak = [_edition(tag.removeprefix("W/")) for tag in self.none_match or []]
         if self.none_match == "*" or self.unread or now in weak:
             raise stale(live, f"If-None-Match is not met: the ETag of the session is {live.etag()}.")

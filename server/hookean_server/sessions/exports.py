@@ -16,9 +16,9 @@ from hookean_server.sessions import parts
 
 LACKS = {
     "obj": obj.LACKS,
-    "csv": "A CSV file holds a table of forces and reactions, not the model, and cannot be opened; save the scene too.",
+    "csv": "A CSV file stores forces and reactions, not the model, and cannot be opened; save the scene too.",
 }
-"""What a format does not hold of a model, in a sentence; other formats open again as the same model."""
+"""What a format does not store of a model, in a sentence; other formats open again as the same model."""
 
 FORMATS = {
     "json": "application/json",

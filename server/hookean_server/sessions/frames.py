@@ -168,11 +168,11 @@ async def _either(one: asyncio.Event, other: asyncio.Event) -> None:
 
 
 def _message(text: str | None) -> dict[str, Any]:
-    """A message of a client; Problem where it is none."""
+    """A message of a client; raises Problem if it is invalid."""
     try:
         value = parse(text) if text is not None else None
     except InputError as error:
-        raise Problem("bad-request", f"A message that is no JSON: {error.sentence}") from None
+        raise Problem("bad-request", f"A message that is not JSON: {error.sentence}") from None
     whole = isinstance(value, dict) and (isinstance(value["ack"], int) if "ack" in value else True)
     if not whole:
         raise Problem("bad-request", "Messages are JSON objects in text; ack is the number of a frame.")

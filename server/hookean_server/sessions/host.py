@@ -139,7 +139,7 @@ class Host:
         """The answer to a command; faults become problems."""
         try:
             if self._stale(head):
-                raise Problem("stale-revision", f"{self._stale(head)}; read it and edit again.")
+                raise Problem("stale-revision", f"{self._stale(head)}; read it and repeat the edit.")
             action: Callable[[dict[str, Any], bytes], Reply | None] = getattr(self, f"do_{head['do']}")
             return action(head, body)
         except Exception as error:

@@ -18,7 +18,7 @@ _DESCRIBED = ("revision", "iteration", "time", "residual", "status", "message", 
 
 @dataclass(eq=False)
 class Live:
-    """One session as the server knows it. `described` is how it stood when its process last said so."""
+    """One session as the server knows it. `described` is the status that its process sent last."""
 
     key: str
     label: str

@@ -268,7 +268,7 @@ class Manager(Register):
                 break
         if self.closing:
             raise Problem("shutting-down", "The service is shutting down; start it again and repeat the request.")
-        said = f"{len(awake)} sessions are running or being watched; pause one, or come back later."
+        said = f"{len(awake)} sessions are running or being watched; pause one, or retry later."
         raise Problem("busy", said, headers={"retry-after": "5"})
 
     async def _started(self, live: Live) -> SessionProcess:
@@ -348,8 +348,8 @@ class Manager(Register):
         return live.described
 
     async def _sleep(self, live: Live, seconds: float, *, unsaved: bool = True) -> None:
-        """Checkpoint a session and end its process. Where it cannot be stored, `unsaved` says whether to end it all the
-        same; else raises Problem."""
+        """Checkpoint a session and end its process. Where it cannot be stored, `unsaved` decides whether to end it all
+        the same; else raises Problem."""
         process = live.process
         if process is None:
             return

@@ -130,7 +130,7 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
     for name in EDITS:
         if name in value:
             if value != {name: True}:
-                raise InputError(f"/{name}", f"stands alone: {{{name!r}: true}}".replace("'", '"'))
+                raise InputError(f"/{name}", f"must be the only key: {{{name!r}: true}}".replace("'", '"'))
             getattr(simulation, name)()
             simulation.state.revision += name == "reset"
             return json.dumps(value).encode(), ""

@@ -26,14 +26,14 @@ class Gone(Problem):
     """The process ended before it answered: nothing that was asked of it has happened."""
 
     def __init__(self) -> None:
-        super().__init__("worker-lost", "The process of this session ended; it is brought back. Try again.")
+        super().__init__("worker-lost", "The process of this session ended and is being restarted; try again.")
 
 
 GONE: dict[str, Any] = {}
 
 
 class SessionProcess:
-    """One process that holds one simulation. `on_event` hears of its events, and with {"event": "lost"} of its end; it
+    """One process that holds one simulation. `on_event` receives its events, and with {"event": "lost"} of its end; it
     is called on a thread of ours."""
 
     def __init__(self, memory: int, on_event: Event) -> None:
@@ -75,7 +75,9 @@ class SessionProcess:
             answer, data = await asyncio.wait_for(asyncio.wrap_future(future), seconds)
         except TimeoutError:
             self.kill()
-            raise Problem("out-of-time", f"The session did not answer in {seconds:g} s; it is brought back.") from None
+            raise Problem(
+                "out-of-time", f"The session did not answer in {seconds:g} s; it is being restarted."
+            ) from None
         finally:
             self._waiting.pop(number, None)
         if answer is GONE:
@@ -97,7 +99,7 @@ class SessionProcess:
         self._send({"do": "unstored"}, b"")
 
     def kill(self) -> None:
-        """End the process now; whoever waits for it gets a problem."""
+        """End the process now; clients that wait for it get a problem."""
         with suppress(OSError, ValueError, AttributeError):
             self.process.kill()
 

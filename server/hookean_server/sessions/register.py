@@ -37,7 +37,7 @@ class Register:
         elif key in self.sessions:
             live = self.sessions[key]
         else:
-            raise Problem("not-found", "There is no session of this key; GET /v1/sessions lists those there are.")
+            raise Problem("not-found", "There is no session with this key; GET /v1/sessions lists all.")
         live.use()
         return live
 
@@ -57,9 +57,9 @@ class Register:
         `session-limit`.
         """
         if live.key in self.sessions or live.key in self.making:
-            raise Problem("key-taken", "There is a session of this key already; choose another, or none.")
+            raise Problem("key-taken", "A session with this key exists already; choose another key, or omit it.")
         if (count := len(self.sessions) + len(self.making)) >= self.most:
-            said = f"There are {count} sessions, as many as are kept; delete one that is not needed."
+            said = f"There are {count} sessions, the most allowed; delete one that you do not need."
             raise Problem("session-limit", said, headers={"retry-after": "60"})
         self.making[live.key] = live
         try:
@@ -79,7 +79,7 @@ class Register:
         return self.sessions.get(key)
 
     def forget(self, live: Live) -> None:
-        """A session is deleted: its key is free, and everyone who holds it finds out."""
+        """A session is deleted: its key is free, and all that hold it are notified."""
         live.gone = True
         if self.sessions.get(live.key) is live:
             del self.sessions[live.key]

@@ -75,7 +75,7 @@ class Resting(threading.Thread):
         return True
 
     def _note(self, iteration: int, residual: float) -> None:
-        """Keep a shape on the way; what a solver of no physical time calls velocity is none."""
+        """Keep a shape on the way; the velocity of a solver without physical time is left out."""
         state = self._state
         if not (np.isfinite(state.x).all() and np.isfinite(state.v).all()):
             return

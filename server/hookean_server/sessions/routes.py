@@ -22,7 +22,7 @@ router = APIRouter(tags=["sessions"])
 
 KEY = r"^[A-Za-z0-9._:~-]{1,160}$"
 Key = Annotated[str, Path(pattern=KEY, description="Key of a session: letters, digits and . _ : ~ -")]
-Label = Annotated[str, Query(max_length=200, description="A name for people")]
+Label = Annotated[str, Query(max_length=200, description="A name to display")]
 Arrays = Annotated[Literal["list", "buffer"], Query(description="Arrays as lists, or as base64 of their bytes")]
 
 
@@ -50,8 +50,8 @@ def _answer(live: Live, status: int = 200, described: dict[str, Any] | None = No
 @router.post("/v1/sessions", status_code=201, summary="A session of a scene or a file", **openapi.session_body(201))
 async def create(request: Request, label: Label = "") -> Response:
     """A new session under a random key, paused. A form takes a .3dm file, an .obj file, a .json file with a scene or
-    with COMPAS documents, or a saved simulation (.npz), which goes on as it was saved; what has no recipe and names no
-    forces is taken as drawn: lines become springs with their loose ends held, meshes membranes with their naked
+    with COMPAS documents, or a saved simulation (.npz), which continues as it was saved; a file without recipe and
+    forces is read as drawn: lines become springs with their loose ends held, meshes membranes with their naked
     vertices held."""
     body, notes = await _body(request)
     live, described, _ = await manager(request).put(None, body, label, notes)
@@ -61,7 +61,7 @@ async def create(request: Request, label: Label = "") -> Response:
 @router.put("/v1/sessions/{key}", summary="The session of a key, with this scene", **openapi.session_body(200, 201))
 async def put(request: Request, key: Key, when: When, label: Label = "") -> Response:
     """Makes the session, or gives the one that exists this scene: particles that start where one of the old scene did
-    stay where they are now, and it goes on. The same scene again changes nothing."""
+    stay where they are now, and it continues. The same scene again changes nothing."""
     body, notes = await _body(request)
     live, described, new = await manager(request).put(key, body, label, notes, when)
     return _answer(live, 201 if new else 200, described)
@@ -76,7 +76,7 @@ async def listing(request: Request) -> dict[str, Any]:
 
 
 @router.get(
-    "/v1/sessions/{key}", summary="How a session stands", responses=openapi.problems(openapi.SESSION, 304, live=True)
+    "/v1/sessions/{key}", summary="Status of a session", responses=openapi.problems(openapi.SESSION, 304, live=True)
 )
 async def read(request: Request, key: Key, when: When) -> Response:
     """Revision, iteration, time, residual, status and the sentence on it."""
@@ -84,9 +84,9 @@ async def read(request: Request, key: Key, when: When) -> Response:
     return _unless_same(_answer(live), when)
 
 
-@router.delete("/v1/sessions/{key}", status_code=204, summary="Forget a session", responses=openapi.problems(live=True))
+@router.delete("/v1/sessions/{key}", status_code=204, summary="Delete a session", responses=openapi.problems(live=True))
 async def delete(request: Request, key: Key, when: When) -> Response:
-    """It is gone, for its watchers too."""
+    """Deletes it; its watchers are disconnected."""
     await manager(request).delete(key, when)
     return Response(status_code=204)
 
@@ -106,10 +106,10 @@ async def branch(
     request: Request,
     key: Key,
     when: When,
-    to: Annotated[str | None, Query(pattern=KEY, description="Key of the branch; none: a random one")] = None,
+    to: Annotated[str | None, Query(pattern=KEY, description="Key of the branch; default: a random one")] = None,
     label: Label = "",
 ) -> Response:
-    """Another session that goes on from here, paused; it can take back nothing from before."""
+    """Another session that continues from here, paused; earlier edits cannot be undone in it."""
     return _answer(await manager(request).branch(key, to, label, when), 201)
 
 
@@ -121,10 +121,10 @@ async def act(
     key: Key,
     action: Literal["play", "relax", "pause", "step", "reset", "undo", "redo"],
     when: When,
-    frames: Annotated[int, Query(ge=1, le=100_000, description="Of `step`: how many frames")] = 1,
-    fast: Annotated[bool, Query(description="Of `play`: as quickly as it can, not 60 frames a second")] = False,
+    frames: Annotated[int, Query(ge=1, le=100_000, description="Of `step`: number of frames")] = 1,
+    fast: Annotated[bool, Query(description="Of `play`: at full speed, not at 60 frames a second")] = False,
 ) -> Response:
-    """`relax` goes to rest with the scene's own solver, as `POST /v1/relax`; the session plays until then. `step` is
+    """`relax` runs to rest with the scene's own solver, as `POST /v1/relax`; the session plays until then. `step` is
     answered when its frames are done; the others at once."""
     sessions, live = manager(request), manager(request).find(key)
     if action in ("reset", "undo", "redo"):
@@ -135,14 +135,16 @@ async def act(
     return _answer(live, 200, described)
 
 
-@router.get("/v1/sessions/{key}/scene", summary="The scene as edits have left it", responses=openapi.exported(304))
+@router.get("/v1/sessions/{key}/scene", summary="The scene with all edits", responses=openapi.exported(304))
 async def scene(request: Request, key: Key, when: When) -> Response:
-    """The whole scene as canonical JSON, with forces, anchors and settings as edits have left them and particles where
+    """The whole scene as canonical JSON, with forces, anchors and settings after all edits, and particles where
     they started: the same model where it is PUT or opened as a file."""
     return await _exported(request, manager(request).find(key), when, "scene")
 
 
-@router.get("/v1/sessions/{key}/topology", summary="What stays while it runs", responses=openapi.exported(304))
+@router.get(
+    "/v1/sessions/{key}/topology", summary="The parts that do not change while it runs", responses=openapi.exported(304)
+)
 async def topology(request: Request, key: Key, when: When, arrays: Arrays = "list") -> Response:
     """Springs, meshes and geometry by particles, and the units. Its ETag changes with the scene and with forces that
     edits add or remove, not with other edits."""
@@ -152,7 +154,7 @@ async def topology(request: Request, key: Key, when: When, arrays: Arrays = "lis
     return await _exported(request, live, when, "topology", arrays)
 
 
-@router.get("/v1/sessions/{key}/anchors", summary="The anchors as they are now", responses=openapi.exported(304))
+@router.get("/v1/sessions/{key}/anchors", summary="The anchors with all edits", responses=openapi.exported(304))
 async def anchors(request: Request, key: Key, when: When, arrays: Arrays = "list") -> Response:
     """Particles, targets and axes of every anchor, pinned ones included."""
     return await _exported(request, manager(request).find(key), when, "anchors", arrays)
@@ -168,7 +170,7 @@ async def state(
 ) -> Response:
     """A result as JSON; or a file: .npz of Simulation.save, .3dm, .obj, COMPAS Mesh or Graph, CSV with a row for each
     element and each reaction, units in its first line. Files of .npz, .3dm and COMPAS open again as the same model;
-    what a file does not hold is in the header `hookean-warnings`, a JSON list of sentences."""
+    what a file does not store is in the header `hookean-warnings`, a JSON list of sentences."""
     live = manager(request).find(key)
     answer = await _exported(request, live, when, form, arrays)
     if form != "json":

@@ -39,7 +39,7 @@ async def fold(manager: Manager, live: Live) -> None:
         live.edits -= count
         live.fold_at = live.edits + AGAIN
     except Problem as problem:
-        log.warning("edits of a session stay as they are: %s", problem.detail)
+        log.warning("edits of a session could not be merged into its base: %s", problem.detail)
     finally:
         if process is not None:
             process.kill()

@@ -65,19 +65,19 @@ def encode(shown: Shown) -> bytes:
 
 
 def decode(data: bytes) -> Shown:
-    """The frame in `data`; ValueError where it is none of this version."""
+    """The frame in `data`; raises ValueError if it is not of this version."""
     if len(data) < SIZE:
         raise ValueError("shorter than a header")
     magic, version, size, flags, number, revision, iteration, time, residual, n, m, status, playing, _, kinetic = (
         HEADER.unpack_from(data)
     )
     if magic != MAGIC or version != VERSION or size != SIZE:
-        raise ValueError("no frame of version 1")
+        raise ValueError("not a frame of version 1")
     if flags & ~(POSITIONS | SCALARS | REACTIONS) or not flags & POSITIONS or status >= len(STATUSES):
         raise ValueError("unknown flags or status")
     rest, exact = divmod(len(data) - SIZE - 12 * n - 4 * m, 12)
     if exact or rest < 0 or (rest > 0) != bool(flags & REACTIONS) or (m > 0) != bool(flags & SCALARS):
-        raise ValueError("its length is not what its header says")
+        raise ValueError("its length differs from its header")
     values = np.frombuffer(data, "<f4", offset=SIZE).astype(np.float64)
     return Shown(
         number, revision, iteration, time, residual, STATUSES[status], bool(playing), kinetic,

@@ -30,7 +30,7 @@ def receive(connection: Connection, head: bytes | None = None) -> Message:
 
 
 def problem_of(error: Exception, slug: str, what: str, log: logging.Logger, *, scene: str = "") -> Problem:
-    """The problem that an exception is to whoever asked. `slug` is that of faulty input, `scene` that of faulty scenes
+    """The problem that a client gets for an exception. `slug` is that of faulty input, `scene` that of faulty scenes
     where it is another; `what` names the work in the log."""
     match error:
         case Problem():
@@ -42,7 +42,7 @@ def problem_of(error: Exception, slug: str, what: str, log: logging.Logger, *, s
         case RecursionError():
             return faulty(scene or slug, [InputError("/", "nested too deeply")])
         case UnicodeError():
-            return faulty(scene or slug, [InputError("/", "a text has characters that are no Unicode")])
+            return faulty(scene or slug, [InputError("/", "a text has characters that are not Unicode")])
         case OSError():
             log.error("%s could not write: %s", what, error.strerror)
             return not_stored(error)
@@ -50,4 +50,4 @@ def problem_of(error: Exception, slug: str, what: str, log: logging.Logger, *, s
             said = "This needs more memory than one request or session may use."
             return Problem("too-large", said, [("/", "too large")])
     log.error("%s failed", what, exc_info=error)
-    return Problem("internal", "The service failed on this input; its log tells more.")
+    return Problem("internal", "Internal error on this input; the log of the service has the details.")

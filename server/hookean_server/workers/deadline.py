@@ -1,4 +1,4 @@
-"""Ends what a library computes for too long, and says what an exit means."""
+"""Ends what a library computes for too long, and explains exit codes."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def limited(seconds: float) -> Iterator[None]:
 
 
 def ended(code: int | None) -> str:
-    """What an exit code says of input that a library could not digest; "" where it says nothing about that."""
+    """The meaning of an exit code after input that a library could not read; "" for other exits."""
     name = signal.Signals(-code).name if code is not None and -code in set(signal.Signals) else ""
     if name in ("SIGXCPU", "SIGALRM"):
-        return "reading it does not end; open it in the program that wrote it and save it anew"
+        return "reading it took too long; open it in the program that wrote it and save it again"
     if name in ("SIGSEGV", "SIGABRT", "SIGBUS", "SIGFPE", "SIGILL"):
-        return "damaged: its contents cannot be read; open it in the program that wrote it and save it anew"
+        return "damaged: its contents cannot be read; open it in the program that wrote it and save it again"
     return ""

@@ -54,7 +54,7 @@ _HANGING = {"length": ("numbers", None), "count": ("count", 50), "gravity": ("ve
 _SMOOTH = {"count": ("count", None), "degree": ("whole", 3)}
 PLACES = {"edges": "lines", "indices": "points", "naked": "naked_points", "clothed": "clothed_points",
           "warp": "warp_lines", "weft": "weft_lines"}  # fmt: skip
-"""Results that are numbers of vertices, and the names of what lies there."""
+"""Results that are numbers of vertices, and the names of their coordinates."""
 
 OPERATIONS: dict[str, Operation] = {
     "divide": Operation("curves:divide", "curve", {"count": ("count", None)}),
@@ -133,7 +133,7 @@ def _options(operation: Operation, value: dict[str, Any], largest: int) -> dict[
     if unknown:
         name = sorted(unknown)[0]
         known = ", ".join((operation.takes, *operation.options))
-        raise InputError(f"/{name}", f"this is not known here; known are {known}")
+        raise InputError(f"/{name}", f"unknown field; known: {known}")
     found = {}
     product = 1
     for name, (kind, default) in operation.options.items():
@@ -177,7 +177,7 @@ def _curve(value: Any, pointer: str) -> Any:
     if compas_json.is_document(value):
         document = compas_json.read(value, pointer)
         if document.kind not in ("line", "polyline", "polygon"):
-            raise InputError(f"{pointer}/dtype", f"a {document.kind} is no curve; give a Line, Polyline or Polygon")
+            raise InputError(f"{pointer}/dtype", f"a {document.kind} is not a curve; give a Line, Polyline or Polygon")
         closing = document.points[:1] if document.kind == "polygon" else document.points[:0]
         return np.concatenate([document.points, closing])
     if isinstance(value, dict) and "knots" in value:
@@ -195,7 +195,7 @@ def _surface(value: Any, pointer: str) -> Any:
 
 def _nurbs(value: dict[str, Any], pointer: str, make: Any, needed: tuple[str, ...]) -> Any:
     if not set(needed) <= set(value) <= {*needed, "weights"}:
-        raise InputError(pointer, f"a NURBS form has {', '.join(needed)}, and may have weights; nothing else")
+        raise InputError(pointer, f"a NURBS form has {', '.join(needed)}, and optionally weights, only")
     tables = [name for name in (*needed, "weights") if not name.startswith("degree") and value.get(name) is not None]
     read = {name: _checked(_TABLE, value[name], f"{pointer}/{name}") for name in tables}
     try:
@@ -257,7 +257,9 @@ def decode(value: Any, pointer: str) -> Any:
     plain = {k: value[k] for k in ("version", "archive3dm", "opennurbs", "data") if k in value}
     good = all(type(plain.get(k)) is int and abs(plain[k]) < 2**32 for k in ("version", "archive3dm", "opennurbs"))
     if not good or not isinstance(plain["data"], str):
-        raise InputError(pointer, "this is not as rhino3dm's Encode writes it: version, archive3dm, opennurbs and data")
+        raise InputError(
+            pointer, "this is not the output of rhino3dm's Encode: version, archive3dm, opennurbs and data"
+        )
     try:
         found = rhino3dm.CommonObject.Decode(plain)  # type: ignore[attr-defined,unused-ignore]
     except Exception:

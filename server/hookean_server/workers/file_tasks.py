@@ -21,8 +21,8 @@ RECIPE_LIMIT = 2**20
 
 
 def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
-    """The relaxed file, or with `options["answer"] == "report"` the report of its results as JSON; headers say how the
-    run ended.
+    """The relaxed file, or with `options["answer"] == "report"` the report of its results as JSON; headers report how
+    the run ended.
 
     Options: `path` of the multipart body, `content_type` with its boundary, `answer` (`file` or `report`), `seconds`,
     the longest solve [s]. The form has a part `file`, and may have a part `recipe` (TOML or JSON text). Raises
@@ -49,7 +49,7 @@ def relax_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> 
         if report:
             return Done(answers.dump(done.to_dict(), "list"), headers=said, timing=clock.parts)
         if not target.exists():
-            raise Problem("out-of-time", "This was stopped before it was done, and nothing was written.")
+            raise Problem("out-of-time", "This was stopped before it was finished, and nothing was written.")
         named = {"content-disposition": 'attachment; filename="relaxed.3dm"', **said}
         return Done(target.read_bytes(), MODEL, named, clock.parts)
 
@@ -94,7 +94,7 @@ def geometry_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) 
     clock = Clock()
     data, recipe, _ = parts(Path(options["path"]), options["content_type"])
     if recipe is not None:
-        raise InputError("/recipe", "a file is read without a recipe; the form has the part file only")
+        raise InputError("/recipe", "recipes are not supported here; send a form with the part file only")
     clock.lap("decode")
     try:
         with limited(options["read_seconds"]):
@@ -128,7 +128,11 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None, str]:
     def put(name: bytes | None, value: bytes) -> None:
         key = (name or b"").decode("utf-8", "replace")
         if key not in ("file", "recipe") or key in found:
-            why = "this part is given twice" if key in found else "the form has the parts file and recipe only"
+            why = (
+                "this part is given twice"
+                if key in found
+                else "unknown part; the form may have the parts file and recipe"
+            )
             raise InputError(f"/{key[:80]}", why)
         found[key] = value
 
@@ -146,9 +150,11 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None, str]:
     except (exceptions.FormParserError, ValueError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError("/", "the body is no multipart form; send it as multipart/form-data with a boundary") from None
+        raise InputError(
+            "/", "the body is not a multipart form; send it as multipart/form-data with a boundary"
+        ) from None
     if found.get("file") == b"":
-        raise InputError("/file", "the file is empty; send one with something in it")
+        raise InputError("/file", "the file is empty; send a file with content")
     if "file" not in found:
         raise InputError("/file", "the form needs a part named file with the file in it")
     recipe = found.get("recipe")
@@ -171,4 +177,4 @@ def _relax_file() -> Any:
     try:
         return importlib.import_module("hookean.files.relax_file").relax_file
     except (ImportError, AttributeError):
-        raise Problem("not-found", "Relaxing files is not part of this installation.") from None
+        raise Problem("not-found", "This installation cannot relax files.") from None

@@ -1,6 +1,6 @@
 """The pool: a few worker processes, each driven by one thread. Solves never touch the event loop.
 
-A worker that dies, hangs or has read foreign files is replaced; whoever waited for it gets a problem.
+A worker that dies, hangs or has read foreign files is replaced; clients that waited for it get a problem.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ class Reply:
 
 @dataclass
 class Job:
-    """One request to a worker. `seconds`: when it is stopped by force, from its start or from the last time it was
-    heard of; `once`: the worker is not used again; `heard`: called on the lane's thread with what the worker says on
-    the way; `notice`: seconds it may take to stop, none: those of the settings."""
+    """One request to a worker. `seconds`: when it is stopped by force, from its start or from its last message; `once`:
+    the worker is not used again; `heard`: called on the lane's thread with each message of the worker; `notice`:
+    seconds it may take to stop, default: those of the settings."""
 
     task: str
     options: dict[str, Any]
@@ -64,7 +64,7 @@ class Job:
 
 class Pool:
     """Worker processes for one server. Made idle; `start` or the first job starts the workers: `lanes` of them, or as
-    many as the settings say; with `nice` they give way to others (in the system's steps, 0 to 19)."""
+    many as in the settings; with `nice` they give way to others (in the system's steps, 0 to 19)."""
 
     def __init__(self, settings: Settings, lanes: int = 0, nice: int = 0) -> None:
         self.settings, self.nice = settings, nice
@@ -91,7 +91,7 @@ class Pool:
             if self.stopping.is_set():
                 raise Problem("shutting-down", "The service is shutting down; start it again and repeat the request.")
             if self.taken >= self.settings.lanes + self.settings.queue:
-                said = f"{self.taken} requests are being worked on or waiting; come back in a second."
+                said = f"{self.taken} requests are running or waiting; retry in a second."
                 raise Problem("busy", said, headers={"retry-after": "1"})
             self.taken += 1
         try:
@@ -103,7 +103,7 @@ class Pool:
     async def run(self, job: Job) -> Reply:
         """What a worker answers to `job`; cancelling this stops the worker. Raises Problem."""
         if self.stopping.is_set():
-            raise Problem("shutting-down", "The service stopped before this was done.")
+            raise Problem("shutting-down", "The service stopped before this was finished.")
         self.start()
         self.jobs.put(job)
         try:
@@ -223,7 +223,7 @@ class Lane(threading.Thread):
             self.process.join(1.0)
             if why := ended(self.process.exitcode):
                 return faulty("invalid-input", [InputError("/file" if job.task in UPLOADS else "/", why)])
-        return Problem("worker-lost", "The process that worked on this request ended; try again.")
+        return Problem("worker-lost", "The worker process of this request ended; try again.")
 
     def _exchange(self, job: Job) -> Reply:
         """Hand the job over and wait for the answer, the client's leaving, the deadline or the end of the service."""
@@ -235,13 +235,13 @@ class Lane(threading.Thread):
         asked = 0.0
         while not talk.done.wait(LOOK):
             if self.pool.stopping.is_set():
-                raise Problem("shutting-down", "The service stopped before this was done.")
+                raise Problem("shutting-down", "The service stopped before this was finished.")
             if job.left.is_set() and not asked:
                 asked = time.monotonic()
                 if talk.sent:
                     self.connection.send_bytes(STOP)
             if time.monotonic() > (asked + notice if asked else talk.heard + job.seconds):
-                raise Problem("out-of-time", f"This was not done in {job.seconds:g} s and has been stopped.")
+                raise Problem("out-of-time", f"This was not finished in {job.seconds:g} s and has been stopped.")
         if talk.reply is None:
             raise EOFError
         return talk.reply
@@ -262,7 +262,7 @@ class Lane(threading.Thread):
             while True:
                 job = self.pool.jobs.get_nowait()
                 if job is not None and job.future.set_running_or_notify_cancel():
-                    job.future.set_exception(Problem("shutting-down", "The service stopped before this was done."))
+                    job.future.set_exception(Problem("shutting-down", "The service stopped before this was finished."))
 
 
 class _Talk(threading.Thread):

@@ -48,7 +48,7 @@ def _answer(connection: Connection, request: dict[str, Any], body: bytes) -> Non
 
 
 class Link:
-    """What a task has of its server: called, whether it should stop; `say` tells of how far it is."""
+    """What a task has of its server: called, whether it should stop; `say` reports its progress."""
 
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
@@ -63,7 +63,7 @@ class Link:
         return self.stopped
 
     def say(self, said: dict[str, Any], body: bytes = b"") -> None:
-        """Tell the server something before the answer."""
+        """Send the server a message before the answer."""
         channel.send(self.connection, {"said": said}, body)
 
 

@@ -30,13 +30,13 @@ function Shown() {
   if (entry.value === "asking")
     return (
       <main id="main" class="entry" tabIndex={-1}>
-        <p>Asking the service ...</p>
+        <p>Connecting to the service ...</p>
       </main>
     );
   return key ? <SessionPage key={`${key} ${entries.value}`} name={key} /> : <Start />;
 }
 
-// the part behind # says which session is shown, so the link moves the focus itself
+// the part after # names the session that is shown, so the link moves the focus itself
 function skip(event: Event): void {
   event.preventDefault();
   document.getElementById("main")?.focus();

@@ -1,4 +1,4 @@
-// The bar on top: which session, whether it is heard, and what makes it go.
+// The bar on top: title, connection and controls of time.
 import type { Connection } from "../session";
 import type { Action } from "../model";
 import { type Mark, Icon } from "./icons";
@@ -10,11 +10,11 @@ import { ThemeChoice } from "./themechoice";
 const CHIPS: Record<Connection, string> = {
   connecting: "Connecting ...",
   live: "Live",
-  silent: "Nothing heard",
+  silent: "No updates",
   lost: "Reconnecting ...",
   locked: "Not logged in",
-  gone: "Gone",
-  broken: "Not readable",
+  gone: "Not found",
+  broken: "Not compatible",
 };
 
 export function Bar({ studio, title }: { studio: Studio; title: string }) {
@@ -52,12 +52,12 @@ interface Control {
 
 const CONTROLS: Control[] = [
   { name: "Play", mark: "play", action: "play", hint: "Play in real time", keys: "Space" },
-  { name: "Pause", mark: "pause", action: "pause", hint: "Stop where it is", keys: "Space" },
-  { name: "Step", mark: "step", action: "step", hint: "One frame on", keys: "." },
-  { name: "To rest", mark: "rest", action: "relax", hint: "To equilibrium with the scene's solver, at full speed" },
-  { name: "Reset", mark: "reset", action: "reset", hint: "Back to the start; edits stay" },
-  { name: "Undo", mark: "undo", action: "undo", hint: "Take the last edit back", keys: "Control+Z" },
-  { name: "Redo", mark: "redo", action: "redo", hint: "Make it again", keys: "Control+Shift+Z" },
+  { name: "Pause", mark: "pause", action: "pause", hint: "Pause", keys: "Space" },
+  { name: "Step", mark: "step", action: "step", hint: "One frame forward", keys: "." },
+  { name: "To rest", mark: "rest", action: "relax", hint: "Run at full speed to equilibrium, with the scene's solver" },
+  { name: "Reset", mark: "reset", action: "reset", hint: "Go back to the start; edits are kept" },
+  { name: "Undo", mark: "undo", action: "undo", hint: "Undo the last edit", keys: "Control+Z" },
+  { name: "Redo", mark: "redo", action: "redo", hint: "Redo the last undone edit", keys: "Control+Shift+Z" },
 ];
 
 function Transport({ studio: { session } }: { studio: Studio }) {

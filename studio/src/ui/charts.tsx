@@ -76,7 +76,7 @@ function Chart({ line, session, recording }: Shown) {
   );
 }
 
-/** The newest number, and between what it was: what the chart shows, in words. */
+/** The newest number and its range: what the chart shows, in words. */
 function Newest({ line, session, recording }: Shown) {
   void session.ticks.value;
   const last = recording.last.value;
@@ -85,7 +85,7 @@ function Newest({ line, session, recording }: Shown) {
   const [low, high] = recording.span(line.of);
   const stale = session.connection.value !== "live" || !session.frame;
   if (line.of === "total" && last?.total === null)
-    return <p class="faint">{line.name}: none, as a force of this scene has no energy</p>;
+    return <p class="faint">{line.name}: undefined, as a force of this scene has no energy</p>;
   return (
     <p class={stale ? "stale" : ""}>
       <span>{line.name}</span>{" "}
@@ -136,7 +136,7 @@ function plotted(line: Line, place: HTMLElement): uPlot {
   );
 }
 
-/** A range that digits can tell apart: numbers at rest differ by rounding alone. */
+/** A range with distinct digits: numbers at rest differ by rounding alone. */
 function apart(low: number, high: number): [number, number] {
   const least = 1e-6 * Math.max(Math.abs(low), Math.abs(high)) || 1;
   if (!Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];

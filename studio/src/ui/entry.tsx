@@ -1,4 +1,4 @@
-// The door: what to do where this browser is not logged in.
+// Log-in, if this browser is not logged in.
 import { useState } from "preact/hooks";
 import { enter, refusedEntry } from "./place";
 
@@ -18,7 +18,7 @@ export function Entry() {
         }}
       >
         <label>
-          Token, as <code>hookean token</code> prints it
+          Token (<code>hookean token</code> prints it)
           <input
             type="password"
             autocomplete="off"

@@ -15,11 +15,11 @@ export function Forces({ studio: { session } }: { studio: Studio }) {
   const scene = session.scene.value;
   const live = session.connection.value === "live";
   useEffect(() => {
-    // what cannot be read now is asked for again when the service is there again
+    // what cannot be read now is read again when the service is back
     if (live) know().catch(() => undefined);
   }, [live]);
-  if (!scene && session.connection.value === "gone") return <p class="faint">There is no scene.</p>;
-  if (!scene || !kinds.value) return <p class="faint">Reading the scene ...</p>;
+  if (!scene && session.connection.value === "gone") return <p class="faint">The session was deleted.</p>;
+  if (!scene || !kinds.value) return <p class="faint">Loading the scene ...</p>;
   return (
     <>
       {scene.forces.length === 0 && <p class="faint">This scene has no forces.</p>}
@@ -70,11 +70,11 @@ function Force({ session, force, number, units }: Shown) {
       {often.map(column)}
       {seldom.length > 0 && (
         <details class="seldom">
-          <summary>More of {title}</summary>
+          <summary>More fields of {title}</summary>
           {seldom.map(column)}
         </details>
       )}
-      {fields.length === 0 && <p class="faint">It has no values that change while it runs.</p>}
+      {fields.length === 0 && <p class="faint">None of its values can change during a run.</p>}
       {isLoad && <RemoveForce session={session} number={number} title={title} />}
     </fieldset>
   );
@@ -151,7 +151,7 @@ function noteOf(value: Value, vectors: boolean): string {
   const least = all.reduce((a, b) => Math.min(a, b));
   const most = all.reduce((a, b) => Math.max(a, b));
   const spread = least === most ? "all the same" : `from ${said(least)} to ${said(most)}`;
-  return `${counted(all.length, "element")}, ${spread}; they keep in proportion.`;
+  return `${counted(all.length, "element")}, ${spread}; changes keep their ratios.`;
 }
 
 interface OfVector {

@@ -34,7 +34,7 @@ export function Gallery() {
         The figures could not be read. {fault}
       </p>
     );
-  if (!examples) return <p class="faint">Reading the figures ...</p>;
+  if (!examples) return <p class="faint">Loading the figures ...</p>;
   return (
     <ul class="gallery">
       {examples.map((example) => (

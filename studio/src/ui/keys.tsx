@@ -9,21 +9,21 @@ const LIST: [string, string][] = [
   [".", "One step"],
   ["Ctrl Z", "Undo"],
   ["Ctrl Shift Z", "Redo"],
-  ["f", "Fit"],
+  ["f", "Zoom to fit"],
   ["1 2 3 4", "Perspective, top, front, right"],
-  ["p", "Pin or release what is picked"],
-  ["Esc", "Close the notice, else pick nothing"],
-  ["?", "This list"],
+  ["p", "Pin or release the picked particle"],
+  ["Esc", "Close the notice, else clear the selection"],
+  ["?", "Show this list"],
 ];
 
-/** What they do while the canvas has the focus: all that a hand can do there. */
+/** Keys while the canvas has the focus: all that a pointer can do there. */
 const ON_CANVAS: [string, string][] = [
-  ["Arrows", "Turn; with Shift move"],
-  ["+ -", "Nearer, farther"],
-  ["a", "Pick the next anchor; with Shift the one before"],
-  ["Alt Arrows", "Move the picked anchor in the picture"],
+  ["Arrows", "Rotate the view; with Shift pan"],
+  ["+ -", "Zoom in, zoom out"],
+  ["a", "Pick the next anchor; with Shift the previous one"],
+  ["Alt Arrows", "Move the picked anchor parallel to the screen"],
   ["Alt PageUp PageDown", "Move it in depth"],
-  ["x y z", "Drag along that axis; with Shift in the plane across"],
+  ["x y z", "Drag along this axis; with Shift in the plane normal to it"],
 ];
 
 export function Keys({ studio }: { studio: Studio }) {
@@ -75,7 +75,7 @@ function List({ keys }: { keys: [string, string][] }) {
   );
 }
 
-/** Whether what has the focus wants the key for itself. */
+/** Whether the focused element uses the key itself. */
 function isTaken(event: KeyboardEvent): boolean {
   const focus = event.target as HTMLElement;
   if (focus.matches("textarea, select, [contenteditable], input:not([type=range], [type=checkbox], [type=radio])"))
@@ -83,7 +83,7 @@ function isTaken(event: KeyboardEvent): boolean {
   return event.key === " " && focus.matches("button, a, summary, input:not([type=range])");
 }
 
-/** Do what a key stands for; whether it stands for anything. */
+/** Do the action of a key; whether it has one. */
 function obeyed(studio: Studio, event: KeyboardEvent): boolean {
   const { session, view } = studio;
   if (event.altKey) return false;

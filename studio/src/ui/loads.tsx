@@ -1,4 +1,4 @@
-// Loads and self weight, added to a running session and removed from it: edits, which undo takes back.
+// Loads and self weight, added to a running session and removed from it: edits, which can be undone.
 import { useSignal } from "@preact/signals";
 import type { Patch, Scene, SceneForce, Topology } from "../model";
 import type { Session } from "../session";
@@ -18,7 +18,7 @@ export function AddLoad({ session }: { session: Session }) {
     const held = new Set(session.anchors.value.flatMap((anchor) => anchor.particles));
     const particles = Array.from({ length: topology.particles }, (_, i) => i).filter((i) => !held.has(i));
     const force = { kind: "unary", name: freeName(scene, "load"), particles, vector: [0, 0, -size] };
-    if (!particles.length) refuse(new Error("All particles are held, so a load would move nothing."));
+    if (!particles.length) refuse(new Error("All particles are held, so a load would have no effect."));
     else add(force, `A load of ${measured(size, unit)} downwards acts on every free particle.`);
   };
   const weight = () => {
@@ -50,7 +50,7 @@ export function RemoveForce({ session, number, title }: { session: Session; numb
       class="small"
       aria-label={`Remove ${title}`}
       disabled={busy || session.connection.value !== "live"}
-      onClick={() => void make({ remove: [number] }, `${title} is removed; Undo brings it back.`)}
+      onClick={() => void make({ remove: [number] }, `${title} was removed; Undo restores it.`)}
     >
       Remove
     </button>

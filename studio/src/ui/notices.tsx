@@ -14,7 +14,7 @@ const SEEN = 8000;
 
 const notice = signal<Notice | null>(null);
 
-/** Say what went wrong, with the places the service named. */
+/** Show an error, with the places the service named. */
 export function refuse(error: unknown, before = ""): void {
   const sentence = error instanceof Error ? error.message : String(error);
   const errors = error instanceof Refused ? error.errors : [];
@@ -22,7 +22,7 @@ export function refuse(error: unknown, before = ""): void {
   notice.value = { kind: "refused", sentence: before + sentence, details };
 }
 
-/** Say what was done. */
+/** Show what was done. */
 export function tell(sentence: string, details: string[] = []): void {
   const done: Notice = { kind: "done", sentence, details };
   notice.value = done;

@@ -79,16 +79,16 @@ export function NumberField({
   );
 }
 
-/** What is wrong with what was typed, in a sentence; "" for nothing. */
+/** The fault of a typed text, in a sentence; "" for none. */
 function fit(text: string, bounds: Bounds | undefined, whole: boolean, emptied: boolean): string {
   const value = Number(text);
   if (text.trim() === "") return emptied ? "" : "give a number.";
-  if (!Number.isFinite(value)) return `${text} is no number.`;
-  if (whole && !Number.isInteger(value)) return `${text} was given; give a whole number.`;
+  if (!Number.isFinite(value)) return `${text} is not a number.`;
+  if (whole && !Number.isInteger(value)) return `${text} given; give a whole number.`;
   const { minimum, maximum, more_than, less_than } = bounds ?? {};
-  if (minimum !== undefined && value < minimum) return `${text} was given; it is ${minimum} or more.`;
-  if (maximum !== undefined && value > maximum) return `${text} was given; it is ${maximum} or less.`;
-  if (more_than !== undefined && value <= more_than) return `${text} was given; it is more than ${more_than}.`;
-  if (less_than !== undefined && value >= less_than) return `${text} was given; it is less than ${less_than}.`;
+  if (minimum !== undefined && value < minimum) return `${text} given; at least ${minimum} allowed.`;
+  if (maximum !== undefined && value > maximum) return `${text} given; at most ${maximum} allowed.`;
+  if (more_than !== undefined && value <= more_than) return `${text} given; more than ${more_than} allowed.`;
+  if (less_than !== undefined && value >= less_than) return `${text} given; less than ${less_than} allowed.`;
   return "";
 }

@@ -19,7 +19,7 @@ async function openFile(file: File): Promise<void> {
     const made = await api.open(file);
     go(made.key);
     const warnings = made.warnings ?? [];
-    if (warnings.length) tell(`${file.name} is open. What was noticed in it:`, warnings);
+    if (warnings.length) tell(`${file.name} is open. Notes on the file:`, warnings);
   } catch (error) {
     met(error);
     refuse(error, `${file.name} was not opened. `);
@@ -28,7 +28,7 @@ async function openFile(file: File): Promise<void> {
   }
 }
 
-/** A button to choose a file, which also says where to drop one. */
+/** A button to choose a file, and the places to drop one. */
 export function FileButton() {
   const input = useRef<HTMLInputElement>(null);
   return (
@@ -70,7 +70,7 @@ export function Dropping() {
   return (
     over.value && (
       <div class="dropping" aria-hidden="true">
-        <p>Drop it: it becomes a session</p>
+        <p>Drop the file to open it as a session</p>
       </div>
     )
   );
@@ -98,7 +98,7 @@ function dropped(event: DragEvent): void {
   event.preventDefault();
   over.value = false;
   const files = [...(event.dataTransfer?.files ?? [])];
-  if (opening.value) refuse(new Error(`${opening.value} is being opened; drop the next file after it.`));
+  if (opening.value) refuse(new Error(`${opening.value} is being opened; drop the next file when it is open.`));
   else if (files.length > 1) refuse(new Error(`${files.length} files were dropped; drop one at a time.`));
   else if (files[0]) void openFile(files[0]);
 }

@@ -10,27 +10,27 @@ const FILES: { format: api.Format; seen: string; ending: string; hint: string }[
     format: "scene",
     seen: "Scene",
     ending: ".json",
-    hint: "The model with all edits, from its start; opens here and in hookean relax",
+    hint: "The model with all edits, at its start positions; opens here and in hookean relax",
   },
   {
     format: "npz",
     seen: "npz",
     ending: ".npz",
-    hint: "The model as it is now, shape and speeds included; opens here and in Python: Simulation.load",
+    hint: "The model at its present shape and velocities; opens here and in Python: Simulation.load",
   },
   {
     format: "3dm",
     seen: "Rhino .3dm",
     ending: ".3dm",
-    hint: "The shape with its forces on layers, and the model: opens here again",
+    hint: "The shape with its forces on layers, and the model; opens here",
   },
   {
     format: "compas",
     seen: "COMPAS JSON",
     ending: "-compas.json",
-    hint: "A Mesh, or a Graph of the springs, with supports, loads and the model: opens here again",
+    hint: "A Mesh, or a Graph of the springs, with supports, loads and the model; opens here",
   },
-  { format: "obj", seen: "OBJ", ending: ".obj", hint: "The shape alone: meshes, lines and held points" },
+  { format: "obj", seen: "OBJ", ending: ".obj", hint: "The shape only: meshes, lines and held points" },
   { format: "csv", seen: "CSV", ending: ".csv", hint: "A table of forces and reactions" },
 ];
 
@@ -50,10 +50,10 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
     try {
       const { blob, notes } = await made();
       keep(blob, file);
-      done.value = [`${file} is among your downloads.`, ...notes].join(" ");
+      done.value = [`${file} was downloaded.`, ...notes].join(" ");
     } catch (error) {
       met(error);
-      refuse(error, `${file} was not made. `);
+      refuse(error, `${file} could not be saved. `);
     } finally {
       busy.value = "";
     }
@@ -63,7 +63,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
     link.value = "";
     try {
       await navigator.clipboard.writeText(address);
-      done.value = "The link is in the clipboard; it opens in a browser that is logged in.";
+      done.value = "The link was copied; it opens in a browser that is logged in.";
     } catch {
       link.value = address;
       done.value = "Copy the link below; it opens in a browser that is logged in.";
@@ -87,7 +87,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
         ))}
         <button
           type="button"
-          title="What is seen now"
+          title="A picture of the present view"
           disabled={!view.value || busy.value !== ""}
           aria-busy={busy.value === "PNG"}
           onClick={() => void take("PNG", `${name}.png`, async () => ({ blob: await view.value!.png(), notes: [] }))}

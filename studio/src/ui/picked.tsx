@@ -1,4 +1,4 @@
-// The particle or spring in hand, in numbers; both can be named by number, too.
+// The picked particle or spring in numbers; both can be picked by number, too.
 import { Grip, holder, pin, release } from "../hand";
 import type { Anchor, Point } from "../model";
 import type { Session } from "../session";
@@ -54,7 +54,7 @@ interface Shown {
   index: number;
 }
 
-/** Whether numbers of the frame are of now, and the frame; reading it shows them anew as frames come. */
+/** Whether numbers of the frame are of now, and the frame; reading it shows them again with each frame. */
 function newest(session: Session) {
   void session.ticks.value;
   const { frame } = session;
@@ -75,7 +75,7 @@ function Particle({ studio, index }: Shown) {
       <Position studio={studio} index={index} at={at} anchor={anchor} stale={stale} />
       <dl>
         <Told name="Held" value={heldBy(anchor)} />
-        {at && start && <Told name="From its start" value={measured(distance(at, start), length)} />}
+        {at && start && <Told name="Displacement" value={measured(distance(at, start), length)} />}
         {anchor && <Told name="Reaction" value={reaction ? vector(reaction, force) : "-"} />}
         <Loads studio={studio} index={index} unit={force} />
       </dl>
@@ -91,7 +91,7 @@ function Particle({ studio, index }: Shown) {
   );
 }
 
-/** Where a particle is; where it is held, it can be typed. */
+/** The position of a particle, which can be typed if it is held. */
 function Position({
   studio: { session },
   index,
@@ -119,7 +119,7 @@ function Position({
             seen={"xyz"[axis]!}
             value={at?.[axis] ?? null}
             unit=""
-            hint="Typing moves the anchor"
+            hint="Type a coordinate to move the anchor"
             disabled={stale}
             stale={stale}
             done={move(axis)}
@@ -149,7 +149,7 @@ function Spring({ studio, index }: Shown) {
   const { frame, stale } = newest(session);
   const topology = session.topology.value;
   const ends = topology?.springs[index];
-  if (!topology || !ends) return <p class="faint">There is no spring {index}.</p>;
+  if (!topology || !ends) return <p class="faint">Spring {index} does not exist.</p>;
   const { length: inLength, force: inForce } = topology.units;
   const owner = topology.forces[topology.spring_forces[index]!];
   const length = frame ? distance(pointOf(frame.positions, ends[0]), pointOf(frame.positions, ends[1])) : NaN;
@@ -157,12 +157,12 @@ function Spring({ studio, index }: Shown) {
   const rest = options.restLengths.value?.[index] ?? NaN;
   const restNow = studio.readings.isCurrent();
   const strain =
-    rest > 0 ? `${said(100 * (length / rest - 1))} %` : rest === 0 ? "none: the rest length is 0" : "reading ...";
+    rest > 0 ? `${said(100 * (length / rest - 1))} %` : rest === 0 ? "undefined: the rest length is 0" : "reading ...";
   return (
     <div class={stale ? "stale" : ""}>
       <h3>Spring {index}</h3>
       <dl>
-        <Told name="Of" value={owner?.name || owner?.kind || "-"} />
+        <Told name="Part of" value={owner?.name || owner?.kind || "-"} />
         <Told name="Ends" value={`particles ${ends[0]} and ${ends[1]}`} />
         <Told name="Length" value={measured(length, inLength)} />
         <Told
@@ -188,7 +188,7 @@ const Told = ({ name, value, stale = false }: { name: string; value: string; sta
 );
 
 function heldBy(anchor: Anchor | undefined): string {
-  if (!anchor) return "no, it is free";
+  if (!anchor) return "no, free";
   const along = anchor.axes === "xyz" ? "" : ` along ${[...anchor.axes].join(" and ")}`;
   return (
     (anchor.name ? `by anchor ${anchor.name}` : anchor.number >= 0 ? `by anchor ${anchor.number}` : "pinned") + along

@@ -4,9 +4,9 @@ import * as api from "../api";
 
 /** Key of the session that is shown; "" on the start page. */
 export const place = signal("");
-/** Whether the service lets this browser in, as far as it is known. */
+/** Whether this browser is logged in, as far as it is known. */
 export const entry = signal<"asking" | "in" | "out">("asking");
-/** Counts log-ins: what was refused before one is tried anew after it. */
+/** Counts log-ins: what was refused before one is tried again after it. */
 export const entries = signal(0);
 /** Why a token was refused; "" for nothing. */
 export const refusedEntry = signal("");
@@ -58,7 +58,7 @@ export async function enter(told: string): Promise<void> {
   }
 }
 
-/** To be told of what the service refused: a log-in that is no more leads to the door. */
+/** Call this with each refusal: if the log-in has expired, the log-in form is shown. */
 export function met(error: unknown): void {
   if (error instanceof api.Refused && (error.status === 401 || error.status === 403)) entry.value = "out";
 }
@@ -84,7 +84,7 @@ async function look(): Promise<void> {
     entry.value = "in";
   } catch (error) {
     met(error);
-    // a service that does not answer is told by what asks next
+    // a service that does not answer is reported by the next request
     if (entry.value === "asking") entry.value = "in";
   }
 }

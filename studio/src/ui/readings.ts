@@ -76,7 +76,7 @@ export class Readings {
       this.options.restLengths.value = restLengths(result, topology);
       this.read.value = { revision, result, topology };
     } catch {
-      // the connection tells what is the matter; the next revision asks again
+      // the connection shows what is wrong; the next revision asks again
     } finally {
       this.reading = false;
     }

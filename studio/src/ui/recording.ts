@@ -26,7 +26,7 @@ export class Recording {
 
   constructor(private readonly session: Session) {}
 
-  /** Take samples from now on; gives how to end it. */
+  /** Take samples from now on; returns how to end this. */
   begin(): () => void {
     return effect(() => {
       void this.session.ticks.value;
@@ -37,7 +37,7 @@ export class Recording {
     });
   }
 
-  /** Called when there is something new; gives how to end it. */
+  /** Called when there is a new sample; returns how to end this. */
   onNew(watcher: () => void): () => void {
     this.watchers.add(watcher);
     return () => this.watchers.delete(watcher);
@@ -49,7 +49,7 @@ export class Recording {
     return this.samples.map((sample) => (at = sample?.at ?? at));
   }
 
-  /** One of its numbers over the minute; null where nothing was heard. */
+  /** One of its numbers over the minute; null where nothing was received. */
   of(name: Exclude<keyof Sample, "at">): (number | null)[] {
     return this.samples.map((sample) => sample?.[name] ?? null);
   }
@@ -69,7 +69,7 @@ export class Recording {
   private take(heard: boolean): void {
     const { frame } = this.session;
     if (!heard || !frame) {
-      // a gap in the lines says that nothing was heard
+      // a gap in the lines shows that nothing was received
       if (!heard && this.samples.at(-1)) this.samples.push(null);
       return;
     }
@@ -86,14 +86,14 @@ export class Recording {
     this.watchers.forEach((watcher) => watcher());
   }
 
-  /** Frames do not tell the total energy: it is read once a second while something moves. */
+  /** Frames do not have the total energy: it is read once a second while something moves. */
   private ask(): void {
     const now = performance.now();
     if (now - this.energy.asked < 1000) return;
     this.energy.asked = now;
     api.summary(this.session.key).then(
       (summary) => (this.energy.value = summary.energy ?? null),
-      () => undefined, // the connection tells what is the matter
+      () => undefined, // the connection shows what is wrong
     );
   }
 }

@@ -1,4 +1,4 @@
-// How the session stands in a sentence, what the report warns of, and what was lost on the way.
+// The status of the session in a sentence, the warnings of its report, and losses.
 import { useEffect } from "preact/hooks";
 import { tellReturns } from "./returns";
 import type { Studio } from "./studio";
@@ -16,26 +16,26 @@ export function Report({ studio }: { studio: Studio }) {
   );
 }
 
-const TOLD = {
-  silent: "It plays, but nothing has come for two seconds: the numbers are the last that were heard.",
-  lost: "The connection to the service is lost and tried again; the form and its numbers are the last that were heard.",
-  gone: "The service has forgotten this session: it is shown as it was last heard.",
-  broken: "Load the page anew.",
+const LOST = {
+  silent: "Playing, but no update for 2 s; showing the last received values.",
+  lost: "Connection to the service lost; retrying. Showing the last received values.",
+  gone: "This session was deleted; showing the last received values.",
+  broken: "Reload the page.",
 };
 
-const NONE = "The service has no such session: it was forgotten, or the link is one to another service.";
+const NONE = "Unknown session: it was deleted, or the link belongs to another service.";
 
 function Lost({ studio: { session } }: { studio: Studio }) {
   const connection = session.connection.value;
   const none = connection === "gone" && !session.summary.value;
-  const told = none ? NONE : connection in TOLD ? TOLD[connection as keyof typeof TOLD] : "";
+  const sentence = none ? NONE : connection in LOST ? LOST[connection as keyof typeof LOST] : "";
   return (
     <>
       <p role="alert" class={session.said.value ? "fault" : "unseen"}>
         {session.said.value}
       </p>
-      <p role="status" class={told ? "lost" : "unseen"}>
-        {told}
+      <p role="status" class={sentence ? "lost" : "unseen"}>
+        {sentence}
       </p>
     </>
   );
@@ -46,7 +46,7 @@ function Standing({ studio: { session } }: { studio: Studio }) {
   if (!summary) return session.connection.value === "connecting" ? <p>Waiting for the session ...</p> : null;
   const stale = session.connection.value !== "live";
   const state = summary.playing ? (stale ? "Was playing" : "Playing") : titled(stateOf(summary));
-  // while it plays the service's sentence is of its start: frames tell more
+  // while it plays the service's sentence is of its start: frames are newer
   const sentence = summary.playing ? "" : sentenceOf(summary.message, state);
   return (
     <div class={stale ? "standing stale" : "standing"}>

@@ -1,4 +1,4 @@
-// What was lost when the connection comes back: what had been seen is compared with what there is now.
+// What was lost when the connection comes back: the last shown state is compared with the present one.
 import { effect } from "@preact/signals";
 import type { Session } from "../session";
 import { tell } from "./notices";
@@ -11,7 +11,7 @@ interface Seen {
   playing: boolean;
 }
 
-/** Say so whenever a session that was lost comes back with less than was seen of it; gives how to end it. */
+/** Show a notice whenever a lost session comes back with an older state; returns how to end this. */
 export function tellReturns(session: Session): () => void {
   let seen: Seen | null = null;
   let away = false;
@@ -28,7 +28,7 @@ export function tellReturns(session: Session): () => void {
     const now = { revision: frame.revision, iteration: frame.iteration, time: frame.time, playing };
     if (away && seen) {
       const lost = losses(seen, now, session.topology.value?.units.time ?? "");
-      if (lost.length) tell("Connected again, with a service that was started anew.", lost);
+      if (lost.length) tell("Reconnected; the service was restarted.", lost);
     }
     away = false;
     seen = now;
@@ -38,10 +38,10 @@ export function tellReturns(session: Session): () => void {
 function losses(seen: Seen, now: Seen, unit: string): string[] {
   const lost: string[] = [];
   if (now.revision < seen.revision)
-    lost.push(`Edits after revision ${now.revision} are lost; ${seen.revision} was seen.`);
+    lost.push(`Edits after revision ${now.revision} are lost (last shown: ${seen.revision}).`);
   if (now.iteration < seen.iteration) {
-    lost.push(`${measured(seen.time, unit)} had been seen; it stands at ${measured(now.time, unit)}.`);
+    lost.push(`The time is ${measured(now.time, unit)} again (last shown: ${measured(seen.time, unit)}).`);
   }
-  if (seen.playing && !now.playing) lost.push("It played and is paused now.");
+  if (seen.playing && !now.playing) lost.push("It was playing and is now paused.");
   return lost;
 }

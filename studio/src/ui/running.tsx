@@ -1,4 +1,4 @@
-// The sessions of the service, whoever started them.
+// The sessions of the service, of all clients.
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api";
 import type { Store, Summary } from "../model";
@@ -39,11 +39,11 @@ export function Running() {
     <>
       {fault && (
         <p class="fault" role="alert">
-          {fault} What follows is as it was last known.
+          {fault} The list shows the last received state.
         </p>
       )}
       {store && <Stored store={store} />}
-      {sessions?.length === 0 && <p class="faint">None yet: open a figure or a file, or begin one in Grasshopper.</p>}
+      {sessions?.length === 0 && <p class="faint">No sessions: open a figure or file, or start one in Grasshopper.</p>}
       <ul class={fault ? "sessions stale" : "sessions"}>
         {sessions?.map((session) => (
           <Row key={session.key} session={session} forgotten={forgotten} />
@@ -53,7 +53,7 @@ export function Running() {
   );
 }
 
-/** What is wrong with the store, and what was lost from it, until the copy of the damaged files is deleted. */
+/** Damage of the store and its losses, until the copy of the damaged files is deleted. */
 function Stored({ store }: { store: Store }) {
   const losses = (store.repairs ?? []).flatMap((repair) => repair.losses);
   if (!store.warnings.length && !losses.length) return null;
@@ -74,11 +74,11 @@ function Stored({ store }: { store: Store }) {
 function Row({ session, forgotten }: { session: Summary; forgotten: (key: string) => void }) {
   const name = session.label || session.key;
   const forget = async () => {
-    if (!window.confirm(`Forget the session "${name}"? It cannot be brought back.`)) return;
+    if (!window.confirm(`Delete the session "${name}"? This cannot be undone.`)) return;
     try {
       await api.forget(session.key);
       forgotten(session.key);
-      tell(`${name} is forgotten.`);
+      tell(`${name} was deleted.`);
     } catch (error) {
       met(error);
       refuse(error);
@@ -90,7 +90,7 @@ function Row({ session, forgotten }: { session: Summary; forgotten: (key: string
       <span class="faint">
         {counted(session.particles, "particle")} · {session.playing ? "playing" : stateOf(session)}
       </span>
-      <button type="button" class="plain" aria-label={`Forget ${name}`} title="Forget" onClick={() => void forget()}>
+      <button type="button" class="plain" aria-label={`Delete ${name}`} title="Delete" onClick={() => void forget()}>
         ×
       </button>
     </li>
@@ -100,9 +100,9 @@ function Row({ session, forgotten }: { session: Summary; forgotten: (key: string
 const STATES: Record<string, string> = {
   running: "paused",
   converged: "at rest",
-  max_iterations: "ended by its limit of iterations",
-  time_limit: "ended by its limit of time",
+  max_iterations: "iteration limit reached",
+  time_limit: "time limit reached",
 };
 
-/** How a session that does not play stands, in words. */
+/** The status of a session that does not play, in words. */
 export const stateOf = (session: Summary) => STATES[session.status] ?? session.status;

@@ -1,4 +1,4 @@
-// What is seen, and from where; and along what a drag goes.
+// Colours, layers, views and the axis lock of drags.
 import { palette } from "../view/colours";
 import type { Colouring, Layer, Legend, Lock, Look } from "../view/types";
 import type { Studio } from "./studio";
@@ -77,7 +77,7 @@ export function SeePanel({ studio: { options } }: { studio: Studio }) {
   );
 }
 
-/** Over the canvas: where from. */
+/** Over the canvas: the views. */
 export function Looks({ studio: { view } }: { studio: Studio }) {
   const now = view.value;
   return (
@@ -86,7 +86,7 @@ export function Looks({ studio: { view } }: { studio: Studio }) {
         type="button"
         disabled={!now}
         aria-keyshortcuts="f"
-        title="All of it into view (f)"
+        title="Zoom to fit (F)"
         onClick={() => now?.fit()}
       >
         Fit
@@ -107,7 +107,7 @@ export function Looks({ studio: { view } }: { studio: Studio }) {
   );
 }
 
-/** Over the canvas: which number a colour stands for, and how much the longest arrows are. */
+/** Over the canvas: the values of colours and of the longest arrows. */
 export function LegendBox({ studio: { view, session, options } }: { studio: Studio }) {
   const legend = view.value?.legend.value;
   const { load, reaction } = view.value?.arrows.value ?? { load: 0, reaction: 0 };

@@ -1,4 +1,4 @@
-// The canvas, and what is said over it.
+// The canvas, and the messages over it.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { expose } from "../automation";
 import { createView } from "../view/view";
@@ -38,7 +38,7 @@ export function Stage({ studio }: { studio: Studio }) {
           tabIndex={0}
           role="application"
           aria-label="The form"
-          aria-description="Arrows turn it, A goes from anchor to anchor, ? lists keys. The panels tell numbers."
+          aria-description="Arrows rotate the view, A picks the next anchor, ? lists keys. The panels show numbers."
         />
         <p class="unseen" aria-live="polite">
           {studio.view.value?.announcement.value}

@@ -1,4 +1,4 @@
-// The start page: figures to begin with, sessions that are there, files to open.
+// The start page: figures, sessions and files to open.
 import { useEffect } from "preact/hooks";
 import { Gallery } from "./gallery";
 import { FileButton } from "./opening";
@@ -15,7 +15,7 @@ export function Start() {
     <>
       <header class="top">
         <h1>hookean studio</h1>
-        <p class="lead">Cables, nets, membranes and shells that find their form, to be watched and played with.</p>
+        <p class="lead">Form finding of cables, nets, membranes and shells that you can watch and edit.</p>
         <ThemeChoice />
       </header>
       <main id="main" class="start" tabIndex={-1}>
@@ -26,7 +26,7 @@ export function Start() {
         </section>
         <section aria-labelledby="gallery-title">
           <h2 id="gallery-title">Figures</h2>
-          <p>A figure opens as a session of its own.</p>
+          <p>Each figure opens as a new session.</p>
           <Gallery />
         </section>
       </main>

@@ -25,7 +25,7 @@ export class Extremes {
     return now - this.changed >= PAUSE;
   }
 
-  /** Tell what is now; whether the ends have moved. */
+  /** Take the present range; returns whether the ends have moved. */
   take(low: number, high: number, resting: boolean, now: number): boolean {
     if (Object.is(low, this.low) && Object.is(high, this.high)) return false;
     const span = this.high - this.low;

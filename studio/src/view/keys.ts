@@ -78,7 +78,7 @@ export class Keys {
   private next(by: number): void {
     const { session, options, say } = this.view;
     const held = [...new Set(session.anchors.value.flatMap((anchor) => anchor.particles))].sort((a, b) => a - b);
-    if (!held.length) return say("Nothing is held: there are no anchors.");
+    if (!held.length) return say("There are no anchors.");
     const picked = options.picked.value;
     const now = picked?.kind === "particle" ? held.indexOf(picked.index) : -1;
     const index = held[now < 0 ? (by > 0 ? 0 : held.length - 1) : (now + by + held.length) % held.length]!;
@@ -91,7 +91,7 @@ export class Keys {
     const { session, options, size, at, say } = this.view;
     const picked = options.picked.value;
     const anchor = picked?.kind === "particle" ? holder(session.anchors.value, picked.index) : undefined;
-    if (!picked || !anchor) return say("Pick an anchor first (a); arrows with alt move it then.");
+    if (!picked || !anchor) return say("Pick an anchor first (A), then move it with Alt and arrows.");
     const now = performance.now();
     const goesOn = this.steps?.particle === picked.index && now - this.steps.last < PAUSE;
     const steps = goesOn
@@ -99,7 +99,7 @@ export class Keys {
       : { particle: picked.index, at: at(picked.index), gesture: gesture("step"), last: now };
     const [x, y, z] = this.axes();
     const by = new Vector3().addScaledVector(x, right).addScaledVector(y, up).addScaledVector(z, near);
-    if (!by.lengthSq()) return say("The lock does not let it go there.");
+    if (!by.lengthSq()) return say("The axis lock blocks this move.");
     steps.at.addScaledVector(by, STEP * size());
     steps.last = now;
     this.steps = steps;

@@ -1,4 +1,4 @@
-// From where a session was looked at in this tab, so that loading the page anew shows the same picture.
+// From where a session was looked at in this tab, so that reloading the page shows the same picture.
 import { Vector3 } from "three";
 import type { Place } from "./camera";
 

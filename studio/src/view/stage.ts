@@ -36,7 +36,7 @@ export class Pace {
   private quick = 0;
   private patience = 120;
 
-  /** Tell how long a picture took [ms]. */
+  /** Note how long a picture took [ms]. */
   note(taken: number): void {
     this.taken = taken;
     this.slow = taken > SLOW ? this.slow + 1 : 0;
@@ -85,7 +85,7 @@ export class Stage {
       });
     } catch {
       throw new Error(
-        "This browser does not draw in space (WebGL 2): allow hardware acceleration, or take another one.",
+        "This browser does not support WebGL 2: allow hardware acceleration, or use another browser.",
       );
     }
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
@@ -143,7 +143,7 @@ export class Stage {
     this.renderer.forceContextLoss();
   }
 
-  /** The graphics card has forgotten everything: what stands for things on it is given up, and made anew when drawn. */
+  /** The graphics card has lost everything: what stands for things on it is dropped, and made again when drawn. */
   forget(): void {
     this.target?.dispose();
     this.target = null;

@@ -1,4 +1,4 @@
-// What the view shows and is told: signals that panels set and the view follows, and what it gives back.
+// What the view shows and receives: signals that panels set and the view follows, and what it gives back.
 import { type Signal, signal } from "@preact/signals";
 
 export type Colouring = "force" | "strain" | "plain";

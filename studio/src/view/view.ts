@@ -52,7 +52,7 @@ class Drawing implements View {
   /** Nobody has chosen yet from where to look; then the eye follows a form that leaves the picture. */
   private untouched = false;
   private following = false;
-  /** Length of a pixel that colours and sizes were chosen for; 0 where they must be chosen anew. */
+  /** Length of a pixel that colours and sizes were chosen for; 0 if they must be chosen again. */
   private dressed = 0;
   private asked = 0;
   private since = 0;

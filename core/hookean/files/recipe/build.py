@@ -140,7 +140,7 @@ class _Builder:
         said = "anchor" if group == "anchors" else str(table.get("kind", ""))
         if table.get("name"):
             said += f' "{table["name"]}"'
-        said += " that rides along" if group == "geometry" else ""
+        said += " that is carried along" if group == "geometry" else ""
         for name in PLACE_FIELDS:
             value = table.get(name)
             if not is_selector(value) or self._literal_mesh(name, table):
@@ -167,7 +167,7 @@ class _Builder:
         if name != "points" or "on" not in table:
             return shape
         curves = self._curves(table.pop("on"), f"{pointer}/on")
-        self._use(curves, f"curve that keeps points of {said}")
+        self._use(curves, f"curve that holds points of {said}")
         return lying_on(shape, curves, self.drawing.factor, self.tolerance, f"{pointer}/on")
 
     def _pulling(self, placed: Placed) -> Placed:
@@ -267,13 +267,13 @@ class _Builder:
         return shapes.joined(kept, meshes, self.drawing.factor)
 
     def _fitting(self, term: Term, fits: Callable[[Item], bool], what: str, pointer: str) -> list[Item]:
-        """The selected items that can stand here; InputError where none of them can."""
+        """The selected items that are supported here; raises InputError if none of them is supported."""
         items = select(self.drawing, term, pointer)
         good = [item for item in items if fits(item)]
         if not good and not term.everything:
-            raise InputError(pointer, f'"{term}" finds {shapes.counted(items)}; here go {what}')
+            raise InputError(pointer, f'"{term}" finds {shapes.counted(items)}; allowed are {what}')
         if not good:
-            self.misfits.append(f"the file has {shapes.counted(items)}; here go {what}")
+            self.misfits.append(f"the file has {shapes.counted(items)}; allowed are {what}")
         return good
 
     def _try(self, item: Item, term: Term | None, make: Callable[..., Any], *arguments: Any) -> Any:
@@ -319,13 +319,13 @@ class _Builder:
                     points, more = shapes.controls_of(item)
                 named = {"name": item.name or item.layer, **plain, **more, "points": points * self.drawing.factor}
                 found.append((named, item))
-        self._use([item for _, item in found if item is not None], f"{kind} that rides along")
+        self._use([item for _, item in found if item is not None], f"carried {kind}")
         self.notes.append(
-            f"geometry[{number}]: {count(len(found), kind)} {'rides' if len(found) == 1 else 'ride'} along"
+            f"geometry[{number}]: {count(len(found), kind)} {'moves' if len(found) == 1 else 'move'} with the particles"
         )
         return found
 
 
 def _plain(term: Term, pointer: str) -> None:
     if term.feature:
-        raise InputError(pointer, f'"{term}" asks for points; {term.feature}: belongs to points =')
+        raise InputError(pointer, f'"{term}" selects points; {term.feature}: is allowed in points = only')

@@ -1,4 +1,4 @@
-"""Faults of a recipe that a person is told before any selector is tried: names and values that mean something else."""
+"""Faults of a recipe that are reported before any selector is used: unknown names and values of the wrong type."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ TEXTS = ("name", "kind", "points", "lines", "mesh", "curve", "on", "edges", "axe
 
 
 def check(recipe: Mapping[str, Any]) -> None:
-    """InputError for the first fault; what is not seen here is left to the scene."""
+    """Raises InputError for the first fault; the scene checks the rest."""
     _script(recipe)
     for number, table in enumerate(_tables(recipe, "forces")):
         pointer = f"/forces/{number}"
         fields = _fields(table.get("kind"), f"{pointer}/kind")
         for key, value in table.items():
             if fields and key not in fields and key not in ADDED:
-                raise InputError(f"{pointer}/{key}", f'"{key}" is no field of {table["kind"]}; {_field(key, fields)}')
+                raise InputError(f"{pointer}/{key}", f'{table["kind"]} has no field "{key}"; {_field(key, fields)}')
             _value(key, value, f"{pointer}/{key}")
     for key, value in recipe.get("settings", {}).items() if isinstance(recipe.get("settings"), Mapping) else ():
         if key != "solver":
@@ -39,17 +39,17 @@ def check(recipe: Mapping[str, Any]) -> None:
 
 
 def check_script(script: Mapping[str, Any]) -> None:
-    """InputError where what is to be a script is a recipe."""
+    """Raises InputError if a script is a recipe."""
     for group, key in (("forces", "kind"), ("anchors", "points")):
         for number, table in enumerate(_tables(script, group)):
             if key in table:
-                raise InputError(f"/{group}/{number}/{key}", "belongs to a recipe; give this file with --recipe")
+                raise InputError(f"/{group}/{number}/{key}", "is a field of recipes; pass this file with --recipe")
 
 
 def _script(recipe: Mapping[str, Any]) -> None:
     paths = [f"/{g}/{i}/times" for g in ("anchors", "forces") for i, t in enumerate(_tables(recipe, g)) if "times" in t]
     for pointer in [*(["/drives"] if "drives" in recipe else []), *paths]:
-        raise InputError(pointer, "belongs to the script of a run; give this file to hookean simulate with --script")
+        raise InputError(pointer, "is a field of scripts; pass this file to hookean simulate with --script")
 
 
 def _tables(recipe: Mapping[str, Any], group: str) -> list[Mapping[str, Any]]:
@@ -58,13 +58,13 @@ def _tables(recipe: Mapping[str, Any], group: str) -> list[Mapping[str, Any]]:
 
 
 def _fields(kind: Any, pointer: str) -> list[str]:
-    """The fields of a kind of force; none where there is none such."""
+    """The fields of a kind of force; empty if the kind is unknown."""
     from hookean.forces import KINDS
 
     if isinstance(kind, str) and kind in KINDS:
         return list(KINDS[kind].model_fields)
     if isinstance(kind, str) and kind.strip().casefold() in KINDS_MEANT:
-        raise InputError(pointer, f'kind "{kind}" is none; did you mean {KINDS_MEANT[kind.strip().casefold()]}?')
+        raise InputError(pointer, f'unknown kind "{kind}"; did you mean {KINDS_MEANT[kind.strip().casefold()]}?')
     return []
 
 
@@ -72,7 +72,7 @@ def _field(key: str, fields: list[str]) -> str:
     known = [*fields, *ADDED]
     meant = FIELDS_MEANT.get(key.casefold(), "")
     near = [meant] if meant in known else difflib.get_close_matches(key.casefold(), known, 1)
-    return f"did you mean {near[0]}?" if near else f"it has {', '.join(known)}"
+    return f"did you mean {near[0]}?" if near else f"its fields: {', '.join(known)}"
 
 
 def _value(key: str, value: Any, pointer: str) -> None:
@@ -85,4 +85,4 @@ def _value(key: str, value: Any, pointer: str) -> None:
 def _number(key: str, value: Any, pointer: str) -> None:
     if isinstance(value, str) and re.fullmatch(r"\s*[-+]?\d+([.,]\d+)?(e[-+]?\d+)?\s*", value, re.IGNORECASE):
         meant = value.strip().replace(",", ".")
-        raise InputError(pointer, f'the text "{value}" given; a number takes no quotes: {key} = {meant}')
+        raise InputError(pointer, f'the text "{value}" given; write the number without quotes: {key} = {meant}')

@@ -18,7 +18,7 @@ the object), `axes` of anchors ("xz").
 The defaults and all numbers of user text are in m, N and s, whatever the file's length unit: k = 1000 is 1000 N/m, and
 the same model in mm, m or inches gives the same forces.
 
-A file that names no such layer is taken as drawn: curves become springs with their loose ends held, meshes
+A file without such a layer is read as drawn: curves become springs with their loose ends held, meshes
 and open surfaces membranes with their naked vertices held, points anchors. Where a file names layers but no anchors,
 loose ends and naked vertices are held the same way.
 """
@@ -91,7 +91,7 @@ def role_of(item: Item) -> str:
 
 
 def by_convention(drawing: Drawing, given: Mapping[str, Any]) -> tuple[Built, str, str]:
-    """The scene of a file without a recipe, how it was read, and a sentence where it holds nothing to relax.
+    """The scene of a file without a recipe, how it was read, and a sentence if it has nothing to relax.
 
     `given` has further fields of the scene, such as `weld_tolerance`, `strict` and `settings`.
     Raises InputError where a user text is not what its key asks for.
@@ -100,7 +100,7 @@ def by_convention(drawing: Drawing, given: Mapping[str, Any]) -> tuple[Built, st
     named = any(roles.values())
     said = "layer names and user text"
     if not named:
-        said = "no layer is named as hookean knows it: curves as springs, meshes and surfaces as membranes"
+        said = "no layer has a name that hookean knows: curves as springs, meshes and surfaces as membranes"
         roles = {item: _as_drawn(item) for item in drawing.items}
     reading = _Reading()
     for item, role in roles.items():
@@ -115,11 +115,11 @@ def by_convention(drawing: Drawing, given: Mapping[str, Any]) -> tuple[Built, st
     if not reading.elastic:
         why = next((f"; {item.label}: {why}" for item, why in reading.left.items()), "")
         nothing = (
-            f"holds nothing to relax ({count(len(drawing.items), 'visible object')} on layers "
+            f"has nothing to relax ({count(len(drawing.items), 'visible object')} on layers "
             f"{listed(layers_of(drawing.items))}{why}); put curves or meshes on a layer named springs, cables or "
             "membrane, or give a recipe"
         )
-        reading.left.update({i: f"no use as {roles[i]} without springs" for i in roles if i not in reading.left})
+        reading.left.update({i: f"cannot be {roles[i]} without springs" for i in roles if i not in reading.left})
         reading.forces.clear()
         reading.anchors.clear()
     built = build(drawing, _recipe(drawing, reading, given), lenient=True)
@@ -161,7 +161,7 @@ def _elastic(item: Item, role: str, reading: _Reading) -> None:
         return
     split = _division(item)
     try:
-        # tried here, so that what cannot be used is told apart from what can
+        # tried here, to distinguish usable objects from others
         _ = shapes.lines_of(item, split, "") if curve else shapes.mesh_of(item, split, "")
     except InputError as error:
         reading.left[item] = error.sentence.removeprefix(item.label).lstrip(": ")
@@ -252,7 +252,7 @@ def _along(item: Item, reading: _Reading) -> None:
         kind = "polyline" if shapes.straight(item) else "curve"
         table = {"kind": kind, "points": f"id:{item.ids[-1]}"}
     else:
-        reading.left[item] = f"{item.kind} cannot ride along"
+        reading.left[item] = f"{item.kind} cannot be carried along"
         return
     reading.geometry.append({"name": name, **table})
 

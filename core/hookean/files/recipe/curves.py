@@ -41,7 +41,9 @@ def pulled(table: dict[str, Any], shape: Shape | None, items: Sequence[Item], fa
     if len(items) == 1:
         return [({**given, **_polyline(items[0], split, factor, pointer)}, shape)]
     if shape is None or shape.array.ndim != 2 or shape.faces is not None:
-        raise InputError(f"{pointer}/curve", f"finds {shapes.counted(items)}; several go with points = a selector")
+        raise InputError(
+            f"{pointer}/curve", f"finds {shapes.counted(items)}; for several curves give points = a selector"
+        )
     columns = [k for k in ("strength",) if np.ndim(given.get(k, 0.0)) > 0]
     if columns:
         raise InputError(f"{pointer}/{columns[0]}", "give one value where points are pulled to several curves")

@@ -96,7 +96,7 @@ class Drawing:
 def drawing(model: Model, units: Any = None, *, hidden: bool = False) -> Drawing:
     """The objects of a model and the units to solve in; `units` as a recipe gives them, or None.
 
-    Raises InputError where the units are none of hookean's or a block cannot be expanded.
+    Raises InputError if the units are unknown to hookean or a block cannot be expanded.
     """
     kept: list[Item] = []
     unseen: list[Item] = []
@@ -144,13 +144,13 @@ def _units(model: Model, given: Any) -> tuple[Units, float, str, str]:
         found = first_fault(error)
         raise InputError(f"/units{found.pointer}", found.sentence) from None
     if model.metres is None:
-        said = f"the file has no unit system hookean knows ({model.unit}): its numbers are taken as {units.length}"
+        said = f"the unit system of the file ({model.unit}) is unknown: its numbers are read as {units.length}"
         return units, 1.0, units.length, said
     # a quotient of two inexact metres would not be exactly 1 for equal units
     factor = 1.0 if own == units.length else model.metres / METRES[units.length]
     unit = own or model.unit.lower()
     if own is None:
-        said = f"the file is in {unit}, a unit hookean does not solve in: solved in {units.length}, written back"
+        said = f"the file is in {unit}, which hookean does not solve in: solved in {units.length}, written back"
         return units, factor, unit, said
     said = f"the file is in {unit}"
     if own != units.length:

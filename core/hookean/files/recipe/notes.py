@@ -23,7 +23,7 @@ def notes(seen: Drawing, built: Built, *, conventional: bool) -> list[str]:
     # a floor, and what pulls to a place, hold as well
     caught = built.scene.settings.floor is not None or any(type(f).role == "support" for f in built.scene.forces)
     if not built.scene.anchors and not caught:
-        found.append("nothing is held at all")
+        found.append("nothing is held")
     elif built.guessed and held:
         kept, _ = unique_points(np.concatenate(held), built.scene.weld_tolerance)
         what = " and ".join(dict.fromkeys(anchor.name for anchor in built.scene.anchors))

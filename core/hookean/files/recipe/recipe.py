@@ -31,7 +31,7 @@ stands for anything inside a name. Several are joined by commas or in a list.
   are one mesh, welded where they meet.
 * `points`, of forces and anchors: points and point clouds; `start:`, `ends:` of curves; `vertices:`, `inner:` of
   curves and meshes; `naked:`, `corners:` of meshes and surfaces. How one table divides an object holds for all tables
-  that do not say otherwise, and so does the user text `divide` of the object.
+  without another one, and so does the user text `divide` of the object.
 * `on = "layer:beams"` keeps the points that lie on these curves. `pull_to_curve` selects its `curve`; bent ones with
   `curve_divide = N`; of several each pulls the points nearest to it.
 * `[[geometry]]` rides along: kind `points`, `lines`, `mesh`, or `polyline` and `curve` with points = a curve.
@@ -56,13 +56,13 @@ from hookean.files.recipe.select import count, listed
 from hookean.files.rhino.model import Model
 
 DRAWN = ("forces", "anchors", "geometry", "meshes", "particles")
-"""The fields of a recipe that say what is what; without them layer names do."""
+"""The fields of a recipe that give objects a role; without them layer names do."""
 
 
 @dataclass(frozen=True, eq=False)
 class Understood:
-    """How a file was read: the scene with where it came from, lines that tell a person, and a sentence where the
-    file holds nothing to relax; `notes` on what was left out, guessed or may be misspelt."""
+    """How a file was read: the scene with where it came from, lines to print, and a sentence if the
+    file has nothing to relax; `notes` on what was left out, guessed or may be misspelt."""
 
     built: Built
     lines: list[str]
@@ -74,7 +74,7 @@ def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Underst
     """The scene in a .3dm model, by a recipe or, with None, by the convention of layer names and user text.
 
     A recipe without forces, anchors, geometry, meshes and particles leaves these to the convention, and adds the rest.
-    Raises InputError: a selector that finds nothing, an object that does not fit, a fault of the scene.
+    Raises InputError: a selector that finds nothing, an unsupported object, a fault of the scene.
     """
     given = {} if recipe is None else dict(recipe)
     check(given)
@@ -86,23 +86,23 @@ def understand(model: Model, recipe: Mapping[str, Any] | None = None) -> Underst
         from hookean.files.recipe.convention import UNITS, by_convention
 
         if "units" in given:
-            raise InputError("/units", "without forces in the recipe, layer names decide, in m, N and s; remove units")
+            raise InputError("/units", "a recipe without forces uses layer names, in m, N and s; remove units")
         seen = drawing(model, UNITS, hidden=hidden)
         built, said, nothing = by_convention(seen, given)
     else:
         seen = drawing(model, given.get("units"), hidden=hidden)
         built, said, nothing = build(seen, given), "a recipe", ""
-    lines = _told(seen, built, said)
+    lines = _lines(seen, built, said)
     if not conventional and "units" not in given:
         length, force = built.scene.units.length, built.scene.units.force
         lines.insert(
             2, f"no units in the recipe: its lengths are {length}, its forces {force}, stiffness {force}/{length}"
         )
-    told = tuple(notes(seen, built, conventional=conventional))
-    return Understood(built, [*lines, f"{model.name} {nothing}"] if nothing else lines, nothing, told)
+    remarks = tuple(notes(seen, built, conventional=conventional))
+    return Understood(built, [*lines, f"{model.name} {nothing}"] if nothing else lines, nothing, remarks)
 
 
-def _told(seen: Drawing, built: Built, said: str) -> list[str]:
+def _lines(seen: Drawing, built: Built, said: str) -> list[str]:
     units, model = built.scene.units, seen.model
     version = model.version // 10 if model.version >= 50 else model.version
     lines = [
@@ -112,8 +112,8 @@ def _told(seen: Drawing, built: Built, said: str) -> list[str]:
         _counts(seen),
     ]
     if built.size:
-        solved = "" if seen.factor == 1.0 else f", 1 {seen.unit} taken as {seen.factor:.6g} {units.length}"
-        lines.append(f"size: {built.size}{solved}; stiffness and loads must fit it")
+        solved = "" if seen.factor == 1.0 else f", 1 {seen.unit} read as {seen.factor:.6g} {units.length}"
+        lines.append(f"size: {built.size}{solved}; stiffness and loads must suit it")
     lines += built.notes
     if not built.scene.anchors:
         lines.append("nothing is held")

@@ -74,8 +74,8 @@ def _term(text: str, pointer: str) -> Term:
     if not colon or key not in KEYS or not value:
         raise InputError(
             pointer,
-            f'"{text.strip()}" is no selector; write layer:NAME, name:NAME, id:UUID, text:KEY=VALUE or *, '
-            f"for points with {', '.join(f + ':' for f in FEATURES)} in front if wanted",
+            f'"{text.strip()}" is not a selector; write layer:NAME, name:NAME, id:UUID, text:KEY=VALUE or *, '
+            f"for points optionally with {', '.join(f + ':' for f in FEATURES)} in front",
         )
     return Term(feature, key, value)
 
@@ -103,7 +103,7 @@ def _id(term: Term, pointer: str) -> UUID:
     try:
         return UUID(term.value)
     except ValueError:
-        raise InputError(pointer, f'"{term.value}" is no object id; copy it from Rhino\'s What command') from None
+        raise InputError(pointer, f'"{term.value}" is not an object id; copy it from Rhino\'s What command') from None
 
 
 def _test(term: Term) -> Callable[[Item], bool]:
@@ -140,7 +140,7 @@ def _has(drawing: Drawing, term: Term) -> str:
     if term.key == "layer":
         paths = layers_of(drawing.items)
         if not set(paths) - {NO_LAYER}:
-            return f'its objects lie on no layer: select them with "{front}*", {front}name:NAME or {front}id:UUID'
+            return f'its objects have no layer: select them with "{front}*", {front}name:NAME or {front}id:UUID'
         if len(paths) == 1:
             return (
                 f'its only layer with visible objects is "{paths[0]}": write "{front}layer:{paths[0]}", or "{front}*"'

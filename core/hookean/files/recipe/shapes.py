@@ -186,7 +186,7 @@ def pulling_only(table: dict[str, Any], pointer: str) -> dict[str, Any]:
         return table
     lines = table.get("lines")
     if not isinstance(lines, np.ndarray) or table.get("kind") != "springs" or "lower_cutoff" in table:
-        raise InputError(pointer, "tension_only goes with springs on selected lines, without lower_cutoff")
+        raise InputError(pointer, "tension_only is allowed for springs on selected lines only, without lower_cutoff")
     length = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
     try:
         rest = np.broadcast_to(np.asarray(table.get("rest_length", length), dtype=np.float64), length.shape)

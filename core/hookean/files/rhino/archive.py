@@ -160,7 +160,7 @@ def scan(data: bytes, name: str = "file") -> Archive:
         raise InputError(
             name,
             f"damaged .3dm file: {damage}; it may be cut short, so copy or download it again, "
-            "or open it in Rhino and save it anew.",
+            "or open it in Rhino and save it again.",
         ) from None
 
 
@@ -171,7 +171,7 @@ def chunks(data: bytes, start: int, end: int, size: int) -> Iterator[Chunk]:
     position = start
     while position < end:
         if position + head > end:
-            raise _Damage(f"a record at byte {position} has no room for its head")
+            raise _Damage(f"a record at byte {position} is too short for its header")
         typecode, value = layout.unpack_from(data, position)
         body = position + head
         after = body if typecode & _SHORT else body + value
@@ -199,7 +199,7 @@ def _version(data: bytes, name: str) -> int:
         raise InputError(name, "damaged .3dm file: its header is cut or has no version; copy or save it again.")
     version = int(digits)
     if version < 2:
-        raise InputError(name, "a .3dm file of version 1, older than 2; open it in Rhino and save it anew.")
+        raise InputError(name, "a .3dm file of version 1, older than 2; open it in Rhino and save it again.")
     return version
 
 
@@ -226,7 +226,7 @@ class _Scan:
             found = sum(table.typecode == typecode for table in self.tables)
             if found != 1:
                 what = "layer" if typecode == LAYER_TABLE else "object"
-                raise _Damage(f"it has {found} {what} tables in place of one")
+                raise _Damage(f"it has {found} {what} tables instead of one")
         return Archive(
             version=self.version,
             size=end_mark.end,
@@ -255,7 +255,7 @@ class _Scan:
         tail = None
         for record in chunks(self.data, chunk.body, chunk.end, self.size):
             if tail is not None:
-                raise _Damage(f"the table at byte {chunk.start} goes on after its end")
+                raise _Damage(f"the table at byte {chunk.start} continues after its end")
             if record.typecode == END_OF_TABLE:
                 tail = record.start
             elif record.typecode == OBJECT_RECORD and chunk.typecode == OBJECT_TABLE:
@@ -351,18 +351,18 @@ class _Scan:
         if len(self.data) > end_mark.end:
             notes.append(f"{len(self.data) - end_mark.end} bytes after the end mark are ignored.")
         if self.units != 1:
-            notes.append("the unit of length is not where it should be: the file is damaged, look at the result.")
+            notes.append("the unit of length is not in its place: the file is damaged, check the result.")
         if self.strange:
-            notes.append(f"{self.strange} records among objects and layers are of no known kind and are left out.")
+            notes.append(f"{self.strange} records among objects and layers are of unknown kind and are left out.")
         for place in self.damaged_objects[:_NAMED]:
-            said = f"object {place} ({self.objects[place].label}) does not agree with its checksums"
+            said = f"object {place} ({self.objects[place].label}) does not match its checksums"
             notes.append(f"{said}: it is damaged, check the result there.")
         if (more := len(self.damaged_objects) - _NAMED) > 0:
-            notes.append(f"{more} more object{'s do' if more > 1 else ' does'} not agree with their checksums.")
+            notes.append(f"{more} more object{'s do' if more > 1 else ' does'} not match their checksums.")
         for typecode, what in _WORDS.items():
             if count := self.damaged[typecode]:
                 whole = f"{count} {what}s do" if count > 1 else f"1 {what} does"
-                notes.append(f"{whole} not agree with the checksum: the file is damaged, check the result.")
+                notes.append(f"{whole} not match the checksum: the file is damaged, check the result.")
         return tuple(notes)
 
 

@@ -60,7 +60,7 @@ class Additions:
 class Plan:
     """Additions checked and placed: rhino3dm layers (name, parent's number, id, look) and objects to add.
 
-    Layer numbers count on from the layers kept. `own` says the objects carry hookean's mark.
+    Layer numbers count on from the layers kept. `own`: the objects carry hookean's mark.
     """
 
     layers: tuple[tuple[str, int | None, UUID, NewLayer], ...]
@@ -149,7 +149,7 @@ def _wanted(additions: Additions, own: bool) -> list[tuple[str, NewLayer]]:
     for place, layer in enumerate(additions.layers):
         pointer = f"/layers/{place}"
         if SEPARATOR in layer.name:
-            raise InputError(f"{pointer}/name", f'"{layer.name}" contains "::"; give the layer above as parent.')
+            raise InputError(f"{pointer}/name", f'"{layer.name}" contains "::"; give the parent layer as parent.')
         _check_path(layer.path, pointer)
         _check_colour(layer.colour, f"{pointer}/colour")
         looks[_full(layer.path, own).casefold()] = layer
@@ -183,7 +183,7 @@ def _attributes(item: NewObject, layer: int, own: bool, pointer: str) -> Any:
     for key, value in item.user_text.items():
         where = f"{pointer}/user_text/{key}"
         if not _text(key, where) or not _text(value, where):
-            raise InputError(where, "an empty key or value; Rhino keeps no empty user text, so leave it out.")
+            raise InputError(where, "an empty key or value; Rhino stores no empty user text, so remove it.")
         attributes.SetUserString(key, value)
     if own:
         attributes.SetUserString(OWN_KEY, "1")
@@ -216,5 +216,5 @@ def _text(value: object, pointer: str) -> str:
     if not isinstance(value, str):
         raise InputError(pointer, f"a {type(value).__name__} where text is needed; turn it into text.")
     if "\0" in value or any("\ud800" <= c <= "\udfff" for c in value):
-        raise InputError(pointer, "text with a null character or half a surrogate pair; leave it out.")
+        raise InputError(pointer, "text with a null character or half a surrogate pair; remove it.")
     return value

@@ -35,7 +35,7 @@ def build(geometry: object, colours: ArrayLike | None, pointer: str) -> Built:
 
     `geometry` is a rhino3dm geometry (kept as it is), a `Mesh`, `Points`, or coordinates: `(3,)` a point,
     `(2, 3)` a line, `(k, 3)` a polyline. `colours` `(n, 3 or 4)` 0-255 colours a mesh's or point set's n
-    points. Lines and faces without extent are kept as points or left out, and `note` says so: Rhino
+    points. Lines and faces without extent are kept as points or left out, and `note` reports this: Rhino
     discards them. Raises InputError at `pointer` for anything else, and for coordinates not finite.
     """
     if isinstance(geometry, rhino.GeometryBase):
@@ -48,7 +48,9 @@ def build(geometry: object, colours: ArrayLike | None, pointer: str) -> Built:
             raise InputError(pointer, f"a point set has shape {points.shape}; give (n, 3) with n at least 1.")
         return Built(_cloud(points, _colours(colours, len(points), pointer)), _digest(b"points", points, colours))
     if colours is not None:
-        raise InputError(pointer, "colours are given for a point, line or polyline; give them to meshes and Points.")
+        raise InputError(
+            pointer, "colours are given for a point, line or polyline; only meshes and Points support them."
+        )
     points = _coordinates(geometry, pointer)
     digest = _digest(b"curve", points)
     if points.shape == (3,):
@@ -72,7 +74,7 @@ def _given(geometry: Any, colours: ArrayLike | None, pointer: str) -> Built:
         raise InputError(pointer, f"{type(geometry).__name__} has coordinates that are not finite; remove it.")
     if not valid:
         reason = " ".join(why.split()) or "it is empty or has no extent"
-        raise InputError(pointer, f"{type(geometry).__name__} is not valid in Rhino: {reason}; remove or mend it.")
+        raise InputError(pointer, f"{type(geometry).__name__} is not valid in Rhino: {reason}; remove or repair it.")
     return Built(geometry, hashlib.sha256(geometry.Encode()["data"].encode()).hexdigest())
 
 
@@ -84,15 +86,15 @@ def _curve(points: NDArray[np.float64], digest: str, pointer: str) -> Built:
         if float(np.abs(point - kept[-1]).max()) > near:
             kept.append(point)
     if len(kept) == 1:
-        return Built(rhino.Point(_point(kept[0])), digest, "a line without length is written as a point")
+        return Built(rhino.Point(_point(kept[0])), digest, "a line of zero length is written as a point")
     if len(kept) == 2 and len(points) == 2:
         curve = rhino.LineCurve(_point(kept[0]), _point(kept[1]))
     else:
         curve = rhino.PolylineCurve([_point(point) for point in kept])
     if not curve.IsValid:
         if len(points) == 2:
-            return Built(rhino.Point(_point(kept[0])), digest, "a line without length is written as a point")
-        raise InputError(pointer, "a polyline has points too close together for Rhino; leave out repeated points.")
+            return Built(rhino.Point(_point(kept[0])), digest, "a line of zero length is written as a point")
+        raise InputError(pointer, "a polyline has points too close together for Rhino; remove repeated points.")
     note = "" if len(kept) == len(points) else "repeated points of a polyline are left out"
     return Built(curve, digest, note)
 
@@ -107,10 +109,10 @@ def _mesh(mesh: Mesh, colours: ArrayLike | None, pointer: str) -> Built:
             "give vertices (n, 3) and whole-number faces (m, 3) or (m, 4).",
         )
     if faces.size and not (int(faces.min()) >= 0 and int(faces.max()) < len(vertices)):
-        raise InputError(pointer, f"a face refers to a vertex outside 0..{len(vertices) - 1}; mend the faces.")
+        raise InputError(pointer, f"a face refers to a vertex outside 0..{len(vertices) - 1}; correct the faces.")
     corners, dropped = _faces(vertices, faces)
     if not corners:
-        raise InputError(pointer, "a mesh has no face with an area; give at least one.")
+        raise InputError(pointer, "a mesh has only faces of zero area; give at least one with an area.")
     made = rhino.Mesh()
     made.Vertices.UseDoublePrecisionVertices = True  # the default rounds to float32
     for x, y, z in vertices.tolist():
@@ -121,8 +123,8 @@ def _mesh(mesh: Mesh, colours: ArrayLike | None, pointer: str) -> Built:
         made.VertexColors.Add(red, green, blue)
     valid, why = made.IsValidWithLog
     if not valid:
-        raise InputError(pointer, f"a mesh is not valid in Rhino: {' '.join(why.split())}; mend it.")
-    note = f"{dropped} faces of a mesh without area are left out" if dropped else ""
+        raise InputError(pointer, f"a mesh is not valid in Rhino: {' '.join(why.split())}; repair it.")
+    note = f"{dropped} faces of zero area of a mesh are left out" if dropped else ""
     return Built(made, _digest(b"mesh", vertices, faces, colours), note)
 
 

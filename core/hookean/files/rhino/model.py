@@ -74,7 +74,7 @@ class Object:
     `index` is its place among the file's object records, `layer` the full path of its layer, `geometry` a
     rhino3dm geometry in the file's length units, `kind` its rhino3dm class name. `user_text` joins that of
     the geometry and of the attributes (which win). `visible` and `locked` take the layers above into
-    account. `colour` is RGBA as displayed; `by_parent` says a block instance gives it. `own` is true below
+    account. `colour` is RGBA as displayed; `by_parent`: a block instance gives it. `own` is true below
     the layer `hookean`, `marked` if hookean added it. `page` is true in a layout rather than the model.
     """
 

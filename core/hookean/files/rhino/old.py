@@ -33,22 +33,23 @@ def clean_layer_names(file: Any) -> None:
 
 
 def warnings(version: int, additions: Additions, *, text: bool = False) -> tuple[str, ...]:
-    """What a person should know of writing these additions, and document text, to an old archive; InputError if it
-    cannot be."""
+    """Warnings on writing these additions, and document text, to an old archive; raises InputError if this is
+    impossible."""
     found = [
-        f"a .3dm file of version {version} is written anew as a whole: details of old objects may change and mesh "
+        f"a .3dm file of version {version} is rewritten as a whole: details of old objects may change and mesh "
         "coordinates are rounded to single precision; save it as Rhino 5 or later to keep them as they are."
     ]
     for place, item in enumerate(additions.objects):
         if version < 3 and (isinstance(item.geometry, (Points, rhino.PointCloud))):
             raise InputError(
                 f"/objects/{place}/geometry",
-                f"a .3dm file of version {version} holds no point sets; save it as Rhino 5 or later, or give points.",
+                f"a .3dm file of version {version} cannot store point sets; "
+                "give points, or save it as Rhino 5 or later.",
             )
     if version < FIRST_WITH_TEXT and (text or any(item.user_text for item in additions.objects)):
         what = "new objects and of the document" if text else "new objects"
         found.append(
-            f"a .3dm file of version {version} holds no user text, so that of the {what} is left out; "
+            f"a .3dm file of version {version} cannot store user text, so that of the {what} is left out; "
             "save it as Rhino 5 or later to keep it."
         )
     return tuple(found)

@@ -15,7 +15,7 @@ from hookean.files.rhino.model import Model, Object, expand, rhino
 
 Array = NDArray[np.float64]
 KINDS = ("point", "points", "line", "polyline", "curve", "surface", "brep", "mesh")
-"""What an object can be; anything else, such as a text or a dimension, is left out, and a warning says so."""
+"""Types of objects that are read; others, such as a text or a dimension, are left out with a warning."""
 
 
 def plain(model: Model, divisions: tuple[int, int] | None = None) -> dict[str, Any]:
@@ -37,7 +37,7 @@ def plain(model: Model, divisions: tuple[int, int] | None = None) -> dict[str, A
     ]
     if len(objects) < len(drawn):
         other = len(drawn) - len(objects)
-        warnings.append(f"{other} objects are neither points, curves, surfaces nor meshes and are left out.")
+        warnings.append(f"{other} objects are not points, curves, surfaces or meshes and are left out.")
     layers = [{"path": layer.path, "visible": layer.visible, "colour": list(layer.colour)} for layer in model.layers]
     about = {"name": model.name, "unit": model.unit, "metres": model.metres, "tolerance": model.tolerance}
     return {**about, "layers": layers, "objects": objects, "warnings": warnings}

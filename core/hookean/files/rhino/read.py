@@ -45,7 +45,7 @@ class Loaded:
 
 
 def load(path: str | os.PathLike[str], oldest: int = 2) -> Loaded:
-    """Read a .3dm file; InputError if it is none, is damaged, or is older than version `oldest`."""
+    """Read a .3dm file; raises InputError if it is not one, is damaged, or is older than version `oldest`."""
     name = Path(path).name or str(path)
     data = read_bytes(path, name)
     return parse(data, name, oldest)
@@ -57,7 +57,7 @@ def parse(data: bytes, name: str, oldest: int = 2) -> Loaded:
     if archive.version < oldest:
         raise InputError(
             name,
-            f"a .3dm file of version {archive.version}, older than {oldest} as asked for; "
+            f"a .3dm file of version {archive.version}, older than the required {oldest}; "
             "open it in Rhino and save it as a newer version.",
         )
     try:
@@ -201,7 +201,7 @@ class _Reader:
 
     def _warn(self, unit: str, lost: tuple[Lost, ...], lights: int, free: tuple[Object, ...]) -> None:
         if unit not in METRES:
-            self.warnings.append(f"the file's unit system is {unit}, so its lengths in metres are not known.")
+            self.warnings.append(f"the file's unit system is {unit}, so its lengths in metres are unknown.")
         for group in lost:
             which = ", ".join(str(id or "unknown") for id in group.ids[:MOST_NAMED])
             self.warnings.append(
@@ -212,14 +212,14 @@ class _Reader:
         if len(self.layers) < len(self.archive.layers):
             self.warnings.append(f"{len(self.archive.layers) - len(self.layers)} layers cannot be read.")
         if renamed := self._renamed():
-            self.warnings.append(f"{renamed} layers are named otherwise in the file than they are read; look at them.")
+            self.warnings.append(f"{renamed} layers have other names in the file than here; check them.")
         if lights < self.archive.lights:
             self.warnings.append(f"{self.archive.lights - lights} lights cannot be read; they stay in the file.")
         drawn = sum(item.own and not item.marked for item in free)
         if drawn:
             self.warnings.append(
-                f"{drawn} objects below the layer {TOP_LAYER} were not added by hookean; they are not taken as "
-                "input: move them to another layer if they should be."
+                f"{drawn} objects below the layer {TOP_LAYER} were not added by hookean; they are not read as "
+                "input: to use them, move them to another layer."
             )
 
 

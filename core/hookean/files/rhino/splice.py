@@ -115,11 +115,11 @@ def _fit(old: Archive, new: Archive, layers: int, objects: int, drop_layers: int
     if any(record.index != place for place, record in enumerate(old.layers)):
         raise InputError(
             name,
-            "the layers of this .3dm file are not numbered 0, 1, 2, ...; open it in Rhino and save it anew.",
+            "the layers of this .3dm file are not numbered 0, 1, 2, ...; open it in Rhino and save it again.",
         )
     kept = len(old.layers) - drop_layers
     if kept < 0 or len(new.layers) < layers or len(new.objects) < objects:
-        raise InputError(name, "more records asked for than the two .3dm files hold.")
+        raise InputError(name, "more records are requested than the two .3dm files have.")
     if layers and new.layers[len(new.layers) - layers].index != kept:
         raise InputError(name, f"the first new layer must have number {kept}, as many as the file keeps.")
 
@@ -127,7 +127,7 @@ def _fit(old: Archive, new: Archive, layers: int, objects: int, drop_layers: int
 def _table(archive: Archive, typecode: int) -> Table:
     table = archive.table(typecode)
     if table is None:
-        raise InputError("file", f"the .3dm file has no table {typecode:#x}; save it anew with Rhino.")
+        raise InputError("file", f"the .3dm file has no table {typecode:#x}; save it again with Rhino.")
     return table
 
 

@@ -80,7 +80,7 @@ class Written:
 def read(path: StrPath, *, oldest: int = 2) -> Model:
     """The model in a .3dm file, lengths in its own units.
 
-    Raises InputError when there is no such file, it is no .3dm file, is damaged or cut short, or its archive
+    Raises InputError if the file does not exist, is not a .3dm file, is damaged or cut short, or its archive
     version is older than `oldest` (50 is Rhino 5). Objects rhino3dm leaves out silently are in `Model.lost`.
     """
     return load(path, oldest).model
@@ -90,7 +90,7 @@ def write(source: StrPath, target: StrPath, additions: Additions, text: Told | N
     """Write a copy of the .3dm file `source` with new layers and objects to `target`, in the same version.
 
     From Rhino 5 on every object of the source stays byte for byte and in order; older files take a round
-    trip through rhino3dm, and a warning says so. Objects and document text an earlier run added are left out, so
+    trip through rhino3dm, with a warning. Objects and document text an earlier run added are left out, so
     results do not pile up. `text` is the document text to add. `target` is replaced in one step or not at all; it may
     not be the source. Raises InputError.
     """
@@ -261,7 +261,7 @@ def _check_counts(back: bytes, loaded: Loaded, dropped: int, planned: Plan, stri
     _check_ids(result, planned)
     expected = len(model.objects) - dropped + len(planned.objects)
     if len(result.objects) != expected or result.lost != model.lost or result.lights != model.lights:
-        raise _unsafe(model.name, f"{len(result.objects)} objects in place of {expected}")
+        raise _unsafe(model.name, f"{len(result.objects)} objects instead of {expected}")
     if (result.unit, result.text, len(result.blocks)) != (model.unit, strings, len(model.blocks)):
         raise _unsafe(model.name, "units, user text or blocks differ")
     return result
@@ -272,7 +272,7 @@ def _check_new(back: bytes, name: str, planned: Plan) -> None:
     _check_ids(result, planned)
     layers = max(1, len(planned.layers))  # a file without any gets one
     if len(result.objects) != len(planned.objects) or len(result.layers) != layers:
-        raise _unsafe(name, f"{len(result.objects)} objects in place of {len(planned.objects)}")
+        raise _unsafe(name, f"{len(result.objects)} objects instead of {len(planned.objects)}")
 
 
 def _check_ids(result: Model, planned: Plan) -> None:
@@ -285,5 +285,5 @@ def _check_ids(result: Model, planned: Plan) -> None:
 
 def _unsafe(name: str, what: str) -> InputError:
     return InputError(
-        name, f"the copy does not read back as meant ({what}) and was not kept; save the file anew with Rhino."
+        name, f"the copy does not read back as intended ({what}) and was not kept; save the file again with Rhino."
     )
