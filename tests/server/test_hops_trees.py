@@ -51,7 +51,8 @@ def component(service: Service, name: str) -> Component:
 
 def test_every_description_becomes_a_component_that_tells_all() -> None:
     """Types, accesses and defaults that Hops knows; every number has its unit, every input a word."""
-    found = {one.path.strip("/"): one for one in listed(Service().call)}
+    with functions(FUNCTIONS):
+        found = {one.path.strip("/"): one for one in listed(Service().call)}
     assert set(found) == set(FUNCTIONS)
     for name, one in found.items():
         assert one.title and one.description and one.outputs and one.errors == []

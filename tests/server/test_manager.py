@@ -147,7 +147,8 @@ def test_a_session_that_is_played_while_it_steps_plays() -> None:
         endless = {"solver": "verlet", "drag": 0, "tolerance": 0, "sub_iterations": 10_000}
         manager = await opened(store, {**CABLE, "settings": endless})
         stepping = asyncio.create_task(manager.command("a", "step", frames=100_000))
-        await asyncio.sleep(0.3)
+        while not manager.find("a").described["iteration"]:
+            await asyncio.sleep(0.01)
         await manager.command("a", "play")
         await asyncio.wait_for(stepping, HANG)
         playing = manager.find("a").playing

@@ -158,7 +158,7 @@ def _copy(example: Example, target: Path) -> None:
         shutil.copytree(example.folder, target, ignore=shutil.ignore_patterns("__pycache__", "oracle.py"))
     except OSError as error:
         raise InputError(str(target), f"cannot be written ({error.strerror})") from None
-    typer.echo(f"copied to {target}; its README.md says what to try. Change its scene.py and run it:")
+    typer.echo(f"copied to {target}; its README.md suggests changes. Change its scene.py and run it:")
     run = str(target) if target.is_absolute() else f"{os.curdir}{os.sep}{target}"
     typer.echo(f"  hookean example {run}")
     if example.drawn:

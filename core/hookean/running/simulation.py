@@ -303,7 +303,7 @@ class Simulation:
         """
         edit = Patch.read(edit)
         if edit.remove and self._playing is not None:
-            raise InputError("/remove", "a script leads forces by their numbers; forces are removed without one only")
+            raise InputError("/remove", "a script refers to forces by number; forces can only be removed without one")
         # a moved anchor stiffens or quickens nothing by itself
         warn = bool(edit.forces or edit.settings or len(edit.release) or edit.rewires)
         before = self._changed(lambda: apply(self.system, self.state, edit), warn=warn)
@@ -316,7 +316,7 @@ class Simulation:
         return self.state.revision
 
     def redo(self) -> int:
-        """Make the patch again that was taken back last; InputError where there is none."""
+        """Redo the last undone patch; raises InputError if there is none."""
         self._changed(lambda: self.history.redo(self.system, self.state))
         return self.state.revision
 

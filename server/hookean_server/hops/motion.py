@@ -48,7 +48,7 @@ def _sail(inputs: Inputs, scene: Scene, result: Any) -> dict[str, Any]:
 FUNCTIONS: dict[str, Function] = {
     "falling_sphere": scenes.moving(
         _SPHERE, _falling, "Falling sphere", "Sphere",
-        "Section 9.7: a mesh sphere falls onto the floor, at a time since it was let go",
+        "Section 9.7: a mesh sphere falls onto the floor, at a time after its release",
         (
             item("Radius", "R", "Number", "Radius [model unit]", minimum=0.1, maximum=1000.0),
             item("Drop", "H", "Number", "Height of its lowest point over the floor [model unit]", minimum=0.0),

@@ -19,14 +19,14 @@ SPRINGS = Parameter("Springs", "L", "Line", "Springs in equilibrium, in the orde
 MESH = item("Mesh", "M", "Mesh", "The mesh in equilibrium")
 FORCES = Parameter("Forces", "F", "Number", "Force of every spring [N], tension positive")
 REACTIONS = Parameter("Reactions", "Re", "Vector", "Force of every anchor on its particle [N]")
-SUPPORTS = Parameter("Supports", "Su", "Point", "Where the reactions act, in their order [model unit]")
+SUPPORTS = Parameter("Supports", "Su", "Point", "Points of the reactions, in their order [model unit]")
 LARGEST = item("Largest force", "Fm", "Number", "The largest force of a spring [N]")
 LENGTH = item("Length", "Lt", "Number", "Length of all springs [model unit]")
-STATUS = item("Status", "S", "Text", "converged, or how the run ended")
+STATUS = item("Status", "S", "Text", "converged, or another status of the run")
 
 
 STIFFNESS = item("Stiffness", "k", "Number", "Stiffness of every spring [N/model unit]", minimum=0.0)
-REST_FACTOR = item("Rest factor", "R", "Number", "Rest length as a part of the drawn length [-]; 0: as short as it can",
+REST_FACTOR = item("Rest factor", "R", "Number", "Rest length / drawn length [-]; 0: as short as possible",
                    minimum=0.0, maximum=10.0)  # fmt: skip
 LENGTH_FACTOR = replace(REST_FACTOR, name="Length factor")
 LOAD = item("Load", "P", "Number", "Force down on every particle [N]; below 0: up")

@@ -31,7 +31,7 @@ _FORCES, _REACTIONS, _STIFFNESS = (
 _LARGEST = item("Largest force", "Fm", "Number", "The largest force, tension positive [kN]")
 _LEAST = item("Least force", "Fn", "Number", "The smallest force, tension positive [kN]")
 _SHAPE = (scenes.MESH, scenes.SPRINGS, _FORCES, _REACTIONS, scenes.SUPPORTS, _LARGEST, _LEAST, scenes.STATUS)
-_OVER = item("Upside down", "U", "Boolean", "True: turned over, every force reversed", False)
+_OVER = item("Upside down", "U", "Boolean", "True: upside down, with every force reversed", False)
 
 
 def _net(result: Any, scene: Scene, *names: str) -> dict[str, Any]:
@@ -117,7 +117,7 @@ FUNCTIONS: dict[str, Function] = {
     "hanging_chain": Function(
         "Hanging chain",
         "Chain",
-        "The vault's essay: a chain hangs from its ends, or turned over stands as an arch",
+        "The vault's essay: a chain hangs from its ends, or, upside down, stands as an arch",
         inputs_of(
             _VAULT.chain,
             item("Arc length", "L", "Number", "Length of the chain [model unit]", minimum=1e-6),
@@ -137,7 +137,7 @@ FUNCTIONS: dict[str, Function] = {
     "vault": Function(
         "Vault",
         "Vault",
-        "The vault's essay: a net hangs from nine columns, or turned over stands as a vault",
+        "The vault's essay: a net hangs from nine columns, or, upside down, stands as a vault",
         inputs_of(
             _VAULT.scene,
             item("Length", "L", "Number", "Along x [model unit]", minimum=1e-6),

@@ -50,6 +50,6 @@ def _answer(request: Request, name: str) -> Response:
     """A file in the page's folder or its folder `assets`, whose names change with what is in them."""
     found = NAME.fullmatch(name)
     if found is None:
-        raise Problem("not-found", "There is no such file.")
+        raise Problem("not-found", "This file does not exist.")
     headers = {**HEADERS, "cache-control": FOR_EVER if found[1] else "no-cache"}
     return answer(request, Path(request.app.state.settings.page), name, headers)
