@@ -18,7 +18,7 @@ def scene(
     where `strict` and one meets no particle.
     """
     if len(anchors) < 2:
-        raise InputError("anchors", "one anchor is given; a cable has two ends, give both")
+        raise InputError("anchors", "one anchor given; a cable needs two, one for each end")
     held: list[dict[str, Any]] = [{"name": "ends", "particles": [0, pieces]}]
     if len(anchors) > 2:
         held.append({"name": "between", "points": anchors[1:-1]})

@@ -67,7 +67,7 @@ def test_points_in_a_row_are_refused(b: Any) -> None:
     """Collinear, outside the ends, or on one of them."""
     with pytest.raises(InputError, match="b: the three points are in line"):
         arc([0, 0, 0], b, [1, 0, 0], 4)
-    with pytest.raises(InputError, match="in one place"):
+    with pytest.raises(InputError, match="in line or coincide"):
         arc([1, 1, 1], [1, 1, 1], [1, 1, 1], 4)
 
 
@@ -134,5 +134,5 @@ def test_an_arc_of_a_length_stands_over_its_span(times: float, span: float, coun
 
 @pytest.mark.parametrize("length", [0.999, 1001.0, float("nan")])
 def test_an_arc_shorter_than_its_span_is_refused(length: float) -> None:
-    with pytest.raises(InputError, match="is given over a span of 1; the arc is at least as long, at most 1000 times"):
+    with pytest.raises(InputError, match="given for a span of 1; at least the span, at most 1000 times it allowed"):
         arc_of_length(length, 1.0, 8)

@@ -145,7 +145,7 @@ class Example:
         return in_motion(read_scene(model, recipe) if self.drawn else figure(self.folder).scene())[0]
 
     def run(self) -> Outcome:
-        """Run the example afresh."""
+        """Run the example, and load its script again."""
         outcome: Any = _script(self.folder / "example.py").run(self.folder)
         assert isinstance(outcome, Outcome)
         return outcome
@@ -171,7 +171,7 @@ def defaults(make: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _script(path: Path) -> ModuleType:
-    """A script of an example as a module of its own, read afresh."""
+    """A script of an example as a module of its own, loaded at every call."""
     spec = importlib.util.spec_from_file_location(f"{path.stem}_of_{path.parent.name}", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)

@@ -64,7 +64,7 @@ def arc_of_length(arc_length: float, span: float, count: int) -> Array:
     than 1000 times it.
     """
     if not span <= arc_length < 1e3 * span:
-        said = f"{arc_length:g} is given over a span of {span:g}; the arc is at least as long, at most 1000 times"
+        said = f"{arc_length:g} given for a span of {span:g}; at least the span, at most 1000 times it allowed"
         raise InputError("arc_length", said)
     _check_count(count)
     if arc_length == span:
