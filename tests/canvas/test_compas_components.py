@@ -105,7 +105,7 @@ def test_what_does_not_fit_is_one_sentence(told: dict[str, Any]) -> None:
         "no vertex": ("Error", "99 is not a vertex of the mesh; its 25 keys are 0 to 24."),
         "no force": ("Warning", "Forces are missing; connect COMPAS Springs."),
         "no structures": ("Warning", "Structures are missing; connect a COMPAS Mesh or Graph."),
-        "no force at all": ("Error", 'the text "load" is none'),
+        "no force at all": ("Error", 'the text "load" is not a hookean object'),
         "no geometry": ("Warning", "Geometry is missing; connect meshes, lines or curves."),
     }
     for name, (level, sentence) in wanted.items():

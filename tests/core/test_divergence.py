@@ -48,7 +48,7 @@ def test_a_time_step_that_is_too_large_is_blamed_on_what_limits_it(edit: dict[st
     simulation = run(CHAIN, edit)
     assert f"for this mass and the {what} of {where}; " in simulation.message
     assert simulation.message.endswith(f"more mass or less {what}.")
-    found = re.search(r"Steps of (\S+) s held", simulation.message)
+    found = re.search(r"Steps of (\S+) s were stable", simulation.message)
     assert found is not None
     assert run(CHAIN, edit, {"settings": {"time_step": float(found[1])}}).status != "diverged"
 

@@ -91,7 +91,7 @@ def test_a_given_step_that_heats_slowly_is_reported_and_ends_the_run():
         said.append(simulation.message)
     assert simulation.status is Status.DIVERGED
     assert any("steps have added" in message for message in said)
-    found = re.search(r"Steps of (\S+) s held for (\S+) s of the same motion", simulation.message)
+    found = re.search(r"Steps of (\S+) s were stable for (\S+) s of the same motion", simulation.message)
     assert found is not None
     named, lasted = float(found[1]), float(found[2])
     assert named < step and lasted >= simulation.state.time
@@ -131,7 +131,7 @@ def test_every_step_that_is_named_holds_in_the_same_motion():
         simulation = Simulation(Scene.read(spec))
         if simulation.step(40) is not Status.DIVERGED:
             continue
-        found = re.search(r"Steps of (\S+) s held for (\S+) s", simulation.message)
+        found = re.search(r"Steps of (\S+) s were stable for (\S+) s", simulation.message)
         assert found is not None, (seed, simulation.message)
         step, lasted = float(found[1]), float(found[2])
         settings = {**spec["settings"], "time_step": step, "sub_iterations": 50}

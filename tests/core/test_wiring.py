@@ -159,7 +159,7 @@ def test_elements_remember_what_they_did_before_an_edit() -> None:
         ({"add": [{"kind": "unary", "points": [[7, 0, 0]], "vector": [0, 0, 1]}]}, "/add/0/points", r"\(7, 0, 0\)"),
         ({"add": [{"kind": "springs", "lines": [[[0, 0, 0], [7, 0, 0]]]}]}, "/add/0/lines", "send a new scene"),
         ({"add": [{"kind": "pressure", "mesh": "roof", "pressure": 1}]}, "/add/0/mesh", "'roof' does not exist"),
-        ({"add": [{"kind": "unary", "points": [[1, 1, 0]]}]}, "/add/0/vector", "needed"),
+        ({"add": [{"kind": "unary", "points": [[1, 1, 0]]}]}, "/add/0/vector", "required"),
         ({"add": [{"kind": "springs", "particles": [[0, 1]], "stiffness": [1, 2]}]}, "/add/0/stiffness", "2 values"),
         ({"add": [{"kind": "sprngs"}]}, "/add/0", "did you mean"),
         ({"remove": ["nobody"]}, "/remove/0", "no force of this name"),
@@ -185,7 +185,7 @@ def test_removing_what_its_particles_come_from_is_refused() -> None:
     lines = [[[[0, 0, 0], [1, 0, 0]]], [[[1, 0, 0], [2, 0, 0]]]]
     scene = {"forces": [{"kind": "springs", "lines": one} for one in lines], "anchors": [{"points": [[0, 0, 0]]}]}
     simulation = Simulation(Scene.read(scene))
-    with pytest.raises(InputError, match="other particles"):
+    with pytest.raises(InputError, match="change the particles"):
         simulation.patch({"remove": [1]})
     assert len(simulation.scene.forces) == 2
     simulation = moving("given")
