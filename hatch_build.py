@@ -1,8 +1,8 @@
 """Builds the studio's page from studio/ into server/hookean_server/page, for wheels, sdists and editable installs, and
 the documentation by docsite/build.py into server/hookean_server/site, for wheels and sdists.
 
-Nothing is done where they were built from the same sources before, or where there are none: what was packed with its
-page needs no Node. By hand: `python hatch_build.py`; `python hatch_build.py check` checks the sources' types.
+Nothing is built if the same sources were built before, or if the sources are absent: a package with its page needs no
+Node. By hand: `python hatch_build.py`; `python hatch_build.py check` checks the sources' types.
 """
 
 import hashlib

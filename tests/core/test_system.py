@@ -33,7 +33,7 @@ def test_the_tangent_of_a_spring_is_its_closed_form(monkeypatch: pytest.MonkeyPa
 
 
 def test_springs_are_listed_with_their_ends_and_their_forces() -> None:
-    """Two tables of springs in one group, a load that is none: k (l - L0) by hand, and the tables by their numbers."""
+    """Two tables of springs in one group beside a load: k (l - L0) by hand, and the tables by their numbers."""
     load = {"kind": "unary", "particles": [1], "vector": [0.0, 0.0, -1.0]}
     soft, stiff = (
         {"kind": "springs", "particles": pairs, "stiffness": k, "rest_length": 1.0}

@@ -311,12 +311,12 @@ class Simulation:
         return self.state.revision
 
     def undo(self) -> int:
-        """Take the last patch back; returns the new revision. The form follows. InputError where there is none."""
+        """Take the last patch back; returns the new revision. The form follows. InputError if no patch is left."""
         self._changed(lambda: self.history.undo(self.system, self.state))
         return self.state.revision
 
     def redo(self) -> int:
-        """Redo the last undone patch; raises InputError if there is none."""
+        """Redo the last undone patch; InputError if no patch was undone."""
         self._changed(lambda: self.history.redo(self.system, self.state))
         return self.state.revision
 
