@@ -42,7 +42,7 @@ def _fields(cls: type) -> str:
     if issubclass(cls, Force):
         if cls is Force:
             return ""
-        kind = cls.model_fields["kind"].default
+        kind = cls.kind_name
         return f"Its formula, fields and units: [`{kind}`](../forces.md#{kind}).\n"
     if issubclass(cls, Enum):
         return f"Values: {', '.join(f'`{one.value}`' for one in cls)}.\n"

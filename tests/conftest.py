@@ -14,12 +14,18 @@ settings.register_profile("untimed", deadline=None, suppress_health_check=[Healt
 settings.load_profile("untimed")
 
 
+LONGEST_FIRST = ("docs", "studio", "server", "faults", "fuzz", "components", "canvas", "laws")
+"""Folders whose tests take long; they run before the others, so that no worker is left alone with one of them."""
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave what takes long to `make soak`."""
+    """Leave what takes long to `make soak`; begin with the folders of `LONGEST_FIRST`."""
     left = [] if SOAK else [item for item in items if item.get_closest_marker("soak")]
     if left:
         config.hook.pytest_deselected(items=left)
         items[:] = [item for item in items if not item.get_closest_marker("soak")]
+    places = {folder: place for place, folder in enumerate(LONGEST_FIRST)}
+    items.sort(key=lambda item: places.get(item.path.parent.name, len(places)))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -21,9 +21,11 @@ import psutil
 import pytest
 
 import forking
+from hookean_server.app import create_app
 from hookean_server.lifecycle import discovery, ending
 from hookean_server.lifecycle.discovery import Found, Held, Lock, find
 from hookean_server.lifecycle.ending import Activity
+from hookean_server.settings import Settings
 from serving import CABLE, HANG, SOAK, Home, living, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
@@ -229,6 +231,25 @@ def test_a_folder_that_cannot_be(tmp_path: Path) -> None:
     assert "HOOKEAN_STATE" in done.stderr
 
 
+def test_what_is_refused_at_the_door_is_no_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Requests without the token or for another host leave the time without use as it is; one with it begins anew."""
+    app = create_app(Settings(token="of-a-test-0123456789"))
+    now = 1000.0
+    monkeypatch.setattr(ending, "time", SimpleNamespace(monotonic=lambda: now))
+    activity = Activity(app)
+    now += 100.0
+
+    async def asked(host: str, **headers: str) -> int:
+        async with httpx.AsyncClient(transport=httpx.ASGITransport(activity), base_url=f"http://{host}:8765") as client:
+            return (await client.get("/v1/forces", headers=headers)).status_code
+
+    assert asyncio.run(asked("127.0.0.1")) == 401
+    assert asyncio.run(asked("elsewhere", authorization="Bearer of-a-test-0123456789")) == 403
+    assert activity.idle() == 100.0
+    assert asyncio.run(asked("127.0.0.1", authorization="Bearer of-a-test-0123456789")) == 200
+    assert activity.idle() == 0.0
+
+
 @pytest.mark.parametrize("collected", [True, False])
 def test_it_ends_with_its_parent_and_keeps_its_sessions(home: Home, collected: bool) -> None:
     parent = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
@@ -268,7 +289,8 @@ def test_it_ends_when_nobody_uses_it(home: Home) -> None:
 
 
 def test_what_use_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Requests and sockets, sessions that play, workers that solve, jobs that are not done; not health and figures."""
+    """Requests and sockets, sessions that play, workers that solve, jobs that are not done; not health and figures, and
+    not what is refused at the door."""
     live, states, jobs = SimpleNamespace(playing=False), {"busy": 0}, SimpleNamespace(busy=False)
     app: Any = lambda scope, receive, send: _nothing()  # noqa: E731
     app.state = SimpleNamespace(
@@ -284,6 +306,7 @@ def test_what_use_is(monkeypatch: pytest.MonkeyPatch) -> None:
     asyncio.run(activity({"type": "http", "path": "/v1/relax"}, _nothing, _nothing))
     assert activity.idle() == 0.0
     now += 50.0
+    asyncio.run(activity({"type": "http", "path": "/v1/relax", "refused": True}, _nothing, _nothing))
     assert activity.idle() == 50.0
     live.playing = True
     assert activity.idle() == 0.0

@@ -199,7 +199,7 @@ def _saved(data: bytes, called: str, recipe: Recipe | None) -> Source:
 
 
 def _plain(scene: Scene, called: str, what: str, warnings: tuple[str, ...], unheld: str) -> Source:
-    forces = ", ".join(str(type(f).model_fields["kind"].default) for f in scene.forces) or "no force"
+    forces = ", ".join(f.kind_name for f in scene.forces) or "no force"
     units = scene.units
     lines = [
         f"{called}: {what} with {forces}; {len(scene.anchors)} anchors, {len(scene.geometry)} carried geometries",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from typing import get_args
 
 from hookean.forces.base import Block, Force, Places
 
@@ -13,8 +12,8 @@ KINDS: dict[str, type[Force]] = {}
 
 for _found in pkgutil.iter_modules(__path__):
     for _value in vars(importlib.import_module(f"{__name__}.{_found.name}")).values():
-        if isinstance(_value, type) and issubclass(_value, Force) and "kind" in _value.model_fields:
-            KINDS[get_args(_value.model_fields["kind"].annotation)[0]] = _value
+        if isinstance(_value, type) and issubclass(_value, Force) and _value.kind_name:
+            KINDS[_value.kind_name] = _value
 
 globals().update({cls.__name__: cls for cls in KINDS.values()})
 __all__ = ["KINDS", "Block", "Force", "Places", *sorted(cls.__name__ for cls in KINDS.values())]

@@ -93,6 +93,7 @@ class Force(Model):
 
     name: str = Field(default="", description="Name under which results list this force")
 
+    kind_name: ClassVar[str] = ""  # the default of `kind`, by which scenes name the force
     # the declaration; the law tests hold every force to it
     kind_title: ClassVar[str] = ""
     formula: ClassVar[str] = ""
@@ -124,6 +125,12 @@ class Force(Model):
     end_of_step: ClassVar[Callable[..., None] | None] = None
     impact: ClassVar[Callable[..., None] | None] = None
     support: ClassVar[Callable[..., None] | None] = None
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **given: Any) -> None:
+        super().__pydantic_init_subclass__(**given)
+        if "kind" in cls.model_fields:
+            cls.kind_name = str(cls.model_fields["kind"].default)
 
     @property
     def element_arity(self) -> int:

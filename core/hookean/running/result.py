@@ -237,7 +237,7 @@ def gather(
     rest = rest or unknown("the shape is not at rest")
     energy: dict[str, float] = {}
     for group, value in zip(system.groups, found.energies, strict=True):
-        kind = str(group.cls.model_fields["kind"].default)
+        kind = group.cls.kind_name
         energy[kind] = energy.get(kind, 0.0) + float(value)
     energy["kinetic"] = kinetic(system, state) if moving else 0.0
     energy["total"] = sum(energy.values())
@@ -300,9 +300,7 @@ def carried(system: System, state: State) -> list[dict[str, Any]]:
 
 def _measures(system: System, state: State) -> list[dict[str, Any]]:
     """Columns of every force of the scene, in its order; a floor has none."""
-    entries: list[dict[str, Any]] = [
-        {"kind": str(type(f).model_fields["kind"].default), "name": f.name} for f in system.scene.forces
-    ]
+    entries: list[dict[str, Any]] = [{"kind": f.kind_name, "name": f.name} for f in system.scene.forces]
     for group, memory in zip(system.groups, state.memory, strict=True):
         forces = system.element_forces(group, state, memory)
         for part in group.parts:

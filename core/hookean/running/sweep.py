@@ -188,7 +188,7 @@ def _measured(scene: Scene) -> list[tuple[str, str, str]]:
     """Of each force its name in tables, unit and the column that is its force; no column where it has none."""
     found: list[tuple[str, str, str]] = []
     for number, force in enumerate(scene.forces):
-        kind = str(type(force).model_fields["kind"].default)
+        kind = force.kind_name
         outputs = KINDS[kind].outputs
         column = next((c for c in ("force", "moment") if c in outputs), "")
         name = force.name or kind

@@ -361,5 +361,5 @@ def _owner(system: System, particle: int, *, role: str = "") -> str:
         hit = (group.block.indices == particle).any(axis=1)
         for part in group.parts:
             if hit[part.rows].any() and (group.cls.role == role if role else group.cls.role != "load"):
-                return f" (of /forces/{part.number}, {group.cls.model_fields['kind'].default})"
+                return f" (of /forces/{part.number}, {group.cls.kind_name})"
     return ""

@@ -34,7 +34,7 @@ def entry(cls: type[Force], described: dict[str, Any] | None = None) -> dict[str
     """
     described = described or schema()["$defs"][cls.__name__]
     words = (cls.__doc__ or "").strip()
-    kind = str(cls.model_fields["kind"].default)
+    kind = cls.kind_name
     return {
         "kind": kind,
         "title": cls.kind_title or kind.replace("_", " ").capitalize(),
@@ -175,7 +175,7 @@ def _example(cls: type[Force]) -> dict[str, Any] | None:
     except TypeError:
         return None
     given = force.model_dump(mode="json", exclude_unset=True)
-    return {"kind": str(cls.model_fields["kind"].default), **given}
+    return {"kind": cls.kind_name, **given}
 
 
 def _cell(text: str) -> str:

@@ -172,7 +172,7 @@ def _greatest(system: System, state: State, what: str) -> str:
             rows = _lumped(system, state, group, part, memory) if what == "stiffness" else _damping(system, group, part)
             rate = float((rows / system.mass * moving).max(initial=0.0))
             if rate > most and part.number >= 0:
-                kind, name = group.cls.model_fields["kind"].default, part.force.name
+                kind, name = group.cls.kind_name, part.force.name
                 found, most = f"/forces/{part.number}, {kind}" + (f' "{name}"' if name else ""), rate
     return found
 

@@ -57,7 +57,7 @@ class Group:
     def _uses(self, column: str) -> bool:
         """Whether the parameters of this name are not all zero; yes where there are none of this name."""
         columns = [i for i, name in enumerate(self.block.names) if name == column]
-        return not columns or any(self.block.parameters[:, i].any() for i in columns)
+        return not columns or any(np.count_nonzero(self.block.parameters[:, i]) for i in columns)
 
     def of(self, part: Part) -> Block:
         """The part's own rows, as views."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -281,19 +281,26 @@ def _keepers(points: Floats, tolerance: float) -> Ints:
 
 def fits(force: Force, pointer: str, welded: Welded) -> None:
     """InputError where a column of `force` has neither one value nor one for each of its elements."""
-    placed = any(name in type(force).model_fields for name in PLACES)
-    if not placed or (force.element_arity > 2 and getattr(force, "mesh", None) is not None):
+    columns = _columns(type(force))
+    if not columns or (force.element_arity > 2 and getattr(force, "mesh", None) is not None):
         return
     count = len(welded.elements(force))
-    for name, column in type(force).model_fields.items():
+    for name, vector in columns:
         value = getattr(force, name)
-        if name in PLACES or name in force.shared or not isinstance(value, np.ndarray):
-            continue
-        single = value.shape == (3,) and _takes_a_vector(column)
-        if not single and len(value) != count:
+        if isinstance(value, np.ndarray) and len(value) != count and not (vector and value.shape == (3,)):
             raise InputError(
                 f"{pointer}/{name}", f"{len(value)} values for {count} elements; give one value or one for each"
             )
+
+
+@cache
+def _columns(cls: type[Force]) -> list[tuple[str, bool]]:
+    """Fields of a force that may have one value for each element, and whether three numbers are one value; none of a
+    force without elements."""
+    fields = cls.model_fields
+    if not any(name in fields for name in PLACES):
+        return []
+    return [(n, _takes_a_vector(f)) for n, f in fields.items() if n not in PLACES and n not in cls.shared]
 
 
 def _takes_a_vector(column: FieldInfo) -> bool:

@@ -17,6 +17,8 @@ log = logging.getLogger("hookean.server")
 
 CLOSED = {"unauthorized": 4401, "forbidden-host": 4403, "forbidden-origin": 4403, "not-found": 4404}
 """Codes a WebSocket is closed with, where its handshake cannot be refused."""
+NOT_LET_IN = ("unauthorized", "forbidden-host", "forbidden-origin")
+"""Problems of those who may not use the service; what they ask for does not keep it running."""
 LINGER = 2.0  # seconds in which a refused client may take notice before its connection is closed
 
 
@@ -48,6 +50,7 @@ class Problems:
         except ClientDisconnect:
             return  # nobody is left to answer
         except Problem as problem:
+            scope["refused"] = problem.slug in NOT_LET_IN
             if not started or scope["type"] == "websocket":
                 with suppress(OSError):  # a client that has left needs no answer
                     await refuse(problem, scope, receive, numbered, accepted=started)

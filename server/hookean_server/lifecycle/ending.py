@@ -131,7 +131,7 @@ class Activity:
             await self.app(scope, receive, send)
         finally:
             self.running -= counts
-            if counts:
+            if counts and not scope.get("refused"):  # who is not let in uses nothing
                 self.last = time.monotonic()
 
     def idle(self) -> float:

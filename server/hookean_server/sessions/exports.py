@@ -62,9 +62,7 @@ def topology(simulation: Simulation) -> dict[str, Any]:
         "start": system.x,
         "springs": pairs,
         "spring_forces": numbers,
-        "forces": [
-            {"kind": type(f).model_fields["kind"].default, "name": f.name, "role": type(f).role} for f in scene.forces
-        ],
+        "forces": [{"kind": f.kind_name, "name": f.name, "role": type(f).role} for f in scene.forces],
         "meshes": {name: {"faces": system.places.faces(name)} for name in scene.meshes},
         "geometry": geometry,
         "loads": loads(simulation),

@@ -122,7 +122,7 @@ def _meshes(
     for force in system.scene.forces:
         mesh = getattr(force, "mesh", None)
         if mesh is not None and type(force).role != "load":
-            names.setdefault(mesh, force.name or str(type(force).model_fields["kind"].default))
+            names.setdefault(mesh, force.name or force.kind_name)
     total, count = np.zeros(len(system.x)), np.zeros(len(system.x))
     for part in parts:
         if part.internal:
