@@ -7,8 +7,11 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
 import weakref
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -131,6 +134,42 @@ def test_what_the_disk_has_no_code_for_is_left_to_numba(tmp_path: Path) -> None:
     apart = np.arange(12.0).reshape(3, 4)[:, ::2]
     assert code(tmp_path)(apart, 1.0, 3, False) == (0.0 + 2 + 4 + 6 + 8 + 10, 5, True)
     assert not list(tmp_path.iterdir())
+
+
+def test_code_that_another_process_compiles_is_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Locks belong to open files, so that threads stand for processes: one compiles, the other loads what it stored."""
+    pytest.importorskip("fcntl", reason="there are no file locks here")
+    make, begun, go = Compiled._make, threading.Event(), threading.Event()
+
+    def slow(*given: Any) -> Any:
+        begun.set()
+        assert go.wait(HANG)
+        return make(*given)
+
+    monkeypatch.setattr(Compiled, "_make", slow)
+    first, second = code(tmp_path), code(tmp_path)
+    with ThreadPoolExecutor() as pool:
+        answers = [pool.submit(run, np.ones((2, 2)), 1.0, 2, False) for run in (first, second)]
+        assert begun.wait(HANG)
+        go.set()
+        assert [answer.result(HANG) for answer in answers] == [(4.0, 4, True)] * 2
+    assert sorted([(first.made, first.loaded), (second.made, second.loaded)]) == [(0, 1), (1, 0)]
+    assert [file.suffix for file in tmp_path.iterdir()] == [".o"]
+
+
+def test_code_is_not_waited_for_without_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that holds the lock and does not go on holds up nobody else."""
+    fcntl = pytest.importorskip("fcntl", reason="there are no file locks here")
+    first = code(tmp_path)
+    first(np.ones((2, 2)), 1.0, 2, False)
+    (file,) = tmp_path.iterdir()
+    file.unlink()
+    monkeypatch.setattr(machine, "PATIENCE", 0.1)
+    with file.with_suffix(".lock").open("w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        second = code(tmp_path)
+        assert second(np.ones((2, 2)), 1.0, 2, False) == (4.0, 4, True)
+    assert second.made == 1 and file.is_file()
 
 
 DAMAGES = {

@@ -18,7 +18,9 @@ import logging
 import os
 import struct
 import tempfile
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -63,10 +65,17 @@ class Compiled:
         """The code from disk, where it is put if it was not there."""
         path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
         found = _load(path, kind)
-        if found is not None:
-            self.loaded += 1
-            return found
-        self.made += 1
+        if found is None:
+            with _alone(path):
+                found = _load(path, kind)  # another process may have compiled it meanwhile
+                if found is None:
+                    self.made += 1
+                    return self._make(path, kind, values)
+        self.loaded += 1
+        return found
+
+    def _make(self, path: Path, kind: Kind, values: tuple[Any, ...]) -> Entry | None:
+        """Compile the code and put it on disk."""
         try:
             from hookean.compiled.object_code import emit
 
@@ -94,6 +103,7 @@ def kind_of(values: tuple[Any, ...]) -> Kind | None:
 
 
 ENGINES: list[Any] = []  # never freed: others keep addresses of their code
+PATIENCE = 120.0  # seconds that a process waits for code that another one compiles
 SCALARS: dict[type, type] = {float: float, np.float64: float, int: int, bool: bool}
 REFUSED = object()
 
@@ -178,6 +188,31 @@ def _report(what: str, error: Exception) -> None:
 def switched_on() -> bool:
     """Whether code is kept as objects on disk; HOOKEAN_OBJECT_CACHE=0 turns it off."""
     return os.environ.get("HOOKEAN_OBJECT_CACHE", "1") != "0"
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """Let one process at a time compile the code of a file; others wait for it, but not for ever. Without file locks,
+    as on Windows, where code is not kept as objects, and in a folder that cannot be written, none waits."""
+    with ExitStack() as stack:
+        try:
+            import fcntl
+
+            path.parent.mkdir(parents=True, exist_ok=True)
+            file = stack.enter_context(path.with_suffix(".lock").open("w"))
+        except (ImportError, OSError):
+            yield
+            return
+        stack.callback(Path(file.name).unlink, missing_ok=True)
+        stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # processes that were forked meanwhile have it open too
+        until = time.monotonic() + PATIENCE
+        while time.monotonic() < until and not path.exists():
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except OSError:
+                time.sleep(0.02)
+        yield
 
 
 def _store(path: Path, data: bytes) -> None:
