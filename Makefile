@@ -4,6 +4,9 @@ PORT ?= 8765
 BIN = .venv/bin
 EXAMPLE = gh_examples/9.24-membrane
 
+# Python keeps what it compiles: each of the many processes of a test run would compile it again
+export PYTHONDONTWRITEBYTECODE :=
+
 .PHONY: run test quick soak mutants bench bench-service figures definitions screenshots docs site page studio lint clean
 STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
@@ -14,8 +17,10 @@ run: .venv/run
 		--picture out/membrane.png --csv out/membrane.csv
 	@$(BIN)/hookean serve --port $(PORT)
 
-# much of it waits for other processes: four workers keep two processors busy
-test: .venv/test lint
+# much of it waits for other processes: four workers keep two processors busy; while one of these checks the style, the
+# other compiles the tests, once for all workers
+test: .venv/test
+	@$(BIN)/python -m pytest --collect-only -q >/dev/null & $(MAKE) lint && wait
 	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 30
 
 quick: .venv/test # laws, core, files: what an edit of the engine breaks

@@ -20,6 +20,7 @@ from hookean.commands import example as command
 from hookean.commands.examples import Example, _figures, examples, figure, find, gallery, home
 from hookean.files.relax_file import read_scene
 from hookean.system.system import compile
+from soak import sampled
 
 ALL = examples()
 
@@ -70,7 +71,7 @@ def without() -> Iterator[Callable[[Path], dict[str, float]]]:
         yield printed
 
 
-@pytest.mark.parametrize("example", ALL, ids=lambda e: e.name)
+@pytest.mark.parametrize("example", sampled(ALL, 6), ids=lambda e: e.name)
 def test_numbers_of_scripts_are_what_the_scripts_print_without_hookean(
     example: Example, without: Callable[[Path], dict[str, float]]
 ) -> None:

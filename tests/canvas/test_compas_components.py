@@ -16,6 +16,7 @@ from hookean_canvas.components import bundles, inline
 from hookean_canvas.run import stand_in
 from pythons import interpreter
 from serving import HANG, Home
+from soak import sampled
 
 NAMES = ("CompasStructure", "CompasSprings", "CompasLoad", "CompasAnchors", "CompasRelax")
 RUN = Path(__file__).with_name("compas_canvas_run.py")
@@ -46,7 +47,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
     found.end()
 
 
-@pytest.fixture(scope="module", params=["rhino8", "here"])
+@pytest.fixture(scope="module", params=sampled(["here", "rhino8"], 2))
 def told(request: pytest.FixtureRequest, home: Home, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What the components made of a net with a stay, in an empty folder."""
     python = sys.executable if request.param == "here" else rhino8(request.config.cache)

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from hookean.discretize import as_mesh, edges, is_trimmed, mesh_faces, mesh_surface, naked_edges, triangles
 from hookean.errors import InputError
 from hookean.values.mesh import Mesh
+from soak import sampled
 
 FILES = [
     "v3_Terrain.3dm",
@@ -188,7 +189,7 @@ def test_exactly_the_trimmed_faces_without_a_mesh_are_refused(file: str, rhino_o
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("file", FILES)
+@pytest.mark.parametrize("file", sampled(FILES, 3))
 def test_trimmed_as_the_edges_say(file: str, rhino_objects: Any) -> None:
     """Another way to tell: one loop, its edges on the sides of the domain and as long as those."""
     trimmed = untrimmed = 0

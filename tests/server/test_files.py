@@ -14,6 +14,7 @@ import rhino3dm
 from hookean.files.relax_file import relax_file
 from hookean_server.http.claimed import NAMES, warned
 from serving import CABLE, wait_for
+from soak import sampled
 
 from .conftest import Served, problem
 
@@ -143,7 +144,7 @@ ENDS: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("status", ENDS)
+@pytest.mark.parametrize("status", sampled(ENDS, 2))
 def test_a_file_says_how_its_run_ended(client: httpx.Client, drawing: bytes, tmp_path: Path, status: str) -> None:
     """Headers, document text, report and `/v1/relax` of the same scene say the same, with the same status code; the
     body is the file with its last good shape. The text is what the command writes, too."""

@@ -69,8 +69,8 @@ def test_it_ends_with_the_result_of_a_request(jobs: httpx.Client) -> None:
     (row,) = table(jobs, address)
     assert (row["status"], row["residual"]) == ("converged", relaxed.json()["residual"])
     stream = events(jobs, address)
-    assert [name for _, name, _ in stream] == ["item", "done"]
-    assert stream[0][2] == row and stream[1][2] == job
+    ends = [told for _, name, told in stream if name != "progress"]  # of that there is some where it takes long
+    assert {name for _, name, _ in stream[-2:]} == {"item", "done"} and ends == [row, job]
 
 
 def test_a_diverged_one_is_done_and_says_so(jobs: httpx.Client) -> None:

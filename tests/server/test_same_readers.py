@@ -21,6 +21,7 @@ from hookean.files.readers import READERS, Source, endings, read, reader
 from hookean.files.relax_file import open_file
 from hookean.running.in_motion import in_motion
 from serving import CABLE
+from soak import sampled
 
 from .conftest import problem
 
@@ -82,7 +83,7 @@ def by_command(folder: Path, *words: str) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", sampled(FILES, 3))
 def test_a_file_is_one_scene_to_all(client: httpx.Client, tmp_path: Path, name: str) -> None:
     """The digest in the report of the command, the scene of the studio's session and, of JSON, the result over HTTP."""
     path = tmp_path / name

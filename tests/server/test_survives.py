@@ -24,6 +24,7 @@ from hookean_server.sessions.manager import Manager
 from hookean_server.settings import Settings
 from hookean_server.store import Store
 from serving import CABLE, SOAK
+from soak import sampled
 
 MINUTES = 24 * 60 if SOAK else 4
 DESCRIBED = {"revision": 0, "iteration": 0, "status": "running", "message": "", "particles": 1, "playing": True}
@@ -215,7 +216,7 @@ def edited(count: int, chance: np.random.Generator) -> tuple[bytes, Simulation, 
     return base, simulation, found.edits, found.revisions
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", sampled(range(12), 4))
 def test_old_edits_become_base_and_all_that_can_be_taken_back_stays(seed: int) -> None:
     """The history of 450 random edits is the same from the folded base: its length both ways, and each setup."""
     base, simulation, edits, revisions = edited(450, np.random.default_rng(seed))

@@ -13,6 +13,7 @@ import psutil
 import pytest
 
 from serving import CABLE, HANG, wait_for
+from soak import sampled
 
 from .conftest import Served
 
@@ -112,7 +113,7 @@ def test_bodies_that_do_not_come_take_no_place_of_the_owner(served: Served) -> N
     wait_for(lambda: served.client.post("/solve", json=divide(3)).status_code == 200)
 
 
-@pytest.mark.parametrize("path", ["/solve", "/v1/discretize/divide"])
+@pytest.mark.parametrize("path", sampled(["/solve", "/v1/discretize/divide"], 2))
 def test_who_reads_nothing_is_cut_off(path: str) -> None:
     """An answer that is larger than what the two ends keep of it: the rest never comes, and the next one is served."""
     served = Served(workers=2, write_seconds=0.5).ready()

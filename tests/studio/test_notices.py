@@ -12,6 +12,7 @@ import pytest
 
 from hookean import Scene, relax
 from serving import CABLE
+from soak import sampled
 
 from .browser import LAPTOP, PHONE, Studio
 from .conftest import Opened
@@ -48,7 +49,7 @@ def session(open_studio: Opened, scene: dict[str, Any], name: str, size: dict[st
     return studio
 
 
-@SIZES
+@pytest.mark.parametrize("size", sampled([LAPTOP, PHONE], 2))
 def test_a_refusal_covers_nothing_on_the_start_page(open_studio: Opened, size: dict[str, int]) -> None:
     """Also where the page was scrolled; Esc closes it."""
     studio = open_studio(size)
@@ -124,8 +125,9 @@ def test_to_rest_is_what_relax_finds(open_studio: Opened) -> None:
     studio.page.get_by_text("In equilibrium after").wait_for()
 
 
-@pytest.mark.parametrize(("button", "ending"), [("Scene", ".json"), ("Rhino .3dm", ".3dm"), ("npz", ".npz")])
-def test_what_was_saved_opens_as_the_same_model(open_studio: Opened, button: str, ending: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("form", sampled([("Scene", ".json"), ("Rhino .3dm", ".3dm"), ("npz", ".npz")], 3))
+def test_what_was_saved_opens_as_the_same_model(open_studio: Opened, form: tuple[str, str], tmp_path: Path) -> None:
+    button, ending = form
     studio = session(open_studio, MESH, f"saved-{ending[1:]}")
     page, service = studio.page, studio.service
     studio.press("Add a load")

@@ -37,8 +37,8 @@ def cable(tab: Studio, request: pytest.FixtureRequest) -> Studio:
     [
         ("Size of load", 1, "vector", 0.8),
         ("cable stiffness", 0, "stiffness", 0.6),  # over decades
-        ("cable rest factor", 0, "rest_factor", 0.8),
-        ("cable damping", 0, "damping", 0.8),
+        pytest.param("cable rest factor", 0, "rest_factor", 0.8, marks=pytest.mark.soak),
+        pytest.param("cable damping", 0, "damping", 0.8, marks=pytest.mark.soak),
     ],
 )
 def test_a_slider_is_dragged_and_the_form_follows(cable: Studio, slider: str, force: int, field: str, along: float):

@@ -12,7 +12,7 @@ from serving import SOAK
 from .browser import Studio, net
 
 SECONDS = 7200.0 if SOAK else 0.0
-SIDE = 100 if SOAK else 50
+SIDE = 100 if SOAK else 25
 DRAGS = 100 if SOAK else 5
 WARM = 3 if SOAK else 1
 """In one life of the page; then it is loaded anew."""

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from hookean_server.keeping.layout import STATE, TABLES
 from hookean_server.keeping.manifest import Key, Owner, Read
 from hookean_server.keeping.pages import Row
+from hookean_server.keeping.schema import STATE, TABLES
 
 FINAL = ("done", "failed", "cancelled")
 

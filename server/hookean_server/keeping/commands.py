@@ -13,7 +13,7 @@ import typer
 
 from hookean.commands.command import new
 from hookean_server.keeping import backups, manifest
-from hookean_server.keeping.opening import Broken, inspect, open_store, refuse_later, reports
+from hookean_server.keeping.opening import Broken, inspect, open_store, refuse_other, reports
 from hookean_server.lifecycle.discovery import SESSIONS, Held, Lock, folder
 
 RUNS = "A hookean server uses this store; stop it first with: hookean serve --stop"
@@ -62,7 +62,7 @@ def run(action: str, path: Path, target: Path | None) -> int:
 def check(path: Path, target: Path | None = None) -> int:
     """Print whether the store is damaged, and all losses of repairs whose copies still exist. Changes nothing."""
     said = manifest.read(manifest.place(path))  # before the file: a server may write meanwhile
-    refuse_later(path, said)
+    refuse_other(path, said)
     found = 0
     try:
         note = inspect(path, said)

@@ -9,8 +9,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from hookean_server.keeping.layout import APPLICATION, PAGE, SCHEMA, STATE, TABLES, VERSION, Table
 from hookean_server.keeping.manifest import Key, Owner
+from hookean_server.keeping.schema import APPLICATION, PAGE, SCHEMA, STATE, TABLES, VERSION, Table
 from hookean_server.problems import Problem
 
 LARGEST = 10**9 - PAGE  # bytes of one value: SQLite's own limit

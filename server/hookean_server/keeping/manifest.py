@@ -17,7 +17,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from hookean_server.keeping.layout import VERSION
+from hookean_server.keeping.schema import VERSION
 
 Key = tuple[str, str]
 """Kind (session, job) and key of an owner of rows."""

@@ -1,4 +1,4 @@
-"""The store's file at the start: checked, taken up as it is, brought up from an older version, or salvaged.
+"""The store's file at the start: checked, taken up as it is, or salvaged.
 
 Damage never deletes anything: the files as they were found go into a dated folder beside the store, and its
 `report.json` names what could not be read out of them. The report is shown until that folder is deleted.
@@ -21,11 +21,11 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from hookean_server.keeping import database, legacy, manifest, pages
+from hookean_server.keeping import database, manifest, pages
 from hookean_server.keeping.choosing import Chosen, Found, Loss
 from hookean_server.keeping.database import Database
-from hookean_server.keeping.layout import APPLICATION, TABLES, VERSION
 from hookean_server.keeping.manifest import Manifest, Read
+from hookean_server.keeping.schema import APPLICATION, TABLES, VERSION
 
 log = logging.getLogger("hookean.store")
 
@@ -91,15 +91,13 @@ def open_store(path: Path | None) -> Opened:
 
 def _opened(path: Path) -> Opened:
     said = manifest.read(manifest.place(path))
-    version = refuse_later(path, said)
+    refuse_other(path, said)
     unfinished = _unfinished(path)
     if not (unfinished or said is not None or path.exists() or _wal(path).exists() or _backups(path)):
         _create(path)
         return _writable(path)
     if unfinished and (report := _built(path)) is not None and unfinished[-1].name <= report.copy:
         return _finished(path, report)
-    if version == 1 and not unfinished:
-        return bring_up(path)
     try:
         if unfinished:
             raise Broken("a repair was interrupted")
@@ -130,15 +128,14 @@ def reopened(path: Path, opened: Opened) -> Opened:
     return _writable(path)
 
 
-def refuse_later(path: Path, said: Read | None) -> int:
-    """The version of a store; 0 where it has none. Raises Refused where it is later than this one."""
+def refuse_other(path: Path, said: Read | None) -> None:
+    """Raises Refused where a store has another version than this one writes."""
     version = _version(path, said)
-    if version > VERSION:
+    if version not in (0, VERSION):
         raise Refused(
-            f"{path} was written by a later version of hookean (store version {version}; this one supports up to "
-            f"{VERSION}). Install that version, or set HOOKEAN_STATE to another folder. Nothing was changed."
+            f"{path} was written by another version of hookean (store version {version}; this one supports {VERSION}). "
+            "Install that version, or set HOOKEAN_STATE to another folder. Nothing was changed."
         )
-    return version
 
 
 def _create(path: Path) -> None:
@@ -269,7 +266,7 @@ def salvage(path: Path, said: Read | None, why: str) -> Opened:
     store = said.store if said is not None and said.store else secrets.token_hex(8)
     new = path.with_name(path.name + NEW)
     report = Report(time.strftime("%Y-%m-%d %H:%M:%S"), why, copy.name, chosen.losses)
-    report = build(new, chosen, store, said.commit if said is not None else 0, report, folders[0] / path.name)
+    build(new, chosen, store, said.commit if said is not None else 0, report)
     os.replace(new, path)
     return _finished(path, report)
 
@@ -334,9 +331,8 @@ def _put_aside(path: Path) -> Path:
     return copy
 
 
-def build(path: Path, chosen: Chosen, store: str, commit: int, report: Report, old: Path) -> Report:
-    """A new file of the rows that are kept, or of those of `old` where that is of version 1; the report, which is in it
-    as well."""
+def build(path: Path, chosen: Chosen, store: str, commit: int, report: Report) -> None:
+    """A new file of the rows that are kept, with the report."""
     order = list(TABLES)
     with closing(_empty(path, store)) as db:
         db.seq = chosen.seq
@@ -348,12 +344,9 @@ def build(path: Path, chosen: Chosen, store: str, commit: int, report: Report, o
         db.mark("commit", commit)
         db.mark("seq", db.seq)
         db.execute("COMMIT")
-        if not chosen.rows and not report.losses:
-            report = replace(report, losses=legacy.read(old, db))
         db.mark("repair", json.dumps(asdict(report)))
     with path.open("rb") as file:
         os.fsync(file.fileno())
-    return report
 
 
 def _empty(path: Path, store: str) -> Database:
@@ -362,30 +355,6 @@ def _empty(path: Path, store: str) -> Database:
     db = database.connect(path)
     database.create(db, store)
     return db
-
-
-def bring_up(path: Path) -> Opened:
-    """A file of version 1, brought up to this one; it stays beside it as it was."""
-    copy = path.with_name(f"{path.name}.version-1")
-    new = path.with_name(path.name + NEW)
-    for file, target in ((path, copy), (_wal(path), _wal(copy))):
-        if file.exists():
-            shutil.copyfile(file, target)
-    with closing(_empty(new, secrets.token_hex(8))) as db:
-        losses = legacy.read(path, db)
-    if losses:
-        folder = _dated(path)
-        folder.mkdir(mode=0o700, exist_ok=True)
-        for file in (copy, _wal(copy)):
-            if file.exists():
-                os.replace(file, folder / file.name.replace(copy.name, path.name))
-        report = Report(time.strftime("%Y-%m-%d %H:%M:%S"), "some rows could not be read", folder.name, losses)
-        (folder / REPORT).write_text(json.dumps(asdict(report)), encoding="utf-8")
-        _log(report)
-    for file in (_wal(path), _shm(path)):
-        file.unlink(missing_ok=True)
-    os.replace(new, path)
-    return _writable(path)
 
 
 # what is beside it

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from hookean_server.keeping.layout import PAGE, TABLES, Table
+from hookean_server.keeping.schema import PAGE, TABLES, Table
 
 LEAF = 0x0D
 HEADER, FRAME = 32, 24  # bytes before the frames of a log, and before the page of each

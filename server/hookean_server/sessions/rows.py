@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hookean_server.keeping.database import Database
-from hookean_server.keeping.layout import TABLES
+from hookean_server.keeping.schema import TABLES
 from hookean_server.store import Work
 
 
