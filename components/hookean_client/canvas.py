@@ -111,15 +111,6 @@ def schedule(ghenv, milliseconds):
     )
 
 
-def given(ghenv, item, name):
-    """The first value of an input that must be there; None, with a warning, where it is not."""
-    items = listed(item)
-    if not items:
-        warning(ghenv, "%s is missing; connect it." % name)
-        return None
-    return items[0]
-
-
 # what the engine is told
 
 

@@ -12,11 +12,12 @@ from pathlib import Path
 
 import pytest
 
+from canvas import isolated
 from canvas.wired import inputs
 from hookean.forces import KINDS
 from hookean.scene.catalogue import catalogue
 from hookean_canvas.components import bundles, force_bundles, icons, inline
-from hookean_canvas.run import isolated
+from hookean_canvas.run import stand_in
 
 COMPONENTS = Path(__file__).parents[2] / "components"
 ENTRIES = {entry["kind"]: entry for entry in catalogue()}
@@ -180,7 +181,7 @@ def sent() -> dict[str, dict[str, object]]:
         inputs = {p.name: given.get(p.name) for p in bundle.inputs}
         assert set(given) <= set(inputs)
         steps.append({"name": name, "code": inline.inlined(bundle.code), "inputs": inputs, "outputs": ["force"]})
-    command = [sys.executable, "-I", isolated.__file__]
+    command = [sys.executable, "-I", isolated.__file__, stand_in.__file__]
     done = subprocess.run(command, input=json.dumps({"steps": steps}), capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     answers = dict(zip(GIVEN, json.loads(done.stdout), strict=True))

@@ -16,11 +16,11 @@ from typing import Any
 import pytest
 
 import pythons
-from canvas import wired
+from canvas import isolated, wired
 from hookean.forces import KINDS
 from hookean_canvas import archive
 from hookean_canvas.components import bundles, userobject
-from hookean_canvas.run import isolated
+from hookean_canvas.run import stand_in
 from serving import HANG, Home
 
 PYTHONS = ("2.7", "3.9", "3.13")
@@ -100,7 +100,7 @@ def ask(version: str, request: dict[str, Any], folder: Path, home: Home | None) 
     for name in ("HOOKEAN_PYTHON", "PYTHONPATH"):
         environment.pop(name, None)
     done = subprocess.run(
-        [*command, str(Path(isolated.__file__))], input=json.dumps(request), capture_output=True, text=True,
+        [*command, isolated.__file__, stand_in.__file__], input=json.dumps(request), capture_output=True, text=True,
         cwd=folder, env=environment, timeout=HANG, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr[-3000:]

@@ -21,7 +21,6 @@ GHPYTHON_SCRIPT = UUID("410755b1-224a-4c1e-a407-bf32fb45ea7e")  # Rhino 5 to 7
 SCRIPT_PARAMETER = UUID("08908df5-fa14-4982-9ab2-1aa0927566aa")  # both sides of a Rhino 8 script
 GHPYTHON_INPUT = UUID("84fa917c-1ed8-4db3-8be1-7bdc4a6495a2")
 GHPYTHON_OUTPUT = UUID("8ec86459-bf01-4409-baee-174d0d2b13d0")  # Grasshopper's parameter for data of any type
-STANDARD_OUTPUT = UUID("3ede854e-c753-40eb-84cb-b48008f14fd4")  # the `out` of a script: Grasshopper's Text
 
 # -------------------------------------------------------------------------------------------- what stands on a canvas
 # Hops_Example.gh of github.com/mcneel/compute.rhino3d (MIT) and the definitions of rhinocodetests

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from hookean.system.system import System
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 STEPS = 300  # where so many do not do, other solvers may
 LAPS = 8  # steps of spreading before the first across the film

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from hookean.system.system import Held, System
 
 Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 
 
 def addressed(system: System, scene: Scene, particles: Ints, *, points: bool = True) -> tuple[Scene, dict[str, Any]]:

@@ -9,13 +9,10 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hookean.errors import InputError
 from hookean.scene.text import parse
 from hookean.values.mesh import Mesh
-
-Floats = NDArray[np.float64]
 
 TYPES = {
     "Number": "System.Double",

@@ -12,8 +12,6 @@ from hookean_server.keeping.manifest import Key, Owner, Read
 from hookean_server.keeping.pages import Row
 from hookean_server.keeping.schema import STATE, TABLES
 
-FINAL = ("done", "failed", "cancelled")
-
 
 @dataclass(frozen=True)
 class Loss:

@@ -20,7 +20,6 @@ from hookean.system.system import System
 from hookean.values.mesh import Mesh
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Colours = NDArray[np.int64]
 
 SLACK = (150, 150, 150)

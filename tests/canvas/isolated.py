@@ -1,6 +1,6 @@
 """Runs the code of components in any Python from 2.7 on, with stand-ins for Rhino and Grasshopper and nothing else.
 
-    python -I isolated.py < request.json
+    python -I isolated.py stand_in.py < request.json
 
 A request has `steps`, one component each: {"name", "code", "inputs": {name: value}, "outputs": [names], "guid",
 "solutions": 400, "seconds": 60.0}, and `path` of the definition and `document`, its id. Values are plain, or geometry:
@@ -11,7 +11,6 @@ library; can be run by its path.
 """
 
 import json
-import os
 import sys
 import time
 import types
@@ -21,8 +20,8 @@ now = getattr(time, "monotonic", time.time)
 
 
 def stand_ins():
-    """The module `stand_in` beside this file."""
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "stand_in.py")
+    """The module `stand_in` of the canvas."""
+    path = sys.argv[1]
     module = types.ModuleType("stand_in")
     with open(path) as file:
         exec(compile(file.read(), path, "exec"), module.__dict__)
