@@ -13,10 +13,13 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.linear import block_kernels as sums
-from hookean.linear.aggregation import Floats, Ints, Sparse, gathered, laplacian, turned
+from hookean.linear.aggregation import Sparse, coarsened, turned
+from hookean.linear.laplacian import Floats, Ints, Laplacian
 
 SMALLEST = 60  # rows of blocks that are solved directly
 MOST = 20  # levels
+STRONG = 0.35  # a connection is strong if it is at least this part of the strongest of both its rows;
+WEAKER = 0.5  # on coarser levels, times this for each
 FULLEST = 3.0  # blocks of all levels for each of the finest
 
 
@@ -43,9 +46,10 @@ class Level:
 
     def to(self, p: Sparse, coarser: Level) -> None:
         """Know the way to the next coarser level."""
-        self.prolong = p
         count = len(coarser.starts) - 1
-        pattern = (self.starts, self.columns, *self.low[:2], self.mirror, *p, *turned(p, count))
+        back = turned(p, count)
+        self.prolong = turned(back, len(self.starts) - 1)  # sorted
+        pattern = (self.starts, self.columns, *self.low[:2], self.mirror, *self.prolong, *back)
         pattern += (coarser.starts, coarser.columns, np.zeros(count, np.int32))
         find = dispatch.compiled(sums.find_products)
         ends = np.zeros(2 * len(coarser.columns) + 1, np.int32)
@@ -71,18 +75,18 @@ class Hierarchy:
 
     def __init__(self, starts: Ints, columns: Ints, weights: Floats, alive: NDArray[np.bool_]) -> None:
         self.levels = [Level(starts, columns)]
-        finest = self.levels[0]
-        graph = laplacian(starts, columns, (*finest.low[:2], finest.mirror), weights)
-        while len(graph[0]) - 1 > SMALLEST and len(self.levels) < MOST and self.fill_work <= FULLEST:
-            held = graph[2][np.repeat(np.arange(len(alive)), np.diff(graph[0])) == graph[1]]
-            alive = alive & (held > 1e-12 * held.max(initial=0.0))  # the others hang on nothing
-            found = gathered(graph, alive, len(self.levels) - 1)
+        net = _laplacian(starts, columns, weights)
+        while len(net.diagonal) > SMALLEST and len(self.levels) < MOST and self.fill_work <= FULLEST:
+            stiffness = net.values[net.diagonal]
+            alive = alive & (stiffness > 1e-12 * stiffness.max(initial=0.0))  # the others hang on nothing
+            strong = STRONG * WEAKER ** (len(self.levels) - 1)
+            found = coarsened(net, strong, alive, loose=True, kind=np.float32)
             if found is None:
                 break
-            p, graph = found
-            self.levels.append(Level(*_above(graph)))
+            p, net = found
+            self.levels.append(Level(*_above(net)))
             self.levels[-2].to(p, self.levels[-1])
-            alive = np.ones(len(graph[0]) - 1, dtype=bool)
+            alive = np.ones(len(net.diagonal), dtype=bool)
         self.factor: Floats = np.zeros((0, 0))
 
     @property
@@ -111,10 +115,13 @@ class Hierarchy:
 
     def _factor(self, scale: float) -> bool:
         """Factor the coarsest level; False if it is not positive definite."""
+        import scipy.sparse as sparse
+
         last = self.levels[-1]
-        n = len(last.starts) - 1
-        self.factor = np.zeros((3 * n, 3 * n))
-        dispatch.compiled(sums.spell_out)(last.starts, last.columns, last.values, scale, self.factor)
+        size = 3 * (len(last.starts) - 1)
+        blocks = (scale * last.values).reshape(-1, 3, 3), last.columns, last.starts
+        self.factor = sparse.bsr_matrix(blocks, shape=(size, size)).toarray(order="F").T
+        np.fill_diagonal(self.factor, np.where(self.factor.diagonal() == 0.0, 1.0, self.factor.diagonal()))
         return bool(dispatch.compiled(sums.factor)(self.factor))
 
     def cycle(self, b: Floats) -> NDArray[np.float32]:
@@ -133,12 +140,26 @@ class Hierarchy:
         return level.x
 
 
-def _above(matrix: Sparse) -> tuple[Ints, Ints]:
-    """The pattern of a matrix on and above its diagonal."""
-    starts, columns, _ = matrix
+def _laplacian(starts: Ints, columns: Ints, weights: Floats) -> Laplacian:
+    """The Laplacian of a graph, whole, of connections (k,) in the pattern of `Blocks`; its diagonal has weight 0."""
+    import scipy.sparse as sparse
+
     n = len(starts) - 1
-    rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(starts))
-    kept = columns >= rows
+    own = np.arange(n, dtype=np.int32)
+    rows = np.repeat(own, np.diff(starts))
+    above = columns > rows
+    low, high, pulls = rows[above], columns[above], weights[above]
+    total = np.bincount(np.append(high, low), np.append(pulls, pulls), n)
+    places = np.concatenate([high, own, low]), np.concatenate([low, own, high])
+    whole = sparse.csr_matrix((np.concatenate([-pulls, total, -pulls]), places), shape=(n, n))
+    diagonal = (whole.indptr[:-1] + np.bincount(high, minlength=n)).astype(np.int32)
+    return Laplacian(whole.indptr, whole.indices, whole.data, diagonal, np.zeros(n, np.int8))
+
+
+def _above(net: Laplacian) -> tuple[Ints, Ints]:
+    """The pattern of a net on and above its diagonal."""
+    n = len(net.diagonal)
+    rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(net.starts))
     found = np.zeros(n + 1, np.int32)
-    np.cumsum(np.bincount(rows[kept], minlength=n), out=found[1:])
-    return found, columns[kept]
+    np.cumsum(net.starts[1:] - net.diagonal, out=found[1:])
+    return found, net.columns[net.columns >= rows]
