@@ -1,6 +1,8 @@
 """A hierarchy of ever coarser nets, gathered by a weighted graph alone: the same P serves all three axes, and whatever
 values the pattern has.
 
+The Galerkin products of blocks are found once (`find_products`) and summed for every new tangent; that of the graph,
+which is wanted once, is the one of `aggregation`. For the sweeps see `scalar_hierarchy`.
 Source: Vanek, Mandel, Brezina, "Algebraic multigrid by smoothed aggregation", Computing 56 (1996) 179.
 """
 
@@ -75,7 +77,7 @@ class Hierarchy:
 
     def __init__(self, starts: Ints, columns: Ints, weights: Floats, alive: NDArray[np.bool_]) -> None:
         self.levels = [Level(starts, columns)]
-        net = _laplacian(starts, columns, weights)
+        net = _laplacian(self.levels[0], weights)
         while len(net.diagonal) > SMALLEST and len(self.levels) < MOST and self.fill_work <= FULLEST:
             stiffness = net.values[net.diagonal]
             alive = alive & (stiffness > 1e-12 * stiffness.max(initial=0.0))  # the others hang on nothing
@@ -115,13 +117,14 @@ class Hierarchy:
 
     def _factor(self, scale: float) -> bool:
         """Factor the coarsest level; False if it is not positive definite."""
-        import scipy.sparse as sparse
-
         last = self.levels[-1]
-        size = 3 * (len(last.starts) - 1)
-        blocks = (scale * last.values).reshape(-1, 3, 3), last.columns, last.starts
-        self.factor = sparse.bsr_matrix(blocks, shape=(size, size)).toarray(order="F").T
-        np.fill_diagonal(self.factor, np.where(self.factor.diagonal() == 0.0, 1.0, self.factor.diagonal()))
+        n = len(last.starts) - 1
+        blocks = np.zeros((n, 3, n, 3))  # on and below the diagonal
+        rows = np.repeat(np.arange(n), np.diff(last.starts))
+        blocks[last.columns, :, rows, :] = scale * last.values.reshape(-1, 3, 3).transpose(0, 2, 1)
+        self.factor = blocks.reshape(3 * n, 3 * n)
+        diagonal = self.factor.diagonal()
+        np.fill_diagonal(self.factor, np.where(diagonal == 0.0, 1.0, diagonal))
         return bool(dispatch.compiled(sums.factor)(self.factor))
 
     def cycle(self, b: Floats) -> NDArray[np.float32]:
@@ -140,20 +143,18 @@ class Hierarchy:
         return level.x
 
 
-def _laplacian(starts: Ints, columns: Ints, weights: Floats) -> Laplacian:
-    """The Laplacian of a graph, whole, of connections (k,) in the pattern of `Blocks`; its diagonal has weight 0."""
-    import scipy.sparse as sparse
-
-    n = len(starts) - 1
+def _laplacian(level: Level, weights: Floats) -> Laplacian:
+    """The Laplacian of a graph, whole, of connections (k,) in the pattern of a level; its diagonal has weight 0."""
+    low_starts, low_columns, _ = level.low
+    n, starts = len(low_starts) - 1, low_starts + level.starts
     own = np.arange(n, dtype=np.int32)
-    rows = np.repeat(own, np.diff(starts))
-    above = columns > rows
-    low, high, pulls = rows[above], columns[above], weights[above]
-    total = np.bincount(np.append(high, low), np.append(pulls, pulls), n)
-    places = np.concatenate([high, own, low]), np.concatenate([low, own, high])
-    whole = sparse.csr_matrix((np.concatenate([-pulls, total, -pulls]), places), shape=(n, n))
-    diagonal = (whole.indptr[:-1] + np.bincount(high, minlength=n)).astype(np.int32)
-    return Laplacian(whole.indptr, whole.indices, whole.data, diagonal, np.zeros(n, np.int8))
+    rows = np.append(np.repeat(own, np.diff(low_starts)), np.repeat(own, np.diff(level.starts)))
+    order = np.argsort(rows, kind="stable")  # what is before the diagonal comes first in its row
+    columns: Ints = np.append(low_columns, level.columns)[order]
+    values: Floats = np.append(-weights[level.mirror], -weights)[order]
+    diagonal = starts[:-1] + np.diff(low_starts)
+    values[diagonal] = -np.bincount(rows[order], values, n)
+    return Laplacian(starts, columns, values, diagonal, np.zeros(n, np.int8))
 
 
 def _above(net: Laplacian) -> tuple[Ints, Ints]:

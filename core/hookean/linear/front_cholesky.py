@@ -1,5 +1,8 @@
 """Front: a net solved by going over it from one end, exact, and quick where it is small or narrow.
 
+Apart from `profile_cholesky`: a front is wide, and panels of four columns on three right-hand sides fill the vectors of
+the processor, which chains would leave empty.
+
 Rows are eliminated in the order in which a front meets them: neighbours stay near each other, and a row's column of the
 Cholesky factor reaches to the farthest row met when the front leaves it. Four columns at a time are taken off all those
 that they reach.

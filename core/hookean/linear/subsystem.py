@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.compiled import dispatch
 from hookean.system.state import State
 from hookean.system.system import Group, System
 
@@ -20,13 +21,22 @@ Chosen = NDArray[np.bool_]
 
 def widened(starts: Ints, columns: Ints, chosen: Chosen, rings: int) -> Chosen:
     """The chosen particles (n,) and those within some rings of neighbours, in a pattern of blocks."""
-    rows = np.repeat(np.arange(len(chosen)), np.diff(starts))
     for _ in range(rings):
         wider = chosen.copy()
-        wider[columns[chosen[rows]]] = True
-        wider[rows[chosen[columns]]] = True
+        dispatch.compiled(widen)(starts, columns, chosen, wider)
         chosen = wider
     return chosen
+
+
+def widen(starts, columns, chosen, wider):  # type: ignore[no-untyped-def]
+    """Add the neighbours of the chosen ones to `wider`."""
+    for i in range(starts.shape[0] - 1):
+        for s in range(starts[i] + 1, starts[i + 1]):
+            j = columns[s]
+            if chosen[i]:
+                wider[j] = True
+            if chosen[j]:
+                wider[i] = True
 
 
 def cut(system: System, state: State, moving: Chosen) -> tuple[System, State, NDArray[np.int64]]:

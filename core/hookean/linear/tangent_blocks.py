@@ -99,6 +99,16 @@ def shift_blocks(starts, columns, weights, shift, values):  # type: ignore[no-un
                 values[s, c] -= amount
 
 
+def strain(starts, columns, weights, x):  # type: ignore[no-untyped-def]
+    """x L x, L the Laplacian of the weighted graph."""
+    total = 0.0
+    for i in range(starts.shape[0] - 1):
+        for s in range(starts[i] + 1, starts[i + 1]):
+            for c in range(3):
+                total += weights[s] * (x[i, c] - x[columns[s], c]) ** 2
+    return total
+
+
 def hold_axes(starts, columns, free, values):  # type: ignore[no-untyped-def]
     """Take held axes out: their rows and columns are zero, on the diagonal too."""
     for i in range(starts.shape[0] - 1):
@@ -208,8 +218,9 @@ class Blocks:
 
     def shifted(self, shift: float, x: Floats) -> float:
         """The energy [force length] that `settle` adds to a movement x (n, 3), times two."""
-        apart = np.repeat(x, np.diff(self.starts), axis=0) - x[self.columns]
-        return shift * float((self.sizes[:, None] * apart**2).sum())
+        return (
+            shift * float(dispatch.compiled(strain)(self.starts, self.columns, self.sizes, x)) if shift > 0.0 else 0.0
+        )
 
     def turned(self, x: Floats, step: Floats) -> Floats:
         """The largest angle (n,) [rad] by which a step (n, 3) would turn, to first order, an element's side between
