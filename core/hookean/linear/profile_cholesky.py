@@ -2,7 +2,7 @@
 
 Every row is kept from its first entry to the diagonal; eliminating a chain in its own order costs the same for each
 particle, wherever chains meet or close. Apart from `front_cholesky`: rows of one to three entries have nothing for its
-panels, and the compiled loops that factor anew at every step need functions that they can call.
+panels, and the compiled loops that factor again at every step need functions that they can call.
 Source: Jennings, "A compact storage scheme for the solution of symmetric linear simultaneous equations", 1966.
 """
 
