@@ -1,11 +1,12 @@
-"""Sparse linear algebra, by what a matrix is made of.
+"""Sparse linear algebra, grouped by the entries of a matrix.
 
-A number for each pair of particles (springs of rest length 0): `laplacian` makes it, `front_cholesky` solves it
-exactly, `scalar_cg` by conjugate gradients over the nets of `scalar_hierarchy`.
-A block of 3 x 3 for each pair (the tangent of large nets): `tangent_blocks` and `tangent` make it, `block_cg` solves it
-over the nets of `block_hierarchy`, with the sums of `block_kernels`; `subsystem` cuts out a part.
-A number for each pair of free axes (the tangent of any system): `pattern` and `film_tangent` make it, `sparse_factors`
-solves it and counts negative eigenvalues.
-Without a matrix: `spring_cg`, from spring to spring. In compiled loops: `profile_cholesky`, for chains.
-Both hierarchies are gathered by `aggregation`.
+- One number for each pair of particles (springs of rest length 0): `laplacian` assembles it, `front_cholesky` is the
+  direct solver, `scalar_cg` with `scalar_hierarchy` the iterative one.
+- One block of 3 x 3 for each pair (the tangent of a large net): `tangent_blocks` and `tangent` assemble it, `block_cg`
+  with `block_hierarchy` and `block_kernels` solves it, `subsystem` extracts a part of a system.
+- One number for each pair of free axes (the tangent of any system): `pattern` and `film_tangent` assemble it,
+  `sparse_factors` solves it and counts negative eigenvalues.
+- `spring_cg` works on springs without a matrix, `profile_cholesky` inside compiled loops on chains.
+
+Both hierarchies use `aggregation`.
 """

@@ -1,9 +1,9 @@
-"""Aggregation: from a net to a coarser one, by the strength of its connections.
+"""Smoothed aggregation: a coarser net from the strength of the connections of a net.
 
-Rows with strong connections are gathered into aggregates, each of which moves as one on the coarser net. Its motion is
-spread smoothly by one step of Jacobi: P = (I - 2/3 D^-1 A) T, with A without its weak connections, and T that tells the
-aggregate of each row. The coarser net is the Galerkin product P^T A P. Nets of numbers and nets of blocks are gathered
-alike, these by the Laplacian of a weighted graph.
+Rows with strong connections form aggregates, and each aggregate is one row of the coarser net. The prolongation is
+P = (I - 2/3 D^-1 A) T: T maps aggregates to rows, and one Jacobi step smooths it, with A without its weak connections.
+The coarser net is the Galerkin product P^T A P. Both hierarchies use it, the one of blocks for the Laplacian of a
+weighted graph.
 Source: Vanek, Mandel, Brezina, "Algebraic multigrid by smoothed aggregation", Computing 56 (1996) 179.
 """
 
@@ -24,27 +24,34 @@ Sparse = tuple[Ints, Ints, NDArray[Any]]
 DAMPING = 2.0 / 3.0
 SLOWEST = 0.8  # a coarser net has at most this part of the rows
 DENSEST = 100  # products for each entry of the finer net; a flat net takes 6, one in space some 30
-FREE, OUT, JOINS = -1, -2, -3  # instead of an aggregate: none yet; none ever; JOINS - g where g is about to be it
+FREE, OUT = -1, -2  # in place of an aggregate: none yet; none ever
+JOINS = -3  # JOINS - g stands for g until all rows have chosen
 
 
 def coarsened(
-    net: Laplacian, strong: float, moving: NDArray[np.bool_] | None = None, *, loose: bool = False, kind: Any = float
+    net: Laplacian,
+    threshold: float,
+    moving: NDArray[np.bool_] | None = None,
+    *,
+    connections_only: bool = False,
+    dtype: Any = float,
 ) -> tuple[Sparse, Laplacian] | None:
-    """P, its values of a `kind`, and the coarser net; None where the net gathers badly.
+    """The prolongation P and the coarser net P^T A P; None where aggregation does not reduce the net enough.
 
-    A connection is strong if it is at least this part of the strongest of both its rows. Only rows that are `moving`
-    (n,) are gathered. `loose`: P as if no row were held by more than its connections, so that it adds up to 1.
+    A connection is strong if it is at least `threshold` times the strongest one of both its rows. Rows that are not
+    `moving` (n,) belong to no aggregate. With `connections_only`, D leaves out the stiffness that rows have besides
+    their connections (their supports).
     """
     n, size = len(net.diagonal), len(net.columns)
     rows = (net.starts, net.columns, net.values)
     group = np.full(n, FREE, np.int32) if moving is None else np.where(moving, FREE, OUT).astype(np.int32)
-    count = dispatch.compiled(aggregate)(*rows, strong, group)
+    count = dispatch.compiled(aggregate)(*rows, threshold, group)
     if not 0 < count <= SLOWEST * n:
         return None
-    p: Sparse = np.zeros(n + 1, np.int32), np.empty(size, np.int32), np.empty(size, kind)
-    entries = dispatch.compiled(spread)(*rows, strong, loose, group, *p, np.full(count, -1, np.int32))
+    p: Sparse = np.zeros(n + 1, np.int32), np.empty(size, np.int32), np.empty(size, dtype)
+    entries = dispatch.compiled(spread)(*rows, threshold, connections_only, group, *p, np.full(count, -1, np.int32))
     p = p[0], p[1][:entries], p[2][:entries]
-    product = galerkin(rows, p, turned(p, count))
+    product = galerkin(rows, p, transposed(p, count))
     if product is None:
         return None
     held = np.zeros(count, np.int8)
@@ -53,8 +60,8 @@ def coarsened(
 
 
 def galerkin(rows: Sparse, p: Sparse, r: Sparse) -> tuple[Ints, Ints, NDArray[np.float64], Ints] | None:
-    """P^T A P, r the transposed P: starts, columns, values, and the places of the diagonal; None where that takes too
-    long."""
+    """The product P^T A P, with r = P^T: starts, columns, values and the places of the diagonal; None where that takes
+    more than DENSEST products for each entry of A."""
     size, room, count = 0, len(rows[1]), len(r[0]) - 1
     while True:
         found = np.zeros(count + 1, np.int32), np.empty(room, np.int32), np.empty(room), np.empty(count, np.int32)
@@ -67,7 +74,7 @@ def galerkin(rows: Sparse, p: Sparse, r: Sparse) -> tuple[Ints, Ints, NDArray[np
         room = size
 
 
-def turned(matrix: Sparse, columns: int) -> Sparse:
+def transposed(matrix: Sparse, columns: int) -> Sparse:
     """The transposed matrix of one that has so many columns; their rows are sorted."""
     _, indices, values = matrix
     found = np.zeros(columns + 1, np.int32), np.empty_like(indices), np.empty_like(values)
@@ -89,7 +96,7 @@ def transpose(starts, columns, values, t_starts, t_columns, t_values):  # type: 
             t_columns[t_starts[j]], t_values[t_starts[j]] = i, values[s]
 
 
-def aggregate(starts, columns, values, strong, group):  # type: ignore[no-untyped-def]
+def aggregate(starts, columns, values, threshold, group):  # type: ignore[no-untyped-def]
     """Number of aggregates; `group` (n,) of FREE and OUT becomes the aggregate of each row that was free.
 
     First whole neighbourhoods of rows that have no neighbour in an aggregate yet; what is left joins the aggregate
@@ -106,12 +113,12 @@ def aggregate(starts, columns, values, strong, group):  # type: ignore[no-untype
         clear = group[i] == FREE
         for s in range(starts[i], starts[i + 1]):
             j = columns[s]
-            if clear and group[j] >= 0 and -values[s] >= strong * max(strongest[i], strongest[j]):
+            if clear and group[j] >= 0 and -values[s] >= threshold * max(strongest[i], strongest[j]):
                 clear = False
         if clear:
             for s in range(starts[i], starts[i + 1]):
                 j = columns[s]
-                if group[j] == FREE and -values[s] >= strong * max(strongest[i], strongest[j]):
+                if group[j] == FREE and -values[s] >= threshold * max(strongest[i], strongest[j]):
                     group[j] = count
             group[i] = count
             count += 1
@@ -133,12 +140,12 @@ def aggregate(starts, columns, values, strong, group):  # type: ignore[no-untype
 
 
 def spread(  # type: ignore[no-untyped-def]
-    starts, columns, values, strong, loose, group, p_starts, p_columns, p_values, slot
+    starts, columns, values, threshold, connections_only, group, p_starts, p_columns, p_values, slot
 ):  # fmt: skip
     """Write P, and count its entries; `slot` (aggregates,) of -1 is for notes.
 
-    D is the diagonal of A without its weak connections, and less by as much, so that what moves as one still has no
-    forces; or, where `loose`, what the strong connections add up to.
+    D is the diagonal of A plus its weak connections, which keeps the row sums: a translation causes no forces. With
+    `connections_only`, D is minus the sum of the strong connections.
     """
     n, size = group.shape[0], 0
     strongest = np.zeros(n)
@@ -152,12 +159,12 @@ def spread(  # type: ignore[no-untyped-def]
         alone, whole = True, 0.0
         for s in range(starts[i], starts[i + 1]):
             j, pull = columns[s], -values[s]
-            near = j != i and pull > 0.0 and pull >= strong * max(strongest[i], strongest[j])
+            near = j != i and pull > 0.0 and pull >= threshold * max(strongest[i], strongest[j])
             if near:
                 alone = False
-            if near and loose:
+            if near and connections_only:
                 whole += pull
-            elif not (near or loose):
+            elif not (near or connections_only):
                 whole -= pull
             g = group[j]
             if (near or j == i) and g >= 0:
@@ -178,8 +185,8 @@ def project(  # type: ignore[no-untyped-def]
     starts, columns, values, p_starts, p_columns, p_values, r_starts, r_rows, r_values,
     c_starts, c_columns, c_values, c_diagonal, place, total, most,
 ):  # fmt: skip
-    """Write P^T A P row by row, columns sorted, whatever cancels in the sums; how many entries there are, for which
-    there may be too little room, or -1 where that takes more than `most` products.
+    """Write P^T A P row by row, columns sorted, entries that cancel included. Returns the number of entries, even if the
+    arrays are too short for them, or -1 after more than `most` products.
 
     `place` (aggregates,) of -1 and `total` (aggregates,) are for notes.
     """

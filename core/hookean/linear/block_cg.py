@@ -1,7 +1,7 @@
-"""Conjugate gradients on a tangent of blocks, with a multigrid cycle before each step.
+"""Conjugate gradients on a tangent of blocks, preconditioned by a multigrid cycle.
 
-The loop is apart from that of `scalar_cg`, with which it shares no more than three lines: here a direction may bend
-down, and what the steps have shown may end them. In Python, for each step is a dozen passes over a large net.
+The loop is separate from that of `scalar_cg`: it handles negative curvature, and can end at the accuracy that `Steps`
+estimates.
 Source: Hestenes and Stiefel 1952; truncated at negative curvature as in Steihaug, SIAM J. Numer. Anal. 20 (1983) 626.
 """
 

@@ -1,8 +1,8 @@
 """A hierarchy of ever coarser nets, gathered by a weighted graph alone: the same P serves all three axes, and whatever
 values the pattern has.
 
-The Galerkin products of blocks are found once (`find_products`) and summed for every new tangent; that of the graph,
-which is wanted once, is the one of `aggregation`. For the sweeps see `scalar_hierarchy`.
+`find_products` lists the products of P^T A P once, so that `coarsen` only sums them for each new tangent; the Galerkin
+product of `aggregation` serves the graph, once. `scalar_hierarchy` states why the sweeps are separate.
 Source: Vanek, Mandel, Brezina, "Algebraic multigrid by smoothed aggregation", Computing 56 (1996) 179.
 """
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.linear import block_kernels as sums
-from hookean.linear.aggregation import Sparse, coarsened, turned
+from hookean.linear.aggregation import Sparse, coarsened, transposed
 from hookean.linear.laplacian import Floats, Ints, Laplacian
 
 SMALLEST = 60  # rows of blocks that are solved directly
@@ -37,7 +37,7 @@ class Level:
         places = np.flatnonzero(above).astype(np.int32)
         rest: Ints = columns[above]
         before: Ints = (starts - np.arange(n + 1)).astype(np.int32)
-        low = turned((before, rest, places), n)
+        low = transposed((before, rest, places), n)
         self.high: tuple[Any, ...] = (before, rest, np.zeros((len(places), 12), np.float32))
         self.low: tuple[Any, ...] = (*low[:2], np.zeros((len(places), 12), np.float32))
         self.mirror: Ints = low[2]
@@ -49,8 +49,8 @@ class Level:
     def to(self, p: Sparse, coarser: Level) -> None:
         """Know the way to the next coarser level."""
         count = len(coarser.starts) - 1
-        back = turned(p, count)
-        self.prolong = turned(back, len(self.starts) - 1)  # sorted
+        back = transposed(p, count)
+        self.prolong = transposed(back, len(self.starts) - 1)  # sorts the columns of its rows
         pattern = (self.starts, self.columns, *self.low[:2], self.mirror, *self.prolong, *back)
         pattern += (coarser.starts, coarser.columns, np.zeros(count, np.int32))
         find = dispatch.compiled(sums.find_products)
@@ -81,8 +81,8 @@ class Hierarchy:
         while len(net.diagonal) > SMALLEST and len(self.levels) < MOST and self.fill_work <= FULLEST:
             stiffness = net.values[net.diagonal]
             alive = alive & (stiffness > 1e-12 * stiffness.max(initial=0.0))  # the others hang on nothing
-            strong = STRONG * WEAKER ** (len(self.levels) - 1)
-            found = coarsened(net, strong, alive, loose=True, kind=np.float32)
+            threshold = STRONG * WEAKER ** (len(self.levels) - 1)
+            found = coarsened(net, threshold, alive, connections_only=True, dtype=np.float32)
             if found is None:
                 break
             p, net = found

@@ -241,8 +241,8 @@ def turn(p, z, part):  # type: ignore[no-untyped-def]
 def factor(matrix):  # type: ignore[no-untyped-def]
     """The Cholesky factor of a dense matrix, written into its lower triangle; False if it is not positive definite.
 
-    An unsupported part has no stiffness but for rounding, by which single precision must not be divided: it is held,
-    where `profile_cholesky` gives up.
+    An unsupported part has no stiffness but for rounding, by which single precision must not be divided: it is held.
+    (`profile_cholesky` rejects such a matrix.)
     """
     least = 0.0
     for i in range(matrix.shape[0]):

@@ -1,8 +1,8 @@
 """Profile: Cholesky factors of nets that are little more than chains, where nearly nothing fills in.
 
 Every row is kept from its first entry to the diagonal; eliminating a chain in its own order costs the same for each
-particle, wherever chains meet or close. Apart from `front_cholesky`: rows of one to three entries have nothing for its
-panels, and the compiled loops that factor again at every step need functions that they can call.
+particle, wherever chains meet or close. Separate from `front_cholesky` for speed: rows of a few entries cannot fill
+its panels. Compiled loops call these functions at every step.
 Source: Jennings, "A compact storage scheme for the solution of symmetric linear simultaneous equations", 1966.
 """
 

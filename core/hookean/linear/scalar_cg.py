@@ -1,8 +1,8 @@
-"""Conjugate gradients on a net of springs of rest length 0, each step preconditioned by a cycle over coarser nets.
+"""Conjugate gradients on a net of springs of rest length 0, preconditioned by a multigrid cycle.
 
-Three right-hand sides go side by side, one for each axis, each with its own lengths of steps. The loop is apart from
-that of `block_cg`: it has no direction that bends down to watch for, and one pass over memory moves a direction on,
-multiplies it and sums up.
+The axes are three right-hand sides, each with its own step lengths. The loop is separate from that of `block_cg` for
+speed: one pass over memory updates the direction, multiplies by the matrix and sums the dot products. It needs no test
+for negative curvature.
 Source: Hestenes and Stiefel, "Methods of conjugate gradients for solving linear systems", 1952.
 """
 

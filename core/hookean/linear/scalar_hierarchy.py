@@ -1,10 +1,9 @@
-"""A hierarchy of ever coarser nets over a net of springs of rest length 0, and a cycle over them.
+"""A multigrid hierarchy for nets of springs of rest length 0, and its V cycle.
 
 The axes are solved together, so that each entry of a matrix is read once for all of them, and every sum has one fixed
-order. Rows of vectors have four columns, x y z and a zero: one row is one vector of the processor. The sweeps are apart
-from those of `block_hierarchy`, to which they are too different: numbers in double precision instead of blocks in
-single, worked out once and not for shape after shape, and what is left over after a sweep is passed on to the coarser
-net within the sweep, which saves a pass over memory.
+order. Rows of vectors have four columns, x y z and a zero: one row is one vector of the processor. The sweeps are
+separate from those of `block_hierarchy` for speed: they use numbers in double precision, not blocks in single
+precision, and compute the residual within the sweep, which saves a pass over memory.
 Source: Brandt, "Multi-level adaptive solutions to boundary-value problems", 1977, for the cycle.
 """
 

@@ -2,8 +2,8 @@
 where it will rest exactly.
 
 Each particle's own block of the tangent, inverted, takes out what is stiff along and soft across a net. The loop is
-apart from that of `block_cg` and compiled as a whole: nets are small here, for which calls from Python would take
-longer than the sums, and one pass over the particles goes along, inverts the blocks and sums up.
+separate from that of `block_cg` for speed: it is compiled as a whole, because calls from Python would take longer than
+the sums of a small net, and one pass over the particles updates, preconditions and sums.
 Source: Hestenes and Stiefel, "Methods of conjugate gradients for solving linear systems", 1952; Strakos and Tichy, "On
 error estimation in the conjugate gradient method", 2002, for the error after each step.
 """
