@@ -185,7 +185,7 @@ def project(  # type: ignore[no-untyped-def]
     starts, columns, values, p_starts, p_columns, p_values, r_starts, r_rows, r_values,
     c_starts, c_columns, c_values, c_diagonal, place, total, most,
 ):  # fmt: skip
-    """Write P^T A P row by row, columns sorted, entries that cancel included. Returns the number of entries, even if the
+    """Write P^T A P row by row, columns sorted, entries that cancel included. Returns their number, even if the
     arrays are too short for them, or -1 after more than `most` products.
 
     `place` (aggregates,) of -1 and `total` (aggregates,) are for notes.
