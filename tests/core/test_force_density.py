@@ -15,8 +15,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from hookean import Scene, discretize, relax
-from hookean.linear import scalar_aggregation as _aggregates
 from hookean.linear import scalar_cg as _gradients
+from hookean.linear import scalar_hierarchy as _levels
+from hookean.linear.aggregation import coarsened
 from hookean.linear.laplacian import Laplacian, laplacian
 from hookean.solvers import force_density, solver
 from hookean.solvers.auto import SOLVES
@@ -34,10 +35,10 @@ def put_on(patch: pytest.MonkeyPatch, way: str) -> None:
     if way != "front":
         patch.setattr(force_density, "QUICK", -1.0)
     if way == "levels":
-        patch.setattr(_gradients, "SMALLEST", 8)
+        patch.setattr(_levels, "SMALLEST", 8)
     if way == "smoothed":
-        patch.setattr(_gradients, "LARGEST_FACTOR", -1.0)
-        patch.setattr(_gradients, "SMALLEST", 1000)
+        patch.setattr(_levels, "LARGEST_FACTOR", -1.0)
+        patch.setattr(_levels, "SMALLEST", 1000)
     if way == "last resort":
         patch.setattr(_gradients, "MOST", 0)
 
@@ -170,7 +171,7 @@ def test_steps_do_not_grow_with_the_net(monkeypatch: pytest.MonkeyPatch) -> None
     steps = []
     for side in (100, 300):
         count = 0
-        cycle = _gradients.Hierarchy.cycle
+        cycle = _levels.Hierarchy.cycle
 
         def counted(self: Any, b: Any, cycle: Any = cycle) -> Any:
             nonlocal count
@@ -178,7 +179,7 @@ def test_steps_do_not_grow_with_the_net(monkeypatch: pytest.MonkeyPatch) -> None
             return cycle(self, b)
 
         with monkeypatch.context() as patch:
-            patch.setattr(_gradients.Hierarchy, "cycle", counted)
+            patch.setattr(_levels.Hierarchy, "cycle", counted)
             patch.setattr(force_density, "QUICK", 0.0)
             assert relax(grid(side, lambda u, v: np.sin(3.0 * u) * v)[0]).converged
         steps.append(count)
@@ -195,10 +196,10 @@ def test_coarser_nets_are_projections(seed: int, contrast: float) -> None:
     """P^T A P as scipy has it; the rows of P of what is not held add up to 1, so that a motion as one stays one."""
     system = compile(Scene.read(random_net(seed, contrast)))
     net, particles = laplacian(system, np.ascontiguousarray(system.start().free[:, 0]))
-    found = _aggregates.coarser(net) if len(particles) else None
+    found = coarsened(net, _levels.STRONG) if len(particles) else None
     if found is None:
         return
-    p = sparse.csr_matrix((found[0].values, found[0].columns, found[0].starts))
+    p = sparse.csr_matrix((found[0][2], found[0][1], found[0][0]))
     expected = (p.T @ matrix(net) @ p).toarray()
     room = 1e-14 * np.abs(p.T) @ np.abs(matrix(net)) @ np.abs(p)
     assert (np.abs(matrix(found[1]).toarray() - expected) <= room.toarray()).all()

@@ -1,8 +1,9 @@
-"""The graph of a net, with a weight for each connection, and the coarser one that it is gathered into.
+"""Smoothed aggregation: a coarser net from the strength of the connections of a net.
 
-Particles are gathered into aggregates of neighbours with strong connections; each aggregate moves as one on the
-coarser net. Its motion is spread smoothly by one step of Jacobi: P = (I - 2/3 D^-1 L) T, with L the Laplacian of the
-strong connections.
+Rows with strong connections form aggregates, and each aggregate is one row of the coarser net. The prolongation is
+P = (I - 2/3 D^-1 A) T: T maps aggregates to rows, and one Jacobi step smooths it, with A without its weak connections.
+The coarser net is the Galerkin product P^T A P. Both hierarchies use it, the one of blocks for the Laplacian of a
+weighted graph.
 Source: Vanek, Mandel, Brezina, "Algebraic multigrid by smoothed aggregation", Computing 56 (1996) 179.
 """
 
@@ -14,70 +15,66 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
-from hookean.compiled.marks import device
+from hookean.linear.laplacian import Laplacian
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-Sparse = tuple[Ints, Ints, Any]
+Sparse = tuple[Ints, Ints, NDArray[Any]]
 """Starts (n + 1,), columns (k,) and values (k,) of the rows of a sparse matrix."""
 
-STRONG = 0.35  # a connection is strong if it is at least this part of the strongest of its particle;
-WEAKER = 0.5  # on coarser levels, times this for each
 DAMPING = 2.0 / 3.0
+SLOWEST = 0.8  # a coarser net has at most this part of the rows
+DENSEST = 100  # products for each entry of the finer net; a flat net takes 6, one in space some 30
+FREE, OUT = -1, -2  # in place of an aggregate: none yet; none ever
+JOINS = -3  # JOINS - g stands for g until all rows have chosen
 
 
-def laplacian(starts: Ints, columns: Ints, low: Sparse, weights: Floats) -> Sparse:
-    """The Laplacian of a graph, whole, of connections (k,) in the pattern of `Blocks`; its diagonal has weight 0. `low`
-    is what of the pattern is below the diagonal, and of which connection each is the mirror image."""
-    size = len(columns) + len(low[1])
-    whole = np.empty(len(starts), np.int32), np.empty(size, np.int32), np.empty(size)
-    dispatch.compiled(unfold)(starts, columns, *low, weights, *whole)
-    return whole
+def coarsened(
+    net: Laplacian,
+    threshold: float,
+    moving: NDArray[np.bool_] | None = None,
+    *,
+    connections_only: bool = False,
+    dtype: Any = float,
+) -> tuple[Sparse, Laplacian] | None:
+    """The prolongation P and the coarser net P^T A P; None where aggregation does not reduce the net enough.
 
-
-def unfold(starts, columns, low_starts, low_columns, low, weights, all_starts, all_columns, values):  # type: ignore[no-untyped-def]
-    """Write the rows of the Laplacian: what is before the diagonal; the diagonal, which is first in a row of the
-    pattern; what is after it."""
-    end = 0
-    for i in range(starts.shape[0] - 1):
-        all_starts[i] = end
-        total = 0.0
-        for s in range(low_starts[i], low_starts[i + 1]):
-            all_columns[end], values[end] = low_columns[s], -weights[low[s]]
-            total += weights[low[s]]
-            end += 1
-        own = end
-        for s in range(starts[i], starts[i + 1]):
-            all_columns[end], values[end] = columns[s], -weights[s]
-            total += weights[s]
-            end += 1
-        values[own] = total
-    all_starts[starts.shape[0] - 1] = end
-
-
-def gathered(graph: Sparse, alive: NDArray[np.bool_], level: int) -> tuple[Sparse, Sparse] | None:
-    """P, and P^T L P; None where the graph gathers badly. `alive` (n,) are the rows that move."""
-    starts, columns, values = graph
-    n = len(starts) - 1
-    group = np.zeros(n, np.int32)
-    least = STRONG * WEAKER**level
-    count = dispatch.compiled(aggregate)(starts, columns, -values, least, alive, group)
-    if not 0 < count < 0.8 * n:
+    A connection is strong if it is at least `threshold` times the strongest one of both its rows. Rows that are not
+    `moving` (n,) belong to no aggregate. With `connections_only`, D leaves out the stiffness that rows have besides
+    their connections (their supports).
+    """
+    n, size = len(net.diagonal), len(net.columns)
+    rows = (net.starts, net.columns, net.values)
+    group = np.full(n, FREE, np.int32) if moving is None else np.where(moving, FREE, OUT).astype(np.int32)
+    count = dispatch.compiled(aggregate)(*rows, threshold, group)
+    if not 0 < count <= SLOWEST * n:
         return None
-    p = np.zeros(n + 1, np.int32), np.zeros(len(columns), np.int32), np.zeros(len(columns), np.float32)
-    size = dispatch.compiled(spread)(*graph, group, least, DAMPING, *p)
-    p = p[0], p[1][:size].copy(), p[2][:size].copy()
-    r = turned(p, count)
-    notes = np.zeros(count, np.int32), np.zeros(count)
-    size = len(columns)  # a guess
+    p: Sparse = np.zeros(n + 1, np.int32), np.empty(size, np.int32), np.empty(size, dtype)
+    entries = dispatch.compiled(spread)(*rows, threshold, connections_only, group, *p, np.full(count, -1, np.int32))
+    p = p[0], p[1][:entries], p[2][:entries]
+    product = galerkin(rows, p, transposed(p, count))
+    if product is None:
+        return None
+    held = np.zeros(count, np.int8)
+    held[group[net.held > 0]] = 1
+    return p, Laplacian(*product, held)
+
+
+def galerkin(rows: Sparse, p: Sparse, r: Sparse) -> tuple[Ints, Ints, NDArray[np.float64], Ints] | None:
+    """The product P^T A P, with r = P^T: starts, columns, values and the places of the diagonal; None where that takes
+    more than DENSEST products for each entry of A."""
+    size, room, count = 0, len(rows[1]), len(r[0]) - 1
     while True:
-        c = np.zeros(count + 1, np.int32), np.zeros(size, np.int32), np.zeros(size)
-        size = dispatch.compiled(couple)(*graph, *p, *r, *notes, *c)
-        if size <= len(c[1]):
-            return p, (c[0], c[1][:size].copy(), c[2][:size].copy())
+        found = np.zeros(count + 1, np.int32), np.empty(room, np.int32), np.empty(room), np.empty(count, np.int32)
+        notes = np.full(count, -1, np.int32), np.empty(count)
+        size = dispatch.compiled(project)(*rows, *p, *r, *found, *notes, DENSEST * len(rows[1]))
+        if size < 0:
+            return None
+        if size <= room:
+            return found[0], found[1][:size], found[2][:size], found[3]
+        room = size
 
 
-def turned(matrix: Sparse, columns: int) -> Sparse:
+def transposed(matrix: Sparse, columns: int) -> Sparse:
     """The transposed matrix of one that has so many columns; their rows are sorted."""
     _, indices, values = matrix
     found = np.zeros(columns + 1, np.int32), np.empty_like(indices), np.empty_like(values)
@@ -99,140 +96,126 @@ def transpose(starts, columns, values, t_starts, t_columns, t_values):  # type: 
             t_columns[t_starts[j]], t_values[t_starts[j]] = i, values[s]
 
 
-def aggregate(starts, columns, weights, strong, alive, group):  # type: ignore[no-untyped-def]
-    """Number of aggregates; `group` (n,) tells the aggregate of each row, -1 for those that are not alive.
+def aggregate(starts, columns, values, threshold, group):  # type: ignore[no-untyped-def]
+    """Number of aggregates; `group` (n,) of FREE and OUT becomes the aggregate of each row that was free.
 
     First whole neighbourhoods of rows that have no neighbour in an aggregate yet; what is left joins the aggregate
-    it is connected to best, or makes one with what is left around it.
+    it is connected to best, or is one by itself.
     """
-    n = starts.shape[0] - 1
-    largest = np.zeros(n)
+    n = group.shape[0]
+    strongest = np.zeros(n)
     for i in range(n):
-        group[i] = -1
         for s in range(starts[i], starts[i + 1]):
-            if columns[s] != i and alive[columns[s]]:
-                largest[i] = max(largest[i], weights[s])
+            if group[columns[s]] == FREE:
+                strongest[i] = max(strongest[i], -values[s])
     count = 0
     for i in range(n):
-        if not alive[i] or group[i] >= 0:
-            continue
-        clear = True
+        clear = group[i] == FREE
         for s in range(starts[i], starts[i + 1]):
             j = columns[s]
-            if j != i and alive[j] and group[j] >= 0 and weights[s] >= strong * max(largest[i], largest[j]):
+            if clear and group[j] >= 0 and -values[s] >= threshold * max(strongest[i], strongest[j]):
                 clear = False
-                break
-        if not clear:
-            continue
-        for s in range(starts[i], starts[i + 1]):
-            j = columns[s]
-            if j == i or (alive[j] and group[j] < 0 and weights[s] >= strong * max(largest[i], largest[j])):
-                group[j] = count
-        count += 1
-    whole = count
+        if clear:
+            for s in range(starts[i], starts[i + 1]):
+                j = columns[s]
+                if group[j] == FREE and -values[s] >= threshold * max(strongest[i], strongest[j]):
+                    group[j] = count
+            group[i] = count
+            count += 1
     for i in range(n):
-        if not alive[i] or group[i] >= 0:
-            continue
-        best = 0.0
-        chosen = -1
-        for s in range(starts[i], starts[i + 1]):
-            j = columns[s]
-            if j != i and 0 <= group[j] < whole and weights[s] > best:
-                best = weights[s]
-                chosen = group[j]
-        if chosen >= 0:
-            group[i] = -2 - chosen
+        if group[i] == FREE:
+            best = 0.0
+            for s in range(starts[i], starts[i + 1]):
+                g = group[columns[s]]
+                if -values[s] > best and g >= 0:
+                    best = -values[s]
+                    group[i] = JOINS - g
     for i in range(n):
-        if group[i] < -1:
-            group[i] = -2 - group[i]
-    for i in range(n):
-        if not alive[i] or group[i] >= 0:
-            continue
-        for s in range(starts[i], starts[i + 1]):
-            j = columns[s]
-            if j == i or (alive[j] and group[j] < 0):
-                group[j] = count
-        count += 1
+        if group[i] == FREE:
+            group[i] = count
+            count += 1
+        elif group[i] <= JOINS:
+            group[i] = JOINS - group[i]
     return count
 
 
-def spread(starts, columns, values, group, least, damping, p_starts, p_columns, p_values):  # type: ignore[no-untyped-def]
-    """The rows of P, their columns sorted; how many entries there are."""
-    n = starts.shape[0] - 1
-    largest = np.zeros(n)
+def spread(  # type: ignore[no-untyped-def]
+    starts, columns, values, threshold, connections_only, group, p_starts, p_columns, p_values, slot
+):  # fmt: skip
+    """Write P, and count its entries; `slot` (aggregates,) of -1 is for notes.
+
+    D is the diagonal of A plus its weak connections, which keeps the row sums: a translation causes no forces. With
+    `connections_only`, D is minus the sum of the strong connections.
+    """
+    n, size = group.shape[0], 0
+    strongest = np.zeros(n)
     for i in range(n):
         for s in range(starts[i], starts[i + 1]):
-            if columns[s] != i:
-                largest[i] = max(largest[i], -values[s])
-    end = 0
+            strongest[i] = max(strongest[i], -values[s])
     for i in range(n):
-        p_starts[i] = end
+        p_starts[i] = first = size
         if group[i] < 0:
             continue
-        total = 0.0
-        first = end
+        alone, whole = True, 0.0
         for s in range(starts[i], starts[i + 1]):
-            j = columns[s]
-            pull = -values[s]
-            if j == i or not pull > 0.0 or pull < least * max(largest[i], largest[j]):
-                continue
-            total += pull
-            if group[j] >= 0:
-                end = insert(p_columns, p_values, first, end, group[j], pull)
-        for t in range(first, end):
-            p_values[t] *= damping / total
-        end = insert(p_columns, p_values, first, end, group[i], 1.0 - damping if total > 0.0 else 1.0)
-    p_starts[n] = end
-    return end
+            j, pull = columns[s], -values[s]
+            near = j != i and pull > 0.0 and pull >= threshold * max(strongest[i], strongest[j])
+            if near:
+                alone = False
+            if near and connections_only:
+                whole += pull
+            elif not (near or connections_only):
+                whole -= pull
+            g = group[j]
+            if (near or j == i) and g >= 0:
+                if slot[g] < first:
+                    slot[g] = size
+                    p_columns[size], p_values[size] = g, 0.0
+                    size += 1
+                if near:
+                    p_values[slot[g]] += pull
+        for s in range(first, size):
+            p_values[s] *= DAMPING / whole if not alone else 0.0
+        p_values[slot[group[i]]] += 1.0 - DAMPING if not alone else 1.0
+    p_starts[n] = size
+    return size
 
 
-@device
-def insert(columns: Any, values: Any, first: Any, end: Any, column: Any, value: Any) -> Any:
-    """Add a value to a sorted row, from `first` to `end`; the new end."""
-    t = end
-    while t > first and columns[t - 1] > column:
-        t -= 1
-    if t > first and columns[t - 1] == column:
-        values[t - 1] += value
-        return end
-    for u in range(end, t, -1):
-        columns[u], values[u] = columns[u - 1], values[u - 1]
-    columns[t], values[t] = column, value
-    return end + 1
-
-
-def couple(  # type: ignore[no-untyped-def]
-    starts, columns, values, p_starts, p_columns, p_values, r_starts, r_rows, r_values, place, total,
-    c_starts, c_columns, c_values,
+def project(  # type: ignore[no-untyped-def]
+    starts, columns, values, p_starts, p_columns, p_values, r_starts, r_rows, r_values,
+    c_starts, c_columns, c_values, c_diagonal, place, total, most,
 ):  # fmt: skip
-    """The rows of P^T L P, whatever cancels in the sums, their columns sorted; how many entries there are, for which
-    there may be too little room. `place` and `total` (coarse rows,) are for notes."""
-    end, room = 0, c_columns.shape[0]
-    place[:] = -1
+    """Write P^T A P row by row, columns sorted, entries that cancel included. Returns their number, even if the
+    arrays are too short for them, or -1 after more than `most` products.
+
+    `place` (aggregates,) of -1 and `total` (aggregates,) are for notes.
+    """
+    size, work, room = 0, 0, c_columns.shape[0]
     for row in range(c_starts.shape[0] - 1):
-        c_starts[row] = first = end
+        first = size
         for t in range(r_starts[row], r_starts[row + 1]):
-            i = np.uint64(r_rows[t])
+            i, part = np.uint64(r_rows[t]), np.float64(r_values[t])
             for s in range(starts[i], starts[i + np.uint64(1)]):
-                j = np.uint64(columns[np.uint64(s)])
-                part = np.float64(r_values[t]) * values[np.uint64(s)]
+                j, weight = np.uint64(columns[np.uint64(s)]), part * values[np.uint64(s)]
+                work += p_starts[j + np.uint64(1)] - p_starts[j]
                 for u in range(p_starts[j], p_starts[j + np.uint64(1)]):
-                    column = np.uint64(p_columns[np.uint64(u)])
-                    if place[column] != row:
-                        place[column] = row
-                        total[column] = 0.0
-                        if end < room:
-                            c_columns[end] = column
-                        end += 1
-                    total[column] += part * p_values[np.uint64(u)]
-        if end <= room:
-            for s in range(first, end):
-                column, t = c_columns[s], s
-                while t > first and c_columns[t - 1] > column:
-                    c_columns[t] = c_columns[t - 1]
-                    t -= 1
-                c_columns[t] = column
-            for s in range(first, end):
-                c_values[s] = total[c_columns[s]]
-    c_starts[c_starts.shape[0] - 1] = end
-    return end
+                    column = p_columns[np.uint64(u)]
+                    c = np.uint64(column)  # unsigned: no index counts from the end
+                    if place[c] != row:
+                        place[c], total[c] = row, 0.0
+                        if size < room:
+                            at = size
+                            while at > first and c_columns[at - 1] > column:
+                                c_columns[at] = c_columns[at - 1]
+                                at -= 1
+                            c_columns[at] = column
+                        size += 1
+                    total[c] += weight * p_values[np.uint64(u)]
+            if work > most:
+                return -1
+        for s in range(first, min(size, room)):
+            c_values[s] = total[c_columns[s]]
+            if c_columns[s] == row:
+                c_diagonal[row] = s
+        c_starts[row + 1] = size
+    return size

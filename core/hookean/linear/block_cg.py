@@ -1,5 +1,7 @@
-"""Conjugate gradients with a multigrid cycle before each step.
+"""Conjugate gradients on a tangent of blocks, preconditioned by a multigrid cycle.
 
+The loop is separate from that of `scalar_cg`: it handles negative curvature, and can end at the accuracy that `Steps`
+estimates.
 Source: Hestenes and Stiefel 1952; truncated at negative curvature as in Steihaug, SIAM J. Numer. Anal. 20 (1983) 626.
 """
 

@@ -1,6 +1,8 @@
 """A hierarchy of ever coarser nets, gathered by a weighted graph alone: the same P serves all three axes, and whatever
 values the pattern has.
 
+`find_products` lists the products of P^T A P once, so that `coarsen` only sums them for each new tangent; the Galerkin
+product of `aggregation` serves the graph, once. `scalar_hierarchy` states why the sweeps are separate.
 Source: Vanek, Mandel, Brezina, "Algebraic multigrid by smoothed aggregation", Computing 56 (1996) 179.
 """
 
@@ -13,10 +15,13 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.linear import block_kernels as sums
-from hookean.linear.aggregation import Floats, Ints, Sparse, gathered, laplacian, turned
+from hookean.linear.aggregation import Sparse, coarsened, transposed
+from hookean.linear.laplacian import Floats, Ints, Laplacian
 
 SMALLEST = 60  # rows of blocks that are solved directly
 MOST = 20  # levels
+STRONG = 0.35  # a connection is strong if it is at least this part of the strongest of both its rows;
+WEAKER = 0.5  # on coarser levels, times this for each
 FULLEST = 3.0  # blocks of all levels for each of the finest
 
 
@@ -32,7 +37,7 @@ class Level:
         places = np.flatnonzero(above).astype(np.int32)
         rest: Ints = columns[above]
         before: Ints = (starts - np.arange(n + 1)).astype(np.int32)
-        low = turned((before, rest, places), n)
+        low = transposed((before, rest, places), n)
         self.high: tuple[Any, ...] = (before, rest, np.zeros((len(places), 12), np.float32))
         self.low: tuple[Any, ...] = (*low[:2], np.zeros((len(places), 12), np.float32))
         self.mirror: Ints = low[2]
@@ -43,9 +48,10 @@ class Level:
 
     def to(self, p: Sparse, coarser: Level) -> None:
         """Know the way to the next coarser level."""
-        self.prolong = p
         count = len(coarser.starts) - 1
-        pattern = (self.starts, self.columns, *self.low[:2], self.mirror, *p, *turned(p, count))
+        back = transposed(p, count)
+        self.prolong = transposed(back, len(self.starts) - 1)  # sorts the columns of its rows
+        pattern = (self.starts, self.columns, *self.low[:2], self.mirror, *self.prolong, *back)
         pattern += (coarser.starts, coarser.columns, np.zeros(count, np.int32))
         find = dispatch.compiled(sums.find_products)
         ends = np.zeros(2 * len(coarser.columns) + 1, np.int32)
@@ -71,18 +77,18 @@ class Hierarchy:
 
     def __init__(self, starts: Ints, columns: Ints, weights: Floats, alive: NDArray[np.bool_]) -> None:
         self.levels = [Level(starts, columns)]
-        finest = self.levels[0]
-        graph = laplacian(starts, columns, (*finest.low[:2], finest.mirror), weights)
-        while len(graph[0]) - 1 > SMALLEST and len(self.levels) < MOST and self.fill_work <= FULLEST:
-            held = graph[2][np.repeat(np.arange(len(alive)), np.diff(graph[0])) == graph[1]]
-            alive = alive & (held > 1e-12 * held.max(initial=0.0))  # the others hang on nothing
-            found = gathered(graph, alive, len(self.levels) - 1)
+        net = _laplacian(self.levels[0], weights)
+        while len(net.diagonal) > SMALLEST and len(self.levels) < MOST and self.fill_work <= FULLEST:
+            stiffness = net.values[net.diagonal]
+            alive = alive & (stiffness > 1e-12 * stiffness.max(initial=0.0))  # the others hang on nothing
+            threshold = STRONG * WEAKER ** (len(self.levels) - 1)
+            found = coarsened(net, threshold, alive, connections_only=True, dtype=np.float32)
             if found is None:
                 break
-            p, graph = found
-            self.levels.append(Level(*_above(graph)))
+            p, net = found
+            self.levels.append(Level(*_above(net)))
             self.levels[-2].to(p, self.levels[-1])
-            alive = np.ones(len(graph[0]) - 1, dtype=bool)
+            alive = np.ones(len(net.diagonal), dtype=bool)
         self.factor: Floats = np.zeros((0, 0))
 
     @property
@@ -113,8 +119,12 @@ class Hierarchy:
         """Factor the coarsest level; False if it is not positive definite."""
         last = self.levels[-1]
         n = len(last.starts) - 1
-        self.factor = np.zeros((3 * n, 3 * n))
-        dispatch.compiled(sums.spell_out)(last.starts, last.columns, last.values, scale, self.factor)
+        blocks = np.zeros((n, 3, n, 3))  # on and below the diagonal
+        rows = np.repeat(np.arange(n), np.diff(last.starts))
+        blocks[last.columns, :, rows, :] = scale * last.values.reshape(-1, 3, 3).transpose(0, 2, 1)
+        self.factor = blocks.reshape(3 * n, 3 * n)
+        diagonal = self.factor.diagonal()
+        np.fill_diagonal(self.factor, np.where(diagonal == 0.0, 1.0, diagonal))
         return bool(dispatch.compiled(sums.factor)(self.factor))
 
     def cycle(self, b: Floats) -> NDArray[np.float32]:
@@ -133,12 +143,24 @@ class Hierarchy:
         return level.x
 
 
-def _above(matrix: Sparse) -> tuple[Ints, Ints]:
-    """The pattern of a matrix on and above its diagonal."""
-    starts, columns, _ = matrix
-    n = len(starts) - 1
-    rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(starts))
-    kept = columns >= rows
+def _laplacian(level: Level, weights: Floats) -> Laplacian:
+    """The Laplacian of a graph, whole, of connections (k,) in the pattern of a level; its diagonal has weight 0."""
+    low_starts, low_columns, _ = level.low
+    n, starts = len(low_starts) - 1, low_starts + level.starts
+    own = np.arange(n, dtype=np.int32)
+    rows = np.append(np.repeat(own, np.diff(low_starts)), np.repeat(own, np.diff(level.starts)))
+    order = np.argsort(rows, kind="stable")  # what is before the diagonal comes first in its row
+    columns: Ints = np.append(low_columns, level.columns)[order]
+    values: Floats = np.append(-weights[level.mirror], -weights)[order]
+    diagonal = starts[:-1] + np.diff(low_starts)
+    values[diagonal] = -np.bincount(rows[order], values, n)
+    return Laplacian(starts, columns, values, diagonal, np.zeros(n, np.int8))
+
+
+def _above(net: Laplacian) -> tuple[Ints, Ints]:
+    """The pattern of a net on and above its diagonal."""
+    n = len(net.diagonal)
+    rows = np.repeat(np.arange(n, dtype=np.int32), np.diff(net.starts))
     found = np.zeros(n + 1, np.int32)
-    np.cumsum(np.bincount(rows[kept], minlength=n), out=found[1:])
-    return found, columns[kept]
+    np.cumsum(net.starts[1:] - net.diagonal, out=found[1:])
+    return found, net.columns[net.columns >= rows]

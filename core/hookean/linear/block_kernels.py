@@ -238,22 +238,11 @@ def turn(p, z, part):  # type: ignore[no-untyped-def]
             p[i, c] = np.float64(z[i, c]) + part * p[i, c]
 
 
-def spell_out(starts, columns, values, scale, matrix):  # type: ignore[no-untyped-def]
-    """Write blocks times a scale on and below the diagonal of a dense matrix of zeros, and 1 where that is 0."""
-    for i in range(starts.shape[0] - 1):
-        for s in range(starts[i], starts[i + 1]):
-            for a in range(3):
-                for b in range(3):
-                    matrix[3 * columns[s] + b, 3 * i + a] = scale * values[s, 3 * a + b]
-    for i in range(matrix.shape[0]):
-        if matrix[i, i] == 0.0:
-            matrix[i, i] = 1.0
-
-
 def factor(matrix):  # type: ignore[no-untyped-def]
     """The Cholesky factor of a dense matrix, written into its lower triangle; False if it is not positive definite.
 
     An unsupported part has no stiffness but for rounding, by which single precision must not be divided: it is held.
+    (`profile_cholesky` rejects such a matrix.)
     """
     least = 0.0
     for i in range(matrix.shape[0]):

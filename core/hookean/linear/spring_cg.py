@@ -1,7 +1,9 @@
 """Conjugate gradients on the tangent of a net of springs at rest: some dozen steps are enough to say how far it is from
 where it will rest exactly.
 
-Each particle's own block of the tangent, inverted, takes out what is stiff along and soft across a net.
+Each particle's own block of the tangent, inverted, takes out what is stiff along and soft across a net. The loop is
+separate from that of `block_cg` for speed: it is compiled as a whole, because calls from Python would take longer than
+the sums of a small net, and one pass over the particles updates, preconditions and sums.
 Source: Hestenes and Stiefel, "Methods of conjugate gradients for solving linear systems", 1952; Strakos and Tichy, "On
 error estimation in the conjugate gradient method", 2002, for the error after each step.
 """

@@ -22,7 +22,7 @@ from hookean.system.balance import ROUNDING
 if TYPE_CHECKING:
     from hookean.linear.front_cholesky import Factor
     from hookean.linear.laplacian import Laplacian
-    from hookean.linear.scalar_cg import Hierarchy
+    from hookean.linear.scalar_hierarchy import Hierarchy
     from hookean.system.balance import Balance
     from hookean.system.state import State
     from hookean.system.system import System
@@ -132,6 +132,7 @@ class Solved:
         """Replace b (rows, 4) by the solution, by a front where that is quick; whether that was possible."""
         from hookean.linear import front_cholesky as _front
         from hookean.linear import scalar_cg as _gradients
+        from hookean.linear.scalar_hierarchy import Hierarchy
 
         net = self.net
         way = _front.front(net, QUICK * len(b))
@@ -139,7 +140,7 @@ class Solved:
             # |A| |x| is twice the stiffness times what is largest of x: that rounds
             stiffness = net.values[net.diagonal]
             goal = ROUNDING * largest * float(np.sqrt((stiffness * stiffness).sum()))
-            self.hierarchy = _gradients.Hierarchy(net)
+            self.hierarchy = Hierarchy(net)
             found = _gradients.solve(self.hierarchy, b.copy(), goal)
             if found is not None:
                 b[:] = found
