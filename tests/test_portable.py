@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 
 BARE = """
@@ -47,6 +49,7 @@ def test_every_module_imports_without_unix_modules():
     assert "hookean.running.run" in done.stdout
 
 
+@pytest.mark.soak
 def test_the_cores_tests_pass_without_unix_modules():
     """The chapter, the cables, the nets, and a file written and read back."""
     done = run(

@@ -243,6 +243,7 @@ def test_without_grasshopper_the_sentence_says_where_to_put_them(tmp_path, monke
     assert len(done.output.strip().splitlines()) == 1
 
 
+@pytest.mark.soak
 def test_an_installed_wheel_can_build(tmp_path):
     """The wheel carries bundles and client; built from it alone, a component is the same as from the tree."""
     pytest.importorskip("hatchling", reason="hatchling, which builds the wheel, is not installed")

@@ -72,7 +72,9 @@ def pressed(seed: int) -> Spec:
     return {"particles": x, "forces": forces, "anchors": [{"particles": rim}], "settings": {}}
 
 
-@pytest.mark.parametrize("family", ["pressed", *FAMILIES])
+@pytest.mark.parametrize(
+    "family", [pytest.param(f, marks=[pytest.mark.soak] if f == "shell" else []) for f in ("pressed", *FAMILIES)]
+)
 def test_a_stable_shape_has_no_lower_one_beside_it(family: str) -> None:
     for seed in SEEDS[::4] if family == "pressed" else (s for s in SEEDS if FAMILIES[s % len(FAMILIES)] == family):
         spec = pressed(seed) if family == "pressed" else random_scene(seed)

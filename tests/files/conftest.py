@@ -21,9 +21,15 @@ DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "rhino"
 FILES: list[Path | None] = [*sorted(DATA.glob("*.3dm"))] or [None]
 
 
-@pytest.fixture(params=FILES, ids=lambda path: path.stem if path else "none")
+LARGEST = "v3_UntrimmedSurfaces"
+
+
+@pytest.fixture(
+    params=[pytest.param(f, marks=[pytest.mark.soak] if f and f.stem == LARGEST else []) for f in FILES],
+    ids=lambda path: path.stem if path else "none",
+)
 def real(request: pytest.FixtureRequest) -> Path:
-    """Each of the real files."""
+    """Each of the real files; the largest in `make soak` only."""
     if request.param is None:
         pytest.skip(f"no .3dm files in {DATA}")
     return Path(request.param)

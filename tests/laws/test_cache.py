@@ -71,6 +71,7 @@ def test_the_second_process_compiles_nothing_of_any_force(copied: tuple[Path, di
     assert found(second), second
 
 
+@pytest.mark.soak
 @pytest.mark.slow
 def test_an_edited_kernel_gives_the_new_answer_and_a_revert_is_found_again(
     copied: tuple[Path, dict[str, str]], first: Any

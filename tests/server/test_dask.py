@@ -163,6 +163,7 @@ def test_a_worker_that_hangs_is_started_anew() -> None:
         assert served.end()[0] == 0
 
 
+@pytest.mark.soak
 def test_a_cluster_that_is_away_is_waited_for() -> None:
     first = Dask()
     first.worker()

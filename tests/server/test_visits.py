@@ -141,6 +141,7 @@ def _is_of(connection: Any, sock: socket.socket) -> bool:
     return bool(connection.raddr) and connection.raddr.port == sock.getsockname()[1]
 
 
+@pytest.mark.soak
 def test_who_reads_too_slowly_is_cut_off() -> None:
     """A reader of drips, each of which is progress, ends with the time that its whole answer has."""
     first = "from hookean_server.http import limits; limits.RATE = 2**30;"
