@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from server.conftest import Served, asked, endless
-from serving import CABLE, HANG, wait_for
+from serving import CABLE, HANG, living, wait_for
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="this system cannot stop a process")
 
@@ -61,7 +61,7 @@ def test_pause_reaches_a_session_whose_process_hangs(running: Served) -> None:
     paused = _answered(running, "a", "pause")
     wait_for(lambda: paused)
     assert paused[0].status_code == 200 and paused[0].json()["playing"] is False
-    wait_for(lambda: not process.is_running() or process.status() == psutil.STATUS_ZOMBIE)
+    wait_for(lambda: not living(process.pid))
     found = running.client.get("/v1/sessions/a/scene")
     assert found.status_code == 200, found.text + running.log()
     assert found.json()["forces"][1]["vector"] == [0, 0, -7.0]
@@ -102,7 +102,7 @@ def test_a_session_whose_process_hangs_is_deleted(running: Served) -> None:
     process = _begun(running, "gone")
     process.send_signal(signal.SIGSTOP)
     assert running.client.delete("/v1/sessions/gone").status_code == 204
-    wait_for(lambda: not process.is_running() or process.status() == psutil.STATUS_ZOMBIE)
+    wait_for(lambda: not living(process.pid))
     assert running.client.get("/v1/sessions/gone").status_code == 404
 
 
@@ -126,4 +126,4 @@ def test_the_service_ends_with_workers_that_hang() -> None:
     for process in processes:
         process.send_signal(signal.SIGSTOP)
     assert served.end()[0] == 0
-    wait_for(lambda: not any(p.is_running() and p.status() != psutil.STATUS_ZOMBIE for p in processes))
+    wait_for(lambda: not any(living(p.pid) for p in processes))

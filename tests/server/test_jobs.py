@@ -8,6 +8,7 @@ import signal
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,6 +16,7 @@ from typing import Any
 
 import httpx
 import jsonschema
+import psutil
 import pytest
 
 from hookean_server.jobs import rows, tables
@@ -24,7 +26,7 @@ from hookean_server.lifecycle.ending import Activity
 from hookean_server.settings import Settings
 from hookean_server.store import Store
 from hookean_server.workers.pool import Pool
-from serving import CABLE, HANG, wait_for
+from serving import CABLE, HANG, living, wait_for
 
 from .conftest import PATIENT, Served, problem
 from .jobbing import COUNT, ENDLESS, LONG, end_all, ended, events, job_workers, parsed, post, states, sweep, table
@@ -132,7 +134,7 @@ def test_cancelled_while_its_worker_hangs(runner: Served, jobs: httpx.Client) ->
     stream = events(jobs, address)
     assert [name for _, name, _ in stream].count("cancelled") == 1 and stream[-1][1] == "cancelled"
     for worker in before:
-        if worker.is_running():
+        with suppress(psutil.NoSuchProcess):
             worker.resume()
     assert ended(jobs, post(jobs, {"scene": CABLE}))["status"] == "done"
     assert {p.pid for p in job_workers(runner)} != {p.pid for p in before}
@@ -241,7 +243,7 @@ def test_the_server_ends_with_streams_open_and_jobs_running() -> None:
     code, said = served.end()
     listener.join(HANG)
     assert (code, said) == (0, "")
-    wait_for(lambda: not any(p.is_running() and p.status() != "zombie" for p in family))
+    wait_for(lambda: not any(living(p.pid) for p in family))
 
 
 def test_what_is_not_there(jobs: httpx.Client) -> None:

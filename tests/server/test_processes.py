@@ -21,7 +21,7 @@ import pytest
 
 import forking
 from hookean_server.lifecycle.ports import owner
-from serving import CABLE, HANG, wait_for
+from serving import CABLE, HANG, living, wait_for
 
 from .conftest import PATIENT, Served, asked, computing, endless, problem
 
@@ -117,7 +117,7 @@ def test_a_worker_that_hangs_is_stopped() -> None:
         worker = served.workers()[0]
         worker.suspend()
         problem(served.client.post("/v1/jobs", json={"scene": CABLE}), 504, "out-of-time")
-        assert not alive(worker)
+        assert not living(worker.pid)
         assert served.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
     finally:
         served.end()
@@ -131,7 +131,7 @@ def test_a_suspended_worker_whose_client_leaves_is_killed(strict: Served) -> Non
     with asked(strict, endless()):
         busy(strict)
     wait_for(lambda: strict.health()["workers"]["restarts"] > before)
-    assert not alive(worker)
+    assert not living(worker.pid)
     assert strict.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
 
 
@@ -248,22 +248,15 @@ def test_a_clean_end(what: str, number: int) -> None:
         sock.close()
     assert code == 0, (code, said)
     assert "Traceback" not in said and "rror" not in said, said
-    wait_for(lambda: not any(alive(p) for p in family))
+    wait_for(lambda: not any(living(p.pid) for p in family))
     if running is not None:
         problem(running.result(timeout=HANG), 503, "shutting-down")
-
-
-def alive(process: psutil.Process) -> bool:
-    try:
-        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
-        return False
 
 
 def ended(process: psutil.Process) -> bool:
     """Whether a process has ended with all of its threads, which share its pipes."""
     try:
-        return not alive(process) and process.num_threads() <= 1
+        return not living(process.pid) and process.num_threads() <= 1
     except psutil.NoSuchProcess:
         return True
 
@@ -289,7 +282,7 @@ def test_no_worker_outlives_a_server_that_is_killed() -> None:
     family = served.family()
     assert family
     served.end(signal.SIGKILL)
-    wait_for(lambda: not any(alive(p) for p in family))
+    wait_for(lambda: not any(living(p.pid) for p in family))
     with pytest.raises(httpx.HTTPError):
         running.result(timeout=HANG)
 
@@ -314,7 +307,7 @@ def test_ctrl_c_soon_after_the_start(seconds: float) -> None:
     os.killpg(process.pid, signal.SIGINT)
     _, said = process.communicate(timeout=HANG)
     assert process.returncode == 0 and said == ""
-    wait_for(lambda: not any(alive(p) for p in family))
+    wait_for(lambda: not any(living(p.pid) for p in family))
 
 
 def test_it_says_where_it_is_and_what_to_try(served: Served) -> None:
