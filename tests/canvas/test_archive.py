@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import struct
 import uuid
 from decimal import Decimal
@@ -18,8 +17,9 @@ from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.archive.binary import inflate, of_plain, to_plain
+from soak import SOAK
 
-CASES = 1000 if os.environ.get("HOOKEAN_SOAK") == "1" else 100
+CASES = 1000 if SOAK else 100
 ID = uuid.UUID("00112233-4455-6677-8899-aabbccddeeff")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import struct
 import tracemalloc
 import zlib
@@ -17,8 +16,9 @@ from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.archive.binary import deflate, of_plain, to_plain
 from hookean_canvas.archive.chunk import DEEPEST
+from soak import SOAK
 
-CASES = 3000 if os.environ.get("HOOKEAN_SOAK") == "1" else 300
+CASES = 3000 if SOAK else 300
 
 
 def sample() -> Chunk:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import os
 import uuid
 from collections.abc import Callable
 from pathlib import Path
@@ -15,8 +14,8 @@ from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Item, Type, guids
 from hookean_canvas.archive.parts import Code
 from hookean_canvas.inspect import lint, lint_code, lint_refused
+from soak import SOAK
 
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 EVERY = 1 if SOAK else 8
 """User objects are compiled by a Python 2.7 one by one: each of them in the long run, some in the short."""
 

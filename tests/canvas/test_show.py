@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import math
-import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -25,8 +24,7 @@ from hookean_canvas.archive.chunk import DEEPEST
 from hookean_canvas.inspect import lint, lint_code
 from hookean_canvas.inspect.describe import describe
 from hookean_canvas.inspect.show import lines, text
-
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
+from soak import SOAK
 
 
 def drawn() -> Chunk:

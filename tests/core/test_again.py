@@ -7,7 +7,6 @@ Dirichlet: stable means a strict minimum of the potential energy).
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
@@ -17,10 +16,11 @@ from hookean import Scene
 from hookean.running.run import relax_state
 from hookean.solvers import solver
 from hookean.system.system import compile
+from soak import SOAK
 
 from ..laws.scenes import FAMILIES, random_scene
 
-SEEDS = range(500 if os.environ.get("HOOKEAN_SOAK") == "1" else 40)
+SEEDS = range(500 if SOAK else 40)
 Spec = dict[str, Any]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
@@ -19,9 +18,9 @@ from hookean.solvers import _complementary
 from hookean.stability.time_steps import _scaled_stiffness
 from hookean.system.balance import balance
 from hookean.system.system import compile
+from soak import SOAK
 
 Spec = dict[str, Any]
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 
 
 def cable(segments: int, start: str = "arch", **more: Any) -> Spec:

@@ -18,10 +18,10 @@ from hookean.linear import sparse_factors as factor
 from hookean.linear.sparse_factors import Factors
 from hookean.solvers.newton import Pattern
 from hookean.system.system import compile
+from soak import SOAK
 
 from ..laws.scenes import random_scene
 
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 LIBRARIES = ("rslab", "splu")
 
 

@@ -22,8 +22,8 @@ from hookean.linear.laplacian import Laplacian, laplacian
 from hookean.solvers import force_density, solver
 from hookean.solvers.auto import SOLVES
 from hookean.system.system import System, compile
+from soak import SOAK
 
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 SEEDED = settings(max_examples=300 if SOAK else 30, derandomize=True, deadline=None)
 EPS = float(np.finfo(float).eps)
 WAYS = ("front", "levels", "smoothed", "last resort")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import numpy as np
@@ -12,9 +11,10 @@ from hookean import Result, Scene, relax
 from hookean.discretize import clothed_vertices, diagonals, edges, grid, naked_vertices
 from hookean.stability.time_steps import _scaled_stiffness
 from hookean.system.system import compile
+from soak import SOAK
 
 Spec = dict[str, Any]
-SEEDS = range(20 if os.environ.get("HOOKEAN_SOAK") == "1" else 2)
+SEEDS = range(20 if SOAK else 2)
 
 
 def net(kind: str, seed: int) -> Spec:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -16,12 +14,12 @@ from hookean.forces import SoapFilm
 from hookean.forces.soapfilm import shapes
 from hookean.running.result import Result, Status
 from hookean.system.system import compile
+from soak import SOAK
 
 from .film_meshes import Heights, area, disc, film, inside, patch, scene, slopes, square, thinnest, tube
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)
 EPS = float(np.finfo(float).eps)
-SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
 
 
 @pytest.mark.parametrize("axes", [(0, 1), (1, 2), (2, 0)])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,7 @@ from hookean.running.result import Status
 from hookean.solvers import solver
 from hookean.stability.time_steps import highest_mode, stable_time_step
 from hookean.system.system import System, compile
-
-LONG = os.environ.get("HOOKEAN_SOAK") == "1"
+from soak import SOAK
 
 
 def mass_on_spring(dt: float, method: str = "verlet", **more: Any) -> System:
@@ -143,7 +141,7 @@ def test_undamped_energy_is_bounded_without_drift(method: str) -> None:
         _, _, energies = system.evaluate(state)
         kinetic.append(0.5 * float((system.mass[:, None] * state.v**2).sum()))
         total.append(float(energies.sum()) + kinetic[-1])
-        solver(method).advance(system, state, (100_000 if LONG else 10_000) // samples, 0.0)
+        solver(method).advance(system, state, (100_000 if SOAK else 10_000) // samples, 0.0)
     swing = np.array(total) - total[0]
     most = max(kinetic)
     assert most > 10.0
