@@ -131,6 +131,7 @@ def test_an_item_that_does_not_fit_fails_alone(jobs: httpx.Client) -> None:
     assert [row["status"] for row in table(jobs, address)] == ["converged", "failed", "converged"]
 
 
+@pytest.mark.soak
 def test_a_cancelled_sweep_frees_the_cluster(dask: Dask, jobs: httpx.Client) -> None:
     settings = {"solver": "verlet", "drag": 0, "max_iterations": 10**9, "time_limit": 3600}
     endless: dict[str, Any] = {"scene": {**NET, "settings": settings}, "sweep": {"settings": {"tolerance": [0.0] * 9}}}
@@ -143,6 +144,7 @@ def test_a_cancelled_sweep_frees_the_cluster(dask: Dask, jobs: httpx.Client) -> 
     assert ended(jobs, post(jobs, sweep(2, 2)))["status"] == "done"
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="a process cannot be stopped here")
 def test_a_worker_that_hangs_is_started_anew() -> None:
     dask = Dask()

@@ -188,6 +188,7 @@ def seen_so_far(client: httpx.Client, address: str) -> list[tuple[int, str, Any]
     return parsed(text[: text.rindex("\n\n") + 2])
 
 
+@pytest.mark.soak
 def test_kill_9_of_the_server_goes_on_from_the_checkpoint(tmp_path: Path) -> None:
     state = str(tmp_path / "state.db")
     first = Served(state=state)

@@ -57,6 +57,7 @@ def test_the_rhino_file_has_the_shape_that_is_seen(membrane: Studio):
     assert model.Settings.ModelUnitSystem == rhino3dm.UnitSystem.Meters
 
 
+@pytest.mark.soak
 def test_the_obj_has_the_shape_that_is_seen(membrane: Studio):
     lines = [line.split() for line in taken(membrane, "OBJ", ".obj").read_text().splitlines()]
     found = np.array([line[1:4] for line in lines if line and line[0] == "v"], float)
@@ -65,6 +66,7 @@ def test_the_obj_has_the_shape_that_is_seen(membrane: Studio):
     assert faces and max(map(max, faces)) <= len(found)
 
 
+@pytest.mark.soak
 def test_the_compas_document_has_the_shape_that_is_seen(membrane: Studio):
     """Read by COMPAS: its Mesh."""
     mesh = compas.json_load(str(taken(membrane, "COMPAS JSON", ".json")))

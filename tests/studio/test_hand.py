@@ -60,6 +60,7 @@ WATCHED = """() => {
 }"""
 
 
+@pytest.mark.soak
 def test_what_is_drawn_can_be_taken_at_any_moment(cable: Studio):
     """While anchors and loads are read anew after an edit too: a press on nothing would turn the view instead."""
     key = cable.key

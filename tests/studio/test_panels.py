@@ -36,7 +36,7 @@ def cable(tab: Studio, request: pytest.FixtureRequest) -> Studio:
     ("slider", "force", "field", "along"),
     [
         ("Size of load", 1, "vector", 0.8),
-        ("cable stiffness", 0, "stiffness", 0.6),  # over decades
+        pytest.param("cable stiffness", 0, "stiffness", 0.6, marks=pytest.mark.soak),  # over decades
         pytest.param("cable rest factor", 0, "rest_factor", 0.8, marks=pytest.mark.soak),
         pytest.param("cable damping", 0, "damping", 0.8, marks=pytest.mark.soak),
     ],
@@ -128,6 +128,7 @@ def test_a_free_particle_is_pulled_and_springs_back(cable: Studio):
     cable.rests_at(truth)
 
 
+@pytest.mark.soak
 def test_a_locked_axis_keeps_the_others(cable: Studio):
     """With the lock on z an anchor goes up and down alone, wherever the mouse goes."""
     page, service, key = cable.page, cable.service, cable.key

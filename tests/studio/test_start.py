@@ -147,6 +147,7 @@ def test_a_model_of_a_figure_is_dropped_and_becomes_a_session(studio: Studio):
     assert len(studio.particles()) == len(studio.service.particles(studio.key))
 
 
+@pytest.mark.soak
 def test_an_obj_and_a_scene_are_opened_from_a_file(studio: Studio, tmp_path: Path):
     square = tmp_path / "square.obj"
     square.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
