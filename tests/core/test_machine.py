@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import gc
 import os
 import shutil
@@ -170,6 +171,20 @@ def test_code_is_not_waited_for_without_end(tmp_path: Path, monkeypatch: pytest.
         second = code(tmp_path)
         assert second(np.ones((2, 2)), 1.0, 2, False) == (4.0, 4, True)
     assert second.made == 1 and file.is_file()
+
+
+def test_a_file_system_without_locks_holds_nothing_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`flock` fails on some network drives; the code is compiled and stored without it."""
+    fcntl = pytest.importorskip("fcntl", reason="there are no file locks here")
+
+    def fails(*given: object) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(fcntl, "flock", fails)
+    monkeypatch.setattr(machine.time, "sleep", lambda seconds: pytest.fail("it waited"))
+    run = code(tmp_path)
+    assert run(np.ones((2, 2)), 1.0, 2, False) == (4.0, 4, True)
+    assert run.made == 1 and [file.suffix for file in tmp_path.iterdir()] == [".o"]
 
 
 DAMAGES = {

@@ -204,14 +204,16 @@ def _alone(path: Path) -> Iterator[None]:
             yield
             return
         stack.callback(Path(file.name).unlink, missing_ok=True)
-        stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # processes that were forked meanwhile have it open too
         until = time.monotonic() + PATIENCE
         while time.monotonic() < until and not path.exists():
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # who was forked meanwhile has it open too
                 break
-            except OSError:
+            except BlockingIOError:
                 time.sleep(0.02)
+            except OSError:  # a file system without locks
+                break
         yield
 
 
