@@ -326,7 +326,9 @@ def _put_aside(path: Path) -> Path:
         shutil.copyfile(manifest.place(path), manifest.place(copy / path.name))
     _shm(path).unlink(missing_ok=True)
     for file in (_wal(path), path):
-        if file.exists():
+        if (copy / file.name).exists():  # the log is there, and a look at the database has made an empty one
+            file.unlink(missing_ok=True)
+        elif file.exists():
             os.replace(file, copy / file.name)
     return copy
 
