@@ -27,7 +27,7 @@ quick: .venv/test # laws, core, files: what an edit of the engine breaks
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow" tests/laws tests/core tests/discretize tests/files
 
 soak: .venv/test
-	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile --cov --cov-report term
 	$(MAKE) mutants
 
 mutants: .venv/mutants # of all modules, or of some: make mutants MODULES="values/units.py forces/springs.py"
