@@ -36,8 +36,8 @@ def counted(place, name):
             os.kill(os.getpid(), signal.SIGKILL)
         return real(*given, **named)
     setattr(place, name, call)
-for place, name in ((os, "replace"), (os, "open"), (os, "fsync"), (opening.shutil, "copyfile"), (opening, "_writable"),
-                    (opening.Path, "write_text"), (opening.Path, "unlink"), (opening.Path, "mkdir")):
+for place, name in ((os, "replace"), (os, "open"), (os, "fsync"), (opening, "_write"), (opening, "_writable"),
+                    (opening.Path, "open"), (opening.Path, "unlink"), (opening.Path, "mkdir")):
     counted(place, name)
 opened = opening.open_store(opening.Path(sys.argv[1]))
 opened.db.close()

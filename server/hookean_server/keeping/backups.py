@@ -9,8 +9,7 @@ import threading
 from contextlib import closing, suppress
 from pathlib import Path
 
-from hookean_server.keeping import database
-from hookean_server.keeping.opening import BACKUP
+from hookean_server.keeping.opening import BACKUP, reading
 
 COUNT = 3
 log = logging.getLogger("hookean.store")
@@ -53,7 +52,7 @@ def write(path: Path, target: Path) -> None:
     target.unlink(missing_ok=True)
     os.close(os.open(target, os.O_CREAT | os.O_RDWR, 0o600))
     try:
-        with closing(sqlite3.connect(path)) as source, closing(sqlite3.connect(target)) as copy:
+        with closing(reading(path)) as source, closing(sqlite3.connect(target)) as copy:
             source.execute("PRAGMA busy_timeout = 2000")
             source.backup(copy, pages=-1)  # in one go: in steps it would begin again at each write
             copy.execute("PRAGMA journal_mode = DELETE")
@@ -66,6 +65,6 @@ def write(path: Path, target: Path) -> None:
 
 def commit(path: Path) -> str:
     """The number of the last write in a store or a backup; "" where it cannot be read."""
-    with suppress(sqlite3.Error), closing(database.connect(path)) as db:
+    with suppress(sqlite3.Error), closing(reading(path)) as db:
         return f"{db.marked('store')} {db.marked('commit')}"
     return ""

@@ -84,7 +84,9 @@ def salvage(path: Path, target: Path | None = None) -> int:
         opened.db.close()
         if opened.manifest is not None:
             opened.manifest.close()
-    return check(path)
+    if opened.note:  # the manifest is written again, so this is seen once
+        print(opened.note)
+    return max(check(path), int(bool(opened.note)))
 
 
 def backup(path: Path, target: Path | None = None) -> int:
@@ -111,8 +113,10 @@ def compact(path: Path, target: Path | None = None) -> int:
             db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
         if opened.manifest is not None:
             opened.manifest.close()
+    if opened.note:
+        print(opened.note)
     print(f"The size of {path} is {path.stat().st_size / 1e6:.1f} MB; it was {before / 1e6:.1f} MB.")
-    return 0
+    return int(bool(opened.note))
 
 
 @contextmanager

@@ -199,9 +199,12 @@ class Manifest:
         self.commit += 1
         apply(self.owners, changes)
         assert self._file is not None
+        self._size, line = os.fstat(self._file.fileno()).st_size, _line({"done": self.commit})
         with suppress(OSError):  # without it the write counts as well: the store has it
-            self._file.write(_line({"done": self.commit}))
-        self._size = os.fstat(self._file.fileno()).st_size
+            if self._file.write(line) == len(line):
+                self._size += len(line)
+            else:  # the next line would go on in this one
+                self.undo()
 
     @property
     def grown(self) -> bool:

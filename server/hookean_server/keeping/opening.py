@@ -6,13 +6,13 @@ Damage never deletes anything: the files as they were found go into a dated fold
 
 from __future__ import annotations
 
+import itertools
 import json
 import logging
 import mmap
 import os
 import re
 import secrets
-import shutil
 import sqlite3
 import time
 from collections.abc import Iterator
@@ -32,6 +32,8 @@ log = logging.getLogger("hookean.store")
 CUT = "The manifest of the store was damaged, so it is unknown whether the last writes are missing from the store."
 DAMAGED, BACKUP, NEW = ".damaged-", ".backup-", ".salvage"
 REPORT = "report.json"
+MARRED = 4
+"""Characters of the id of a store that damage may have changed: those of two stores differ in 15 of 16."""
 
 
 class Refused(OSError):
@@ -92,11 +94,12 @@ def open_store(path: Path | None) -> Opened:
 def _opened(path: Path) -> Opened:
     said = manifest.read(manifest.place(path))
     refuse_other(path, said)
+    _roll_back(path)
     unfinished = _unfinished(path)
     if not (unfinished or said is not None or path.exists() or _wal(path).exists() or _backups(path)):
         _create(path)
         return _writable(path)
-    if unfinished and (report := _built(path)) is not None and unfinished[-1].name <= report.copy:
+    if unfinished and (report := _built(path)) is not None and report.copy in [f.name for f in unfinished]:
         return _finished(path, report)
     try:
         if unfinished:
@@ -142,9 +145,17 @@ def _create(path: Path) -> None:
     """A new file, whole or not at all: one that is there and empty has been damaged."""
     new = path.with_name(path.name + NEW)
     _empty(new, secrets.token_hex(8)).close()
-    for old in (_wal(path), _shm(path)):
+    for old in (_journal(path), _wal(path), _shm(path)):
         old.unlink(missing_ok=True)
     os.replace(new, path)
+
+
+def _roll_back(path: Path) -> None:
+    """Undo what was interrupted before the file had a write-ahead log: a look that changes nothing is refused until
+    then."""
+    if _there(_journal(path)) and _there(path) and not _there(_wal(path)):
+        with suppress(sqlite3.Error), closing(database.connect(path)) as db:
+            db.execute("PRAGMA user_version").fetchone()
 
 
 def _writable(path: Path, note: str = "") -> Opened:
@@ -184,12 +195,17 @@ def inspect(path: Path, said: Read | None) -> str:
     seen. Nothing is written. Raises Broken."""
     if not _there(path):
         raise Broken("the database is missing" if not path.exists() else "the database is empty")
-    db = _reading(path)
+    with path.open("rb") as file:
+        if (form := file.read(19)[18:]) > b"\2":
+            raise Broken(f"its header says write version {form[0]}, which nothing can be written to")
+    db = reading(path)
     try:
         db.execute("BEGIN")
         _structure(db)
         return _complete(db, said)
     except sqlite3.OperationalError as error:
+        if "readonly" in str(error) and _there(_journal(path)):
+            raise Broken("a transaction that was interrupted cannot be undone") from None
         if any(words in str(error) for words in ("unable to open", "locked", "readonly", "read-only", "I/O")):
             raise
         raise Broken(str(error)) from None
@@ -199,8 +215,11 @@ def inspect(path: Path, said: Read | None) -> str:
         db.close()
 
 
-def _reading(path: Path) -> Database:
-    """A connection that changes nothing."""
+def reading(path: Path) -> Database:
+    """A connection that changes nothing. Raises sqlite3.Error, also where the file is empty: SQLite would delete its
+    log."""
+    if not _there(path):
+        raise sqlite3.OperationalError(f"{path} is missing or empty")
     name = f"file:{path.resolve().as_posix().replace('?', '%3f').replace('#', '%23')}?mode=ro"
     db = sqlite3.connect(name, uri=True, isolation_level=None, factory=Database)
     db.text_factory = lambda text: text.decode("utf-8", "replace")
@@ -227,7 +246,7 @@ def _structure(db: Database) -> None:
 def _complete(db: Database, said: Read | None) -> str:
     """All that the manifest names is there, and nothing else."""
     owners, _ = database.owners(db)
-    commit = int(db.marked("commit") or -1)
+    commit, _ = int(db.marked("commit") or -1), int(db.marked("seq") or 0)
     if said is None or not said.store:
         return "The manifest of the store was missing, so it is unknown whether anything is missing from the store."
     if said.store != db.marked("store"):
@@ -275,15 +294,21 @@ def _finished(path: Path, report: Report) -> Opened:
     """The new file is in its place; the rest may be done again, where it is interrupted."""
     manifest.place(path).unlink(missing_ok=True)
     opened = _writable(path)
-    for folder in _unfinished(path):
-        (folder / REPORT).write_text(json.dumps(asdict(report), indent=1), encoding="utf-8")
+    try:
+        for folder in sorted(_unfinished(path), key=lambda found: found.name == report.copy):  # that of the report last
+            _write(folder / REPORT, json.dumps(asdict(report), indent=1).encode())
+    except OSError:
+        opened.db.close()
+        if opened.manifest is not None:
+            opened.manifest.close()
+        raise
     _log(report)
     return opened
 
 
 def _built(path: Path) -> Report | None:
     """The report of the repair that made a file; None where none did, or it cannot be read."""
-    with suppress(sqlite3.Error, ValueError, TypeError, KeyError), closing(_reading(path)) as db:
+    with suppress(sqlite3.Error, ValueError, TypeError, KeyError), closing(reading(path)) as db:
         return _report(json.loads(db.marked("repair")))
     return None
 
@@ -314,7 +339,7 @@ def _belongs(file: Path, store: str) -> bool:
         return True
     with file.open("rb") as opened, mmap.mmap(opened.fileno(), 0, access=mmap.ACCESS_READ) as data:
         found = set(re.findall(rb"store([0-9a-f]{16})", data))
-    return not found or store.encode() in found
+    return not found or any(sum(map(int.__ne__, one, store.encode())) <= MARRED for one in found)
 
 
 def _put_aside(path: Path) -> Path:
@@ -323,9 +348,9 @@ def _put_aside(path: Path) -> Path:
     copy = begun[-1] if begun else _dated(path)
     copy.mkdir(mode=0o700, exist_ok=True)
     if manifest.place(path).exists() and not manifest.place(copy / path.name).exists():
-        shutil.copyfile(manifest.place(path), manifest.place(copy / path.name))
+        _write(manifest.place(copy / path.name), manifest.place(path).read_bytes())
     _shm(path).unlink(missing_ok=True)
-    for file in (_wal(path), path):
+    for file in (_journal(path), _wal(path), path):
         if (copy / file.name).exists():  # the log is there, and a look at the database has made an empty one
             file.unlink(missing_ok=True)
         elif file.exists():
@@ -374,7 +399,9 @@ def reports(path: Path | None) -> list[Report]:
 
 def _dated(path: Path) -> Path:
     """A new folder for damaged files; later ones have later names, also within a second."""
-    return path.with_name(f"{path.name}{DAMAGED}{time.strftime('%Y%m%d-%H%M%S')}-{len(_copies(path)):03}")
+    name = f"{path.name}{DAMAGED}{time.strftime('%Y%m%d-%H%M%S')}"
+    numbered = (path.with_name(f"{name}-{number:03}") for number in itertools.count(len(_copies(path))))
+    return next(folder for folder in numbered if not folder.exists())
 
 
 def _copies(path: Path) -> list[Path]:
@@ -400,6 +427,20 @@ def _sweep(path: Path) -> None:
 
 def _there(path: Path) -> bool:
     return path.exists() and path.stat().st_size > 0
+
+
+def _write(path: Path, data: bytes) -> None:
+    """A file with these bytes, whole or not at all. Raises OSError."""
+    new = path.with_name(path.name + ".new")
+    with new.open("wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(new, path)
+
+
+def _journal(path: Path) -> Path:
+    return path.with_name(path.name + "-journal")
 
 
 def _wal(path: Path) -> Path:
