@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import mmap
-import os
 import shutil
 import struct
 import subprocess
@@ -58,5 +57,5 @@ class Disk:
 
     @property
     def names(self) -> set[str]:
-        """What is on the disk, but for sockets of the interpreter's own."""
-        return {entry.name for entry in os.scandir(self.path) if not entry.name.startswith("pymp-")}
+        """What is on the disk, but for the folder of the sockets of the server's processes."""
+        return {entry.name for entry in self.path.iterdir() if not any(entry.glob("listener-*"))}

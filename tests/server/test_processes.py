@@ -8,11 +8,13 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -285,6 +287,32 @@ def test_no_worker_outlives_a_server_that_is_killed() -> None:
     wait_for(lambda: not any(living(p.pid) for p in family))
     with pytest.raises(httpx.HTTPError):
         running.result(timeout=HANG)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes of POSIX")
+def test_what_a_killed_server_leaves_is_taken_away_at_the_next_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of its temporary files too; a server that ends by itself leaves nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        monkeypatch.setenv("TMPDIR", folder)
+        first = Served(workers=1).ready()
+        family = first.family()
+        first.end(signal.SIGKILL)
+        wait_for(lambda: not any(living(p.pid) for p in family))
+        killed = set(os.listdir(folder))
+        assert killed and all(name.startswith("hookean-") for name in killed)
+        second = Served(workers=1).ready()
+        assert not killed & set(os.listdir(folder))
+        second.end()
+        assert not os.listdir(folder)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes of POSIX")
+def test_a_server_starts_with_a_deep_temporary_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The path of a socket has at most 103 bytes."""
+    (tmp_path / ("deep" * 30)).mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / ("deep" * 30)))
+    served = Served(workers=1).ready()
+    assert served.end() == (0, "")
 
 
 def test_ctrl_c_reaches_the_whole_group() -> None:

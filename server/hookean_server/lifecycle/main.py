@@ -84,8 +84,10 @@ def _start_fork_server() -> None:
     """Start the process that workers are forked from. It ignores Ctrl-C, which goes to the whole group."""
     if not FORKED:
         return
-    from multiprocessing import forkserver, resource_tracker
+    from multiprocessing import current_process, forkserver, resource_tracker
 
+    # its sockets; in a folder of the interpreter's they would stay behind a process that is killed
+    current_process()._config["tempdir"] = leftovers.folder_of_sockets()  # type: ignore[attr-defined]
     context()
     resource_tracker.ensure_running()  # it unblocks the signal after its own start
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
