@@ -48,6 +48,7 @@ class Block:
     memory: Floats
     names: tuple[str, ...] = ()
     plan: list[Any] = field(default_factory=list)  # what `Force.pack` keeps for the next time
+    rooms: tuple[Any, ...] = ()  # arrays whose addresses stand in `parameters`, to live as long
 
     @classmethod
     def of(cls, indices: Any, *, memory: int = 0, **columns: Any) -> Block:
@@ -62,6 +63,10 @@ class Block:
             table[:, at : at + rows.shape[1]] = rows
             at += rows.shape[1]
         return cls(index, table, np.zeros((len(index), memory)), names)
+
+    def some(self, rows: Ints | slice) -> Block:
+        """Some elements as a block of their own; of a slice its arrays are views."""
+        return Block(self.indices[rows], self.parameters[rows], self.memory[rows], self.names, rooms=self.rooms)
 
 
 class Places(Protocol):
@@ -183,7 +188,7 @@ class Force(Model):
     @classmethod
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
         """Elements of a block (sorted rows) as a block of their own, with those that they feel; and the rows of all."""
-        return rows, Block(block.indices[rows], block.parameters[rows], block.memory[rows], block.names)
+        return rows, block.some(rows)
 
     @classmethod
     def brace(cls, block: Block, held: NDArray[np.bool_]) -> None:

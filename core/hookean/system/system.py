@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,8 +61,7 @@ class Group:
 
     def of(self, part: Part) -> Block:
         """The part's own rows, as views."""
-        b = self.block
-        return Block(b.indices[part.rows], b.parameters[part.rows], b.memory[part.rows], b.names)
+        return self.block.some(part.rows)
 
 
 @dataclass
@@ -309,7 +308,7 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
         inputs = np.arange(len(block.indices))
         if block.indices.min(initial=0) < 0:
             inputs = np.flatnonzero((block.indices >= 0).all(axis=1))
-            block = Block(block.indices[inputs], block.parameters[inputs], block.memory[inputs], block.names)
+            block = block.some(inputs)
         joined.setdefault(type(force), []).append((number, force, block, inputs))
     groups: list[Group] = []
     contacts: list[Group] = []
@@ -321,11 +320,11 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
             start += len(block.indices)
         blocks = [block for _, _, block, _ in members]
         indices = np.ascontiguousarray(np.concatenate([b.indices for b in blocks]))  # may be the scene's own
-        if len(blocks) == 1:
-            whole = Block(indices, blocks[0].parameters, blocks[0].memory, blocks[0].names)
-        else:
-            parameters = np.concatenate([b.parameters for b in blocks])
-            whole = Block(indices, parameters, np.concatenate([b.memory for b in blocks]), blocks[0].names)
+        whole = replace(blocks[0], indices=indices, plan=[])
+        if len(blocks) > 1:
+            whole.parameters = np.concatenate([b.parameters for b in blocks])
+            whole.memory = np.concatenate([b.memory for b in blocks])
+            whole.rooms = tuple(room for b in blocks for room in b.rooms)
         (groups if cls.kernel is not None else contacts).append(Group(cls, whole, parts))
     return groups, contacts
 
