@@ -13,7 +13,7 @@ TABLE: dict[str, Any] = tomllib.loads(Path(__file__).with_name("table.toml").rea
 
 def modules() -> dict[str, dict[str, Any]]:
     """How many mutants of each module are sampled, and the arguments of pytest that run its tests. A force that is not
-    listed has the laws of its kind and the test file of its name; a file that forces share has those of these forces."""
+    listed has the laws of its kind and the test file of its name; a file that forces share has those of the forces."""
     return {**{f"forces/{path.name}": _usual(path.stem) for path in sorted(FORCES.glob("*.py"))}, **TABLE["modules"]}
 
 

@@ -99,6 +99,7 @@ class Force(Model):
     formula: ClassVar[str] = ""
     role: ClassVar[Literal["internal", "load", "support"]] = "internal"  # internal: forces and moments sum to zero
     conservative: ClassVar[bool] = True  # force = -gradient of the energy the kernel returns
+    oriented: ClassVar[bool] = False  # internal, but of a direction fixed in space: a turned shape has other forces
     constant: ClassVar[bool] = False  # the force is the same wherever the particles are
     # the column that bounds an element's stiffness in every shape (K <= k times the identity, of two particles k times
     # that of a spring); "" where stiffness has no such bound
