@@ -63,9 +63,9 @@ def length_ratio_hessian(x, indices, parameters, memory, blocks):  # type: ignor
 
 
 class LengthRatio(Force):
-    """Pairs of lines A, B of which B is r times as long as A: E = k (l_B - r l_A)^2 / 2.
+    """Pairs of lines A, B of which B is r times as long as A: E = k (b - r a)^2 / 2, a and b their lengths.
 
-    The tension k (l_B - r l_A) acts in B, and -r times that in A: where B is too long, it shortens and A lengthens. The
+    The tension k (b - r a) acts in B, and -r times that in A: where B is too long, it shortens and A lengthens. The
     lines need not meet; forces and moments of each pair sum to zero. A line of zero length has no direction and no
     force.
     """

@@ -15,10 +15,10 @@ from hookean.values.fields import Field, Maybe
 
 
 class Mirror(Force):
-    """Pairs of particles p1, p2 that are pulled to each other's mirror image in a plane: E = k |p2 - M p1|^2 / 2.
+    """Pairs of particles a, b that are pulled to each other's mirror image in a plane: E = k |b - M a|^2 / 2.
 
     M p = p - 2 n (n . (p - o)) is the image in the plane through o normal to n, which is fixed in space. As M is its
-    own inverse, both particles have forces of the same size: the force on p1 is the image of that on p2.
+    own inverse, both particles have forces of the same size: the force on a is the image of that on b.
     """
 
     kind: Literal["mirror"] = "mirror"

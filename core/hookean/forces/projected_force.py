@@ -56,9 +56,9 @@ def projected_force_hessian(x, indices, parameters, memory, blocks):  # type: ig
 
 
 class ProjectedForce(Force):
-    """Tensions between pairs of particles whose component along a vector stays the same: F = H / cos(phi).
+    """Tensions between pairs of particles whose component along a vector stays the same: F = H d / |d . v|.
 
-    phi is the angle between the line and the vector, and H the component. With a horizontal vector, this is a funicular
+    d is the vector from one to the other, v of length 1 along the given vector, and H the component. With a horizontal vector, this is a funicular
     of prescribed horizontal thrust: under loads P its slopes change by P / H at each particle, as in graphic statics.
     Hold the particles along the vector (anchors with `axes`), as the component there does not depend on where they
     are. The force has no energy: the tangent is not symmetric, and Newton steps use its symmetric part. A line at a
@@ -73,7 +73,7 @@ class ProjectedForce(Force):
         default=np.array([1.0, 0.0, 0.0]), description="The vector; its length and sign are ignored"
     )
 
-    formula: ClassVar[str] = "F = H/(cos φ)"
+    formula: ClassVar[str] = "F = H d/(d·v)"
     conservative: ClassVar[bool] = False
     oriented: ClassVar[bool] = True
     creates: ClassVar[bool] = False

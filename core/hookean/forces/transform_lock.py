@@ -66,10 +66,10 @@ def distance_and_force(block: Block, element_forces: Floats) -> dict[str, Floats
 
 
 class TransformLock(Force):
-    """Pairs of particles p1, p2 of which p2 is pulled to the image of p1, and p1 so that its image meets p2.
+    """Pairs of particles a, b of which b is pulled to the image of a, and a so that its image meets b.
 
-    Energy k |p2 - T p1|^2 / 2, T an affine transformation: T p = A p + t, given as a matrix of 3 or 4 rows and 4
-    columns [A t]. The force on p1 is k A^T (p2 - T p1): for a motion or a mirror image that is as large as on p2, with
+    Energy k |b - T a|^2 / 2, T an affine transformation: T p = A p + t, given as a matrix of 3 or 4 rows and 4
+    columns [A t]. The force on a is k A^T (b - T a): for a motion or a mirror image that is as large as on b, with
     a scale s it is s times that. K2's Transform has half of its strength as k, and is the same for motions.
     """
 

@@ -13,7 +13,7 @@ from hookean.values.fields import Field, Maybe
 
 
 class TranslationLock(Force):
-    """Pairs of particles p1, p2 that keep the vector t between them: E = k |p2 - p1 - t|^2 / 2.
+    """Pairs of particles a, b that keep the vector t between them: E = k |b - a - t|^2 / 2.
 
     By default t is the vector of the start. The pair may move, and may not turn: forces sum to zero, moments do not.
     Pairs with the same vector keep two edges alike, such as those that meet in a periodic pattern.
