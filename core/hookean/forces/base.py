@@ -182,6 +182,19 @@ class Force(Model):
         return None
 
     @classmethod
+    def no_tangent(cls, block: Block, *, sparse: bool) -> str:
+        """Why elements of a block have no tangent, as a sentence without its full stop; empty where they have one.
+
+        `sparse`: whether `gathered` is given a `node`. Without a tangent, solvers relax and stability is unknown.
+        """
+        return ""
+
+    @classmethod
+    def connected(cls, block: Block) -> Ints:
+        """Particles that belong to the same component of the model, by rows (see `system.components`)."""
+        return block.indices
+
+    @classmethod
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
         """Elements of a block (sorted rows) as a block of their own, with those that they feel; and the rows of all."""
         return rows, Block(block.indices[rows], block.parameters[rows], block.memory[rows], block.names)
