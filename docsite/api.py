@@ -12,14 +12,16 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 import hookean
-from hookean.forces import Force
+from hookean.forces import KINDS, Force
 
 STEPPED = ("step", "play", "patch", "undo", "redo", "relax", "reset", "frame", "result", "edited_scene", "save", "load")
 """Methods of a Simulation that programs call; the others serve the service."""
 
 
 def expand(markdown: str) -> str:
-    """A page with `::: hookean.Name` for each name, with fields and methods below it."""
+    """A page with `::: hookean.Name` for each name, with fields and methods below it; `::: forces` is all kinds."""
+    every = "\n".join(f"::: hookean.{cls.__name__}" for cls in KINDS.values())
+    markdown = re.sub(r"^::: forces$", every, markdown, flags=re.M)
     listed = re.findall(r"^::: hookean\.(\w+)$", markdown, re.M)
     public = set(hookean.__all__) - {"Anchors"}  # Anchor by another name
     if sorted(listed) != sorted(public):

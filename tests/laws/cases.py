@@ -34,6 +34,7 @@ class Case:
     conservative: bool
     damped: bool
     remembers: bool
+    oriented: bool = False
     plain: bool = False
     reordered: Callable[[np.ndarray], Block] | None = None
     """The block of the same elements given in another order, where they feel one another and cannot just be moved."""
@@ -108,7 +109,7 @@ def case_of(name: str, force: Force, x: np.ndarray, held: tuple[int, ...] = ()) 
     return Case(
         name, group.block, system.x, cls.kernel, cls.hessian, cls.end_of_step,
         "support" if held else cls.role, cls.conservative, cls.damped, cls.remembers,
-        reordered=reordered if together else None,
+        cls.oriented, reordered=reordered if together else None,
     )  # fmt: skip
 
 

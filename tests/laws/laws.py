@@ -59,11 +59,14 @@ def something_from_outside(case: Case, rng: np.random.Generator) -> None:
 
 
 def rigid_motion_changes_nothing(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
-    """E(R x + t) = E(x) and f(R x + t) = R f(x), to 1e-10; a rigid velocity field is not damped."""
+    """E(R x + t) = E(x) and f(R x + t) = R f(x), to 1e-10; a rigid velocity field is not damped.
+
+    R = 1 where the force is of a direction fixed in space.
+    """
     memory, x = case.past(rng), case.moved(rng, amount)
     v = rng.normal(size=x.shape)
     rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    rotation *= np.sign(np.linalg.det(rotation))
+    rotation = np.eye(3) if case.oriented else rotation * np.sign(np.linalg.det(rotation))
     turned = np.ascontiguousarray(x @ rotation.T + rng.normal(size=3) * case.spacing)
     f, w, energy = case.force(x, v, memory)
     g, u, same = case.force(turned, np.ascontiguousarray(v @ rotation.T), memory)

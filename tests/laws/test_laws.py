@@ -13,7 +13,7 @@ from hookean.forces import KINDS
 from serving import SOAK
 
 from . import laws
-from .cases import KERNELS, Case, case_of, identity, resting
+from .cases import KERNELS, Case, case_of, identity, replaced, resting
 
 SEEDED = settings(derandomize=True, deadline=None, max_examples=200 if SOAK else 100, database=None)
 FEWER = settings(derandomize=True, deadline=None, max_examples=50 if SOAK else 25, database=None)
@@ -74,6 +74,15 @@ def test_external_forces_have_a_resultant(case: Case, seed: int) -> None:
 def test_rigid_motion_changes_nothing(case: Case, seed: int, amount: float) -> None:
     """Frame indifference of energy, force, stiffness and damping."""
     laws.rigid_motion_changes_nothing(case, np.random.default_rng(seed), amount)
+
+
+def test_oriented_forces_change_when_turned() -> None:
+    """Declared oriented: a rotation changes the force, so the law of rigid motion fails with one."""
+    for case in KERNELS:
+        if case.oriented:
+            assert case.role == "internal"
+            with pytest.raises(AssertionError):
+                laws.rigid_motion_changes_nothing(replaced(case, oriented=False), np.random.default_rng(0))
 
 
 @pytest.mark.parametrize("case", resting(), ids=identity)

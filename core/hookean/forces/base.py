@@ -104,6 +104,7 @@ class Force(Model):
     formula: ClassVar[str] = ""
     role: ClassVar[Literal["internal", "load", "support"]] = "internal"  # internal: forces and moments sum to zero
     conservative: ClassVar[bool] = True  # force = -gradient of the energy the kernel returns
+    oriented: ClassVar[bool] = False  # internal, but of a direction fixed in space: a turned shape has other forces
     constant: ClassVar[bool] = False  # the force is the same wherever the particles are
     # the column that bounds an element's stiffness in every shape (K <= k times the identity, of two particles k times
     # that of a spring); "" where stiffness has no such bound
@@ -184,6 +185,19 @@ class Force(Model):
         that make the tangent sparse and change neither its solutions nor how many of its eigenvalues are negative.
         """
         return None
+
+    @classmethod
+    def no_tangent(cls, block: Block, *, sparse: bool) -> str:
+        """Why elements of a block have no tangent, as a sentence without its full stop; empty where they have one.
+
+        `sparse`: whether `gathered` is given a `node`. Without a tangent, solvers relax and stability is unknown.
+        """
+        return ""
+
+    @classmethod
+    def connected(cls, block: Block) -> Ints:
+        """Particles that belong to the same component of the model, by rows (see `system.components`)."""
+        return block.indices
 
     @classmethod
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:

@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import field_validator
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places, lengths
+from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.line_lengths import length_and_force
 from hookean.values.columns import IndexRows, Lines, Reals, fault
 from hookean.values.fields import Field, Maybe
 
@@ -118,10 +119,7 @@ class PowerLaw(Force):
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance [length] and force [force; attraction +, repulsion -]."""
-        apart = x[block.indices[:, 1]] - x[block.indices[:, 0]]
-        length = lengths(apart)
-        along = (apart * element_forces[:, 0]).sum(axis=1)
-        return {"length": length, "force": along / np.where(length > 0.0, length, 1.0)}
+        return length_and_force(block, x, element_forces)
 
     @classmethod
     def example(cls) -> tuple[PowerLaw, Floats]:

@@ -249,10 +249,10 @@ def pulls(index: Ints, strength: float | Floats, address: float, size: int) -> B
     return Block.of(index, strength=strength, tree=np.tile([address, float(size)], (len(index), 1)))
 
 
-def away(block: Block, element_forces: Floats) -> dict[str, Floats]:
-    """Distance to the target [length] and force [force] of every pull."""
+def away(block: Block, element_forces: Floats, column: int = 0) -> dict[str, Floats]:
+    """Distance to the target [length] and force [force] of every pull, its strength in a column."""
     force = element_forces[:, 0]
-    strength = block.parameters[:, 0]
+    strength = block.parameters[:, column]
     distance = np.linalg.norm(force, axis=1) / np.where(strength > 0, strength, 1.0)
     return {"distance": distance, "force": force}
 

@@ -59,7 +59,7 @@ class Method(Solver):
         films = system.films
         if films is None or not (films.kind != WHOLE).any():
             return "there is no soap film with vertices of its own"
-        return "a film that touches a floor has no tangent" if system.contacts else ""
+        return "a film that touches a floor has no tangent" if system.contacts else system.no_tangent()
 
     def start(self, system: System, state: State) -> None:
         """Start from rest, with spreading."""

@@ -38,6 +38,10 @@ class Method(Solver):
     def __init__(self) -> None:
         self._pattern: Pattern | None = None
 
+    def refuse(self, system: System) -> str:
+        """A sentence where a force has no tangent."""
+        return system.no_tangent()
+
     def start(self, system: System, state: State) -> None:
         """Start from rest with a small shift."""
         self._pattern = None

@@ -138,6 +138,8 @@ def _by_modes(system: System, state: State, found: Balance, method: Solver | Non
     """By the factors of the tangent, or by multigrid where they are large."""
     from hookean.stability.modes import factored, iterated
 
+    if missing := system.no_tangent():
+        return unknown(missing)
     if system.films is not None:  # multigrid has no axes across them
         counts = system.films.frames(state.x, state.free)[1]
         unknowns = int(np.count_nonzero(counts))
@@ -149,6 +151,8 @@ def _by_modes(system: System, state: State, found: Balance, method: Solver | Non
     plain = nets.suits(system)
     if unknowns <= LARGEST_FACTOR and entries <= LARGEST_BLOCKS and not (plain and len(state.x) >= LARGE_NET):
         modes = factored(system, state, found, DENSE)
+    elif missing := system.no_tangent(sparse=False):
+        return unknown(missing)
     else:
         modes = iterated(system, state, found, None if method is None else method.tangent)
     return _concluded(modes, found)

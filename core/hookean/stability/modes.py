@@ -160,9 +160,10 @@ def _completed(elements: list[tuple[Group, Floats]], moved: Floats) -> Floats:
 
 
 def factored(system: System, state: State, found: Balance, dense: int) -> Modes:
-    """Modes by factors: of a dense matrix up to so many unknowns, of a sparse one else."""
+    """Modes by factors: of a dense matrix up to so many unknowns, of a sparse one else, or where groups are large."""
     scaled = Scaled.of(system, state, found)
-    return _dense(scaled) if len(scaled.dofs) <= dense else _sparse(scaled)
+    few = len(scaled.dofs) <= dense and not system.no_tangent(sparse=False)
+    return _dense(scaled) if few else _sparse(scaled)
 
 
 def _dense(scaled: Scaled) -> Modes:

@@ -44,7 +44,7 @@ def components(groups: list[Group], free: Floats, floor: bool) -> Components:
     n = len(free)
     parent, notes, label = np.arange(n), np.zeros(n, np.int64), np.empty(n, np.int64)
     for group in groups:
-        index = group.block.indices
+        index = group.cls.connected(group.block)
         if len(index) and (group.cls.role != "load" or index.shape[1] > 1):
             dispatch.compiled(unite)(index, free, group.cls.role == "support", parent, notes)
     first, flags = np.empty(n, np.int64), np.empty(n, np.int64)

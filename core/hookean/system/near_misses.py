@@ -56,6 +56,8 @@ def near_misses(system: System) -> list[str]:
         for part in (group.parts if group.cls.role == "internal" and group.cls.solid else ())
         if part.rows.stop > part.rows.start
     ]
+    if len(forces) < 2:
+        return []
     forces.sort(key=lambda force: force.part.number)
     owners = _Owners(forces, len(system.x))
     spacing = _spacing(forces, len(system.x))

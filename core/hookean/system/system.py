@@ -214,8 +214,14 @@ class System:
             node = max(node, *(int(block.indices.max(initial=-1)) + 1 for _, block in gathered))
         return found
 
+    def no_tangent(self, *, sparse: bool = True) -> str:
+        """Why the system has no tangent, as a sentence without its full stop; empty where it has one."""
+        found = (group.cls.no_tangent(group.block, sparse=sparse) for group in self.groups)
+        return next((reason for reason in found if reason), "")
+
     def brace(self) -> None:
         """Let forces know which particles the scene's anchors hold on some axis."""
+        self._components = None  # a patch may have changed which elements belong together
         held = np.zeros(len(self.x), dtype=bool)
         for anchor in self.held:
             if anchor.number >= 0 and (anchor.free == 0).any():

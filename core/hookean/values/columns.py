@@ -211,6 +211,17 @@ def _not_whole(value: Any, at: str = "") -> str:
     return at
 
 
+def _labels(value: Any) -> NDArray[np.int64]:
+    array = _decoded(value)
+    if array.size and (array.dtype == object or array.dtype.kind not in "iu"):
+        raise fault("whole numbers are expected", _not_whole(value))
+    if array.ndim != 1:
+        raise fault(f"shape {list(array.shape)} given; one whole number for each element expected")
+    if array.dtype.kind == "u" and (array > 2**62).any():
+        raise fault("larger than the limit, 2^62", _first(array > 2**62))
+    return _frozen(np.array(array, dtype=np.int64))
+
+
 def _frozen(array: NDArray[np.int64]) -> NDArray[np.int64]:
     array.flags.writeable = False
     return array
@@ -300,6 +311,7 @@ if TYPE_CHECKING:
     Vector = Column[Floats]
     Vectors = Column[Floats]
     Indices = Column[Ints]
+    Labels = Column[Ints]
     IndexRows = Column[Ints]
     Faces = Column[Ints]
     NonNegatives = Column[float | Floats]
@@ -327,6 +339,8 @@ else:
     """One vector `(3,)` or one for each element `(m, 3)`."""
     Indices = Annotated[NDArray[np.int64], PlainValidator(_indices), _out, _json(_WHOLE)]
     """Particles `(m,)`, counted from 0."""
+    Labels = Annotated[NDArray[np.int64], PlainValidator(_labels), _out, _json({"type": "integer"})]
+    """Whole numbers `(m,)`, one for each element: those with the same number belong together."""
     IndexRows = Annotated[
         NDArray[np.int64],
         PlainValidator(_index_rows),

@@ -1,0 +1,91 @@
+"""Angle snap: a moment that turns two lines to the nearest multiple of an angle."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from hookean.compiled.marks import device
+from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.line_angles import between, fill, line_angles, turn
+from hookean.values.columns import IndexRows, NonNegatives, PointRows, Positives
+from hookean.values.fields import Field, Maybe
+
+
+@device
+def beyond(angle: Any, step: Any) -> Any:
+    """How much larger an angle is than the nearest multiple that is at most pi."""
+    return angle - step * np.minimum(np.floor(angle / step + 0.5), np.floor(np.pi / step + 1e-9))
+
+
+def angle_snap_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    g = np.zeros((5, 3))
+    for e in range(indices.shape[0]):
+        sine, cosine, a, b = between(x, indices, e, g)
+        if np.isnan(sine):
+            continue
+        off = beyond(np.arctan2(sine, cosine), parameters[e, 1])
+        energy += 0.5 * parameters[e, 0] * off * off
+        turn(indices, e, parameters[e, 0], parameters[e, 0] * off, a, b, g, f, w)
+    return energy
+
+
+def angle_snap_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    g = np.zeros((5, 3))
+    for e in range(indices.shape[0]):
+        sine, cosine, a, b = between(x, indices, e, g)
+        if np.isnan(sine):
+            continue
+        off = beyond(np.arctan2(sine, cosine), parameters[e, 1])
+
+        fill(blocks, e, parameters[e, 0], parameters[e, 0] * off, sine, cosine, a, b, g)
+
+
+class AngleSnap(Force):
+    """Moments between pairs of lines that turn them to the nearest multiple of an angle a: M = S (theta - n a).
+
+    theta is the angle between the directions of the lines, from 0 to pi, and n a the nearest multiple up to pi; energy
+    S (theta - n a)^2 / 2. n is found again wherever the lines are, so that each multiple has a well of its own. A
+    multiple of pi / 2 makes lines parallel or perpendicular, one of pi parallel in the same or the opposite direction.
+    The lines need not meet; forces and moments of each pair sum to zero.
+    """
+
+    kind: Literal["angle_snap"] = "angle_snap"
+    particles: Maybe[IndexRows] = Field(
+        default=None, description="Start and end of line A, start and end of line B, for each pair"
+    )
+    points: Maybe[PointRows] = Field(
+        default=None, description="Coordinates of the start and end of line A, the start and end of line B"
+    )
+    strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
+    multiple: Positives = Field(default=np.pi / 2, description="a [rad]: lines turn to 0, a, 2 a, ..., up to pi")
+
+    formula: ClassVar[str] = "E = S (θ - n a)²/2"
+    creates: ClassVar[bool] = False
+    arity: ClassVar[int] = 4
+    solid: ClassVar[bool] = False
+    outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
+    kernel: ClassVar[Any] = staticmethod(angle_snap_kernel)
+    hessian: ClassVar[Any] = staticmethod(angle_snap_hessian)
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: S, a."""
+        return Block.of(places.elements(self), strength=self.strength, multiple=self.multiple)
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Angle [rad] and the moment that turns the lines towards each other [force length]."""
+        angle = line_angles(x, block.indices)
+        return {"angle": angle, "moment": block.parameters[:, 0] * beyond(angle, block.parameters[:, 1])}
+
+    @classmethod
+    def example(cls) -> tuple[AngleSnap, Floats]:
+        """Three pairs of lines on five particles: a right angle, parallel lines, a sixth of a turn."""
+        x = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.2], [0.4, 0.9, 0.3], [0.6, -0.8, 0.25], [1.4, 0.8, -0.1]])
+        pairs = cls(
+            particles=[[0, 1, 0, 2], [1, 2, 3, 4], [3, 0, 4, 2]],
+            strength=[20.0, 5.0, 50.0],
+            multiple=[np.pi / 2, np.pi, np.pi / 3],
+        )
+        return pairs, x
