@@ -102,7 +102,9 @@ def case_of(name: str, force: Force, x: np.ndarray, held: tuple[int, ...] = ()) 
 
     def reordered(order: np.ndarray) -> Block:
         given = {n: getattr(force, n) for n in force.model_fields_set}
-        rows = {n: v[order] for n, v in given.items() if isinstance(v, np.ndarray) and len(v) == len(group.block.indices)}
+        rows = {
+            n: v[order] for n, v in given.items() if isinstance(v, np.ndarray) and len(v) == len(group.block.indices)
+        }
         return case_of(name, cls(**{**given, **rows}), x, held).block
 
     together = cls.gathered(group.block, group.block.memory, system.x, None) is not None

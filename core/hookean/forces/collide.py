@@ -11,7 +11,7 @@ from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.neighbours import listed, make_room, pairs, same_group, sums
 from hookean.forces.springs import Springs
-from hookean.values.columns import IndexRows, NonNegatives, Points, Positives
+from hookean.values.columns import IndexRows, Labels, Points, Positives
 from hookean.values.fields import Field, Maybe
 
 RADIUS, GROUP, STIFFNESS, SKIN, ROOM = range(5)  # columns of parameters; neighbours know the first two
@@ -137,9 +137,9 @@ def overlapping(block: Block, x: Floats) -> tuple[Ints, Floats]:
 class Collide(Force):
     """Spheres about particles that push each other apart where they overlap: E = k (r1 + r2 - d)^2 / 2.
 
-    d is the distance of the centres. All spheres of the force can touch, of any radii, except those of one group
-    (0: of none). Two pressed together with a force F overlap by F / k. At one point spheres have no direction in which
-    to part, and none of them is pushed.
+    d is the distance of the centres. All spheres of the force can touch, of any radii, except those of one
+    `collision_group`. Two pressed together with a force F overlap by F / k. Spheres with the same centre have no
+    direction in which to part: nothing pushes them.
     """
 
     kind: Literal["collide"] = "collide"
@@ -148,7 +148,9 @@ class Collide(Force):
     mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are centres of spheres")
     radius: Positives = Field(default=1.0, description="Radius of each sphere [length]")
     strength: float = Field(default=1000.0, ge=0, le=1e12, description="k, stiffness of a contact [force/length]")
-    group: NonNegatives = Field(default=0.0, description="Spheres of one group ignore each other [-]; 0: no group")
+    collision_group: Maybe[Labels] = Field(
+        default=None, description="A number for each sphere [-]: those of one group ignore each other; 0: of no group"
+    )
 
     formula: ClassVar[str] = "E = k (r₁ + r₂ - d)²/2"
     creates: ClassVar[bool] = False
@@ -162,10 +164,21 @@ class Collide(Force):
         skin = SKIN_PART * float(np.mean(self.radius)) if len(index) else 0.0
         room = make_room(len(index), skin)
         block = Block.of(
-            index, radius=self.radius, group=self.group, strength=self.strength, skin=skin, room=float(room.ctypes.data)
+            index,
+            radius=self.radius,
+            collision_group=0.0 if self.collision_group is None else self.collision_group,
+            strength=self.strength,
+            skin=skin,
+            room=float(room.ctypes.data),
         )
         block.rooms = (room,)
         return block
+
+    @classmethod
+    def connected(cls, block: Block) -> Ints:
+        """All spheres: any may come to rest on any other."""
+        index = block.indices[:, 0]
+        return np.column_stack([index[:-1], index[1:]]) if len(index) > 1 else block.indices
 
     @classmethod
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
@@ -204,5 +217,5 @@ class Collide(Force):
     def example(cls) -> tuple[Collide, Floats]:
         """Five spheres of different radii, most of which overlap; two ignore each other."""
         x = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.2], [0.4, 0.9, -0.1], [1.3, 1.0, 0.4], [0.7, 0.5, 1.1]])
-        radius, group = [0.8, 0.9, 0.7, 0.8, 1.0], [0.0, 1.0, 1.0, 0.0, 0.0]
-        return cls(particles=[0, 1, 2, 3, 4], radius=radius, strength=50.0, group=group), x
+        radius, group = [0.8, 0.9, 0.7, 0.8, 1.0], [0, 1, 1, 0, 0]
+        return cls(particles=[0, 1, 2, 3, 4], radius=radius, strength=50.0, collision_group=group), x
