@@ -101,6 +101,7 @@ class Enclosed(groups.Grouped):
     formula: ClassVar[str] = "E = φ(V)"
     creates: ClassVar[bool] = False
     arity: ClassVar[int] = 3
+    solid: ClassVar[bool] = False  # the skin itself is other forces
     on_film: ClassVar[OnFilm] = "across"
     outputs: ClassVar[dict[str, str]] = {"force": "force", "volume": "", "pressure": ""}
     kernel: ClassVar[Any] = staticmethod(enclosed_kernel)

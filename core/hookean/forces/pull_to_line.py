@@ -46,7 +46,6 @@ class PullToLine(Force):
     kind: Literal["pull_to_line"] = "pull_to_line"
     particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
     points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
-    mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are pulled")
     origin: Vectors = Field(default=np.zeros(3), description="O, a point of the line [length], or one for each")
     direction: Vectors = Field(default=np.array([0.0, 0.0, 1.0]), description="t, or one for each; any length [-]")
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
@@ -59,7 +58,6 @@ class PullToLine(Force):
     outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_to_line_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_to_line_hessian)
-    example_faces: ClassVar[list[list[int]]] = []
 
     @field_validator("direction")
     @classmethod

@@ -54,7 +54,6 @@ class PullToPlane(Force):
     kind: Literal["pull_to_plane"] = "pull_to_plane"
     particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
     points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
-    mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are pulled")
     origin: Vectors = Field(default=np.zeros(3), description="O, a point of the plane [length], or one for each")
     normal: Vectors = Field(default=np.array([0.0, 0.0, 1.0]), description="n, or one for each; any length [-]")
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
@@ -67,7 +66,6 @@ class PullToPlane(Force):
     outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_to_plane_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_to_plane_hessian)
-    example_faces: ClassVar[list[list[int]]] = []
 
     @field_validator("normal")
     @classmethod
