@@ -71,7 +71,7 @@ def test_unknowns_of_groups_change_no_sign(case: Case) -> None:
 def test_what_is_taken_of_a_block_is_whole_groups(case: Case) -> None:
     """One row asks for its group, which then has the forces that it had; numbers of groups may be any."""
     cls, head = KINDS[case.name], groups.heads(case.block)
-    assert len(np.unique(head)) > 1
+    assert len(np.unique(head)) > 1 or "group" not in cls.model_fields
     for row in (0, len(head) - 1):
         rows, block = cls.taken(case.block, np.array([row]))
         assert (rows == np.flatnonzero(head == head[row])).all()

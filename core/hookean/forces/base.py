@@ -111,6 +111,7 @@ class Force(Model):
     steady: ClassVar[str] = ""
     damped: ClassVar[bool] = False  # the kernel reads the velocities; its column `damping` bounds that likewise
     remembers: ClassVar[bool] = False  # memory changes at the end of a step
+    yielding: ClassVar[tuple[str, ...]] = ("plasticity",)  # only where one of these columns is not 0, if it has them
     arity: ClassVar[int] = 1
     everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one

@@ -142,6 +142,12 @@ class Whole(Force):
     tangent: ClassVar[Any] = staticmethod(lambda block, x: _condensed(block))
 
 
+def bounded(index: Ints, w: Floats) -> Block:
+    """A block for `Whole`: elements of one particle each, (m, 1), that have the stiffness w (m,) in all directions."""
+    table = np.column_stack([np.tile([1.0, 0.0], (len(w), 1)), np.outer(w, np.eye(3).ravel())])
+    return Block(np.ascontiguousarray(index), table, np.zeros((len(w), 0)))
+
+
 def _members(block: Block, second: Floats, unknowns: int, node: int) -> Block:
     """Elements of the particles of a member and the nodes of its group; the unknowns have a little stiffness, which
     matters where nothing else determines them."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
-from hookean.forces.anchor_spring import AnchorSpring
+from hookean.forces.anchor_spring import AnchorSpring, slides
 from hookean.system.balance import Balance
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def movement(system: System, state: State, free: Floats, found: Balance) -> Floa
     stiffness: list[Floats] = []
     for group, memory in zip(system.groups, state.memory, strict=True):
         b = group.block
-        if group.cls is AnchorSpring:
+        if group.cls is AnchorSpring and not slides(b):
             fixed += np.bincount(b.indices[:, 0], b.parameters[:, 0], n)
         elif group.cls.central is not None:
             own = np.empty((len(b.indices), 5))

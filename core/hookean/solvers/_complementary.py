@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
-from hookean.forces.anchor_spring import AnchorSpring
+from hookean.forces.anchor_spring import AnchorSpring, slides
 from hookean.forces.springs import Springs
 from hookean.forces.unary import unary_kernel
 from hookean.linear.profile_cholesky import fits, order
@@ -63,6 +63,8 @@ class Method(Solver):
         if system.contacts:
             return "a floor has no complementary energy; use auto"
         for group in system.groups:
+            if group.cls is AnchorSpring and slides(group.block):
+                return "an anchor spring may slide; use auto"
             if group.cls is AnchorSpring or group.cls.kernel is unary_kernel:
                 continue
             if group.cls is not Springs:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
-from hookean.forces.anchor_spring import AnchorSpring
+from hookean.forces.anchor_spring import AnchorSpring, slides
 from hookean.forces.springs import Springs
 from hookean.solvers.base import Solver
 from hookean.system.balance import ROUNDING
@@ -49,6 +49,8 @@ class Method(Solver):
             if group.cls.role == "load" and group.cls.conservative:
                 continue
             if group.cls is AnchorSpring:
+                if slides(group.block):
+                    return "an anchor spring may slide; force_density supports linear forces only"
                 linear = True
                 continue
             if group.cls is not Springs:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
-from hookean.forces.anchor_spring import AnchorSpring
+from hookean.forces.anchor_spring import AnchorSpring, slides
 from hookean.system.components import root
 
 if TYPE_CHECKING:
@@ -36,6 +36,8 @@ def taut(system: System, state: State, free: Floats) -> bool:
         if group.cls.constant or not len(b.indices):
             continue
         if group.cls is AnchorSpring:
+            if slides(b):
+                return False
             held[b.indices[b.parameters[:, 0] > 0.0, 0]] = 7
             continue
         if group.cls.central is None:

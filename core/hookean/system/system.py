@@ -52,7 +52,7 @@ class Group:
     @property
     def yields(self) -> bool:
         """Whether it may change at the end of a step because of what it remembers."""
-        return self.cls.remembers and self._uses("plasticity")
+        return self.cls.remembers and any(self._uses(column) for column in self.cls.yielding)
 
     def _uses(self, column: str) -> bool:
         """Whether the parameters of this name are not all zero; yes where there are none of this name."""

@@ -1,0 +1,93 @@
+"""Pulls particles onto planes that are fixed in space; what it shares with `pull_to_line` is here."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import field_validator
+
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places
+from hookean.forces.pull_to_mesh import away
+from hookean.values.columns import IndexRows, NonNegatives, Points, Vectors, fault
+from hookean.values.fields import Field, Maybe
+
+
+def pull_to_plane_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    for e in range(indices.shape[0]):
+        a, strength, height = indices[e, 0], parameters[e, 0], 0.0
+        w[a] += strength
+        for c in range(3):
+            height += (x[a, c] - parameters[e, 1 + c]) * parameters[e, 4 + c]
+        energy += 0.5 * strength * height * height
+        for c in range(3):
+            f[a, c] -= strength * height * parameters[e, 4 + c]
+    return energy
+
+
+def pull_to_plane_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    for e in range(indices.shape[0]):
+        for i in range(3):
+            for j in range(3):
+                blocks[e, i, j] = parameters[e, 0] * (parameters[e, 4 + i] * parameters[e, 4 + j])
+
+
+def units(vectors: Floats) -> Floats:
+    """Vectors (3,) or (m, 3) with length 1; raises a validation error where one has no length."""
+    rows = np.atleast_2d(vectors)
+    largest = np.abs(rows).max(axis=1, keepdims=True, initial=0.0)
+    if not largest.all():
+        spot = f"/{int(np.argmin(largest))}" if vectors.ndim > 1 else ""
+        raise fault("a vector of zero length given; give one that is not 0, 0, 0", spot)
+    scaled = rows / largest  # squares of what is very small would be 0
+    return np.asarray(scaled / np.linalg.norm(scaled, axis=1, keepdims=True))
+
+
+class PullToPlane(Force):
+    """Particles pulled to the closest point of a plane that stays where it is: E = k d^2 / 2, d = n . (x - O).
+
+    The plane goes through O, square to the normal n, and has no edge. Particles may slide along it; one rests at a
+    distance load / k from it. Both sides are the same.
+    """
+
+    kind: Literal["pull_to_plane"] = "pull_to_plane"
+    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
+    origin: Vectors = Field(default=np.zeros(3), description="O, a point of the plane [length], or one for each")
+    normal: Vectors = Field(default=np.array([0.0, 0.0, 1.0]), description="n, or one for each; any length [-]")
+    strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
+
+    formula: ClassVar[str] = "E = k (n·(x - O))²/2"
+    role: ClassVar[Literal["internal", "load", "support"]] = "support"
+    creates: ClassVar[bool] = False
+    steady: ClassVar[str] = "strength"
+    on_film: ClassVar[OnFilm] = "spread"
+    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
+    kernel: ClassVar[Any] = staticmethod(pull_to_plane_kernel)
+    hessian: ClassVar[Any] = staticmethod(pull_to_plane_hessian)
+
+    @field_validator("normal")
+    @classmethod
+    def _has_a_direction(cls, normal: Floats) -> Floats:
+        units(normal)
+        return normal
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: strength, origin, unit normal."""
+        index = places.elements(self)
+        return Block.of(index, strength=self.strength, origin=np.atleast_2d(self.origin), normal=units(self.normal))
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Distance to the plane [length] and the force on the particle [force]."""
+        return away(block, element_forces)
+
+    @classmethod
+    def example(cls) -> tuple[PullToPlane, Floats]:
+        """Three particles with planes of their own."""
+        return cls(
+            particles=[0, 1, 2],
+            origin=[[0, 0, 0.5], [2, 0, 0], [1, 1, 1]],
+            normal=[[0, 0, 1], [1, -2, 0], [1, 1, 3]],
+            strength=[100.0, 20.0, 3.0],
+        ), np.array([[0.3, -0.5, 2.0], [4.0, 0.2, 0.5], [-4.0, -5.0, 1.0]])
