@@ -278,6 +278,7 @@ def test_every_force_with_lines_or_faces_takes_part() -> None:
     """A cable across the middle of what each kind of force acts on, a tenth of it away at most. A force that is not
     solid, such as a power law, has nothing between its particles that it could lie on."""
     lying, solid = set(), set()
+    corners = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]]  # hinges and bends must meet particles
     for kind, cls in KINDS.items():
         if cls.role != "internal" or issubclass(cls, Grouped):  # of groups there is nothing to lie on
             assert cls.role != "internal" or not cls.solid
@@ -290,9 +291,8 @@ def test_every_force_with_lines_or_faces_takes_part() -> None:
         elif "lines" in cls.model_fields:
             other["lines"] = [[[0, 0, 0], [1, 0, 0]]]
         else:
-            other["points"] = [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]][: cls.arity]]
+            other["points"] = corners if cls.arity == 1 else [corners[: cls.arity]]
         cable = springs("c", [[[0.5, 0.4, 0.01], [0.5, 0.4, 5]], [[0.5, 0.01, 0], [0.5, -5, 0]]])
-        corners = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]]  # hinges and bends must meet particles
         if any(one.startswith("c:") for one in found(other, cable, meshes={"m": mesh(1)}, particles=corners)):
             lying.add(kind)
     assert {"shell", "soapfilm", "springs"} <= solid and "power_law" not in solid

@@ -14,7 +14,7 @@ from hookean.values.fields import Field, Maybe
 
 @device
 def pair(x: Any, indices: Any, parameters: Any, e: Any, g: Any) -> Any:
-    """How much longer line B is than r times line A, and both lengths; writes their unit vectors, 0 without length."""
+    """How much longer line B is than r times line A. Writes unit vectors, zero for zero length, and lengths."""
     for i in range(2):
         a, b = indices[e, 2 * i], indices[e, 2 * i + 1]
         square = 0.0

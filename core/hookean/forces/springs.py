@@ -107,7 +107,7 @@ def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-
             if parameters[e, 5] > 0.0 and reach < parameters[e, 5]:
                 reach = parameters[e, 5]
             stretch = reach - rest
-            limit = parameters[e, 6] * first
+            limit = parameters[e, 6]
             tension = k * stretch
             if limit > 0.0 and np.abs(stretch) > limit:
                 tension = k * np.copysign(limit, stretch)
@@ -146,7 +146,7 @@ def stiffness_of(x: Any, indices: Any, parameters: Any, memory: Any, e: Any) -> 
     length = np.sqrt(dx * dx + dy * dy + dz * dz)
     first = parameters[e, 2] * parameters[e, 3]
     stretch = length - first - memory[e, 0]
-    limit = parameters[e, 6] * first
+    limit = parameters[e, 6]
     off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
     along = 0.0 if off else parameters[e, 0]
     across = along
@@ -188,7 +188,7 @@ def springs_yield(x, indices, parameters, memory):  # type: ignore[no-untyped-de
             length = np.sqrt(length)
             first = parameters[e, 2] * parameters[e, 3]
             stretch = length - first - memory[e, 0]
-            limit = parameters[e, 6] * first
+            limit = parameters[e, 6]
             off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
             if limit > 0.0 and np.abs(stretch) > limit and not off:
                 memory[e, 0] += stretch - np.copysign(limit, stretch)
@@ -212,8 +212,9 @@ class Springs(Force):
 
     Energy k (l - L0)^2 / 2; damping adds c times the rate of stretching along the spring. A spring works only
     at lengths up to its upper cutoff and from its lower cutoff on (0: no limit). Plasticity is the largest elastic
-    deformation as a part of the rest length: beyond it the tension stays, and the rest length follows at the end
-    of the step. A rest length of 0 makes a force-density spring. Source: the chapter, 9.4, figures 9.11 to 9.13.
+    deformation as a part of the rest length, yield extension the same as a length: beyond it the tension stays, and the
+    rest length follows at the end of the step. A rest length of 0 makes a force-density spring. Source: the chapter,
+    9.4, figures 9.11 to 9.13.
     """
 
     kind: Literal["springs"] = "springs"
@@ -228,6 +229,9 @@ class Springs(Force):
     upper_cutoff: NonNegatives = Field(default=0.0, description="Works only up to this length [length]; 0: always")
     lower_cutoff: NonNegatives = Field(default=0.0, description="Works only from this length on [length]; 0: always")
     plasticity: NonNegatives = Field(default=0.0, description="Elastic limit as a part of the rest length [-]; 0: none")
+    yield_extension: NonNegatives = Field(
+        default=0.0, description="Elastic limit as a length, in the place of plasticity [length]; 0: none"
+    )
 
     formula: ClassVar[str] = "E = k (l - L0)²/2"
     arity: ClassVar[int] = 2
@@ -241,11 +245,14 @@ class Springs(Force):
     end_of_step: ClassVar[Any] = staticmethod(springs_yield)
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: k, c, rest length, factor, upper and lower cutoff, plasticity."""
+        """Arrays for the kernel: k, c, rest length, factor, upper and lower cutoff, plasticity as a length."""
         index = places.elements(self)
         rest = self.rest_length
         if rest is None:
             rest = lengths(places.x.take(index[:, 1], axis=0) - places.x.take(index[:, 0], axis=0))
+        limit = np.where(
+            np.greater(self.yield_extension, 0.0), self.yield_extension, self.plasticity * (rest * self.rest_factor)
+        )
         return Block.of(
             index,
             memory=1,
@@ -255,7 +262,7 @@ class Springs(Force):
             rest_factor=self.rest_factor,
             upper_cutoff=self.upper_cutoff,
             lower_cutoff=self.lower_cutoff,
-            plasticity=self.plasticity,
+            plasticity=limit,
         )
 
     @classmethod
