@@ -163,6 +163,7 @@ def _writable(path: Path, note: str = "") -> Opened:
     db = database.connect(path)
     try:
         database.prepare(db)
+        db.path = path
         owners, last = database.owners(db)
         db.seq = max(last, int(db.marked("seq") or 0))
         db.watch(owners)
