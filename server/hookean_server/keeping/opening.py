@@ -13,6 +13,7 @@ import mmap
 import os
 import re
 import secrets
+import shutil
 import sqlite3
 import time
 from collections.abc import Iterator
@@ -94,7 +95,7 @@ def open_store(path: Path | None) -> Opened:
 def _opened(path: Path) -> Opened:
     said = manifest.read(manifest.place(path))
     refuse_other(path, said)
-    _roll_back(path)
+    _roll_back(path, said)
     unfinished = _unfinished(path)
     if not (unfinished or said is not None or path.exists() or _wal(path).exists() or _backups(path)):
         _create(path)
@@ -150,12 +151,24 @@ def _create(path: Path) -> None:
     os.replace(new, path)
 
 
-def _roll_back(path: Path) -> None:
+def _roll_back(path: Path, said: Read | None) -> None:
     """Undo what was interrupted before the file had a write-ahead log: a look that changes nothing is refused until
-    then."""
-    if _there(_journal(path)) and _there(path) and not _there(_wal(path)):
-        with suppress(sqlite3.Error), closing(database.connect(path)) as db:
+    then. In a copy, which counts if it is whole: the journal may be damaged, or of another file."""
+    if not (_there(_journal(path)) and _there(path)) or _there(_wal(path)):
+        return
+    new = path.with_name(path.name + NEW)
+    shutil.copyfile(path, new)
+    shutil.copyfile(_journal(path), _journal(new))
+    with suppress(sqlite3.Error, Broken):
+        with closing(database.connect(new)) as db:
             db.execute("PRAGMA user_version").fetchone()
+        inspect(new, said)
+        os.chmod(new, 0o600)
+        with new.open("rb") as file:
+            os.fsync(file.fileno())
+        os.replace(new, path)
+        _journal(path).unlink()
+    _sweep(path)
 
 
 def _writable(path: Path, note: str = "") -> Opened:
@@ -221,7 +234,7 @@ def reading(path: Path) -> Database:
     log."""
     if not _there(path):
         raise sqlite3.OperationalError(f"{path} is missing or empty")
-    name = f"file:{path.resolve().as_posix().replace('?', '%3f').replace('#', '%23')}?mode=ro"
+    name = f"{path.resolve().as_uri()}?mode=ro"
     db = sqlite3.connect(name, uri=True, isolation_level=None, factory=Database)
     db.text_factory = lambda text: text.decode("utf-8", "replace")
     return db
