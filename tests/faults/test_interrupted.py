@@ -234,6 +234,16 @@ def test_a_journal_of_another_store_undoes_nothing(
     assert accounted(life[0], path) == (len(life[0].bases) + len(life[0].requests), 0)
 
 
+def test_a_log_of_another_store_adds_nothing(
+    memory: Path, life: tuple[Ledger, Path], path: Path, tmp_path: Path
+) -> None:
+    """Its sessions have the same keys, and its rows are whole; the ids of the stores differ."""
+    _, _, other = lived(memory / "logged", 5)
+    begun(path)
+    shutil.copyfile(other / FILES[1], path.parent / FILES[1])
+    assert accounted(life[0], path) == (len(life[0].bases) + len(life[0].requests), 0)
+
+
 @pytest.mark.parametrize("name", ["100%25", "a%00b", "%zz", "a?b#c"])
 def test_a_folder_may_have_any_name(name: str, life: tuple[Ledger, Path], path: Path) -> None:
     """SQLite reads a file that must not change by a URI, in which %25 is another character (RFC 3986, 2.1)."""

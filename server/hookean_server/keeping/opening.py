@@ -337,14 +337,11 @@ def _log(report: Report) -> None:
 
 
 def _rows(path: Path, folders: list[Path], said: Read | None) -> Iterator[pages.Row]:
-    """All versions of all rows, in the damaged files and in the backups."""
-    for folder in folders:
-        file = folder / path.name
-        if said is None or not said.store or _belongs(file, said.store):
-            yield from pages.rows(file, _wal(file))
-    for backup in _backups(path):
-        if said is None or not said.store or _belongs(backup, said.store):
-            yield from pages.rows(backup, _wal(backup))
+    """All versions of all rows of this store, in the damaged files and in the backups. A log has the id of its store in
+    each transaction: it may be of another one than its file."""
+    store = said.store if said is not None else ""
+    for file in [*(folder / path.name for folder in folders), *_backups(path)]:
+        yield from pages.rows(*(part if not store or _belongs(part, store) else None for part in (file, _wal(file))))
 
 
 def _belongs(file: Path, store: str) -> bool:
