@@ -12,7 +12,9 @@ import sqlite3
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import httpx
@@ -20,6 +22,7 @@ import pytest
 
 from hookean import atomic_write
 from hookean.errors import InputError
+from hookean_server.keeping.database import SPARE
 from hookean_server.sessions import rows
 from hookean_server.store import Store
 from server.conftest import Served, problem
@@ -265,15 +268,23 @@ def test_a_file_that_may_grow_no_further_is_a_full_disk(tmp_path: Path) -> None:
         store.close()
 
 
-def test_a_disk_of_two_megabytes_fills_and_empties(tmp_path: Path) -> None:
-    """A real full disk, where one may be mounted."""
-    folder = tmp_path / "small"
+@contextmanager
+def mounted(folder: Path, size: str) -> Iterator[Path]:
+    """A disk of this size, where one may be mounted."""
     folder.mkdir()
     mount = shutil.which("mount")
-    command = [mount or "mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(folder)]
+    command = [mount or "mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(folder)]
     if mount is None or os.geteuid() != 0 or subprocess.run(command, capture_output=True).returncode:
         pytest.skip("no disk can be mounted here")
     try:
+        yield folder
+    finally:
+        subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def test_a_small_disk_fills_and_empties(tmp_path: Path) -> None:
+    """A real full disk."""
+    with mounted(tmp_path / "small", "8m") as folder:
         served = Served(state=str(folder / "sessions.db"), workers=1).ready()
         try:
             served.client.put("/v1/sessions/a", json=CABLE)
@@ -287,8 +298,41 @@ def test_a_disk_of_two_megabytes_fills_and_empties(tmp_path: Path) -> None:
             assert served.client.patch("/v1/sessions/a", json=large).json()["revision"] == held + 1
         finally:
             served.end()
-    finally:
-        subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def _kept(store: Store, key: str, size: int) -> BaseException | None:
+    """What refuses a session of this size; None where it is stored."""
+    described = {"revision": 0, "iteration": 0, "status": "running", "message": "", "particles": 1}
+    return store.submit(rows.put(key, "", os.urandom(size), described, [])).exception(20.0)
+
+
+@pytest.mark.parametrize("size", [200_000, 1_200_000])
+def test_a_disk_that_sessions_have_filled_takes_deletions(size: int, tmp_path: Path) -> None:
+    """A deletion writes a log as well, and a log that does not fit into its file is never emptied. The file gives the
+    space of the deleted back to the disk."""
+    with mounted(tmp_path / "small", "12m") as folder:
+        store, made = Store(folder / "sessions.db"), 0
+        for each in (size, 4_000):  # until not even a small one fits
+            while (refused := _kept(store, str(made), each)) is None:
+                made += 1
+            assert getattr(refused, "slug", "") == "not-stored"
+        for key in range(made):
+            assert store.submit(rows.delete(str(key))).result(20.0)
+        wait_for(lambda: shutil.disk_usage(folder).free > 10_000_000)
+        assert _kept(store, "new", size) is None
+        store.close()
+
+
+def test_the_last_of_a_disk_is_for_deletions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A row takes its size in the log and in the file; what is left beside them is for the log of a deletion."""
+    store, free, size = Store(tmp_path / "sessions.db"), SPARE, 100_000
+    assert _kept(store, "a", size) is None
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: SimpleNamespace(free=free))
+    assert getattr(_kept(store, "b", size), "slug", "") == "not-stored"
+    assert store.submit(rows.delete("a")).result(20.0)
+    free = SPARE + 4 * size
+    assert _kept(store, "b", size) is None
+    store.close()
 
 
 @pytest.mark.parametrize("error", [errno.ENOSPC, errno.EIO, errno.EROFS, errno.EACCES])

@@ -202,15 +202,53 @@ def test_a_file_that_says_it_is_only_read_is_repaired(life: tuple[Ledger, Path],
     store.close()
 
 
-def test_a_transaction_in_a_journal_is_undone_at_the_start(life: tuple[Ledger, Path], path: Path) -> None:
-    """A file is put into write-ahead mode by a transaction with a journal, at the first start and after each repair;
-    where that is killed a look that changes nothing is refused."""
+def interrupted(path: Path) -> Path:
+    """The journal of a transaction that was killed, beside the file that it is of."""
     begun(path)
     with closing(sqlite3.connect(path)) as db:
         assert db.execute("PRAGMA journal_mode = DELETE").fetchone() == ("delete",)
     assert forking.run(HOT, str(path)).returncode < 0
-    assert path.with_name("sessions.db-journal").stat().st_size
+    journal = path.with_name("sessions.db-journal")
+    assert journal.stat().st_size
+    return journal
+
+
+def test_a_transaction_in_a_journal_is_undone_at_the_start(life: tuple[Ledger, Path], path: Path) -> None:
+    """A file is put into write-ahead mode by a transaction with a journal, at the first start and after each repair;
+    where that is killed a look that changes nothing is refused."""
+    journal = interrupted(path)
     assert accounted(life[0], path)[1] == 0
+    assert not journal.exists() and not list(path.parent.glob("*damaged*"))
+
+
+def test_a_journal_of_another_store_undoes_nothing(
+    memory: Path, life: tuple[Ledger, Path], path: Path, tmp_path: Path
+) -> None:
+    """As beside a copy that somebody has put back. SQLite puts the pages of any journal into its file: all of the file
+    would be lost (https://www.sqlite.org/howtocorrupt.html, section 1.4)."""
+    _, _, other = lived(memory / "other", 6)
+    copied(other, tmp_path / "other")
+    journal = interrupted(tmp_path / "other" / "sessions.db")
+    begun(path)
+    shutil.copyfile(journal, path.parent / journal.name)
+    assert accounted(life[0], path) == (len(life[0].bases) + len(life[0].requests), 0)
+
+
+def test_a_log_of_another_store_adds_nothing(
+    memory: Path, life: tuple[Ledger, Path], path: Path, tmp_path: Path
+) -> None:
+    """Its sessions have the same keys, and its rows are whole; the ids of the stores differ."""
+    _, _, other = lived(memory / "logged", 5)
+    begun(path)
+    shutil.copyfile(other / FILES[1], path.parent / FILES[1])
+    assert accounted(life[0], path) == (len(life[0].bases) + len(life[0].requests), 0)
+
+
+@pytest.mark.parametrize("name", ["100%25", "a%00b", "%zz", "a?b#c"])
+def test_a_folder_may_have_any_name(name: str, life: tuple[Ledger, Path], path: Path) -> None:
+    """SQLite reads a file that must not change by a URI, in which %25 is another character (RFC 3986, 2.1)."""
+    path = path.parent.rename(path.parent.with_name(name)) / path.name
+    assert accounted(life[0], path) == (len(life[0].bases) + len(life[0].requests), 0)
 
 
 def test_a_line_of_a_manifest_does_not_go_on_in_a_torn_one(tmp_path: Path) -> None:

@@ -1,12 +1,14 @@
 """Every operation of the API's description, called with what fits its schemas and what does not: no answer that is
-not described, none that does not fit its schema, none that says the service failed.
+not described, none that does not fit its schema, none that says the service failed, none without the credentials that
+are described; and in the order that its links lead, from what makes a session or a job to all that is done with it.
 
 Five of 300 cases an operation in `make test`, all in `make soak`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from copy import deepcopy
 from typing import Any
 
 import pytest
@@ -14,23 +16,36 @@ import schemathesis
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from schemathesis import GenerationMode
+from schemathesis.config import SchemathesisConfig
 from schemathesis.specs.openapi import checks
 
 from hookean_server.app import create_app
 from hookean_server.problems import CATALOGUE
 from server.conftest import Served
-from serving import CABLE, HANG, SOAK
+from serving import CABLE, HANG
+from soak import SOAK
 
 CASES = 300 if SOAK else 5
-SCHEMA = schemathesis.openapi.from_dict(create_app().openapi())
-OPERATIONS = {operation.label: operation for found in SCHEMA.get_all_operations() if (operation := found.ok())}
+RUNS, STEPS = (500, 20) if SOAK else (10, 10)
+LABELS = sorted(f"{method.upper()} {path}" for path, item in create_app().openapi()["paths"].items() for method in item)
 CHECKS = [
     checks.status_code_conformance,
     checks.content_type_conformance,
     checks.response_schema_conformance,
     checks.response_headers_conformance,
+    checks.negative_data_rejection,
+    checks.ignored_auth,
 ]
+MAKING = {"POST /v1/sessions": CABLE, "PUT /v1/sessions/{key}": CABLE, "POST /v1/jobs": {"scene": CABLE}}
+CONFIG = SchemathesisConfig.from_dict(
+    {
+        "checks": {"negative_data_rejection": {"expected-statuses": ["4xx", "5xx"]}},  # 412 comes before 422
+        "phases": {"stateful": {"inference": {"algorithms": []}}},  # only the links of the description
+    }
+)
 KNOWN = {"key": ("a", "b", "c"), "slug": tuple(CATALOGUE)}
+ENDING = ("/v1/shutdown", "/v1/token")
+"""Whoever is let in there ends the service, or what lets the others in."""
 
 
 @pytest.fixture(scope="module")
@@ -40,20 +55,20 @@ def running() -> Iterator[Served]:
     assert found.end()[0] == 0
 
 
-@pytest.mark.parametrize("label", sorted(OPERATIONS))
-def test_every_answer_is_described(label: str, running: Served) -> None:
-    operation, seen = OPERATIONS[label], set()
+@pytest.fixture(scope="module")
+def operations(running: Served) -> dict[str, Any]:
+    """Of the service's own description: the name of its cookie has its port."""
+    schema = schemathesis.openapi.from_dict(running.client.get("/v1/openapi.json").json(), config=CONFIG)
+    return {operation.label: operation for found in schema.get_all_operations() if (operation := found.ok())}
+
+
+@pytest.mark.parametrize("label", LABELS)
+def test_every_answer_is_described(label: str, running: Served, operations: dict[str, Any]) -> None:
+    operation, seen = operations[label], set()
     modes = [GenerationMode.POSITIVE, GenerationMode.NEGATIVE]
     cases = st.one_of(*(operation.as_strategy(generation_mode=mode) for mode in modes))
 
-    @settings(
-        max_examples=CASES,
-        deadline=None,
-        database=None,
-        derandomize=not SOAK,
-        phases=[Phase.generate, Phase.shrink],
-        suppress_health_check=list(HealthCheck),
-    )
+    @_settings(CASES)
     @given(case=cases, data=st.data())
     def call(case: Any, data: st.DataObject) -> None:
         for name, values in KNOWN.items():
@@ -61,18 +76,44 @@ def test_every_answer_is_described(label: str, running: Served) -> None:
                 case.path_parameters[name] = value = data.draw(st.sampled_from(values))
                 if name == "key":
                     _made(running, value)
-        # whoever is let in ends the service, or what lets the others in
-        headers = {} if operation.path in ("/v1/shutdown", "/v1/token") else dict(running.known)
-        answer = case.call(base_url=running.url, headers=headers, timeout=HANG)
-        failed = answer.status_code >= 500 and answer.status_code not in (503, 504, 507)
-        assert not failed, (answer.content[:500], running.log()[-5000:])
-        case.validate_response(answer, checks=CHECKS)
-        assert b"Traceback" not in answer.content and b"site-packages" not in answer.content
-        seen.add(answer.status_code)
+        seen.add(_called(case, running))
 
     call()
     assert seen
     assert running.process.poll() is None
+
+
+def _settings(count: int) -> settings:
+    return settings(
+        max_examples=count,
+        deadline=None,
+        database=None,
+        derandomize=not SOAK,
+        phases=[Phase.generate, Phase.shrink],
+        suppress_health_check=list(HealthCheck),
+    )
+
+
+def _given(case: Any, running: Served) -> dict[str, Any]:
+    """What a case is sent with."""
+    headers = {} if case.operation.path in ENDING else {"Authorization": f"Bearer {running.token}"}
+    return {"base_url": running.url, "timeout": HANG, "headers": headers}
+
+
+def _called(case: Any, running: Served, *more: Any) -> int:
+    """The status of the answer to a case, checked."""
+    answer = case.call(**_given(case, running))
+    _checked(case, answer, running, more)
+    return int(answer.status_code)
+
+
+def _checked(case: Any, answer: Any, running: Served, more: Iterable[Any], recorder: Any = None) -> None:
+    failed = answer.status_code >= 500 and answer.status_code not in (503, 504, 507)
+    assert not failed, (answer.content[:500], running.log()[-5000:])
+    given = _given(case, running)
+    chosen = [*CHECKS, *more]
+    case.validate_response(answer, chosen, headers=given["headers"], transport_kwargs=given, recorder=recorder)
+    assert b"Traceback" not in answer.content and b"site-packages" not in answer.content
 
 
 def _made(running: Served, key: str) -> None:
@@ -80,3 +121,59 @@ def _made(running: Served, key: str) -> None:
         for listed in running.client.get("/v1/sessions").json()["sessions"][8:]:
             running.client.delete(f"/v1/sessions/{listed['key']}")
         running.client.put(f"/v1/sessions/{key}", json=CABLE)
+
+
+@pytest.mark.parametrize("label", [pytest.param(s, marks=[] if "}/" in s else [pytest.mark.soak]) for s in LABELS])
+def test_values_at_their_limits_and_other_methods_are_described(
+    label: str, running: Served, operations: dict[str, Any]
+) -> None:
+    """Every value that schemathesis derives from a schema: at each limit, beyond it, left out, of another type."""
+    operation, modes = operations[label], [GenerationMode.POSITIVE, GenerationMode.NEGATIVE]
+    chosen = operation.schema.config.generation_for(operation=operation, phase="coverage")
+    cases = operation.schema.iter_coverage_cases(operation, generation_modes=modes, generation_config=chosen)
+    # no `missing_required_header`: no operation requires one
+    assert [_called(case, running, checks.unsupported_method) for case in cases]
+
+
+def test_what_was_made_is_there_until_it_is_deleted(running: Served, operations: dict[str, Any]) -> None:
+    """Along the links of the description, from an answer that made something to the operations on it."""
+    seen: set[tuple[str, int]] = set()
+
+    class Linked(operations["POST /v1/sessions"].schema.as_state_machine()):  # type: ignore[misc]
+        def setup(self) -> None:
+            self.keys: set[str] = set()
+
+        def before_call(self, case: Any) -> None:
+            if (body := MAKING.get(case.operation.label)) is not None:  # the tests above send what makes nothing
+                case.body, case.media_type = deepcopy(body), "application/json"
+            for name in ("if-match", "if-none-match"):  # of a machine of their own
+                case.headers.pop(name, None)
+
+        def call(self, case: Any, **_: Any) -> Any:
+            return case.call(**_given(case, running))
+
+        def validate_response(self, response: Any, case: Any, *_: Any, **__: Any) -> None:
+            # a job that was cancelled can still be read
+            more = [] if case.operation.path.startswith("/v1/jobs") else [checks.use_after_free]
+            more.append(checks.ensure_resource_availability)
+            _checked(case, response, running, more, self.recorder)
+            label, status = case.operation.label, response.status_code
+            seen.add((label, status))
+            if status == 201:
+                self.keys.add(response.json()["key"])
+            elif label == "DELETE /v1/sessions/{key}" and status == 204:
+                self.keys.remove(case.path_parameters["key"])
+
+        def teardown(self) -> None:
+            found = {listed["key"] for listed in running.client.get("/v1/sessions").json()["sessions"]}
+            for key in found:
+                running.client.delete(f"/v1/sessions/{key}")
+            assert found == self.keys
+
+    for listed in running.client.get("/v1/sessions").json()["sessions"]:
+        running.client.delete(f"/v1/sessions/{listed['key']}")
+    Linked.run(settings=settings(_settings(RUNS), stateful_step_count=STEPS, phases=[Phase.generate]))
+    assert ("POST /v1/sessions", 201) in seen
+    if SOAK:
+        followed = {label for label, status in seen if status < 300}
+        assert followed >= {label for label in LABELS if label.endswith(("{key}", "{job}")) or "}/" in label}

@@ -99,7 +99,7 @@ def line(served: Served) -> Iterator[Line]:
 
 
 def concrete(template: str) -> str:
-    return re.sub(r"\{.*?\}", "busy", template)
+    return re.sub(r"\{.*?\}", "busy", template.replace("{action:action}", "play"))
 
 
 def is_open(method: str, target: str) -> bool:

@@ -54,6 +54,35 @@ def test_every_reference_leads_somewhere() -> None:
         assert reference.rsplit("/", 1)[1] in DOCUMENT["components"]["schemas"], reference
 
 
+def test_what_makes_something_links_to_every_operation_on_it() -> None:
+    """An answer that made something has its name, which the operations on it take (OpenAPI 3.1.1, 4.8.20)."""
+    made = {"/v1/sessions/{key}": ("key", "Session"), "/v1/jobs/{job}": ("id", "Job")}
+    linking = set()
+    for path, method, operation in OPERATIONS:
+        for status, response in operation["responses"].items():
+            if not (links := response.get("links")):
+                continue
+            linking.add((method, path, status))
+            address = "/v1/jobs/{job}" if "/jobs" in path else "/v1/sessions/{key}"
+            field, schema = made[address]
+            assert response["content"]["application/json"]["schema"] == {"$ref": f"#/components/schemas/{schema}"}
+            assert field in DOCUMENT["components"]["schemas"][schema]["required"]
+            parameter = address.partition("{")[2].rstrip("}")
+            assert [link["parameters"] for link in links.values()] == [
+                {f"path.{parameter}": f"$response.body#/{field}"}
+            ] * len(links)
+            assert {link["operationId"] for link in links.values()} == {
+                other["operationId"] for at, _, other in OPERATIONS if at.startswith(address)
+            }
+    assert linking == {
+        ("post", "/v1/sessions", "201"),
+        ("put", "/v1/sessions/{key}", "200"),
+        ("put", "/v1/sessions/{key}", "201"),
+        ("post", "/v1/sessions/{key}/branches", "201"),
+        ("post", "/v1/jobs", "202"),
+    }
+
+
 def test_what_the_server_gives_is_this(client: httpx.Client) -> None:
     found = client.get("/v1/openapi.json").text.replace(f'"hookean-{client.base_url.port}"', '"hookean-8765"')
     assert json.loads(found) == DOCUMENT, "but for the cookie's name, which has the port"

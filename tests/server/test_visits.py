@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 import select
 import socket
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from typing import Any
 
+import httpx
 import psutil
 import pytest
 
@@ -111,6 +113,24 @@ def test_bodies_that_do_not_come_take_no_place_of_the_owner(served: Served) -> N
         assert served.health()["requests"]["taken"] == 0
         assert served.client.post("/v1/relax", json=CABLE).status_code == 200
     wait_for(lambda: served.client.post("/solve", json=divide(3)).status_code == 200)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of open files")
+def test_connections_that_say_nothing_leave_room_for_the_owner() -> None:
+    """Each takes one of 200 open files; 600 are opened. The oldest that no token came on is closed, so sessions are
+    made, which takes files too, others can connect, and the owner's connection stays."""
+    served = Served("import resource; resource.setrlimit(resource.RLIMIT_NOFILE, (200, 200));", workers=1).ready()
+    with ExitStack() as stack:
+        stack.callback(served.end)
+        stream = stack.enter_context(served.client.stream("GET", "/v1/sessions"))
+        for _ in range(600):
+            sock = stack.enter_context(socket.create_connection(("127.0.0.1", served.port), timeout=HANG))
+            with suppress(OSError):  # it is closed already
+                sock.sendall(b"GET /v1/he")
+        served.client.put("/v1/sessions/a", json=CABLE).raise_for_status()
+        served.client.post("/v1/sessions/a/step").raise_for_status()
+        assert stream.read() and httpx.get(f"{served.url}/v1/health", timeout=HANG).status_code == 200
+        assert "Too many open files" not in served.log()
 
 
 @pytest.mark.parametrize("path", sampled(["/solve", "/v1/discretize/divide"], 2))

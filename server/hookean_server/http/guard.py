@@ -55,6 +55,8 @@ class Guard:
         if any(encoding not in ("identity", "") for encoding in headers.all(b"content-encoding")):
             said = "The body is compressed; send it uncompressed, without Content-Encoding."
             raise Problem("unsupported-media", said)
+        if entry is not None and (known := scope.get("state", {}).get("known")):
+            known()
         if entry is None:
             await self.app(scope, receive, send)
         elif scope["type"] == "websocket":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from typing import Any
+from typing import Any, ClassVar
 
 import h11
 from starlette.requests import ClientDisconnect
@@ -120,13 +120,21 @@ class Connection(H11Protocol):
 
     header_seconds = 30.0
     write_seconds = 30.0
+    most = 256
+    strangers: ClassVar[dict[Connection, None]] = {}
+    """The connections that no credentials came on, the oldest first: `most`, as each takes one of the open files."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Begin to wait for headers."""
+        """Begin to wait for headers; where there are too many, the oldest connection without credentials is cut."""
         transport.max_size = AT_ONCE  # type: ignore[attr-defined]  # of asyncio's transports for sockets
         super().connection_made(transport)  # type: ignore[arg-type]
         self._unread: asyncio.TimerHandle | None = None
-        self.app_state = {**self.app_state, "cut": self.transport.abort}  # of the state of each request
+        self.app_state = {**self.app_state, "cut": self.transport.abort, "known": self._known}  # of each request
+        self.strangers[self] = None
+        if len(self.strangers) > self.most:
+            oldest = next(iter(self.strangers))
+            oldest._known()
+            oldest.transport.abort()
         self._late: asyncio.TimerHandle | None = None
         self._expect()
 
@@ -140,6 +148,7 @@ class Connection(H11Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         """The connection is closed."""
+        self._known()
         self._expect_no_more()
         self._is_read()
         super().connection_lost(exc)
@@ -169,6 +178,14 @@ class Connection(H11Protocol):
             ):
                 self.transport.write(self.conn.send(event) or b"")
         self.transport.close()
+
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        """It goes on as a WebSocket, which is closed at once without credentials."""
+        self._known()
+        super().handle_websocket_upgrade(event)
+
+    def _known(self) -> None:
+        self.strangers.pop(self, None)
 
     def _is_read(self) -> None:
         if self._unread is not None:

@@ -26,6 +26,15 @@ METRICS = {"text/plain": {"schema": {"type": "string"}}}
 _ALWAYS = (401, 403, 404, 405, 431, 500)
 _COMPUTED = (*_ALWAYS, 408, 413, 415, 422, 503, 504, 507)
 _LIVE = (*_COMPUTED, 409, 412, 429)
+MADE = {
+    ("/v1/sessions/{key}", "$response.body#/key"): (
+        ("/v1/sessions", "post"),
+        ("/v1/sessions/{key}", "put"),
+        ("/v1/sessions/{key}/branches", "post"),
+    ),
+    ("/v1/jobs/{job}", "$response.body#/id"): (("/v1/jobs", "post"),),
+}
+"""By the address of what is made, and where its name is in the answer: the operations that make it."""
 
 
 def problems(
@@ -224,6 +233,7 @@ def _build(app: FastAPI) -> dict[str, Any]:
         routes=app.routes,
     )
     _secure(app, document)
+    _link(document["paths"])
     scene = json.loads(json.dumps(schema()).replace("#/$defs/", "#/components/schemas/"))
     schemas = scene.pop("$defs")
     schemas["Scene"] = scene
@@ -269,6 +279,26 @@ def _secure(app: FastAPI, document: dict[str, Any]) -> None:
     for path, item in document["paths"].items():
         for method, operation in item.items():
             operation["security"] = by[table.declared(method.upper(), path)]
+
+
+def _link(paths: dict[str, Any]) -> None:
+    """Add to every answer that made something the operations on it, as links (OpenAPI 3.1.1, section 4.8.20)."""
+    for (address, name), makers in MADE.items():
+        parameter = address[address.index("{") + 1 : -1]
+        links = {
+            operation["operationId"]: {
+                "operationId": operation["operationId"],
+                "parameters": {f"path.{parameter}": name},
+                "description": operation["summary"],
+            }
+            for path, item in paths.items()
+            if path.startswith(address)
+            for operation in item.values()
+        }
+        for path, method in makers:
+            for status, response in paths[path][method]["responses"].items():
+                if status.startswith("2"):
+                    response["links"] = links
 
 
 def _accept_documents(schemas: dict[str, Any]) -> None:

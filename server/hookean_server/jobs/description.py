@@ -77,6 +77,22 @@ SCHEMAS["JobTable"] = {
     },
     "required": [*_JOB, "parameters", "warnings", "columns", "rows"],
 }
+SCHEMAS["JobEvent"] = {
+    "type": "object",
+    "description": "Each event",
+    "properties": {
+        "id": {"type": "string", "description": "Its number, for Last-Event-ID"},
+        "event": {"enum": ["progress", "item", "done", "failed", "cancelled"]},
+        "data": {
+            "type": "string",
+            "contentMediaType": "application/json",
+            "contentSchema": {
+                "anyOf": [_PROGRESS, *({"$ref": f"#/components/schemas/{name}"} for name in ("JobRow", "Job"))]
+            },
+        },
+    },
+    "required": ["id", "event", "data"],
+}
 SCHEMAS["Sweep"] = {**Sweep.model_json_schema(), "description": Sweep.__doc__}
 SCHEMAS["JobRequest"] = {
     "type": "object",
@@ -126,7 +142,7 @@ def cancelled() -> dict[int | str, dict[str, Any]]:
 
 def streamed() -> dict[int | str, dict[str, Any]]:
     """Responses of the events of a job."""
-    found = problems({"text/event-stream": {"schema": _TEXT}}, live=True)
+    found = problems({"text/event-stream": _json("JobEvent")["application/json"]}, live=True)
     return {**found, 204: {"description": "All events have been sent"}}
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import shutil
 import sqlite3
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,6 +17,9 @@ from hookean_server.keeping.schema import APPLICATION, PAGE, SCHEMA, STATE, TABL
 from hookean_server.problems import Problem
 
 LARGEST = 10**9 - PAGE  # bytes of one value: SQLite's own limit
+SPARE = 4 << 20
+"""Bytes of the disk that are left for deletions: that of a value of 1 GB puts 600 pages with the numbers of free ones
+into the log, before any of its own are free."""
 MARK = "INSERT INTO marks VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET value = excluded.value"
 
 
@@ -26,9 +32,12 @@ class Database(sqlite3.Connection):
     seq: int
     quota: int
     """Bytes that the file may take; 0: no limit."""
+    path: Path | None
+    """The file, where the room on its disk is looked at before rows are written."""
 
     def keep(self, table: str, **values: Any) -> None:
-        """Insert a row, or put it in place of the one with its key. Raises the problems `over-quota`, `too-large`."""
+        """Insert a row, or put it in place of the one with its key. Raises the problems `over-quota`, `too-large`, and
+        OSError where only what deletions take is left of the disk."""
         found = TABLES[table]
         self.seq += 1
         row = [values.get(name) for name in found.columns]
@@ -68,6 +77,7 @@ class Database(sqlite3.Connection):
         if len(last) > LARGEST:
             size, most = len(last) / 1e6, LARGEST / 1e6
             raise Problem("too-large", f"This has {size:,.0f} MB; one scene or result may have {most:,.0f} MB.")
+        self._fits(len(last))
         if not self.quota or self.size + len(last) <= self.quota:
             return
         used = self.size
@@ -80,6 +90,16 @@ class Database(sqlite3.Connection):
                 f"{len(last) / 1e6:,.1f} MB. Delete sessions or jobs, or raise HOOKEAN_QUOTA."
             )
             raise Problem("over-quota", said)
+
+    def _fits(self, size: int) -> None:
+        """Raises OSError where the disk has no room for `size` bytes in the log, for all that is not in the file yet
+        there and in the log, and for a deletion: a log that cannot be emptied into its file takes none either."""
+        if self.path is None or not self.path.exists():
+            return
+        pages, free = (self.execute(f"PRAGMA {name}").fetchone()[0] for name in ("page_count", "freelist_count"))
+        grown = pages * PAGE + max(size - free * PAGE, 0) - self.path.stat().st_size
+        if shutil.disk_usage(self.path.parent).free < size + 2 * max(grown, 0) + SPARE:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self.path))
 
     def watch(self, owners: dict[Key, Owner]) -> None:
         """Note from now on what writes belong to. `owners` is what there is."""
@@ -135,7 +155,7 @@ def connect(path: Path | None) -> Database:
     name = ":memory:" if path is None else str(path)
     db = sqlite3.connect(name, check_same_thread=False, isolation_level=None, factory=Database)
     db.text_factory = lambda text: text.decode("utf-8", "replace")
-    db.seq, db.quota, db.owners, db.touched = 0, 0, {}, {}
+    db.seq, db.quota, db.path, db.owners, db.touched = 0, 0, None, {}, {}
     return db
 
 
@@ -152,6 +172,7 @@ def prepare(db: Database) -> None:
     """Set a connection up for writing."""
     for pragma in (
         "journal_mode = WAL",
+        "secure_delete = FAST",  # some builds write zeros over what is deleted: as much in the log as a session had
         "synchronous = FULL",
         "foreign_keys = ON",
         "busy_timeout = 2000",

@@ -13,6 +13,7 @@ import mmap
 import os
 import re
 import secrets
+import shutil
 import sqlite3
 import time
 from collections.abc import Iterator
@@ -94,7 +95,7 @@ def open_store(path: Path | None) -> Opened:
 def _opened(path: Path) -> Opened:
     said = manifest.read(manifest.place(path))
     refuse_other(path, said)
-    _roll_back(path)
+    _roll_back(path, said)
     unfinished = _unfinished(path)
     if not (unfinished or said is not None or path.exists() or _wal(path).exists() or _backups(path)):
         _create(path)
@@ -150,12 +151,24 @@ def _create(path: Path) -> None:
     os.replace(new, path)
 
 
-def _roll_back(path: Path) -> None:
+def _roll_back(path: Path, said: Read | None) -> None:
     """Undo what was interrupted before the file had a write-ahead log: a look that changes nothing is refused until
-    then."""
-    if _there(_journal(path)) and _there(path) and not _there(_wal(path)):
-        with suppress(sqlite3.Error), closing(database.connect(path)) as db:
+    then. In a copy, which counts if it is whole: the journal may be damaged, or of another file."""
+    if not (_there(_journal(path)) and _there(path)) or _there(_wal(path)):
+        return
+    new = path.with_name(path.name + NEW)
+    shutil.copyfile(path, new)
+    shutil.copyfile(_journal(path), _journal(new))
+    with suppress(sqlite3.Error, Broken):
+        with closing(database.connect(new)) as db:
             db.execute("PRAGMA user_version").fetchone()
+        inspect(new, said)
+        os.chmod(new, 0o600)
+        with new.open("rb") as file:
+            os.fsync(file.fileno())
+        os.replace(new, path)
+        _journal(path).unlink()
+    _sweep(path)
 
 
 def _writable(path: Path, note: str = "") -> Opened:
@@ -163,6 +176,7 @@ def _writable(path: Path, note: str = "") -> Opened:
     db = database.connect(path)
     try:
         database.prepare(db)
+        db.path = path
         owners, last = database.owners(db)
         db.seq = max(last, int(db.marked("seq") or 0))
         db.watch(owners)
@@ -220,7 +234,7 @@ def reading(path: Path) -> Database:
     log."""
     if not _there(path):
         raise sqlite3.OperationalError(f"{path} is missing or empty")
-    name = f"file:{path.resolve().as_posix().replace('?', '%3f').replace('#', '%23')}?mode=ro"
+    name = f"{path.resolve().as_uri()}?mode=ro"
     db = sqlite3.connect(name, uri=True, isolation_level=None, factory=Database)
     db.text_factory = lambda text: text.decode("utf-8", "replace")
     return db
@@ -323,14 +337,11 @@ def _log(report: Report) -> None:
 
 
 def _rows(path: Path, folders: list[Path], said: Read | None) -> Iterator[pages.Row]:
-    """All versions of all rows, in the damaged files and in the backups."""
-    for folder in folders:
-        file = folder / path.name
-        if said is None or not said.store or _belongs(file, said.store):
-            yield from pages.rows(file, _wal(file))
-    for backup in _backups(path):
-        if said is None or not said.store or _belongs(backup, said.store):
-            yield from pages.rows(backup, _wal(backup))
+    """All versions of all rows of this store, in the damaged files and in the backups. A log has the id of its store in
+    each transaction: it may be of another one than its file."""
+    store = said.store if said is not None else ""
+    for file in [*(folder / path.name for folder in folders), *_backups(path)]:
+        yield from pages.rows(*(part if not store or _belongs(part, store) else None for part in (file, _wal(file))))
 
 
 def _belongs(file: Path, store: str) -> bool:

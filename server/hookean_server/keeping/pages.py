@@ -34,15 +34,15 @@ class Damaged(Exception):
     """Bytes that are not what they should be."""
 
 
-def rows(path: Path, log: Path) -> Iterator[Row]:
-    """All versions of all rows that are whole in a database and its log, each once; either file may be missing."""
+def rows(path: Path | None, log: Path | None) -> Iterator[Row]:
+    """All versions of all rows that are whole in a database and its log, each once; either may be missing."""
     with _bytes(path) as data, _bytes(log) as frames:
         yield from Pages(data, frames).rows()
 
 
 @contextmanager
-def _bytes(path: Path) -> Iterator[Any]:
-    if not path.exists() or not path.stat().st_size:
+def _bytes(path: Path | None) -> Iterator[Any]:
+    if path is None or not path.exists() or not path.stat().st_size:
         yield b""
         return
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:

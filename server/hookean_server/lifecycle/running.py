@@ -27,6 +27,7 @@ from hookean_server.workers.memory import return_pages
 def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, idle_seconds: float) -> int:
     """Serve on a socket that listens; the exit code. See `main.serve`."""
     Connection.header_seconds, Connection.write_seconds = settings.header_seconds, settings.write_seconds
+    Connection.most = min(Connection.most, _open_files() // 4)
     return_pages()
     as_json = logs.begin(settings.log, queued=True)
     app = create_app(settings)
@@ -48,6 +49,7 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
         server_header=False,
         date_header=True,
         http=Connection,
+        backlog=64,  # so many are accepted before any is counted
         h11_max_incomplete_event_size=2 * settings.header_limit,
         timeout_graceful_shutdown=1,
         timeout_keep_alive=16,  # longer than clients do: a request down a connection that just ended is lost
@@ -77,6 +79,23 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
     finally:
         server.close()
     return 0
+
+
+def _open_files() -> int:
+    """How many files may be open at once; raised to what the system allows. Each connection is one of them."""
+    if sys.platform == "win32":
+        return 4096
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = 4096 if hard == resource.RLIM_INFINITY else min(hard, 4096)
+    if soft == resource.RLIM_INFINITY or soft >= wanted:
+        return wanted
+    try:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+    except (OSError, ValueError):
+        return soft
+    return wanted
 
 
 def _found(instance: str, settings: Settings, proof: str, address: str) -> Found:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 from urllib.parse import quote
 
 from fastapi import APIRouter, Path, Query, Request
+from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import JSONResponse, Response
 
 from hookean_server.http import claimed, openapi
@@ -23,7 +24,17 @@ router = APIRouter(tags=["sessions"])
 KEY = r"^[A-Za-z0-9._:~-]{1,160}$"
 Key = Annotated[str, Path(pattern=KEY, description="Key of a session: letters, digits and . _ : ~ -")]
 Label = Annotated[str, Query(max_length=200, description="A name to display")]
+Action = Literal["play", "relax", "pause", "step", "reset", "undo", "redo"]
 Arrays = Annotated[Literal["list", "buffer"], Query(description="Arrays as lists, or as base64 of their bytes")]
+
+
+class _Actions(StringConvertor):
+    """The part of an address that is an action: of other addresses, POST to /scene is 405 and to /none is 404."""
+
+    regex = "|".join(get_args(Action))
+
+
+register_url_convertor("action", _Actions())
 
 
 def manager(request: Request) -> Manager:
@@ -114,12 +125,14 @@ async def branch(
 
 
 @router.post(
-    "/v1/sessions/{key}/{action}", summary="Play, relax, pause, step, reset, undo, redo", responses=openapi.acted()
+    "/v1/sessions/{key}/{action:action}",
+    summary="Play, relax, pause, step, reset, undo, redo",
+    responses=openapi.acted(),
 )
 async def act(
     request: Request,
     key: Key,
-    action: Literal["play", "relax", "pause", "step", "reset", "undo", "redo"],
+    action: Action,
     when: When,
     frames: Annotated[int, Query(ge=1, le=100_000, description="Of `step`: number of frames")] = 1,
     fast: Annotated[bool, Query(description="Of `play`: at full speed, not at 60 frames a second")] = False,
