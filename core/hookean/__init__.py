@@ -29,19 +29,48 @@ if TYPE_CHECKING:
     from hookean.files.save import open as open
     from hookean.files.save import save as save
     from hookean.forces.anchor_spring import AnchorSpring as AnchorSpring
+    from hookean.forces.angle import Angle as Angle
+    from hookean.forces.angle_snap import AngleSnap as AngleSnap
     from hookean.forces.base import Force as Force
     from hookean.forces.bend import Bend as Bend
+    from hookean.forces.clamp_angle import ClampAngle as ClampAngle
+    from hookean.forces.clamp_length import ClampLength as ClampLength
+    from hookean.forces.co_circular import CoCircular as CoCircular
+    from hookean.forces.co_linear import CoLinear as CoLinear
+    from hookean.forces.co_planar import CoPlanar as CoPlanar
+    from hookean.forces.co_spherical import CoSpherical as CoSpherical
+    from hookean.forces.coincident import Coincident as Coincident
+    from hookean.forces.collide import Collide as Collide
+    from hookean.forces.constant_tension import ConstantTension as ConstantTension
+    from hookean.forces.direction import Direction as Direction
+    from hookean.forces.equal_angle import EqualAngle as EqualAngle
+    from hookean.forces.equal_length import EqualLength as EqualLength
     from hookean.forces.floor import Floor as Floor
+    from hookean.forces.gas import Gas as Gas
     from hookean.forces.hinge import Hinge as Hinge
+    from hookean.forces.length_ratio import LengthRatio as LengthRatio
+    from hookean.forces.length_snap import LengthSnap as LengthSnap
+    from hookean.forces.line_weight import LineWeight as LineWeight
+    from hookean.forces.magnet_snap import MagnetSnap as MagnetSnap
+    from hookean.forces.mirror import Mirror as Mirror
+    from hookean.forces.polygon_area import PolygonArea as PolygonArea
     from hookean.forces.power_law import PowerLaw as PowerLaw
     from hookean.forces.pressure import Pressure as Pressure
+    from hookean.forces.projected_force import ProjectedForce as ProjectedForce
     from hookean.forces.pull_to_curve import PullToCurve as PullToCurve
+    from hookean.forces.pull_to_line import PullToLine as PullToLine
     from hookean.forces.pull_to_mesh import PullToMesh as PullToMesh
+    from hookean.forces.pull_to_plane import PullToPlane as PullToPlane
     from hookean.forces.self_weight import SelfWeight as SelfWeight
     from hookean.forces.shell import Shell as Shell
     from hookean.forces.soapfilm import SoapFilm as SoapFilm
     from hookean.forces.springs import Springs as Springs
+    from hookean.forces.thrust import Thrust as Thrust
+    from hookean.forces.transform_lock import TransformLock as TransformLock
+    from hookean.forces.translation_lock import TranslationLock as TranslationLock
     from hookean.forces.unary import Unary as Unary
+    from hookean.forces.volume import Volume as Volume
+    from hookean.forces.vortex import Vortex as Vortex
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
     from hookean.running.patch import Move as Move
@@ -95,20 +124,44 @@ __all__ = [
     "Anchor",
     "AnchorSpring",
     "Anchors",
+    "Angle",
+    "AngleSnap",
     "Bend",
+    "ClampAngle",
+    "ClampLength",
+    "CoCircular",
+    "CoLinear",
+    "CoPlanar",
+    "CoSpherical",
+    "Coincident",
+    "Collide",
+    "ConstantTension",
+    "Direction",
+    "EqualAngle",
+    "EqualLength",
     "Floor",
     "Force",
     "Frame",
+    "Gas",
     "Geometry",
     "Hinge",
     "InputError",
+    "LengthRatio",
+    "LengthSnap",
+    "LineWeight",
+    "MagnetSnap",
     "MeshData",
+    "Mirror",
     "Move",
     "Patch",
+    "PolygonArea",
     "PowerLaw",
     "Pressure",
+    "ProjectedForce",
     "PullToCurve",
+    "PullToLine",
     "PullToMesh",
+    "PullToPlane",
     "Report",
     "Result",
     "Scene",
@@ -121,8 +174,13 @@ __all__ = [
     "Springs",
     "Status",
     "Stream",
+    "Thrust",
+    "TransformLock",
+    "TranslationLock",
     "Unary",
     "Units",
+    "Volume",
+    "Vortex",
     "open",
     "picture",
     "relax",

@@ -11,8 +11,10 @@ KINDS: dict[str, type[Force]] = {}
 """Every force class by its kind, in the order of file names."""
 
 for _found in pkgutil.iter_modules(__path__):
-    for _value in vars(importlib.import_module(f"{__name__}.{_found.name}")).values():
-        if isinstance(_value, type) and issubclass(_value, Force) and _value.kind_name:
+    _module = importlib.import_module(f"{__name__}.{_found.name}")
+    for _value in vars(_module).values():
+        _own = isinstance(_value, type) and _value.__module__ == _module.__name__
+        if _own and issubclass(_value, Force) and _value.kind_name:
             KINDS[_value.kind_name] = _value
 
 globals().update({cls.__name__: cls for cls in KINDS.values()})
