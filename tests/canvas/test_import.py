@@ -217,7 +217,7 @@ def test_a_goal_without_counterpart_keeps_its_whole_system_as_it_was() -> None:
     assert (report.solvers, report.whole, report.swapped, report.lost) == (1, 0, [], [])
     assert dict(report.stays) == {
         "Refine": "a tool for geometry; it stays on, as it comes with Rhino",
-        "Planarize": "geometry without mechanics (equal, planar, parallel, tangent ...) is not here",
+        "Planarize": "geometry without mechanics (planar, tangent ...) is not here",
         "EdgeLengths": "it stays with Solver",
         "Solver": "it stays with all its goals, because of Planarize",
     }

@@ -151,3 +151,24 @@ def test_vertex_loads_and_lengths_between_points_act_where_kangaroo_has_them(tmp
     found = places(ran(d, tmp_path))
     np.testing.assert_allclose(found[:, 2], [1 - 5e-4, -0.5 - 5e-4], atol=1e-5)
     assert LENGTH[2][1] == 10.0
+
+
+def test_goals_that_pull_with_half_of_their_strength_pull_so_here(tmp_path: Path) -> None:
+    """A rope of 0.5 m that stretches by half of 20 N/m holds 5 N: it is 1 m long; the point at its end is joined to
+    another by half of 100 N/m, which carries 2 N of it: they are 0.04 m apart."""
+    d = Kangaroo("halves", "Halves", "ClampLength and Coincident.")
+    top, low, other = d.point(0, 0, 1), d.point(0, 0, 0.4), d.point(0, 0, 0.3)
+    clamp = (("Line", None), ("LowerLimit", 0.0), ("UpperLimit", 0.5), ("Strength", 20.0))
+    load = (("P", None), ("FV", (0.0, 0.0, -3.0)))
+    goals = [
+        d.kangaroo("ClampLength", clamp, ["Clamp"], line=d.native("Line", start_point=top, end_point=low)),
+        d.kangaroo("Coincident", (("Point0", None), ("Point1", None), ("Strength", 100.0)), ["Coincident"],
+                   point0=low, point1=other),
+        d.kangaroo("Anchor", ANCHOR, ["A"], guid=SOFT, p=top),
+        d.kangaroo("Load", load, ["U"], p=low),
+        d.kangaroo("Load", (("P", None), ("FV", (0.0, 0.0, -2.0))), ["U"], p=other),
+    ]  # fmt: skip
+    solver = d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goals, reset=d.toggle("Reset", False))
+    d.panel("particles", solver["V"])
+    found = np.sort(places(ran(d, tmp_path))[:, 2])
+    np.testing.assert_allclose(np.diff(found), [0.04, 1.0], atol=1e-4)

@@ -79,6 +79,22 @@ pairs = zip(*canvas.matched(canvas.geometry.points(_start), canvas.geometry.poin
 lines = [canvas.geometry.to_line(list(pair)) for pair in pairs]
 '''
 
+HALF = '''"""Half of each number."""
+
+from hookean_client import canvas
+
+halves = [0.5 * canvas.geometry.number(value) for value in canvas.listed(_numbers)]
+'''
+
+PLANE = '''"""The origin and the normal of each plane."""
+
+from hookean_client import canvas
+
+planes = canvas.listed(_planes)
+origin = [canvas.geometry.to_point([p.Origin.X, p.Origin.Y, p.Origin.Z]) for p in planes]
+normal = [canvas.geometry.to_vector([p.Normal.X, p.Normal.Y, p.Normal.Z]) for p in planes]
+'''
+
 
 @dataclass(frozen=True)
 class Recipe:
@@ -111,6 +127,17 @@ HELPERS = {
     ),
     "*upwards": Recipe(
         "Upwards", "Upwards", "Vertical vectors", UPWARDS, (Slot("_size", "Sizes", 1),), (Slot("vectors", "Vectors"),)
+    ),
+    "*half": Recipe(
+        "Half", "Half", "Half of each number", HALF, (Slot("_numbers", "Numbers", 1),), (Slot("halves", "Halves"),)
+    ),
+    "*plane": Recipe(
+        "Planes",
+        "Planes",
+        "Origins and normals of planes",
+        PLANE,
+        (Slot("_planes", "Planes", 1),),
+        (Slot("origin", "Origins"), Slot("normal", "Normals")),
     ),
     "*lines": Recipe(
         "Lines",

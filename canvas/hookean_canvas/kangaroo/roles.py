@@ -27,35 +27,32 @@ unroller vertexneighbours warpweft counter sequence trail wave
 """
 _SOLVERS, _TOOLS = frozenset(_SOLVER_NAMES.split()), frozenset(_TOOL_NAMES.split())
 
-_PURE = "geometry without mechanics (equal, planar, parallel, tangent ...) is not here"
-_COLLIDE = "collisions other than floors are not here"
-_PURE_NAMES = """
-planarize equallength equalangle equalize equalizeangles align direction lengthratio lengthsnap anglesnap
-cyclicquad tangentincircles conicalize developablize isothermic coplanar colinear cospherical cocircular
-polygonarea g2 transform coincident mirror translationlock
+_PURE = "geometry without mechanics (planar, tangent ...) is not here"
+_THERE = "hookean has this force (see From Kangaroo in its documentation), but it is not translated"
+_COLLIDE = "collisions other than of spheres and with floors are not here"
+_PURE_NAMES = "planarize cyclicquad tangentincircles conicalize developablize isothermic g2"
+_THERE_NAMES = """
+equalangle equalize equalizeangles align lengthratio lengthsnap anglesnap clampangle colinear cospherical cocircular
+polygonarea transform mirror translationlock magnetsnap plasticlength dynamicweight1d vortex gasvolume rocket
 """
 _COLLIDE_NAMES = """
-collide2d collider curvecollide curvepointcollide imagecircles softbodycollide solidpointcollide spherecollide
+collide2d collider curvecollide curvepointcollide imagecircles softbodycollide solidpointcollide
 solidplanecollide rigidbody rigidbodycollide rigidpointset floorfriction collidemesh collidesurf
 """
 REASONS: dict[str, str] = {
-    "fd": "hookean takes the force density itself: Springs with rest length 0",
-    "constanttension": "for the same tension everywhere use SoapFilm; Springs with rest length 0 pull with k x length",
-    "clamplength": "Springs with lower_cutoff at their rest length are a cable; upper_cutoff a strut",
-    "plasticlength": "Springs with plasticity, which is a part of the rest length and not a distance",
-    "dynamicweight1d": "Self Weight takes a weight per length, of the start length",
+    "fd": "Constant Tension takes a force; Springs with rest length 0 take the force density",
     "areaweight": "Self Weight takes a total or a weight per length",
     "tangentialsmooth": "SoapFilm keeps its triangles even by itself",
     "smooth": "smoothing is not here",
     "soapfilm": "connect a mesh to SoapFilm",
     "pressure": "connect a mesh to Pressure",
     "wind": "wind is not here; Pressure acts along the normals",
-    "volume": "gas volumes are not here; Pressure is",
-    "onplane": "Anchors with axes hold in x, y or z; Pull To Mesh pulls to a flat mesh",
+    "volume": "Volume takes the bulk modulus of what is in the mesh, another quantity than the strength in Kangaroo",
     "particle": "masses and first velocities are fields of a scene; the canvas has no component for them",
     "beam": "beams of six degrees of freedom are not here",
     "support": "supports of six degrees of freedom are not here",
     **dict.fromkeys(_PURE_NAMES.split(), _PURE),
+    **dict.fromkeys(_THERE_NAMES.split(), _THERE),
     **dict.fromkeys(_COLLIDE_NAMES.split(), _COLLIDE),
     "counter": "a tool; the Engine's iterations count, too",
     "sequence": "a tool; the service keeps the frames of a run",

@@ -252,6 +252,15 @@ def _solver(solver: str, differs: str, **without: str) -> Swap:
     return Swap((Piece("Engine", _GOALS, _SOLVED), settings), f"{differs}; {_OUT}", told, usual)
 
 
+_HALF = "half of the strength, which is what it pulls with in Kangaroo"
+
+
+def _halved(bundle: str, output: str, column: str, *more: Piece, **inputs: str) -> Swap:
+    """For a goal that pulls with half of its strength."""
+    half = Piece("*half", {"strength": "numbers"}, feeds={"halves": f"0.{column}"})
+    return Swap((Piece(bundle, inputs, {"force": output}), half, *more), _HALF)
+
+
 SECOND: dict[str, Swap] = {
     "solver": _solver(
         "momentum",
@@ -368,6 +377,27 @@ SECOND: dict[str, Swap] = {
             Piece("*lines", {"start": "start", "end": "end"}, feeds={"lines": "0.connection"}),
         ),
     ),
+    "spherecollide": _halved("Collide", "s", "strength", points="point", radius="radius"),
+    "coincident": _halved(
+        "Coincident",
+        "coincident",
+        "strength",
+        Piece("*lines", {"point0": "start", "point1": "end"}, feeds={"lines": "0.connection"}),
+    ),
+    "clamplength": _halved(
+        "ClampLength", "clamp", "stiffness", line="connection", lowerlimit="lower_limit", upperlimit="upper_limit"
+    ),
+    "equallength": _halved("EqualLength", "equal", "stiffness", line="connection"),
+    "direction": _halved("Direction", "direction", "stiffness", line="connection", direction="direction"),
+    "constanttension": _halved("ConstantTension", "t", "tension", line="connection"),
+    "coplanar": _force("CoPlanar", "coplanar", points="point", strength="strength"),
+    "onplane": Swap(
+        (
+            Piece("PullToPlane", {"points": "point", "strength": "strength"}, {"force": "p"}),
+            Piece("*plane", {"plane": "planes"}, feeds={"origin": "0.origin", "normal": "0.normal"}),
+        ),
+    ),
+    "plasticanchor": _force("AnchorSpring", "a", p="point", point="point", limit="limit", strength="strength"),
     **_TOOLS,
 }
 
@@ -400,4 +430,6 @@ _HELPER = {
     "*corners": "a script for corners",
     "*upwards": "a script for vectors",
     "*lines": "a script for lines",
+    "*half": "a script for halves",
+    "*plane": "a script for planes",
 }
