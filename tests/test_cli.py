@@ -22,6 +22,7 @@ from hookean.discretize import grid
 from hookean.files.rhino import threedm
 from hookean.files.rhino.threedm import Additions, NewObject
 from hookean.forces import KINDS
+from serving import HANG
 
 REAL = Path(__file__).resolve().parents[2] / "shared" / "data" / "rhino"
 CABLE = """
@@ -57,7 +58,7 @@ def run(*arguments: str) -> Result:
 def process(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     """The command as a process of its own."""
     return subprocess.run(
-        [sys.executable, "-m", "hookean.cli", *arguments], cwd=cwd, capture_output=True, text=True, timeout=120
+        [sys.executable, "-m", "hookean.cli", *arguments], cwd=cwd, capture_output=True, text=True, timeout=HANG
     )
 
 
@@ -370,5 +371,5 @@ def test_a_scene_in_json_is_relaxed_without_what_reads_models(folder: Path) -> N
         "heavy = ('rhino3dm', 'scipy', 'matplotlib', 'fastapi', 'compas')\n"
         "print('loaded:', [m for m in heavy if m in sys.modules])\n"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, cwd=folder)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG, cwd=folder)
     assert done.stdout.splitlines()[-2:] == ["0", "loaded: []"], done.stdout + done.stderr

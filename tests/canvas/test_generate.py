@@ -18,6 +18,7 @@ from hookean.forces import KINDS
 from hookean.scene.catalogue import catalogue
 from hookean_canvas.components import bundles, force_bundles, icons, inline
 from hookean_canvas.run import stand_in
+from serving import HANG
 
 COMPONENTS = Path(__file__).parents[2] / "components"
 ENTRIES = {entry["kind"]: entry for entry in catalogue()}
@@ -182,7 +183,7 @@ def sent() -> dict[str, dict[str, object]]:
         assert set(given) <= set(inputs)
         steps.append({"name": name, "code": inline.inlined(bundle.code), "inputs": inputs, "outputs": ["force"]})
     command = [sys.executable, "-I", isolated.__file__, stand_in.__file__]
-    done = subprocess.run(command, input=json.dumps({"steps": steps}), capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, input=json.dumps({"steps": steps}), capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0, done.stderr
     answers = dict(zip(GIVEN, json.loads(done.stdout), strict=True))
     assert {name: a["messages"] for name, a in answers.items()} == {name: [] for name in GIVEN}

@@ -78,6 +78,28 @@ def test_relaxing_and_arrays(client: hookean_client.Client) -> None:
     assert client.relax(scene, query={"arrays": "list"})["particles"] == result["particles"]
 
 
+def test_a_connection_counts_as_idle_since_its_last_request(
+    client: hookean_client.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The service ends idle ones after 16 s. A process that gets no processor for so long sees its answer late, and
+    must not send a request that cannot be repeated down a connection that has ended meanwhile."""
+    real, now, late = hookean_client._read, hookean_client._now, [0.0]
+
+    def slow(answer: Any, most: int) -> Any:
+        found = real(answer, most)
+        late[0] += 20.0
+        return found
+
+    monkeypatch.setattr(hookean_client, "_now", lambda: now() + late[0])
+    client.get("/v1/health")
+    first = client._idle[-1][2]
+    monkeypatch.setattr(hookean_client, "_read", slow)
+    client.get("/v1/health")
+    assert client._idle[-1][2] is first
+    client.get("/v1/health")
+    assert client._idle[-1][2] is not first
+
+
 def test_every_method_of_a_session(client: hookean_client.Client) -> None:
     session = client.session("a document:component ~1".replace(" ", "_"))
     assert session.put(CABLE, query={"label": "Cable"})["revision"] == 0

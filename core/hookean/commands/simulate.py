@@ -161,16 +161,16 @@ def _go(running: Simulation, frames: int | None, seen: _Seen, write: Callable[[l
     """Frame by frame to rest, to `frames` or to the end of the stream; else as far as the scene's iterations go."""
     result = running.result()
     write(_heading(result))
+    seen.note(result)  # before its row: what stands in the table has been seen, whenever Ctrl-C comes
     write(_row(result, running))
-    seen.note(result)
     most = running.scene.settings.max_iterations
     while running.status == "running" and not running.over and (frames is None or seen.frames < frames):
         if frames is None and running.state.iteration >= most and not running.driven:
             return RESTLESS
         running.step()
         result = running.result()
-        write(_row(result, running))
         seen.note(result)
+        write(_row(result, running))
     return RESTLESS if running.status == "diverged" else ENDED
 
 

@@ -1,7 +1,7 @@
 """Neighbours: which of many elements are near enough to touch, found in a time that grows with their number.
 
 Elements lie in a grid of cells, and each looks in the 27 cells about it. The list is kept in a room beside the kernel
-(`make_room`) and holds pairs up to a skin beyond their reach: it is made again once an element has moved by half of the
+(`make_room`) and holds pairs up to a skin beyond their reach: it is rebuilt once an element has moved by half of the
 skin, or has another size. Pairs are listed by their first element, then by their second, and those that are too far
 away count nothing, so that sums do not depend on when the list was made. Elements much larger than most look at all
 others. Sources: Verlet, "Computer experiments on classical fluids", 1967 (the list and its skin); Teschner et al.,
@@ -62,7 +62,7 @@ def still_listed(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, r
 
 @device
 def near(seen: Any, i: Any, j: Any, skin: Any) -> Any:
-    """Whether two elements are to be listed: they may come within the skin before the list is made again."""
+    """Whether two elements are to be listed: they may come within the skin before the list is rebuilt."""
     apart = 0.0
     for c in range(3):
         apart += (seen[i, c] - seen[j, c]) ** 2
@@ -185,8 +185,8 @@ def list_pairs(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, roo
 
 @device
 def listed(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, room: Any) -> Any:
-    """Whether the list of the elements start to stop in the room at an address is right, which is made anew if needed;
-    where there is no place for it, all pairs are to be looked at."""
+    """Whether the list of the elements start to stop in the room at an address is right, which is rebuilt if
+    needed; if there is no place for it, every pair has to be checked."""
     if still_listed(x, indices, parameters, start, stop, room):
         return True
     return list_pairs(x, indices, parameters, start, stop, room)
