@@ -135,11 +135,11 @@ def overlapping(block: Block, x: Floats) -> tuple[Ints, Floats]:
 
 
 class Collide(Force):
-    """Spheres about particles that push each other apart where they overlap: E = k (r1 + r2 - d)^2 / 2.
+    """Spheres about particles that push each other apart where they overlap: E = k (a + b - d)^2 / 2.
 
-    d is the distance of the centres. All spheres of the force can touch, of any radii, except those of one
-    `collision_group`. Two pressed together with a force F overlap by F / k. Spheres with the same centre have no
-    direction in which to part: nothing pushes them.
+    a and b are the radii of two spheres, d is the distance of their centres. All spheres of the force can touch, of any
+    radii, except those of one `collision_group`. Two pressed together with a force F overlap by F / k. Spheres with the
+    same centre have no direction in which to part: nothing pushes them.
     """
 
     kind: Literal["collide"] = "collide"
@@ -152,7 +152,7 @@ class Collide(Force):
         default=None, description="A number for each sphere [-]: those of one group ignore each other; 0: of no group"
     )
 
-    formula: ClassVar[str] = "E = k (r₁ + r₂ - d)²/2"
+    formula: ClassVar[str] = "E = k (a + b - d)²/2"
     creates: ClassVar[bool] = False
     solid: ClassVar[bool] = False
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
