@@ -14,7 +14,6 @@ force = canvas.force(
     ghenv,
     "collide",
     points=_point,
-    mesh=_mesh,
     radius=_radius_,
     strength=_strength_,
     collision_group=collision_group_,

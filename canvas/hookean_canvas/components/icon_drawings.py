@@ -265,9 +265,11 @@ def compas(pen: Pen, key: str) -> None:
 
 
 def unknown(pen: Pen, letters: str) -> None:
-    """A force without a drawing of its own: an arrow and its letters."""
+    """A force without a drawing of its own: an arrow and its letters, in one line or two."""
     pen.arrow((4.0, 3.0), (4.0, 21.5), width=2.0, head=5.2)
-    pen.text(letters, (15.0, 12.0), 11.0 if len(letters) > 1 else 15.0)
+    lines = letters.split()
+    for i, line in enumerate(lines):
+        pen.text(line, (15.3, 12.0 + 9.5 * (i - 0.5 * (len(lines) - 1))), 8.5)
 
 
 def wave(middle: float, swing: float) -> list[Spot]:

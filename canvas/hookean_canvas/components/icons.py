@@ -12,7 +12,7 @@ from hookean_canvas.components.icon_drawings import DRAWINGS, compas, unknown
 from hookean_canvas.components.pen import SIZE, Pen
 
 
-def png(name: str, letters: str = "") -> bytes:
+def png(name: str) -> bytes:
     """The icon of the component `name` as PNG; an unknown one gets a force's arrow and its letters."""
     pen = Pen()
     key = re.sub("[^a-z0-9]", "", name.lower())
@@ -21,10 +21,17 @@ def png(name: str, letters: str = "") -> bytes:
     elif "compas" in key:
         compas(pen, key)
     else:
-        unknown(pen, letters or "".join(re.findall("[A-Z0-9]", name.title()))[:2])
+        unknown(pen, letters(name))
     stream = io.BytesIO()
     pen.small().save(stream, "PNG", optimize=True)
     return stream.getvalue()
+
+
+def letters(name: str) -> str:
+    """The first and the last word of a name, each by its first two letters and its last: "Trn Lok" for
+    TranslationLock."""
+    words = re.findall("[A-Z0-9][a-z]*", name)
+    return " ".join(word if len(word) < 3 else word[:2] + word[-1] for word in {words[0]: 0, words[-1]: 0})
 
 
 def same_picture(one: bytes, other: bytes) -> bool:

@@ -145,7 +145,6 @@ class Collide(Force):
     kind: Literal["collide"] = "collide"
     particles: Maybe[IndexRows] = Field(default=None, description="Particles in the centres of spheres")
     points: Maybe[Points] = Field(default=None, description="Coordinates of the centres of spheres")
-    mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are centres of spheres")
     radius: Positives = Field(default=1.0, description="Radius of each sphere [length]")
     strength: float = Field(default=1000.0, ge=0, le=1e12, description="k, stiffness of a contact [force/length]")
     collision_group: Maybe[Labels] = Field(
