@@ -54,6 +54,14 @@ def is_point(item):
     return isinstance(item, (list, tuple)) and len(item) == 3 and all(isinstance(part, NUMBERS) for part in item)
 
 
+def matrix(value):
+    """The numbers of a transformation, row by row: of one of Rhino's, or as given."""
+    items = listed(value)
+    if len(items) == 1 and hasattr(items[0], "ToFloatArray"):
+        return [float(item) for item in items[0].ToFloatArray(True)]
+    return [number(item) for item in items]
+
+
 def number(item):
     """A number; text that reads as one is one. Raises `Unfit` for anything else."""
     if isinstance(item, TEXT):

@@ -38,6 +38,8 @@ def force(source, kind, fields):
     """The text of a force; see `canvas.force`."""
     fields = {name: value for name, value in fields.items() if not _empty(value)}
     made = {"kind": kind, "source": source}
+    if "matrix" in fields:
+        made["matrix"] = geometry.matrix(fields.pop("matrix"))
     lists, spread = _columns(kind, fields), None
     if "target" in fields:
         made.update(geometry.mesh(fields["target"]))
