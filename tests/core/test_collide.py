@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from hookean import Scene, Simulation, relax
 from hookean.compiled import dispatch
+from hookean.errors import InputError
 from hookean.forces import KINDS, neighbours
 from hookean.system.system import System, compile
 
@@ -163,6 +164,27 @@ def test_a_radius_changes_while_it_runs() -> None:
     larger = compile(Scene(particles=x, forces=[crowd(x, radius=1.0)]))
     assert (evaluated(simulation.system, x)[0] == evaluated(larger, x)[0]).all()
     assert np.abs(evaluated(simulation.system, x)[0]).max() > 0.0
+
+
+def test_patches_take_no_memory_and_can_be_undone() -> None:
+    """A slider sends hundreds: each leaves the room of the list as it was, the skin follows the radius, and a patch
+    that is refused leaves the forces of before, to the bit."""
+    rng = np.random.default_rng(2)
+    x = rng.uniform(0.0, 3.0, (40, 3))
+    scene = Scene(particles=x, forces=[crowd(x[:25], radius=0.5), {**crowd(x[:15], radius=0.3), "name": "small"}])
+    simulation = Simulation(scene)
+    block = simulation.system.groups[0].block
+    for radius in np.linspace(0.2, 1.0, 200):
+        simulation.patch({"forces": {"0": {"radius": radius}}})
+        fresh = compile(scene.replaced(forces=(scene.forces[0].replaced(radius=radius), scene.forces[1])))
+        assert (evaluated(simulation.system, x)[0] == evaluated(fresh, x)[0]).all()
+    assert len(block.rooms) == 2
+    before = evaluated(simulation.system, x)[0]
+    with pytest.raises(InputError, match="/forces/9"):
+        simulation.patch({"forces": {"0": {"radius": 0.7}, "9": {"radius": 0.1}}})
+    with pytest.raises(InputError):
+        simulation.patch({"forces": {"small": {"radius": 0.7}}, "pin": [{"particles": [99]}]})
+    assert (evaluated(simulation.system, x)[0] == before).all() and len(block.rooms) == 2
 
 
 @pytest.mark.parametrize(

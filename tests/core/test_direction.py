@@ -55,7 +55,9 @@ def test_the_ends_of_a_line_have_opposite_forces() -> None:
 
 
 def test_a_direction_of_zero_length_is_refused() -> None:
-    with pytest.raises(InputError, match="/forces/0/direction: a vector of zero length given; it needs a direction"):
+    with pytest.raises(
+        InputError, match="/forces/0/direction: a vector of zero length given; give one that is not 0, 0, 0"
+    ):
         turned(direction=[0, 0, 0])
     with pytest.raises(InputError, match="/forces/0/direction/1: a vector of zero length"):
         turned(direction=[[1, 0, 0], [0, 0, 0]])

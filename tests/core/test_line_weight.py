@@ -61,5 +61,7 @@ def test_each_piece_weighs_its_length() -> None:
 
 
 def test_gravity_without_a_direction_is_refused() -> None:
-    with pytest.raises(InputError, match="/forces/1/direction: a vector of zero length given; it needs a direction"):
+    with pytest.raises(
+        InputError, match="/forces/1/direction: a vector of zero length given; give one that is not 0, 0, 0"
+    ):
         cable(4, {"kind": "line_weight", "direction": [0, 0, 0]})

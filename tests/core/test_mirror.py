@@ -57,5 +57,7 @@ def test_by_default_the_plane_is_that_of_y_and_z() -> None:
 
 
 def test_a_plane_without_a_normal_is_refused() -> None:
-    with pytest.raises(InputError, match="/forces/0/normal: a vector of zero length given; it needs a direction"):
+    with pytest.raises(
+        InputError, match="/forces/0/normal: a vector of zero length given; give one that is not 0, 0, 0"
+    ):
         mirrored(1.0, normal=[0, 0, 0])

@@ -181,7 +181,7 @@ def test_names_of_losses_survive_a_full_disk(
 
 @pytest.mark.parametrize("name", ["seq", "store"])
 def test_a_mark_with_a_damaged_character_is_repaired(name: str, life: tuple[Ledger, Path], path: Path) -> None:
-    """Marks have no checksum: the number of the last row that is none, and the id of the store with another digit."""
+    """Marks have no checksum: a last row number that does not exist, and the id of the store with another digit."""
     begun(path)
     with closing(sqlite3.connect(path)) as db:
         (value,) = db.execute("SELECT value FROM marks WHERE name = ?", (name,)).fetchone()

@@ -8,33 +8,16 @@ import numpy as np
 from pydantic import field_validator
 
 from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_angles import between, fill, line_angles, turn, within_half_a_turn
+from hookean.forces.line_angles import (
+    angle_and_moment,
+    angle_block,
+    angle_hessian,
+    angle_kernel,
+    line_angles,
+    within_half_a_turn,
+)
 from hookean.values.columns import IndexRows, NonNegatives, PointRows, Reals
 from hookean.values.fields import Field, Maybe
-
-
-def angle_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
-    energy = 0.0
-    g = np.zeros((5, 3))
-    for e in range(indices.shape[0]):
-        sine, cosine, a, b = between(x, indices, e, g)
-        if np.isnan(sine):
-            continue
-        off = np.arctan2(sine, cosine) - parameters[e, 1]
-        energy += 0.5 * parameters[e, 0] * off * off
-        turn(indices, e, parameters[e, 0], parameters[e, 0] * off, a, b, g, f, w)
-    return energy
-
-
-def angle_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
-    g = np.zeros((5, 3))
-    for e in range(indices.shape[0]):
-        sine, cosine, a, b = between(x, indices, e, g)
-        if np.isnan(sine):
-            continue
-        off = np.arctan2(sine, cosine) - parameters[e, 1]
-
-        fill(blocks, e, parameters[e, 0], parameters[e, 0] * off, sine, cosine, a, b, g)
 
 
 class Angle(Force):
@@ -72,15 +55,14 @@ class Angle(Force):
         return None if angle is None else within_half_a_turn(angle)
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: S, rest angle."""
+        """Arrays for the kernel: S, rest angle as both limits."""
         index = places.elements(self)
         rest = line_angles(places.x, index) if self.rest_angle is None else self.rest_angle
-        return Block.of(index, strength=self.strength, rest_angle=rest)
+        return angle_block(index, self.strength, rest, rest)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Angle [rad] and the moment that turns the lines towards each other [force length]."""
-        angle = line_angles(x, block.indices)
-        return {"angle": angle, "moment": block.parameters[:, 0] * (angle - block.parameters[:, 1])}
+        return angle_and_moment(block, x)
 
     @classmethod
     def example(cls) -> tuple[Angle, Floats]:

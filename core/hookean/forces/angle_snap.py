@@ -6,41 +6,10 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_angles import between, fill, line_angles, turn
+from hookean.forces.line_angles import angle_and_moment, angle_block, angle_hessian, angle_kernel
 from hookean.values.columns import IndexRows, NonNegatives, PointRows, Positives
 from hookean.values.fields import Field, Maybe
-
-
-@device
-def beyond(angle: Any, step: Any) -> Any:
-    """How much larger an angle is than the nearest multiple that is at most pi."""
-    return angle - step * np.minimum(np.floor(angle / step + 0.5), np.floor(np.pi / step + 1e-9))
-
-
-def angle_snap_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
-    energy = 0.0
-    g = np.zeros((5, 3))
-    for e in range(indices.shape[0]):
-        sine, cosine, a, b = between(x, indices, e, g)
-        if np.isnan(sine):
-            continue
-        off = beyond(np.arctan2(sine, cosine), parameters[e, 1])
-        energy += 0.5 * parameters[e, 0] * off * off
-        turn(indices, e, parameters[e, 0], parameters[e, 0] * off, a, b, g, f, w)
-    return energy
-
-
-def angle_snap_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
-    g = np.zeros((5, 3))
-    for e in range(indices.shape[0]):
-        sine, cosine, a, b = between(x, indices, e, g)
-        if np.isnan(sine):
-            continue
-        off = beyond(np.arctan2(sine, cosine), parameters[e, 1])
-
-        fill(blocks, e, parameters[e, 0], parameters[e, 0] * off, sine, cosine, a, b, g)
 
 
 class AngleSnap(Force):
@@ -67,17 +36,16 @@ class AngleSnap(Force):
     arity: ClassVar[int] = 4
     solid: ClassVar[bool] = False
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
-    kernel: ClassVar[Any] = staticmethod(angle_snap_kernel)
-    hessian: ClassVar[Any] = staticmethod(angle_snap_hessian)
+    kernel: ClassVar[Any] = staticmethod(angle_kernel)
+    hessian: ClassVar[Any] = staticmethod(angle_hessian)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: S, a."""
-        return Block.of(places.elements(self), strength=self.strength, multiple=self.multiple)
+        return angle_block(places.elements(self), self.strength, 0.0, 0.0, self.multiple)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Angle [rad] and the moment that turns the lines towards each other [force length]."""
-        angle = line_angles(x, block.indices)
-        return {"angle": angle, "moment": block.parameters[:, 0] * beyond(angle, block.parameters[:, 1])}
+        return angle_and_moment(block, x)
 
     @classmethod
     def example(cls) -> tuple[AngleSnap, Floats]:

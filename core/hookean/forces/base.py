@@ -30,6 +30,13 @@ def lengths(vectors: Floats) -> Floats:
     return found
 
 
+def units(vectors: Floats) -> Floats:
+    """Unit vectors (m, 3) along rows (m, 3), or (1, 3) along one vector (3,); none may have zero length."""
+    rows = np.atleast_2d(vectors)
+    rows = rows / np.abs(rows).max(axis=1, keepdims=True)  # squares of what is very small would be 0
+    return np.asarray(rows / lengths(rows)[:, None])
+
+
 PLACES = ("particles", "points", "lines", "mesh")
 """The fields that say where a force acts; a force has some of them and is given exactly one."""
 
@@ -48,7 +55,7 @@ class Block:
     memory: Floats
     names: tuple[str, ...] = ()
     plan: list[Any] = field(default_factory=list)  # what `Force.pack` keeps for the next time
-    rooms: tuple[Any, ...] = ()  # arrays whose addresses stand in `parameters`, to live as long
+    rooms: tuple[Any, ...] = ()  # arrays whose addresses stand in the column `room`, to live as long
 
     @classmethod
     def of(cls, indices: Any, *, memory: int = 0, **columns: Any) -> Block:

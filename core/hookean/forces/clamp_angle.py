@@ -7,42 +7,17 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import field_validator, model_validator
 
-from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_angles import between, fill, line_angles, turn, within_half_a_turn
+from hookean.forces.line_angles import (
+    angle_and_moment,
+    angle_block,
+    angle_hessian,
+    angle_kernel,
+    within_half_a_turn,
+)
 from hookean.forces.line_lengths import in_order
 from hookean.values.columns import IndexRows, NonNegatives, PointRows, Reals
 from hookean.values.fields import Field, Maybe
-
-
-@device
-def outside(angle: Any, low: Any, high: Any) -> Any:
-    """How far an angle is above its upper limit, or below its lower one (then negative); 0 between them."""
-    return angle - np.minimum(np.maximum(angle, low), high)
-
-
-def clamp_angle_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
-    energy = 0.0
-    g = np.zeros((5, 3))
-    for e in range(indices.shape[0]):
-        sine, cosine, a, b = between(x, indices, e, g)
-        if np.isnan(sine):
-            continue
-        off = outside(np.arctan2(sine, cosine), parameters[e, 1], parameters[e, 2])
-        energy += 0.5 * parameters[e, 0] * off * off
-        turn(indices, e, parameters[e, 0], parameters[e, 0] * off, a, b, g, f, w)
-    return energy
-
-
-def clamp_angle_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
-    g = np.zeros((5, 3))
-    for e in range(indices.shape[0]):
-        sine, cosine, a, b = between(x, indices, e, g)
-        if np.isnan(sine):
-            continue
-        off = outside(np.arctan2(sine, cosine), parameters[e, 1], parameters[e, 2])
-        stiffness = parameters[e, 0] if off != 0.0 else 0.0
-        fill(blocks, e, stiffness, parameters[e, 0] * off, sine, cosine, a, b, g)
 
 
 class ClampAngle(Force):
@@ -69,8 +44,8 @@ class ClampAngle(Force):
     arity: ClassVar[int] = 4
     solid: ClassVar[bool] = False
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
-    kernel: ClassVar[Any] = staticmethod(clamp_angle_kernel)
-    hessian: ClassVar[Any] = staticmethod(clamp_angle_hessian)
+    kernel: ClassVar[Any] = staticmethod(angle_kernel)
+    hessian: ClassVar[Any] = staticmethod(angle_hessian)
 
     @field_validator("lower_limit", "upper_limit")
     @classmethod
@@ -84,13 +59,11 @@ class ClampAngle(Force):
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: S, lower and upper limit."""
-        index = places.elements(self)
-        return Block.of(index, strength=self.strength, lower_limit=self.lower_limit, upper_limit=self.upper_limit)
+        return angle_block(places.elements(self), self.strength, self.lower_limit, self.upper_limit)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Angle [rad] and the moment that turns the lines towards each other [force length]."""
-        angle = line_angles(x, block.indices)
-        return {"angle": angle, "moment": block.parameters[:, 0] * outside(angle, *block.parameters[:, 1:].T)}
+        return angle_and_moment(block, x)
 
     @classmethod
     def example(cls) -> tuple[ClampAngle, Floats]:

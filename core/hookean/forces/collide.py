@@ -87,7 +87,7 @@ def collide_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-
             stop += 1
         here = sums(room, stop - start)
         gather(x, indices, parameters, start, here)
-        short = listed(x, indices, parameters, start, stop, room)
+        short = listed(x, indices, parameters, start, stop, room, parameters[start, SKIN])
         energy += push_all(parameters, start, here, short, *pairs(room))
         for i in range(stop - start):
             a = indices[start + i, 0]
@@ -107,7 +107,7 @@ def overlaps(x, indices, parameters, pair, reach):  # type: ignore[no-untyped-de
         room = parameters[start, ROOM]
         while stop < indices.shape[0] and parameters[stop, ROOM] == room:
             stop += 1
-        short = listed(x, indices, parameters, start, stop, room)
+        short = listed(x, indices, parameters, start, stop, room, parameters[start, SKIN])
         starts, found = pairs(room)
         for e in range(start, stop):
             first = int(starts[e - start, 0]) if short else e + 1 - start
@@ -161,7 +161,7 @@ class Collide(Force):
         """Arrays for the kernel: radius, group, stiffness, skin, address of the room for the list of neighbours."""
         index = places.elements(self)
         skin = SKIN_PART * float(np.mean(self.radius)) if len(index) else 0.0
-        room = make_room(len(index), skin)
+        room = make_room(len(index))
         block = Block.of(
             index,
             radius=self.radius,

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import field_validator
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places, lengths
-from hookean.values.columns import IndexRows, Lines, NonNegatives, Vectors, fault
+from hookean.forces.base import Block, Floats, Force, Places, lengths, units
+from hookean.values.columns import Directions, IndexRows, Lines, NonNegatives
 from hookean.values.fields import Field, Maybe
 
 
@@ -47,20 +46,6 @@ def direction_hessian(x, indices, parameters, memory, blocks):  # type: ignore[n
                 blocks[e, 3 + i, j] = -entry
 
 
-def units(vectors: Floats) -> Floats:
-    """Rows (m, 3) of length 1, or one (3,)."""
-    found: Floats = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return found
-
-
-def not_zero(vectors: Floats) -> Floats:
-    """Vectors (m, 3) or one (3,) that have a direction; else a fault of their field."""
-    zero = np.flatnonzero(~(np.linalg.norm(np.atleast_2d(vectors), axis=1) > 1e-100))
-    if len(zero):
-        raise fault("a vector of zero length given; it needs a direction", f"/{zero[0]}" if vectors.ndim > 1 else "")
-    return vectors
-
-
 class Direction(Force):
     """Lines parallel to a direction d that is fixed in space: E = k |part of the line across d|^2 / 2.
 
@@ -74,7 +59,7 @@ class Direction(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends must meet particles")
     stiffness: NonNegatives = Field(default=1.0, description="k [force/length]")
-    direction: Maybe[Vectors] = Field(
+    direction: Maybe[Directions] = Field(
         default=None, description="d, its length is ignored; default: the axis nearest to the line at the start"
     )
 
@@ -88,11 +73,6 @@ class Direction(Force):
     kernel: ClassVar[Any] = staticmethod(direction_kernel)
     hessian: ClassVar[Any] = staticmethod(direction_hessian)
 
-    @field_validator("direction")
-    @classmethod
-    def _has_length(cls, direction: Floats | None) -> Floats | None:
-        return None if direction is None else not_zero(direction)
-
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: k, the unit vector along d."""
         index = places.elements(self)
@@ -100,7 +80,7 @@ class Direction(Force):
             nearest = np.abs(places.x[index[:, 1]] - places.x[index[:, 0]]).argmax(axis=1)
             direction = np.eye(3)[nearest]
         else:
-            direction = np.broadcast_to(units(self.direction), (len(index), 3))
+            direction = units(self.direction)
         return Block.of(index, stiffness=self.stiffness, direction=direction)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:

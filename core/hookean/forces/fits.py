@@ -25,7 +25,7 @@ OTHER, GRADIENT, STEP, SLOPE, PLACE, HESSIAN, BEND, FACTOR, ROOM = 0, 1, 2, 3, 4
 SWEEPS, STEPS = 12, 60
 NEAR, SETTLED = 1e-4, 1e-9  # steps, by the size of the group: taken without a test; the last one
 FARTHEST = 1e5  # times its size, the radius from which on a group is flat
-FLAT = 1e-10  # part of the largest variance below which there is none
+FLAT = 1e-10  # part of the largest variance below which a group has no extent
 
 
 @device
@@ -267,7 +267,7 @@ def normalise(vector: Any) -> None:
 
 @device
 def round_fit(x: Any, indices: Any, parameters: Any, first: Any, fit: Any, a: Any, room: Any) -> Any:
-    """The sphere or circle of a group; False where there is none."""
+    """Fit the sphere or circle of a group; returns False if no such shape exists."""
     shape = parameters[first, SHAPE]
     total = flat_fit(x, indices, parameters, first, PLANE, fit, a)
     size = fit[SIZE]

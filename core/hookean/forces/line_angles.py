@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Floats, lengths
+from hookean.forces.base import Block, Floats, Ints, lengths
 from hookean.values.columns import fault
 
 SHORTEST = 1e-70  # shorter lines have no direction, and no couple
@@ -125,6 +125,58 @@ def fill(blocks: Any, e: Any, stiffness: Any, moment: Any, sine: Any, cosine: An
                     blocks[e, 6 + 3 * p + i, 6 + 3 * q + j] = sign * bb / (b * b)
                     blocks[e, 3 * p + i, 6 + 3 * q + j] = sign * ab / (a * b)
                     blocks[e, 6 + 3 * q + j, 3 * p + i] = sign * ab / (a * b)
+
+
+@device
+def nearest(angle: Any, multiple: Any) -> Any:
+    """The multiple of an angle, up to pi, that is nearest to another angle."""
+    return multiple * np.minimum(np.floor(angle / multiple + 0.5), np.floor(np.pi / multiple + 1e-9))
+
+
+@device
+def beyond(angle: Any, low: Any, high: Any, multiple: Any) -> Any:
+    """How much larger an angle is than the one it turns to: a limit, or the nearest multiple."""
+    return angle - (nearest(angle, multiple) if multiple > 0.0 else np.minimum(np.maximum(angle, low), high))
+
+
+def angle_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    g = np.zeros((5, 3))
+    for e in range(indices.shape[0]):
+        sine, cosine, a, b = between(x, indices, e, g)
+        if np.isnan(sine):
+            continue
+        stiffness = parameters[e, 0]
+        off = beyond(np.arctan2(sine, cosine), parameters[e, 1], parameters[e, 2], parameters[e, 3])
+        energy += 0.5 * stiffness * off * off
+        turn(indices, e, stiffness, stiffness * off, a, b, g, f, w)
+    return energy
+
+
+def angle_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    g = np.zeros((5, 3))
+    for e in range(indices.shape[0]):
+        sine, cosine, a, b = between(x, indices, e, g)
+        if np.isnan(sine):
+            continue
+        low, high = parameters[e, 1], parameters[e, 2]
+        off = beyond(np.arctan2(sine, cosine), low, high, parameters[e, 3])
+        stiffness = parameters[e, 0] if off != 0.0 or low == high else 0.0
+        fill(blocks, e, stiffness, parameters[e, 0] * off, sine, cosine, a, b, g)
+
+
+def angle_block(index: Ints, strength: Any, low: Any, high: Any, multiple: Any = 0.0) -> Block:
+    """Arrays for `angle_kernel`: moment per angle, limits [rad] and, where not 0, the multiple [rad]."""
+    return Block.of(index, strength=strength, lower_limit=low, upper_limit=high, multiple=multiple)
+
+
+def angle_and_moment(block: Block, x: Floats) -> dict[str, Floats]:
+    """Angles [rad] of the elements and the moments that turn their lines towards each other [force length]."""
+    angle = line_angles(x, block.indices)
+    strength, low, high, multiple = block.parameters.T
+    wanted, snaps = np.clip(angle, low, high), multiple > 0.0
+    wanted[snaps] = nearest(angle[snaps], multiple[snaps])
+    return {"angle": angle, "moment": strength * (angle - wanted)}
 
 
 def within_half_a_turn(angle: float | Floats) -> float | Floats:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import field_validator
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places
-from hookean.forces.direction import not_zero, units
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places, units
 from hookean.forces.line_lengths import line
-from hookean.values.columns import IndexRows, Lines, Reals, Vectors
+from hookean.values.columns import Directions, IndexRows, Lines, Reals
 from hookean.values.fields import Field, Maybe
 
 
@@ -53,7 +51,7 @@ class LineWeight(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends must meet particles")
     weight: Reals = Field(default=1.0, description="q [force/length]")
-    direction: Vectors = Field(
+    direction: Directions = Field(
         default=np.array([0.0, 0.0, -1.0]), description="g, direction of gravity; its length is ignored"
     )
 
@@ -67,15 +65,10 @@ class LineWeight(Force):
     kernel: ClassVar[Any] = staticmethod(line_weight_kernel)
     hessian: ClassVar[Any] = staticmethod(line_weight_hessian)
 
-    @field_validator("direction")
-    @classmethod
-    def _has_length(cls, direction: Floats) -> Floats:
-        return not_zero(direction)
-
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: q, the unit vector along g."""
         index = places.elements(self)
-        down = np.broadcast_to(units(self.direction), (len(index), 3))
+        down = units(self.direction)
         return Block.of(index, weight=self.weight, direction=down)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import field_validator
 
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.direction import not_zero, units
+from hookean.forces.base import Block, Floats, Force, Places, units
 from hookean.forces.transform_lock import distance_and_force, image_hessian, image_kernel, images
-from hookean.values.columns import IndexRows, Lines, NonNegatives, Vector
+from hookean.values.columns import Direction, IndexRows, Lines, NonNegatives, Vector
 from hookean.values.fields import Field, Maybe
 
 
@@ -26,7 +24,7 @@ class Mirror(Force):
     lines: Maybe[Lines] = Field(default=None, description="Lines between the pairs; their ends must meet particles")
     stiffness: NonNegatives = Field(default=1.0, description="k [force/length]")
     point: Vector = Field(default=np.zeros(3), description="o, a point of the plane [length]")
-    normal: Vector = Field(
+    normal: Direction = Field(
         default=np.array([1.0, 0.0, 0.0]), description="n, normal to the plane; its length is ignored"
     )
 
@@ -40,14 +38,9 @@ class Mirror(Force):
     kernel: ClassVar[Any] = staticmethod(image_kernel)
     hessian: ClassVar[Any] = staticmethod(image_hessian)
 
-    @field_validator("normal")
-    @classmethod
-    def _has_length(cls, normal: Floats) -> Floats:
-        return not_zero(normal)
-
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: those of `transform_lock`, of the mirror image."""
-        n = units(np.asarray(self.normal))
+        n = units(self.normal)[0]
         linear = np.eye(3) - 2.0 * np.outer(n, n)
         return images(places.elements(self), self.stiffness, linear, 2.0 * (n @ self.point) * n)
 

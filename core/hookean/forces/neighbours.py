@@ -17,7 +17,7 @@ import numpy as np
 from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
 
-SIZE, PAIRS, SKIN, COUNT = range(4)  # the head of a room: elements and pairs it has place for, skin, elements listed
+SIZE, PAIRS, SKIN, COUNT = range(4)  # the head of a room: elements and pairs it has place for; skin, elements listed
 HEAD = 4
 SEEN = 5  # of each element when the list was made: x y z, radius, group
 HERE = 8  # of each element now: x y z, radius; and what a kernel sums: force, stiffness
@@ -27,11 +27,11 @@ LARGE = 4.0  # times the mean radius: what is larger looks at all others
 FARTHEST = 1e15  # cells from the origin
 
 
-def make_room(count: int, skin: float) -> np.ndarray:
-    """A room (1, k) for the list of `count` elements, with a skin [length]; its address goes into parameters."""
+def make_room(count: int) -> np.ndarray:
+    """A room (1, k) for the list of `count` elements; its address goes into the column `room` of parameters."""
     pairs = PER_ELEMENT * count
     room = np.zeros((1, HEAD + (HERE + SEEN + 1) * count + 1 + pairs))
-    room[0, :HEAD] = count, pairs, skin, -1.0
+    room[0, :HEAD] = count, pairs, 0.0, -1.0
     return room
 
 
@@ -42,13 +42,13 @@ def same_group(first: Any, second: Any) -> Any:
 
 
 @device
-def still_listed(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, room: Any) -> Any:
+def still_listed(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, room: Any, skin: Any) -> Any:
     """Whether the list in the room at an address holds all pairs of the elements start to stop."""
     head = rows(room, 1.0, HEAD)
-    if head[0, COUNT] != stop - start:
+    if head[0, COUNT] != stop - start or head[0, SKIN] != skin:
         return False
     seen = rows(room + 8.0 * (HEAD + HERE * head[0, SIZE]), head[0, SIZE], SEEN)
-    most = 0.25 * head[0, SKIN] * head[0, SKIN]
+    most = 0.25 * skin * skin
     same = True
     for i in range(stop - start):
         e = start + i
@@ -144,11 +144,11 @@ def beside(seen: Any, cell: Any, first: Any, order: Any, i: Any, most: Any, reac
 
 
 @device
-def list_pairs(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, room: Any) -> Any:
+def list_pairs(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, room: Any, skin: Any) -> Any:
     """Make the list of all pairs of the elements start to stop; whether there is place for it."""
     head = rows(room, 1.0, HEAD)
-    count, size, skin = stop - start, head[0, SIZE], head[0, SKIN]
-    head[0, COUNT] = -1.0
+    count, size = stop - start, head[0, SIZE]
+    head[0, SKIN], head[0, COUNT] = skin, -1.0
     if count > size:
         return False
     seen = rows(room + 8.0 * (HEAD + HERE * size), size, SEEN)
@@ -184,12 +184,12 @@ def list_pairs(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, roo
 
 
 @device
-def listed(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, room: Any) -> Any:
-    """Whether the list of the elements start to stop in the room at an address is right, which is rebuilt if
-    needed; if there is no place for it, every pair has to be checked."""
-    if still_listed(x, indices, parameters, start, stop, room):
+def listed(x: Any, indices: Any, parameters: Any, start: Any, stop: Any, room: Any, skin: Any) -> Any:
+    """Whether the list of the elements start to stop in the room at an address is right for a skin [length], which is
+    rebuilt if needed; if there is no place for it, every pair has to be checked."""
+    if still_listed(x, indices, parameters, start, stop, room, skin):
         return True
-    return list_pairs(x, indices, parameters, start, stop, room)
+    return list_pairs(x, indices, parameters, start, stop, room, skin)
 
 
 @device

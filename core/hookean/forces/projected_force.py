@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import field_validator
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.direction import not_zero, units
+from hookean.forces.base import Block, Floats, Force, Places, units
 from hookean.forces.line_lengths import length_and_force, line, pull
-from hookean.values.columns import IndexRows, Lines, Reals, Vectors
+from hookean.values.columns import Directions, IndexRows, Lines, Reals
 from hookean.values.fields import Field, Maybe
 
 STEEPEST = 1e-6  # cosine below which a line has no force: that would be more than 1e6 times its component
@@ -70,7 +68,7 @@ class ProjectedForce(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends must meet particles")
     component: Reals = Field(default=1.0, description="H [force], tension +, along the vector")
-    direction: Vectors = Field(
+    direction: Directions = Field(
         default=np.array([1.0, 0.0, 0.0]), description="The vector; its length and sign are ignored"
     )
 
@@ -84,15 +82,10 @@ class ProjectedForce(Force):
     kernel: ClassVar[Any] = staticmethod(projected_force_kernel)
     hessian: ClassVar[Any] = staticmethod(projected_force_hessian)
 
-    @field_validator("direction")
-    @classmethod
-    def _has_length(cls, direction: Floats) -> Floats:
-        return not_zero(direction)
-
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: H, the unit vector."""
         index = places.elements(self)
-        along = np.broadcast_to(units(self.direction), (len(index), 3))
+        along = units(self.direction)
         return Block.of(index, component=self.component, direction=along)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import field_validator
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places, units
 from hookean.forces.pull_to_mesh import away
-from hookean.forces.pull_to_plane import units
-from hookean.values.columns import IndexRows, NonNegatives, Points, Vectors
+from hookean.values.columns import Directions, IndexRows, NonNegatives, Points, Vectors
 from hookean.values.fields import Field, Maybe
 
 
@@ -47,7 +45,7 @@ class PullToLine(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
     points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
     origin: Vectors = Field(default=np.zeros(3), description="O, a point of the line [length], or one for each")
-    direction: Vectors = Field(default=np.array([0.0, 0.0, 1.0]), description="t, or one for each; any length [-]")
+    direction: Directions = Field(default=np.array([0.0, 0.0, 1.0]), description="t, or one for each; any length [-]")
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
 
     formula: ClassVar[str] = "E = k (|x - O|² - (t·(x - O))²)/2"
@@ -58,12 +56,6 @@ class PullToLine(Force):
     outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_to_line_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_to_line_hessian)
-
-    @field_validator("direction")
-    @classmethod
-    def _has_a_direction(cls, direction: Floats) -> Floats:
-        units(direction)
-        return direction
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: strength, origin, unit direction."""

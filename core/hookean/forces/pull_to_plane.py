@@ -1,15 +1,14 @@
-"""Pulls particles onto planes that are fixed in space; what it shares with `pull_to_line` is here."""
+"""Pulls particles onto planes that are fixed in space."""
 
 from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import field_validator
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places, units
 from hookean.forces.pull_to_mesh import away
-from hookean.values.columns import IndexRows, NonNegatives, Points, Vectors, fault
+from hookean.values.columns import Directions, IndexRows, NonNegatives, Points, Vectors
 from hookean.values.fields import Field, Maybe
 
 
@@ -33,17 +32,6 @@ def pull_to_plane_hessian(x, indices, parameters, memory, blocks):  # type: igno
                 blocks[e, i, j] = parameters[e, 0] * (parameters[e, 4 + i] * parameters[e, 4 + j])
 
 
-def units(vectors: Floats) -> Floats:
-    """Vectors (3,) or (m, 3) with length 1; raises a validation error where one has no length."""
-    rows = np.atleast_2d(vectors)
-    largest = np.abs(rows).max(axis=1, keepdims=True, initial=0.0)
-    if not largest.all():
-        spot = f"/{int(np.argmin(largest))}" if vectors.ndim > 1 else ""
-        raise fault("a vector of zero length given; give one that is not 0, 0, 0", spot)
-    scaled = rows / largest  # squares of what is very small would be 0
-    return np.asarray(scaled / np.linalg.norm(scaled, axis=1, keepdims=True))
-
-
 class PullToPlane(Force):
     """Particles pulled to the closest point of a plane that stays where it is: E = k d^2 / 2, d = n . (x - O).
 
@@ -55,7 +43,7 @@ class PullToPlane(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
     points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
     origin: Vectors = Field(default=np.zeros(3), description="O, a point of the plane [length], or one for each")
-    normal: Vectors = Field(default=np.array([0.0, 0.0, 1.0]), description="n, or one for each; any length [-]")
+    normal: Directions = Field(default=np.array([0.0, 0.0, 1.0]), description="n, or one for each; any length [-]")
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
 
     formula: ClassVar[str] = "E = k (n·(x - O))²/2"
@@ -66,12 +54,6 @@ class PullToPlane(Force):
     outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_to_plane_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_to_plane_hessian)
-
-    @field_validator("normal")
-    @classmethod
-    def _has_a_direction(cls, normal: Floats) -> Floats:
-        units(normal)
-        return normal
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: strength, origin, unit normal."""

@@ -8,10 +8,9 @@ import numpy as np
 from pydantic import field_validator
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places, lengths
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places, lengths, units
 from hookean.forces.power_law import NEAREST, STEEPEST
-from hookean.forces.pull_to_plane import units
-from hookean.values.columns import IndexRows, Points, Reals, Vectors, fault
+from hookean.values.columns import Directions, IndexRows, Points, Reals, Vectors, fault
 from hookean.values.fields import Field, Maybe
 
 
@@ -76,7 +75,7 @@ class Vortex(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Particles")
     points: Maybe[Points] = Field(default=None, description="Coordinates of particles")
     origin: Vectors = Field(default=np.zeros(3), description="A point of the axis [length], or one for each")
-    axis: Vectors = Field(default=np.array([0.0, 0.0, 1.0]), description="Its direction, or one for each [-]")
+    axis: Directions = Field(default=np.array([0.0, 0.0, 1.0]), description="Its direction, or one for each [-]")
     strength: Reals = Field(default=1.0, description="S [force/length^n]; negative: it turns clockwise")
     exponent: Reals = Field(default=0.0, description="n [-]")
     cutoff: Reals = Field(
@@ -100,12 +99,6 @@ class Vortex(Force):
         if len(steep):
             raise fault(f"{steep[0]:g} given; exponents from -{STEEPEST:g} to {STEEPEST:g} allowed")
         return exponent
-
-    @field_validator("axis")
-    @classmethod
-    def _has_a_direction(cls, axis: Floats) -> Floats:
-        units(axis)
-        return axis
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: strength, exponent, cutoff, a point and the unit direction of the axis."""

@@ -119,9 +119,11 @@ def _rows(system: System, group: Group, part: Part) -> Floats:
     fresh = system.places.recompile(part.number, part.force)
     met = (fresh.indices >= 0).all(axis=1)
     indices, parameters = fresh.indices[met], fresh.parameters[met]
-    group.block.rooms += fresh.rooms
     if not np.array_equal(indices, group.block.indices[part.rows]):
         raise InputError(f"/forces/{part.number}", "this field sets which particles it acts on; send a new scene")
+    if fresh.rooms:  # its elements stay in the room they have
+        column = fresh.names.index("room")
+        parameters[:, column] = group.block.parameters[part.rows, column]
     return parameters
 
 

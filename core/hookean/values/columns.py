@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, PlainSerializer, PlainValidator, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, ConfigDict, PlainSerializer, PlainValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from hookean.values.fields import OneError
@@ -187,6 +187,14 @@ def _vectors(value: Any) -> NDArray[np.float64]:
     return array
 
 
+def _nonzero(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    zero = np.flatnonzero(~np.atleast_2d(vectors).any(axis=1))
+    if len(zero):
+        spot = f"/{zero[0]}" if vectors.ndim > 1 else ""
+        raise fault("a vector of zero length given; give one that is not 0, 0, 0", spot)
+    return vectors
+
+
 def _whole(value: Any) -> NDArray[np.int64]:
     array = _decoded(value)
     if array.size == 0:
@@ -310,6 +318,8 @@ if TYPE_CHECKING:
     Table = Column[Floats]
     Vector = Column[Floats]
     Vectors = Column[Floats]
+    Direction = Column[Floats]
+    Directions = Column[Floats]
     Indices = Column[Ints]
     Labels = Column[Ints]
     IndexRows = Column[Ints]
@@ -337,6 +347,10 @@ else:
     """One vector `(3,)`."""
     Vectors = Annotated[NDArray[np.float64], PlainValidator(_vectors), _out, _json(_TRIPLE, _TRIPLE)]
     """One vector `(3,)` or one for each element `(m, 3)`."""
+    Direction = Annotated[Vector, AfterValidator(_nonzero)]
+    """One vector `(3,)` of any length but 0."""
+    Directions = Annotated[Vectors, AfterValidator(_nonzero)]
+    """Vectors of any length but 0, one `(3,)` or one for each element `(m, 3)`."""
     Indices = Annotated[NDArray[np.int64], PlainValidator(_indices), _out, _json(_WHOLE)]
     """Particles `(m,)`, counted from 0."""
     Labels = Annotated[NDArray[np.int64], PlainValidator(_labels), _out, _json({"type": "integer"})]
