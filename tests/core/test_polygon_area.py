@@ -59,5 +59,5 @@ def test_a_rhombus_with_stiff_sides_opens_to_its_area() -> None:
 def test_polygons_are_closed_and_have_an_area(given: dict[str, Any], message: str) -> None:
     """An edge missing, one turned round, one polygon in two groups, two edges back and forth."""
     x = [[0, 0, 0], [2.0, 0, 0], [2.0, 1.0, 0], [0, 1.0, 0]]
-    with pytest.raises(InputError, match=f"/forces: {message}"):
+    with pytest.raises(InputError, match=f"/forces/0: {message}"):
         relax(Scene(particles=x, forces=[{"kind": "polygon_area", **given}]))

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import threading
 from concurrent.futures import Future
+from contextlib import suppress
 from typing import Any
 
 import pytest
 
 from hookean import Scene, Simulation
+from hookean_server.problems import Problem
 from hookean_server.sessions import parts, rows
 from hookean_server.sessions import process as module
 from hookean_server.sessions.process import Gone, SessionProcess
 from hookean_server.store import Store
-from serving import CABLE, HANG
+from serving import CABLE, HANG, wait_for
+
+from .test_pool import MESSAGE
 
 MEMORY = 4 << 30
 
@@ -43,6 +48,40 @@ def test_the_end_is_told_by_two_threads_at_once(monkeypatch: pytest.MonkeyPatch)
         with pytest.raises(Gone):
             asyncio.run(_asked_until_gone(process))
     assert lost.wait(HANG)
+
+
+def test_what_is_still_written_reaches_no_other_session(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As for workers (see test_pool): the thread that writes may get no processor until the next process is there."""
+    send, go, written, lost = module.channel.send, threading.Event(), threading.Event(), threading.Event()
+
+    def late(connection: Any, head: dict[str, Any], body: bytes = b"") -> None:
+        if head["do"] != "late":
+            return send(connection, head, body)
+        number = connection.fileno()
+        assert go.wait(HANG)
+        with suppress(OSError):
+            os.write(number, MESSAGE)
+        written.set()
+        return None
+
+    async def answered(process: SessionProcess, do: str) -> None:
+        await process.call(do, seconds=HANG)
+
+    monkeypatch.setattr(module.channel, "send", late)
+    others = threading.enumerate()
+    first = SessionProcess(MEMORY, lambda head, _: lost.set() if head["event"] == "lost" else None)
+    first._send({"do": "late"}, b"")
+    first.kill()
+    assert lost.wait(HANG)
+    wait_for(lambda: sum(thread not in others for thread in threading.enumerate()) == 1)  # the one that writes
+    second = SessionProcess(MEMORY, lambda head, _: None)
+    try:
+        go.set()
+        assert written.wait(HANG)
+        with pytest.raises(Problem, match="not open yet"):
+            asyncio.run(answered(second, "describe"))
+    finally:
+        second.kill()
 
 
 def test_drags_by_pins_are_few_rows_and_come_back_whole() -> None:

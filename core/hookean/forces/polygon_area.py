@@ -104,14 +104,10 @@ class PolygonArea(groups.Grouped):
         out, into = (np.sort(head * size + end) for end in block.indices.T)
         if (out != into).any():
             at = int(out[np.argmax(out != into)] % size)
-            raise InputError(
-                "/forces", f"the edges of a polygon_area are open near particle {at}; give closed polygons"
-            )
+            raise InputError("", f"the edges of a polygon_area are open near particle {at}; give closed polygons")
         area = self.area_factor * areas(block, places.x)
         if not (area > 0.0).all():
-            raise InputError(
-                "/forces", "a polygon of a polygon_area has no area at the start; give it a shape with area"
-            )
+            raise InputError("", "a polygon of a polygon_area has no area at the start; give it a shape with area")
         found = np.zeros(len(index))
         found[met] = area
         return Block.of(index, links=links, stiffness=self.stiffness, area=np.where(met, found, 1.0))

@@ -17,7 +17,7 @@ from hookean.scene.scene import Scene
 from hookean.system import components
 from hookean.system.components import Components
 from hookean.system.state import State
-from hookean.system.weld import Welded, fits
+from hookean.system.weld import Welded
 
 if TYPE_CHECKING:
     from hookean.films import Films
@@ -308,8 +308,7 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
     joined: dict[type[Force], list[tuple[int, Force, Block, Ints]]] = {}
     for number, force in given:
         pointer = f"/forces/{number}" if number >= 0 else "/settings/floor"
-        fits(force, pointer, welded)
-        block = force.compile(welded)
+        block = welded.block(force, pointer)
         welded.check_force(force, pointer)
         inputs = np.arange(len(block.indices))
         if block.indices.min(initial=0) < 0:

@@ -114,8 +114,17 @@ class Welded:
         self._pointer[id(force)] = f"/forces/{number}"
         if id(first) in self._rows:
             self._rows[id(force)] = self._rows[id(first)]
-        fits(force, f"/forces/{number}", self)
-        return force.compile(self)
+        return self.block(force, f"/forces/{number}")
+
+    def block(self, force: Force, pointer: str) -> Block:
+        """A force compiled to arrays; InputError at its pointer or a place in the scene where it does not fit."""
+        fits(force, pointer, self)
+        try:
+            return force.compile(self)
+        except InputError as error:
+            if error.pointer:
+                raise
+            raise InputError(pointer, error.sentence) from None  # of the force as a whole
 
     def _checked(self, rows: Ints, arity: int, pointer: str) -> Ints:
         if rows.shape[1] != arity and len(rows):

@@ -130,8 +130,7 @@ class SessionProcess:
         self._fail()
         self.on_event({"event": "lost"}, b"")
         self.join(1.0)
-        self._orders.put(None)
-        connection.close()
+        self._orders.put(None)  # the pipe is closed once neither thread has it
 
     def _fail(self) -> None:
         for future in list(self._waiting.values()):

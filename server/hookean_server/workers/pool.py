@@ -249,13 +249,12 @@ class Lane(threading.Thread):
     def kill(self) -> None:
         """End the worker now."""
         process, self.process = self.process, None
-        connection, self.connection = self.connection, None
+        # closed once no thread has it: what one is about to write must not reach the next worker by the same number
+        self.connection = None
         if process is not None:
             with suppress(OSError, ValueError, AttributeError):
                 process.kill()
                 process.join(1.0)
-        if connection is not None:
-            connection.close()
 
     def _refuse_the_rest(self) -> None:
         with suppress(queue.Empty):
