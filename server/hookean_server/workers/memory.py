@@ -10,7 +10,7 @@ def limit_memory(memory: int) -> None:
     """At most `memory` bytes more than now, where the system can hold us to it; and no memory left in a core file."""
     if sys.platform != "linux":
         return
-    with suppress(Exception):
+    with suppress(OSError, ValueError):
         import resource
 
         with open("/proc/self/statm", encoding="ascii") as file:
@@ -23,7 +23,7 @@ def return_pages() -> None:
     """Give the memory of large values back to the system as soon as they are gone, not when its neighbours are."""
     if sys.platform != "linux":
         return
-    with suppress(Exception):
+    with suppress(OSError, AttributeError):  # other C libraries than glibc do not have it
         import ctypes
 
         ctypes.CDLL(None).mallopt(-3, 256 * 2**10)  # M_MMAP_THRESHOLD; set once, it does not grow
@@ -33,7 +33,7 @@ def keep_pages() -> None:
     """Take arrays up to 64 MB from memory that was used before: fresh pages cost more than the sums on them."""
     if sys.platform != "linux":
         return
-    with suppress(Exception):
+    with suppress(OSError, AttributeError):  # other C libraries than glibc do not have it
         import ctypes
 
         libc = ctypes.CDLL(None)

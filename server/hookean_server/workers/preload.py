@@ -5,11 +5,13 @@ import signal
 # a terminal sends Ctrl-C to every process of the group; the service alone decides what it means
 signal.signal(signal.SIGINT, signal.SIG_IGN)
 
-from contextlib import suppress  # noqa: E402
+import logging  # noqa: E402
 
 from hookean_server.http import logs  # noqa: E402
 from hookean_server.workers.warm import warm  # noqa: E402
 
 logs.begin()
-with suppress(Exception):
+try:
     warm()
+except Exception:  # each worker compiles what it needs by itself
+    logging.getLogger("hookean.worker").exception("the kernels could not be loaded beforehand")

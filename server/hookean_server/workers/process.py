@@ -26,8 +26,7 @@ def work(connection: Connection, memory: int, forked: bool, nice: int = 0) -> No
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides
     _die_with_parent(forked)
     if not forked:
-        with suppress(Exception):
-            __import__("hookean_server.workers.preload")
+        from hookean_server.workers import preload  # noqa: F401
     limit_memory(memory)
     if nice and hasattr(os, "nice"):
         os.nice(nice)
@@ -80,7 +79,7 @@ def _die_with_parent(forked: bool) -> None:
     if forked and sys.platform == "linux":
         # libraries that hold the interpreter's lock stall the thread above; the kernel waits for nobody.
         # Our parent is the fork server, which ends with the server.
-        with suppress(Exception):
+        with suppress(OSError, AttributeError):
             import ctypes
 
             ctypes.CDLL(None).prctl(1, signal.SIGKILL)
