@@ -18,7 +18,7 @@ from hookean.linear import sparse_factors as factor
 from hookean.linear.sparse_factors import Factors
 from hookean.solvers.newton import Pattern
 from hookean.system.system import compile
-from soak import SOAK
+from soak import SOAK, THREADS
 
 from ..laws.scenes import random_scene
 
@@ -141,10 +141,9 @@ def test_bits_do_not_depend_on_threads() -> None:
     written = net(40, "newton").canonical
     digests = []
     for threads in ("1", "2"):
-        names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS")
         done = subprocess.run(
             [sys.executable, "-c", script],
-            env={**os.environ, **dict.fromkeys(names, threads)},
+            env={**os.environ, **dict.fromkeys(THREADS, threads)},
             input=written,
             capture_output=True,
             text=True,

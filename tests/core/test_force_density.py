@@ -22,7 +22,7 @@ from hookean.linear.laplacian import Laplacian, laplacian
 from hookean.solvers import force_density, solver
 from hookean.solvers.auto import SOLVES
 from hookean.system.system import System, compile
-from soak import SOAK
+from soak import SOAK, THREADS
 
 SEEDED = settings(max_examples=300 if SOAK else 30, derandomize=True, deadline=None)
 EPS = float(np.finfo(float).eps)
@@ -239,10 +239,9 @@ def test_bits_do_not_depend_on_threads() -> None:
     written = grid(125, lambda u, v: np.sin(3.0 * u) * v)[0].canonical
     digests = []
     for threads in ("1", "2"):
-        names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
         done = subprocess.run(
             [sys.executable, "-c", script],
-            env={**os.environ, **dict.fromkeys(names, threads)},
+            env={**os.environ, **dict.fromkeys(THREADS, threads)},
             input=written,
             capture_output=True,
             text=True,
