@@ -169,7 +169,7 @@ def test_steps_do_not_grow_with_the_net(monkeypatch: pytest.MonkeyPatch) -> None
     """Conjugate gradients to rounding: at most 4 steps more for nine times the particles, and 22 in all. A step takes
     away nine tenths of what is left, so 16 digits of forces take 16, and some more as the net has more of them."""
     steps = []
-    for side in (100, 300):
+    for side in (60, 300 if SOAK else 180):
         count = 0
         cycle = _levels.Hierarchy.cycle
 

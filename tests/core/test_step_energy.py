@@ -122,10 +122,10 @@ def random_motion(seed: int) -> Spec:
 
 @pytest.mark.slow
 def test_every_step_that_is_named_holds_in_the_same_motion():
-    """Sixteen random motions, in soak forty, whose step is often too long: each step that a diverged run names, taken
+    """Eight random motions, in soak forty, whose step is often too long: each step that a diverged run names, taken
     from the start for the time that the message has, does not diverge."""
     named = 0
-    runs = 40 if SOAK else 16
+    runs = 40 if SOAK else 8
     for seed in range(runs):
         spec = random_motion(seed)
         simulation = Simulation(Scene.read(spec))

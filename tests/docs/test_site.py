@@ -159,7 +159,9 @@ def test_a_digest_names_the_sources(site: Path) -> None:
 def test_a_warning_fails_the_build(tmp_path: Path) -> None:
     """A page in the navigation that does not exist is a warning of MkDocs: exit code 1, and its name is printed."""
     source = ROOT / "docsite"
-    lines = [f"INHERIT: {source}/mkdocs.yml", f"docs_dir: {ROOT}/docs", f"hooks: [{source}/hooks.py]"]
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "index.md").write_text("# Start\n")
+    lines = [f"INHERIT: {source}/mkdocs.yml", "docs_dir: docs", f"hooks: [{source}/hooks.py]"]
     lines += [f"theme: {{custom_dir: {source}/theme}}", "nav: [nothing-here.md]"]
     (tmp_path / "mkdocs.yml").write_text("\n".join(lines))
     call = "import sys; from pathlib import Path; from docsite.build import pages; pages(*map(Path, sys.argv[1:]))"
