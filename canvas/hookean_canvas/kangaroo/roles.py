@@ -43,7 +43,7 @@ solidplanecollide rigidbody rigidbodycollide rigidpointset floorfriction collide
 REASONS: dict[str, str] = {
     "fd": "Constant Tension takes a force; Springs with rest length 0 take the force density",
     "areaweight": "Area Weight takes a mesh and a weight per area",
-    "tangentialsmooth": "SoapFilm keeps its triangles even by itself",
+    "tangentialsmooth": "SoapFilm keeps its triangles even by itself; TangentialSmooth takes a mesh and a stiffness",
     "soapfilm": "connect a mesh to SoapFilm",
     "pressure": "connect a mesh to Pressure",
     "wind": "Wind takes a velocity pressure and a direction",

@@ -134,17 +134,12 @@ class VertexAngles(groups.Grouped):
         found: list[tuple[type[Force], Block]] = []
         for rows in groups.by_size(block):
             many, corners = rows.shape
-            ends = block.indices[rows, 1:].reshape(many, -1)
-            order = np.argsort(ends, axis=1, kind="stable")
-            # every neighbour is in two corners
-            place = np.empty_like(order)
-            np.put_along_axis(place, order, np.arange(2 * corners)[None, :] // 2, axis=1)
-            index = np.column_stack([block.indices[rows[:, 0], 0], np.take_along_axis(ends, order, 1)[:, ::2]])
+            index, place = rings(block, rows)
             slope = np.zeros((many, corners + 1, 3))
             whole = np.zeros((many, corners + 1, 3, corners + 1, 3))
             each = np.arange(many)
             for j in range(corners):
-                own = [np.zeros_like(each), 1 + place[:, 2 * j], np.zeros_like(each), 1 + place[:, 2 * j + 1]]
+                own = place[:, j, [0, 1, 0, 2]].T
                 for p in range(4):
                     slope[each, own[p]] += slopes[rows[:, j], 3 * p : 3 * p + 3]
                     for q in range(4):
@@ -159,6 +154,19 @@ class VertexAngles(groups.Grouped):
     def no_tangent(cls, block: Block, *, sparse: bool) -> str:
         """Vertices have few neighbours."""
         return ""
+
+
+def rings(block: Block, rows: Ints) -> tuple[Ints, Ints]:
+    """Of vertices with `rows` (k, c) of corners the particles (k, 1 + c), the vertex and its neighbours, and which of
+    these each corner has (k, c, 3): every neighbour is in two corners."""
+    many, corners = rows.shape
+    ends = block.indices[rows, 1:].reshape(many, -1)
+    order = np.argsort(ends, axis=1, kind="stable")
+    place = np.empty_like(order)
+    np.put_along_axis(place, order, np.arange(2 * corners)[None, :] // 2, axis=1)
+    own = np.zeros((many, corners, 3), np.int64)
+    own[:, :, 1:] = 1 + place.reshape(many, corners, 2)
+    return np.column_stack([block.indices[rows[:, 0], 0], np.take_along_axis(ends, order, 1)[:, ::2]]), own
 
 
 def around(faces: Ints) -> Ints:
