@@ -208,18 +208,18 @@ def test_goals_in_one_stream_are_sorted_and_show_becomes_a_parameter() -> None:
 
 def test_a_goal_without_counterpart_keeps_its_whole_system_as_it_was() -> None:
     """Half a system runs in neither engine: solver and goals stay on with their wires, and a mesh tool beside them."""
-    d = Kangaroo("stays", "Stays", "Planarize and Refine.")
+    d = Kangaroo("stays", "Stays", "Isothermic and Refine.")
     mesh = d.parameter("Mesh", "Mesh")
     refined = d.kangaroo("Refine", (("M", None), ("L", 1)), ["M"], m=mesh)
     edges = d.kangaroo("EdgeLengths", (("Mesh", None), ("LengthFactor", 1.0), ("Strength", 1.0)), ["EL"], mesh=refined)
-    d.solved(d.kangaroo("Planarize", (("M", None), ("Strength", 1.0)), ["P"], m=refined), edges)
+    d.solved(d.kangaroo("Isothermic", (("M", None), ("Strength", 1.0)), ["P"], m=refined), edges)
     after, report = translated(d)
     assert (report.solvers, report.whole, report.swapped, report.lost) == (1, 0, [], [])
     assert dict(report.stays) == {
         "Refine": "a tool for geometry; it stays on, as it comes with Rhino",
-        "Planarize": "geometry without mechanics (planar, tangent ...) is not here",
+        "Isothermic": "geometry without mechanics of this kind is not here",
         "EdgeLengths": "it stays with Solver",
-        "Solver": "it stays with all its goals, because of Planarize",
+        "Solver": "it stays with all its goals, because of Isothermic",
     }
     assert same_objects(d.archive(), after) == []
     names = [c.value("Name") for c in after.chunk("Definition").chunk("GHALibraries").chunks]  # type: ignore[union-attr]
@@ -396,7 +396,7 @@ SAMPLES: dict[Any, Chunk] = {}
 GOALS: list[tuple[str, str, str]] = [
     ("Length(Line)", "Line Length Strength", "S"),
     ("Show", "G", "G"),
-    ("Planarize", "M Strength", "P"),
+    ("Isothermic", "M Strength", "P"),
     ("AnchorXYZ", "P X Y Z Strength", "A"),
     ("Anchor", "P T Strength", "A"),
     ("Load", "P FV W", "U"),

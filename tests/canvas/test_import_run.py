@@ -172,3 +172,44 @@ def test_goals_that_pull_with_half_of_their_strength_pull_so_here(tmp_path: Path
     d.panel("particles", solver["V"])
     found = np.sort(places(ran(d, tmp_path))[:, 2])
     np.testing.assert_allclose(np.diff(found), [0.04, 1.0], atol=1e-4)
+
+
+MESHES = """
+import math
+import Rhino.Geometry as rg
+
+
+def of(points, faces):
+    mesh = rg.Mesh()
+    for x, y, z in points:
+        mesh.Vertices.Add(x, y, z)
+    for face in faces:
+        mesh.Faces.AddFace(*face)
+    return mesh
+
+
+rim = [(math.cos(i * math.pi / 3), math.sin(i * math.pi / 3), 0.0) for i in range(6)]
+quad = [(5.0, 0.0, 0.0), (6.0, 0.0, 0.0), (6.0, 1.0, 0.5), (5.0, 1.0, 0.0)]
+fan = of([(0.0, 0.0, 0.0)] + rim, [(0, 1 + i, 1 + (i + 1) % 6) for i in range(6)])
+twisted = of(quad, [(0, 1, 2, 3)])
+held = [rg.Point3d(*p) for p in rim + quad[:2] + quad[3:]]
+"""
+
+
+def test_goals_of_meshes_find_the_shapes_that_they_find_in_kangaroo(tmp_path: Path) -> None:
+    """Smooth pulls with half of its strength: 3 N on the middle of a held ring, with 4 N/m, is 1.5 m below the mean.
+    Planarize brings the fourth corner of a quad into the plane of the others, which are held."""
+    d = Kangaroo("meshes", "Meshes", "Smooth and Planarize.")
+    made = d.script("Meshes", MESHES, {}, ["fan", "twisted", "held"])
+    fixed = (("P", None), ("X", True), ("Y", True), ("Z", True), ("Strength", 1000.0))
+    goals = [
+        d.kangaroo("Smooth", (("M", None), ("Strength", 4.0)), ["Smooth"], m=made["fan"]),
+        d.kangaroo("Planarize", (("M", None), ("Strength", 10.0)), ["Planarize"], m=made["twisted"]),
+        d.kangaroo("AnchorXYZ", fixed, ["A"], p=made["held"]),
+        d.kangaroo("Load", (("P", None), ("FV", (0.0, 0.0, -3.0))), ["U"], p=d.point(0, 0, 0)),
+    ]
+    solver = d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goals, reset=d.toggle("Reset", False))
+    d.panel("particles", solver["V"])
+    found = places(ran(d, tmp_path))
+    np.testing.assert_allclose(found[np.abs(found[:, :2]).max(axis=1) < 0.1], [[0.0, 0.0, -1.5]], atol=1e-4)
+    np.testing.assert_allclose(found[found[:, 0] > 4.5, 2], np.zeros(4), atol=1e-4)

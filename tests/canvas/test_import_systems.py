@@ -207,7 +207,7 @@ def test_solvers_that_share_a_goal_are_translated_both_or_neither(foreign: bool)
 def test_a_solver_fed_by_the_shapes_of_another_is_a_system_of_its_own() -> None:
     """The first has a goal without counterpart; the second takes its points for springs of its own."""
     d, line = start()
-    first = d.solved(d.kangaroo("Planarize", (("M", None),), ["P"], m=line))
+    first = d.solved(d.kangaroo("Isothermic", (("M", None),), ["P"], m=line))
     ends = d.kangaroo("Anchor", ANCHOR, ["A"], guid=SOFT, p=first["V"])
     last = d.kangaroo(
         "Solver", SOLVER, ["I", "V", "O"], goalobjects=[ends, d.parameter("Data", "Shapes", source=first["O"])]
@@ -269,7 +269,7 @@ def test_grab_becomes_nothing_as_it_acts_only_while_the_mouse_drags() -> None:
     assert report.values == [] and the(after, "Grab").guid == PARAMETERS["Data"] and remaining(after) == 0
 
 
-KINDS = [("Length(Line)", "Line"), ("Load", "P"), ("EdgeLengths", "Mesh"), ("Planarize", "M"), ("Show", "G")]
+KINDS = [("Length(Line)", "Line"), ("Load", "P"), ("EdgeLengths", "Mesh"), ("Isothermic", "M"), ("Show", "G")]
 TRANSLATED = {"Length(Line)", "Load", "EdgeLengths", "Show"}
 
 

@@ -206,3 +206,52 @@ def test_a_hinge_is_the_same_whichever_end_of_it_is_named_first(seed: int) -> No
         found.append(system.evaluate(system.start()))
     for one, other in zip(*found, strict=True):
         assert one == pytest.approx(other, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("swing", [0.05, 0.4])
+def test_a_hinge_with_a_limit_yields(swing: float) -> None:
+    """Perfectly plastic at the moment S x limit: folded by `swing` the rest angle follows by swing - limit, and back
+    again: the moments of the loop are +-S limit; below the limit there is no trace."""
+    limit, strength = 0.1, 7.0
+    system = compile(Scene(particles=folded(0.0), forces=[hinge(strength=strength, limit=limit)]))
+    state, moments = system.start(), []
+    for angle in (swing, 0.0, -swing, 0.0, swing):
+        state.x = folded(angle)
+        system.remember(state)
+        f, _, _ = system.evaluate(state)
+        moments.append(-np.linalg.norm(f[2]) * 1.5 * np.sign(f[2, 2]))  # tip 1 is 1.5 above the edge
+    most, back = strength * min(limit, swing), -strength * limit if swing > limit else 0.0
+    assert moments == pytest.approx([most, back, -most, -back, most], abs=1e-13)
+
+
+def vertex(sector: float, rise: float) -> tuple[np.ndarray, list[list[int]]]:
+    """Four triangles round a vertex with the sectors a, a, pi - a, pi - a, of which the tips are raised a little, and
+    the hinges between them: the second and the fourth are in one line."""
+    turn = np.cumsum([0.0, sector, sector, np.pi - sector])
+    x = np.vstack([np.zeros(3), np.column_stack([np.cos(turn), np.sin(turn), 0.0 * turn])])
+    x[1:, 2] = rise * np.array([0.2, 0.0, 0.2, 0.1])
+    return x, [[0, 1 + i, 1 + (i + 1) % 4, 1 + (i - 1) % 4] for i in range(4)]
+
+
+@pytest.mark.parametrize("degrees", [50.0, 65.0])
+@pytest.mark.parametrize("folding", [0.3, 0.7])
+def test_a_vertex_of_miura_ori_folds_in_its_one_way(degrees: float, folding: float) -> None:
+    """Opposite folds are equally large, and tan(h / 2) = tan(g / 2) cos(a) for those in one line, h: the one degree of
+    freedom of a flat-foldable vertex with the sectors a, a (Tachi, "Generalization of rigid foldable quadrilateral
+    mesh origami", 2009). One hinge folds a part of half a turn; at the end it and the springs that keep the faces
+    rigid are without force: to 1e-6."""
+    sector = np.radians(degrees)
+    x, hinges = vertex(sector, 0.5)
+    flat, _ = vertex(sector, 0.0)
+    pairs = np.array([[0, 1], [0, 2], [0, 3], [0, 4], [1, 2], [2, 3], [3, 4], [4, 1]])
+    length = np.linalg.norm(flat[pairs[:, 1]] - flat[pairs[:, 0]], axis=1)
+    forces = [
+        Springs(particles=pairs, stiffness=1e3, rest_length=length),
+        Hinge(particles=hinges[:1], strength=1.0, rest_angle=np.pi, angle_factor=folding),
+    ]
+    found = relax(Scene(particles=x, forces=forces, settings={"tolerance": 1e-11, "max_iterations": 200000}))
+    angle = fold_angles(found.particles, np.array(hinges))
+    assert found.converged
+    assert abs(angle[0]) == pytest.approx(folding * np.pi, abs=1e-6)
+    assert np.abs(angle[2:]) == pytest.approx(np.abs(angle[:2]), abs=1e-6)
+    assert np.tan(0.5 * abs(angle[1])) == pytest.approx(np.tan(0.5 * abs(angle[0])) * np.cos(sector), abs=1e-6)

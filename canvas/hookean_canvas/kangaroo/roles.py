@@ -27,13 +27,14 @@ unroller vertexneighbours warpweft counter sequence trail wave
 """
 _SOLVERS, _TOOLS = frozenset(_SOLVER_NAMES.split()), frozenset(_TOOL_NAMES.split())
 
-_PURE = "geometry without mechanics (planar, tangent ...) is not here"
+_PURE = "geometry without mechanics of this kind is not here"
 _THERE = "hookean has this force (see From Kangaroo in its documentation), but it is not translated"
 _COLLIDE = "collisions other than of spheres and with floors are not here"
-_PURE_NAMES = "planarize cyclicquad tangentincircles conicalize developablize isothermic g2"
+_PURE_NAMES = "isothermic g2 gstring"
 _THERE_NAMES = """
 equalangle equalize equalizeangles align lengthratio lengthsnap anglesnap clampangle colinear cospherical cocircular
 polygonarea transform mirror translationlock magnetsnap plasticlength dynamicweight1d vortex gasvolume rocket
+tangentincircles conicalize developablize planarizequads cpmesh laplacian meshsmooth hydro hydromesh windmesh
 """
 _COLLIDE_NAMES = """
 collide2d collider curvecollide curvepointcollide imagecircles softbodycollide solidpointcollide
@@ -41,12 +42,11 @@ solidplanecollide rigidbody rigidbodycollide rigidpointset floorfriction collide
 """
 REASONS: dict[str, str] = {
     "fd": "Constant Tension takes a force; Springs with rest length 0 take the force density",
-    "areaweight": "Self Weight takes a total or a weight per length",
-    "tangentialsmooth": "SoapFilm keeps its triangles even by itself",
-    "smooth": "smoothing is not here",
+    "areaweight": "Area Weight takes a mesh and a weight per area",
+    "tangentialsmooth": "SoapFilm keeps its triangles even by itself; TangentialSmooth takes a mesh and a stiffness",
     "soapfilm": "connect a mesh to SoapFilm",
     "pressure": "connect a mesh to Pressure",
-    "wind": "wind is not here; Pressure acts along the normals",
+    "wind": "Wind takes a velocity pressure and a direction",
     "volume": "Volume takes the bulk modulus of what is in the mesh, another quantity than the strength in Kangaroo",
     "particle": "masses and first velocities are fields of a scene; the canvas has no component for them",
     "beam": "beams of six degrees of freedom are not here",

@@ -179,6 +179,16 @@ CLASSIC: dict[str, Swap] = {
         strength="strength",
         restangle="rest_angle",
     ),
+    "planarize": _force(
+        "Planarize",
+        "p",
+        "k by the distance between the diagonals",
+        point1="point_1",
+        point2="point_2",
+        point3="point_3",
+        point4="point_4",
+        planarizestrength="stiffness",
+    ),
     "shell": _force(
         "Shell",
         "shellforce",
@@ -328,6 +338,27 @@ SECOND: dict[str, Swap] = {
         restangle="rest_angle",
         strength="strength",
     ),
+    "plastichinge": _force(
+        "Hinge",
+        "h",
+        "the strength is a moment per radian here, on any triangles",
+        foldstart="point_1",
+        foldend="point_2",
+        tip1="point_3",
+        tip2="point_4",
+        limit="limit",
+        strength="strength",
+    ),
+    "nofoldthrough": _force(
+        "NoFoldThrough",
+        "hingelimit",
+        "the strength is a moment per radian here",
+        foldstart="point_1",
+        foldend="point_2",
+        tip1="point_3",
+        tip2="point_4",
+        strength="strength",
+    ),
     "oncurve": _force("PullToCurve", "p", points="point", curve="curve", strength="strength"),
     "onmesh": _force("PullToMesh", "p", points="point", mesh="target", strength="strength"),
     "floor": Swap(
@@ -390,6 +421,21 @@ SECOND: dict[str, Swap] = {
     "equallength": _halved("EqualLength", "equal", "stiffness", line="connection"),
     "direction": _halved("Direction", "direction", "stiffness", line="connection", direction="direction"),
     "constanttension": _halved("ConstantTension", "t", "tension", line="connection"),
+    "smooth": _halved("Smooth", "smooth", "stiffness", m="mesh"),
+    "planarize": _force("Planarize", "planarize", m="mesh", strength="stiffness"),
+    "cyclicquad": _force(
+        "CyclicQuad", "cyclic", "the circle is that of least squared distances", m="mesh", strength="strength"
+    ),
+    "tangentincircles": _force(
+        "TangentIncircles",
+        "tangentincircles",
+        "k by the distance between the points where the circles touch the edge",
+        edgestart="point_1",
+        edgeend="point_2",
+        tip1="point_3",
+        tip2="point_4",
+        strength="stiffness",
+    ),
     "coplanar": _force("CoPlanar", "coplanar", points="point", strength="strength"),
     "onplane": Swap(
         (

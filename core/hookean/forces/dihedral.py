@@ -93,6 +93,16 @@ def slopes(x: Any, a: Any, b: Any, c: Any, d: Any, g: Any) -> Any:
 
 
 @device
+def turn(indices: Any, e: Any, stiffness: Any, moment: Any, g: Any, f: Any, w: Any) -> None:
+    """Turn both triangles by a moment against their fold, with `g` as in `slopes`; `stiffness` is that per radian."""
+    for i in range(4):
+        p = indices[e, i]
+        w[p] += stiffness * g[i, 3] + np.abs(moment) * g[i, 4]
+        for c in range(3):
+            f[p, c] -= moment * g[i, c]
+
+
+@device
 def wrapped(angle: Any) -> Any:
     """The same angle in (-pi, pi]."""
     return angle - 2.0 * np.pi * np.ceil((angle - np.pi) / (2.0 * np.pi))

@@ -30,21 +30,14 @@ from hookean.values.columns import IndexRows, Labels, NonNegatives, Points
 from hookean.values.fields import Field, Maybe
 
 
-class Fitted(groups.Grouped):
-    """Base of these forces: E = sum k d^2 / 2, d the distance to the shape for which this is least.
+class Fit(groups.Grouped):
+    """Base of forces with E = sum k d^2 / 2, d the distance of each particle of a group to the shape for which this is
+    least.
 
     As the energy is stationary by the shape, the force on a particle is k d towards it, exactly.
     """
 
-    particles: Maybe[IndexRows] = Field(default=None, description="Particles")
-    points: Maybe[Points] = Field(default=None, description="Coordinates of particles")
-    group: Maybe[Labels] = Field(
-        default=None, description="Number of the group of each particle; default: all are in one"
-    )
-    strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
-
     formula: ClassVar[str] = "E = Σ k d²/2"
-    creates: ClassVar[bool] = False
     solid: ClassVar[bool] = False
     steady: ClassVar[str] = "strength"
     on_film: ClassVar[OnFilm] = "spread"
@@ -52,11 +45,6 @@ class Fitted(groups.Grouped):
     kernel: ClassVar[Any] = staticmethod(fit_kernel)
     shape: ClassVar[float] = PLANE
     axes: ClassVar[tuple[int, ...]] = (2, 4, 5)  # of the shape that are unknown, see `second`
-
-    def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: links of the groups, strength and shape."""
-        index = places.elements(self)
-        return Block.of(index, links=groups.links(index, self.group), strength=self.strength, shape=self.shape)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance to the shape [length], the force on the particle [force], and a radius [length], infinite where a
@@ -76,6 +64,24 @@ class Fitted(groups.Grouped):
     def __pydantic_init_subclass__(cls, **given: Any) -> None:
         super().__pydantic_init_subclass__(**given)
         cls.unknowns = len(cls.axes)
+
+
+class Fitted(Fit):
+    """Base of those whose particles and groups are given."""
+
+    particles: Maybe[IndexRows] = Field(default=None, description="Particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of particles")
+    group: Maybe[Labels] = Field(
+        default=None, description="Number of the group of each particle; default: all are in one"
+    )
+    strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
+
+    creates: ClassVar[bool] = False
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: links of the groups, strength and shape."""
+        index = places.elements(self)
+        return Block.of(index, links=groups.links(index, self.group), strength=self.strength, shape=self.shape)
 
 
 def fits(block: Block, x: Floats) -> Floats:

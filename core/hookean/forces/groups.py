@@ -142,10 +142,15 @@ class Whole(Force):
     tangent: ClassVar[Any] = staticmethod(lambda block, x: _condensed(block))
 
 
+def stiff(index: Ints, stiffness: Floats) -> Block:
+    """A block for `Whole`: elements of particles (m, n) that have these stiffness matrices (m, 3 n, 3 n)."""
+    table = np.column_stack([np.tile([1.0, 0.0], (len(index), 1)), stiffness.reshape(len(index), -1)])
+    return Block(np.ascontiguousarray(index), table, np.zeros((len(index), 0)))
+
+
 def bounded(index: Ints, w: Floats) -> Block:
     """A block for `Whole`: elements of one particle each, (m, 1), that have the stiffness w (m,) in all directions."""
-    table = np.column_stack([np.tile([1.0, 0.0], (len(w), 1)), np.outer(w, np.eye(3).ravel())])
-    return Block(np.ascontiguousarray(index), table, np.zeros((len(w), 0)))
+    return stiff(index, w[:, None, None] * np.eye(3))
 
 
 def _members(block: Block, second: Floats, unknowns: int, node: int) -> Block:

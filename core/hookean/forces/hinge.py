@@ -6,10 +6,21 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.dihedral import fold, fold_angles, wrapped
+from hookean.forces.dihedral import fold, fold_angles, turn, wrapped
 from hookean.values.columns import IndexRows, NonNegatives, PointRows, Reals
 from hookean.values.fields import Field, Maybe
+
+LIMIT = 3  # column of the parameters
+
+
+@device
+def bent(parameters: Any, memory: Any, e: Any, angle: Any) -> Any:
+    """How far a fold is from where its rest angle has gone to, and how far its moment grows."""
+    off = wrapped(angle - parameters[e, 1] * parameters[e, 2] - memory[e, 0])
+    limit = parameters[e, LIMIT]
+    return off, min(max(off, -limit), limit) if limit > 0.0 else off
 
 
 def hinge_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -19,15 +30,21 @@ def hinge_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-un
         angle = fold(x, indices[e, 0], indices[e, 1], indices[e, 2], indices[e, 3], g)
         if np.isnan(angle):
             continue
-        turn = wrapped(angle - parameters[e, 1] * parameters[e, 2])
-        moment = parameters[e, 0] * turn
-        energy += 0.5 * moment * turn
-        for i in range(4):
-            p = indices[e, i]
-            w[p] += parameters[e, 0] * g[i, 3] + np.abs(moment) * g[i, 4]
-            for c in range(3):
-                f[p, c] -= moment * g[i, c]
+        off, elastic = bent(parameters, memory, e, angle)
+        moment = parameters[e, 0] * elastic
+        energy += moment * (off - 0.5 * elastic)
+        turn(indices, e, parameters[e, 0], moment, g, f, w)
     return energy
+
+
+def hinge_yield(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
+    g = np.zeros((4, 5))
+    for e in range(indices.shape[0]):
+        if parameters[e, LIMIT] > 0.0:
+            angle = fold(x, indices[e, 0], indices[e, 1], indices[e, 2], indices[e, 3], g)
+            if not np.isnan(angle):
+                off, elastic = bent(parameters, memory, e, angle)
+                memory[e, 0] += off - elastic
 
 
 class Hinge(Force):
@@ -38,7 +55,10 @@ class Hinge(Force):
     (-pi, pi] and theta0 = rest angle x angle factor; a triangle without height has no fold and no force. S is the
     moment about the edge per radian, whatever the size of the triangles: a plate of bending stiffness D [force length]
     cut into parallel strips of width h has S = D l / h along folds of length l; `shell` finds what a plate needs on
-    any mesh. Forces and moments of every hinge sum to zero. Source: Grinspun et al., "Discrete shells", 2003.
+    any mesh. With a limit the hinge yields: beyond this angle from rest the moment stays the same, S x limit, and at
+    the end of the step the rest angle follows up to that angle. Forces and moments of every hinge sum to zero. Folds of
+    origami are hinges with the angle of a mountain or valley as rest angle, and the folding as its factor. Source:
+    Grinspun et al., "Discrete shells", 2003.
     """
 
     kind: Literal["hinge"] = "hinge"
@@ -47,37 +67,46 @@ class Hinge(Force):
     strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
     rest_angle: Maybe[Reals] = Field(default=None, description="theta0 [rad], 0 flat; default: the start angle")
     angle_factor: Reals = Field(default=1.0, description="Factor on the rest angle [-]; 0: flat")
+    limit: NonNegatives = Field(default=0.0, description="Angle from which on the rest angle follows [rad]; 0: none")
 
     formula: ClassVar[str] = "E = S (θ - θ0)²/2"
+    remembers: ClassVar[bool] = True
+    yielding: ClassVar[tuple[str, ...]] = ("limit",)
     creates: ClassVar[bool] = False
     arity: ClassVar[int] = 4
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     kernel: ClassVar[Any] = staticmethod(hinge_kernel)
+    end_of_step: ClassVar[Any] = staticmethod(hinge_yield)
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: S, rest angle, factor."""
+        """Arrays for the kernel: S, rest angle, factor, limit; memory: how far the rest angle has gone."""
         index = places.elements(self)
         return Block.of(
             index,
+            memory=1,
             strength=self.strength,
             rest_angle=fold_angles(places.x, index) if self.rest_angle is None else self.rest_angle,
             angle_factor=self.angle_factor,
+            limit=self.limit,
         )
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Fold angle [rad] and the moment that straightens it to the rest angle [force length]."""
         angle = fold_angles(x, block.indices)
-        turn: Floats = wrapped(angle - block.parameters[:, 1] * block.parameters[:, 2])
-        return {"angle": angle, "moment": block.parameters[:, 0] * turn}
+        strength, rest, factor, limit = block.parameters.T
+        limit = np.where(limit > 0.0, limit, np.inf)
+        off: Floats = np.clip(wrapped(angle - rest * factor - block.memory[:, 0]), -limit, limit)
+        return {"angle": angle, "moment": strength * off}
 
     @classmethod
     def example(cls) -> tuple[Hinge, Floats]:
-        """Three hinges on five particles: bent to a rest angle, flattened, at rest."""
+        """Three hinges on five particles: bent to a rest angle, flattened and yielding, at rest."""
         x = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.2], [0.4, 0.9, 0.3], [0.6, -0.8, 0.25], [1.4, 0.8, -0.1]])
         hinges = cls(
             particles=[[0, 1, 2, 3], [1, 2, 4, 0], [0, 1, 4, 3]],
             strength=[20.0, 5.0, 50.0],
             rest_angle=[-0.4, 0.0, 0.3],
             angle_factor=[1.0, 1.0, 0.5],
+            limit=[0.0, 0.05, 0.0],
         )
         return hinges, x

@@ -51,13 +51,19 @@ def cross(u: Any, v: Any, n: Any) -> None:
 
 @device
 def between(x: Any, indices: Any, e: Any, g: Any) -> Any:
-    """Sine and cosine of the angle of an element's lines and their lengths; sine nan where one is too short.
+    """`spread` of an element's lines."""
+    return spread(x, indices[e, 0], indices[e, 1], indices[e, 2], indices[e, 3], g)
+
+
+@device
+def spread(x: Any, p: Any, q: Any, r: Any, s: Any, g: Any) -> Any:
+    """Sine and cosine of the angle between lines p-q and r-s and their lengths; sine nan where one is too short.
 
     `g` (5, 3): the unit vectors u, v, those across them in the plane of both, n x u and v x n, which point to each
     other, and n: zero for parallel lines.
     """
-    a = unit(x, indices[e, 0], indices[e, 1], g[0])
-    b = unit(x, indices[e, 2], indices[e, 3], g[1])
+    a = unit(x, p, q, g[0])
+    b = unit(x, r, s, g[1])
     if not (a > SHORTEST and b > SHORTEST):
         return np.nan, np.nan, a, b
     cross(g[0], g[1], g[4])

@@ -67,4 +67,5 @@ class Units(Model):
             "length/time": length / time,
             "length^2": length**2,
             "force/length^2": force / length**2,
+            "force/length^3": force / length**3,
         }[dimension]

@@ -1,0 +1,21 @@
+"""Edges between two triangles of a mesh, as forces across them need them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hookean.forces.base import Ints
+
+
+def folds(faces: Ints) -> Ints:
+    """Start, end, tip of one triangle and tip of the other (k, 4) of every edge that two triangles share.
+
+    `faces` (m, 4), of which quads are left out; the edge runs as in the first triangle.
+    """
+    corners = faces[faces[:, 2] == faces[:, 3], :3]
+    start, end, tip = (np.roll(corners, -i, axis=1).ravel() for i in range(3))
+    pairs = np.sort(np.column_stack([start, end]), axis=1)
+    order = np.lexsort(pairs.T)
+    _, first, count = np.unique(pairs[order], axis=0, return_index=True, return_counts=True)
+    one, other = order[first[count == 2]], order[first[count == 2] + 1]
+    return np.column_stack([start[one], end[one], tip[one], tip[other]])
