@@ -172,3 +172,20 @@ def test_goals_that_pull_with_half_of_their_strength_pull_so_here(tmp_path: Path
     d.panel("particles", solver["V"])
     found = np.sort(places(ran(d, tmp_path))[:, 2])
     np.testing.assert_allclose(np.diff(found), [0.04, 1.0], atol=1e-4)
+
+
+def test_lines_with_a_radius_push_each_other_apart_by_half_of_the_strength(tmp_path: Path) -> None:
+    """Two of radius 0.2 m cross 0.3 m apart, held at all ends by 10^4 N/m: o = 0.1 m - 2 F / (2 10^4 N/m) with F = o
+    10^4 N/m, half of the strength: they are 0.35 m apart."""
+    d = Kangaroo("capsules", "Capsules", "Collider.")
+    ends = [d.point(-1, 0, 0), d.point(1, 0, 0), d.point(0, -1, 0.3), d.point(0, 1, 0.3)]
+    lines = [d.native("Line", start_point=a, end_point=b) for a, b in (ends[:2], ends[2:])]
+    typed = (("Objects", None), ("Radii", 0.2), ("IgnoreA", None), ("IgnoreB", None), ("Strength", 20000.0))
+    goals = [
+        d.kangaroo("Length(Line)", (("Line", None), ("Length", None), ("Strength", 50.0)), ["S"], line=lines),
+        d.kangaroo("Collider", typed, ["Collider"], objects=lines),
+        d.kangaroo("Anchor", ANCHOR, ["A"], guid=SOFT, p=ends),
+    ]
+    solver = d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goals, reset=d.toggle("Reset", False))
+    d.panel("particles", solver["V"])
+    np.testing.assert_allclose(np.sort(places(ran(d, tmp_path))[:, 2]), [-0.025, -0.025, 0.325, 0.325], atol=1e-5)
