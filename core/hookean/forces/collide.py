@@ -9,7 +9,20 @@ import numpy as np
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places
-from hookean.forces.neighbours import HERE, PARALLEL, gather, ignore, listed, make_room, nearest, sums, tables
+from hookean.forces.neighbours import (
+    HERE,
+    NUMBER,
+    PARALLEL,
+    ROW,
+    capacity,
+    ignore,
+    listed,
+    make_room,
+    nearest,
+    order_in,
+    sums,
+    tables,
+)
 from hookean.forces.springs import Springs
 from hookean.values.columns import IndexRows, Labels, Points, Positives
 from hookean.values.fields import Field, Maybe
@@ -21,6 +34,18 @@ TINY = 1e-280  # square of a length: what is smaller is a point
 
 
 @device
+def end_of_crowd(parameters: Any, start: Any) -> Any:
+    """Where the elements of one room end."""
+    room, count = parameters[start, ROOM], parameters.shape[0]
+    stop = start + capacity(room)
+    if stop > count or parameters[stop - 1, ROOM] != room or (stop < count and parameters[stop, ROOM] == room):
+        stop = start
+        while stop < count and parameters[stop, ROOM] == room:
+            stop += 1
+    return stop
+
+
+@device
 def push_apart(here: Any, i: Any, j: Any, skin: Any, stiffness: Any) -> Any:
     """Add the forces of two spheres, and how often they count for the stiffness; returns their energy."""
     dx = here[j, 0] - here[i, 0]
@@ -28,26 +53,22 @@ def push_apart(here: Any, i: Any, j: Any, skin: Any, stiffness: Any) -> Any:
     dz = here[j, 2] - here[i, 2]
     reach = here[i, 3] + here[j, 3]
     square = dx * dx + dy * dy + dz * dz
-    if square >= (reach + skin) * (reach + skin):
-        return 0.0
-    # those that nearly touch count as well: they may before the stiffness is asked for again
-    here[i, 7] += 1.0
-    here[j, 7] += 1.0
-    if square >= reach * reach:
-        return 0.0
     length = np.sqrt(square)
-    overlap = reach - length
-    if length > NEAREST:
-        push = stiffness * overlap / length
-        dx *= push
-        dy *= push
-        dz *= push
-        here[i, 4] -= dx
-        here[i, 5] -= dy
-        here[i, 6] -= dz
-        here[j, 4] += dx
-        here[j, 5] += dy
-        here[j, 6] += dz
+    overlap = max(reach - length, 0.0)
+    # those that nearly touch count as well: they may before the stiffness is asked for again
+    counts = 1.0 if length < reach + skin else 0.0
+    push = stiffness * overlap / length if length > NEAREST else 0.0
+    dx *= push
+    dy *= push
+    dz *= push
+    here[i, 4] -= dx
+    here[i, 5] -= dy
+    here[i, 6] -= dz
+    here[i, 7] += counts
+    here[j, 4] += dx
+    here[j, 5] += dy
+    here[j, 6] += dz
+    here[j, 7] += counts
     return 0.5 * stiffness * overlap * overlap
 
 
@@ -116,7 +137,7 @@ def push_capsules(here: Any, i: Any, j: Any, skin: Any, stiffness: Any) -> Any:
 
 
 @device
-def push_all(parameters: Any, start: Any, here: Any, short: Any, starts: Any, found: Any) -> Any:
+def push_all(parameters, start, here, short, order, starts, found) -> Any:  # type: ignore[no-untyped-def]
     """Forces of all pairs of a crowd: those of the `short` list, else every one; returns their energy."""
     energy = 0.0
     skin, stiffness, spheres = parameters[start, SKIN], parameters[start, STIFFNESS], here.shape[1] == HERE
@@ -125,7 +146,7 @@ def push_all(parameters: Any, start: Any, here: Any, short: Any, starts: Any, fo
         last = int(starts[i + 1, 0]) if short else here.shape[0]
         for s in range(first, last):
             j = int(found[np.uint64(s), 0]) if short else s
-            if not short and ignore(parameters, start + i, start + j):
+            if not short and ignore(parameters, start + int(order[i, NUMBER]), start + int(order[j, NUMBER])):
                 continue
             if spheres:
                 energy += push_apart(here, np.uint64(i), np.uint64(j), skin, stiffness)
@@ -139,19 +160,19 @@ def collide_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-
     stop = 0
     while stop < indices.shape[0]:
         start = stop
-        room = parameters[start, ROOM]
-        while stop < indices.shape[0] and parameters[stop, ROOM] == room:
-            stop += 1
+        room, skin, stop = parameters[start, ROOM], parameters[start, SKIN], end_of_crowd(parameters, start)
         here = sums(room, stop - start)
-        gather(x, indices, parameters, start, here)
-        short = listed(here, parameters, start, room, parameters[start, SKIN])
+        order = order_in(room, stop - start)
+        short = listed(x, indices, parameters, start, here, order, room, skin)
         _, starts, found = tables(room)
-        energy += push_all(parameters, start, here, short, starts, found)
+        energy += push_all(parameters, start, here, short, order, starts, found)
         force, count = (4, 7) if here.shape[1] == HERE else (8, 15)
-        for i in range(stop - start):
+        stiffness = 2.0 * parameters[start, STIFFNESS]
+        for e in range(start, stop):
+            i = np.uint64(int(order[e - start, ROW]))
             for end in range(indices.shape[1]):
-                a = indices[start + i, end]
-                w[a] += 2.0 * parameters[start + i, STIFFNESS] * (1.0 + here[i, count])
+                a = indices[e, end]
+                w[a] += stiffness * (1.0 + here[i, count])
                 for c in range(3):
                     f[a, c] += here[i, force + 3 * end + c]
     return energy
@@ -164,22 +185,22 @@ def overlaps(x, indices, parameters, pair, place):  # type: ignore[no-untyped-de
     stop = 0
     while stop < indices.shape[0]:
         start = stop
-        room = parameters[start, ROOM]
-        while stop < indices.shape[0] and parameters[stop, ROOM] == room:
-            stop += 1
+        room, skin, stop = parameters[start, ROOM], parameters[start, SKIN], end_of_crowd(parameters, start)
         here = sums(room, stop - start)
-        gather(x, indices, parameters, start, here)
-        short = listed(here, parameters, start, room, parameters[start, SKIN])
+        order = order_in(room, stop - start)
+        short = listed(x, indices, parameters, start, here, order, room, skin)
         _, starts, found = tables(room)
         for i in range(stop - start):
             first = int(starts[i, 0]) if short else i + 1
             last = int(starts[i + 1, 0]) if short else stop - start
+            e = start + int(order[i, NUMBER])
             for n in range(first, last):
                 j = int(found[n, 0]) if short else n
+                o = start + int(order[j, NUMBER])
                 square, reach, s, t = gap(here, i, j)
-                if square < reach * reach and (short or not ignore(parameters, start + i, start + j)):
+                if square < reach * reach and (short or not ignore(parameters, e, o)):
                     if count < len(pair):
-                        pair[count, 0], pair[count, 1] = start + i, start + j
+                        pair[count, 0], pair[count, 1] = e, o
                         place[count, 0], place[count, 1], place[count, 2] = reach, s, t
                     count += 1
     return count
@@ -195,10 +216,10 @@ def overlapping(block: Block, x: Floats) -> tuple[Ints, Floats]:
     return pair, place
 
 
-def crowd(index: Ints, radius: Any, group: Any, strength: float, **more: Any) -> Block:
+def crowd(places: Places, index: Ints, radius: Any, group: Any, strength: float, **more: Any) -> Block:
     """The block of elements that all feel one another: radius, group, stiffness, skin, address of the room for the list
     of neighbours."""
-    room = make_room(len(index), index.shape[1])
+    room = make_room(places.x[index])
     block = Block.of(
         index,
         radius=radius,
@@ -257,7 +278,7 @@ class Collide(Crowd):
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: radius, group, stiffness, skin, address of the room for the list of neighbours."""
-        return crowd(places.elements(self), self.radius, self.collision_group, self.strength)
+        return crowd(places, places.elements(self), self.radius, self.collision_group, self.strength)
 
     @classmethod
     def gathered(

@@ -41,7 +41,7 @@ class CollideLines(Crowd):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: those of all that collide, and the particles by which lines are joined."""
         index = places.elements(self)
-        return crowd(index, self.radius, self.collision_group, self.strength, joints=index)
+        return crowd(places, index, self.radius, self.collision_group, self.strength, joints=index)
 
     @classmethod
     def gathered(
