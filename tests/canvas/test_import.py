@@ -112,6 +112,20 @@ def test_new_objects_stand_on_no_other() -> None:
         )
 
 
+@pytest.mark.parametrize("both", [False, True])
+def test_points_and_a_solid_become_a_contact_with_it(both: bool) -> None:
+    """The solid is the target; that it stays where it is is usual, and the contrary is reported."""
+    d = Kangaroo("solid", "Solid", "SolidPointCollide.")
+    typed = (("Points", None), ("Solid", None), ("Interior", True), ("Unidirectional", not both), ("Strength", 7.0))
+    points, solid = d.parameter("Point", "Points"), d.parameter("Mesh", "Block")
+    d.solved(d.kangaroo("SolidPointCollide", typed, ["S"], points=points, solid=solid))
+    after, report = translated(d)
+    found = the(after, "CollideSolid")
+    assert [part.label for part in behind(after, found, "target")] == ["Block"]
+    assert [part.label for part in behind(after, found, "point")] == ["Points"]
+    assert report.complete == (not both) and ("the solid stays where it is" in report.text()) == both
+
+
 def test_typed_values_are_kept_and_those_that_are_ours_anyway_are_not_repeated() -> None:
     d = Kangaroo("typed", "Typed", "Values in components.")
     line = d.native("Line", start_point=d.point(0, 0, 0), end_point=d.point(1, 0, 0))

@@ -213,3 +213,20 @@ def test_goals_of_meshes_find_the_shapes_that_they_find_in_kangaroo(tmp_path: Pa
     found = places(ran(d, tmp_path))
     np.testing.assert_allclose(found[np.abs(found[:, :2]).max(axis=1) < 0.1], [[0.0, 0.0, -1.5]], atol=1e-4)
     np.testing.assert_allclose(found[found[:, 0] > 4.5, 2], np.zeros(4), atol=1e-4)
+
+
+def test_lines_with_a_radius_push_each_other_apart_by_half_of_the_strength(tmp_path: Path) -> None:
+    """Two of radius 0.2 m cross 0.3 m apart, held at all ends by 10^4 N/m: o = 0.1 m - 2 F / (2 10^4 N/m) with F = o
+    10^4 N/m, half of the strength: they are 0.35 m apart."""
+    d = Kangaroo("capsules", "Capsules", "Collider.")
+    ends = [d.point(-1, 0, 0), d.point(1, 0, 0), d.point(0, -1, 0.3), d.point(0, 1, 0.3)]
+    lines = [d.native("Line", start_point=a, end_point=b) for a, b in (ends[:2], ends[2:])]
+    typed = (("Objects", None), ("Radii", 0.2), ("IgnoreA", None), ("IgnoreB", None), ("Strength", 20000.0))
+    goals = [
+        d.kangaroo("Length(Line)", (("Line", None), ("Length", None), ("Strength", 50.0)), ["S"], line=lines),
+        d.kangaroo("Collider", typed, ["Collider"], objects=lines),
+        d.kangaroo("Anchor", ANCHOR, ["A"], guid=SOFT, p=ends),
+    ]
+    solver = d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goals, reset=d.toggle("Reset", False))
+    d.panel("particles", solver["V"])
+    np.testing.assert_allclose(np.sort(places(ran(d, tmp_path))[:, 2]), [-0.025, -0.025, 0.325, 0.325], atol=1e-5)

@@ -85,6 +85,17 @@ def test_forces_do_not_depend_on_when_the_list_was_made() -> None:
         assert (one[0] == old[0]).all() and (one[1] == old[1]).all() and one[2] == old[2]
 
 
+def test_spheres_that_met_no_particle_leave_the_others_as_they_are() -> None:
+    """In a scene that is not strict: forces are those of all pairs of the others, to 100 eps of the largest."""
+    rng = np.random.default_rng(4)
+    x = rng.uniform(0.0, 3.0, (40, 3))
+    points = np.concatenate([x, 50.0 + rng.uniform(0.0, 3.0, (20, 3))])[rng.permutation(60)]
+    force = {"kind": "collide", "points": points, "radius": 0.5, "strength": 10.0}
+    f, _, _ = evaluated(compile(Scene(particles=x, forces=[force], strict=False)), x)
+    expected, _ = of_all_pairs(x, np.full(40, 0.5), np.zeros(40), 10.0)
+    assert np.abs(f - expected).max() <= 100.0 * np.finfo(float).eps * np.abs(expected).max()
+
+
 def test_seven_circles_in_a_circle() -> None:
     """Six around one, R = 3 r. Pulled to the middle with S d each, all three contacts of an outer one are equal:
     S d = k (2r - d) + 2 k (2r - d) cos 60, so d = 4 k r / (S + 2 k); moved off by chance, they come back."""

@@ -30,6 +30,8 @@ ORDER: dict[str, str] = {
     "soapfilm": "mesh tension warp weft",
     "pull_to_curve": "curve points",
     "pull_to_mesh": "target points",
+    "collide_curve": "curve points",
+    "collide_solid": "target points",
 }
 """Fields that come first, where the order a Kangaroo user expects is not that of the class."""
 
@@ -42,6 +44,8 @@ COVERED: dict[str, tuple[str, ...]] = {
     "self_weight": ("mesh",),
     "pull_to_curve": ("mesh", "closed"),  # the curve knows whether it is closed
     "pull_to_mesh": ("mesh", "vertices", "faces"),  # the target is a mesh of the canvas
+    "collide_curve": ("mesh",),
+    "collide_solid": ("mesh", "vertices", "faces"),
 }
 """Fields that need no input of their own, for all kinds under the empty name."""
 
@@ -165,7 +169,7 @@ def _variable(described: Mapping[str, Any], field: Mapping[str, Any]) -> str:
 
 def _required(described: Mapping[str, Any], field: Mapping[str, Any]) -> bool:
     place = field["name"] in described["places"] and not described["everywhere"]
-    return field["required"] or place or (described["kind"], field["name"]) == ("pull_to_mesh", "target")
+    return field["required"] or place or field["name"] == "target"
 
 
 def _hint(field: Mapping[str, Any]) -> str:
@@ -196,6 +200,8 @@ TOLD: dict[tuple[str, str], str] = {
     ("self_weight", "lines"): "Lines or meshes with a weight per length; or a mesh with a total",
     ("pull_to_curve", "curve"): "The curve; it stays where it is",
     ("pull_to_mesh", "target"): "The mesh to pull to; it stays where it is",
+    ("collide_curve", "curve"): "The closed curve; it stays where it is",
+    ("collide_solid", "target"): "The solid, a closed mesh; it stays where it is",
     ("pressure", "mesh"): "The mesh under pressure; its vertices become particles",
     ("shell", "mesh"): "The mesh that bends; its vertices become particles",
     ("soapfilm", "mesh"): "The mesh that is the film; its vertices become particles",

@@ -7,7 +7,7 @@ their variables without underscores. Sources of the differences: docs/from-kanga
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from hookean_canvas.kangaroo.ids import Known, key
@@ -409,6 +409,22 @@ SECOND: dict[str, Swap] = {
         ),
     ),
     "spherecollide": _halved("Collide", "s", "strength", points="point", radius="radius"),
+    "solidpointcollide": Swap(
+        (
+            Piece(
+                "CollideSolid",
+                {"points": "point", "solid": "target", "interior": "inside", "strength": "strength"},
+                {"force": "s"},
+            ),
+        ),
+        without={"unidirectional": "the solid stays where it is"},
+        usual={"unidirectional": True},
+    ),
+    "collider": replace(
+        _halved("CollideLines", "collider", "strength", objects="connection", radii="radius"),
+        differs=f"{_HALF}; lines alone: points with a radius are Collide; lines that share an end ignore each other",
+        without=dict.fromkeys(("ignorea", "ignoreb"), "lines of one `collision_group` ignore each other"),
+    ),
     "coincident": _halved(
         "Coincident",
         "coincident",

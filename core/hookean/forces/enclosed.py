@@ -111,8 +111,8 @@ class Enclosed(groups.Grouped):
         faces = places.faces(name)
         faces = faces[(faces >= 0).all(axis=1)]
         corners, share, _ = halves(faces)
-        reason = "the mesh has no faces; give a closed mesh" if not len(faces) else _open(faces)
-        volume = float((share * _volumes(places.x[corners], places.x[corners[:1, 0]])).sum())
+        reason = "the mesh has no faces; give a closed mesh" if not len(faces) else unclosed(faces)
+        volume = float((share * volumes(places.x[corners], places.x[corners[:1, 0]])).sum())
         size = np.ptp(places.x[corners].reshape(-1, 3), axis=0).max() if len(faces) else 0.0
         if not reason and not factor * volume > 1e-12 * size**3:
             reason = f"a volume of {volume:g} is enclosed; more than 0 is needed: turn its faces outwards"
@@ -195,20 +195,20 @@ def _stiffness(block: Block, x: Floats) -> Floats:
 def responses(block: Block, x: Floats) -> tuple[Floats, Floats, Floats]:
     """Volume, pressure and its fall by volume of the mesh of each triangle (m,)."""
     head = groups.heads(block)
-    own = block.parameters[:, SHARE] * _volumes(x[block.indices], x[block.indices[head, 0]])
+    own = block.parameters[:, SHARE] * volumes(x[block.indices], x[block.indices[head, 0]])
     volume = np.asarray(np.bincount(head, own, len(head))[head], np.float64)
     found = np.array([respond(block.parameters, row, v) for row, v in enumerate(volume)]).reshape(-1, 3)
     return volume, found[:, 1], found[:, 2]
 
 
-def _volumes(corners: Floats, origin: Floats) -> Floats:
+def volumes(corners: Floats, origin: Floats) -> Floats:
     """Of the cones over triangles (m, 3, 3) to a point for all or for each."""
     a, b, c = (corners - origin[:, None]).transpose(1, 0, 2)
     return np.asarray(np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0)
 
 
-def _open(faces: Ints) -> str:
-    """A sentence unless every edge is met once in each direction."""
+def unclosed(faces: Ints, corners: str = "particles") -> str:
+    """A sentence unless every edge of faces (m, k) is met once in each direction; `corners`: what they number."""
     ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
     ends = ends[ends[:, 0] != ends[:, 1]]
     count = int(faces.max()) + 1
@@ -217,5 +217,5 @@ def _open(faces: Ints) -> str:
     lost = np.setdiff1d(there, back)
     if len(lost) or (times > 1).any():
         edge = int(lost[0] if len(lost) else there[np.argmax(times)])
-        return f"the mesh is not closed at the edge of particles {edge // count} and {edge % count}; give a closed mesh"
+        return f"the mesh is not closed at the edge of {corners} {edge // count} and {edge % count}; give a closed mesh"
     return ""

@@ -1,4 +1,5 @@
-"""Pulls particles onto a mesh, each to the point of it that is closest; the search is shared with `pull_to_curve`."""
+"""Pulls particles onto a mesh, each to the point of it that is closest; the search is shared with `pull_to_curve` and
+contacts with solids."""
 
 from __future__ import annotations
 
@@ -17,12 +18,13 @@ from hookean.values.fields import Field, Maybe
 WIDTH = 10  # columns of a tree's table
 LEAF = 4  # triangles in a leaf
 DEEPEST = 64  # of the tree: it is halved at every level
+CORNER, EDGE, FACE = 0, 3, 6  # what of a triangle is closest: a corner from 0, an edge from 3 (from that corner), it
 
 
 @device
 def on_segment(a, b, p, at, axis) -> Any:  # type: ignore[no-untyped-def]
     # closest point `at` of a-b to p, and what is left free: axis = the unit direction within a-b, else 0 (an end).
-    # Returns the squared distance.
+    # Returns the squared distance and how far along it is, from 0 to 1.
     ee = 0.0
     along = 0.0
     for c in range(3):
@@ -38,13 +40,13 @@ def on_segment(a, b, p, at, axis) -> Any:  # type: ignore[no-untyped-def]
         at[c] = a[c] + t * (b[c] - a[c]) if t <= 0.5 else b[c] + (t - 1.0) * (b[c] - a[c])
         axis[c] = (b[c] - a[c]) / np.sqrt(ee) if free else 0.0
         apart += (p[c] - at[c]) * (p[c] - at[c])
-    return apart
+    return apart, t
 
 
 @device
 def on_triangle(t, row, p, at, axis, spare, spare_axis) -> Any:  # type: ignore[no-untyped-def]
-    # the same for the triangle in a row of a table; returns the squared distance and 2 on the face (axis = normal),
-    # 1 on an edge (axis = its direction), 0 at a corner
+    # the same for the triangle in a row of a table; returns the squared distance and what is closest: FACE (axis = its
+    # normal), from EDGE on which edge (axis = its direction), else which corner
     a = t[row, 0:3]
     n = spare
     e = spare_axis
@@ -73,19 +75,19 @@ def on_triangle(t, row, p, at, axis, spare, spare_axis) -> Any:  # type: ignore[
             for c in range(3):
                 axis[c] = n[c] / length
                 at[c] = p[c] - height / length * axis[c]
-            return (height / length) * (height / length), 2
+            return (height / length) * (height / length), FACE
     best = np.inf
-    kind = 0
+    part = CORNER
     for i in range(3):
         j = 3 * ((i + 1) % 3)
-        apart = on_segment(t[row, 3 * i : 3 * i + 3], t[row, j : j + 3], p, spare, spare_axis)
+        apart, along = on_segment(t[row, 3 * i : 3 * i + 3], t[row, j : j + 3], p, spare, spare_axis)
         if apart < best:
             best = apart
-            kind = 1 if spare_axis[0] != 0.0 or spare_axis[1] != 0.0 or spare_axis[2] != 0.0 else 0
+            part = EDGE + i if 0.0 < along < 1.0 else CORNER + (i if along <= 0.5 else (i + 1) % 3)
             for c in range(3):
                 at[c] = spare[c]
                 axis[c] = spare_axis[c]
-    return best, kind
+    return best, part
 
 
 @device
@@ -101,13 +103,13 @@ def box_distance(t, row, p) -> Any:  # type: ignore[no-untyped-def]
 @device
 def closest(t, p, at, axis, room, stack) -> Any:  # type: ignore[no-untyped-def]
     # closest point `at` to p of the triangles in a tree's table; equal distances: the triangle given first.
-    # Returns 2, 1, 0 as `on_triangle`. `room` (4, 3) and `stack` are to work in.
+    # Returns which part of which triangle is closest, as `on_triangle`. `room` (4, 3) and `stack` are to work in.
     found = room[0]
     found_axis = room[1]
     stack[0] = 0
     best = np.inf
     first = np.inf
-    kind = 0
+    part = CORNER
     top = 1
     while top > 0:
         top -= 1
@@ -127,15 +129,15 @@ def closest(t, p, at, axis, room, stack) -> Any:  # type: ignore[no-untyped-def]
             top += 2
             continue
         for row in range(start, start + count):
-            apart, sort = on_triangle(t, row, p, found, found_axis, room[2], room[3])
+            apart, which = on_triangle(t, row, p, found, found_axis, room[2], room[3])
             if apart < best or (apart == best and t[row, 9] < first):
                 best = apart
                 first = t[row, 9]
-                kind = sort
+                part = which
                 for c in range(3):
                     at[c] = found[c]
                     axis[c] = found_axis[c]
-    return kind
+    return part, int(first) if first < np.inf else 0
 
 
 def pull_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -165,43 +167,29 @@ def pull_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-unt
     axis = room[5]
     for e in range(indices.shape[0]):
         tree_rows = rows(parameters[e, 1], parameters[e, 2], WIDTH)
-        kind = closest(tree_rows, x[indices[e, 0]], at, axis, room, stack)
+        part, _ = closest(tree_rows, x[indices[e, 0]], at, axis, room, stack)
         for i in range(3):
             for j in range(3):
                 entry = axis[i] * axis[j]
-                if kind < 2:
+                if part < FACE:
                     entry = (1.0 if i == j else 0.0) - entry
                 blocks[e, i, j] = parameters[e, 0] * entry
 
 
-class PullToMesh(Force):
-    """Particles pulled to the closest point C of a mesh that itself stays where it is: E = S |C - x|^2 / 2.
+class ToMesh(Force):
+    """Base of forces between particles and a mesh that itself stays where it is: the fields that name both."""
 
-    The target is one of the scene's meshes by name, or vertices and faces of its own; it makes no particles and does
-    not move with any. Quads count as both of their cuts into triangles. Of points equally near, that on the triangle
-    given first is taken. A particle rests at a distance load / S from the mesh; a strength of 0 has no effect (it
-    is not a hard constraint). Pulls do not know inside from outside. Source: Ericson, Real-Time Collision Detection,
-    2005, chapters 5 and 6 (closest points, trees of boxes).
-    """
-
-    kind: Literal["pull_to_mesh"] = "pull_to_mesh"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
-    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
-    mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are pulled")
-    target: str | None = Field(default=None, description="Name of the scene's mesh to pull to")
-    vertices: Maybe[Points] = Field(default=None, description="Or the target's vertices [length]")
+    particles: Maybe[IndexRows] = Field(default=None, description="Particles on which it acts")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of these particles")
+    mesh: str | None = Field(default=None, description="Name of a mesh on whose vertices it acts")
+    target: str | None = Field(default=None, description="Name of the scene's mesh that stays where it is")
+    vertices: Maybe[Points] = Field(default=None, description="Or that mesh's vertices [length]")
     faces: Maybe[Faces] = Field(default=None, description="and its faces, three or four vertices each")
-    strength: NonNegatives = Field(default=1000.0, description="S [force/length]")
 
-    formula: ClassVar[str] = "E = S |C - x|²/2"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"
     creates: ClassVar[bool] = False
-    steady: ClassVar[str] = "strength"
     shared: ClassVar[tuple[str, ...]] = ("vertices", "faces")
     on_film: ClassVar[OnFilm] = "spread"
-    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
-    kernel: ClassVar[Any] = staticmethod(pull_kernel)
-    hessian: ClassVar[Any] = staticmethod(pull_hessian)
     example_faces: ClassVar[list[list[int]]] = []
 
     @model_validator(mode="after")
@@ -215,13 +203,38 @@ class PullToMesh(Force):
                 raise fault(f"a vertex beyond the last of {len(self.vertices)} given, counted from 0", "/faces")
         return self
 
+    def geometry(self, places: Places) -> tuple[Floats, Ints]:
+        """Vertices (n, 3) and faces (m, 4) of the target; InputError where it has no faces."""
+        if self.vertices is not None and self.faces is not None:
+            return self.vertices, self.faces
+        vertices, faces = places.geometry(str(self.target))
+        if not len(faces):
+            raise InputError(f"/meshes/{self.target}/faces", "a target without faces given; give at least one")
+        return vertices, faces
+
+
+class PullToMesh(ToMesh):
+    """Particles pulled to the closest point C of a mesh that itself stays where it is: E = S |C - x|^2 / 2.
+
+    The target is one of the scene's meshes by name, or vertices and faces of its own; it makes no particles and does
+    not move with any. Quads count as both of their cuts into triangles. Of points equally near, that on the triangle
+    given first is taken. A particle rests at a distance load / S from the mesh; a strength of 0 has no effect (it
+    is not a hard constraint). Pulls do not know inside from outside (`collide_solid` does). Source: Ericson, Real-Time
+    Collision Detection, 2005, chapters 5 and 6 (closest points, trees of boxes).
+    """
+
+    kind: Literal["pull_to_mesh"] = "pull_to_mesh"
+    strength: NonNegatives = Field(default=1000.0, description="S [force/length]")
+
+    formula: ClassVar[str] = "E = S |C - x|²/2"
+    steady: ClassVar[str] = "strength"
+    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
+    kernel: ClassVar[Any] = staticmethod(pull_kernel)
+    hessian: ClassVar[Any] = staticmethod(pull_hessian)
+
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: strength, address and rows of the target's tree."""
-        vertices, faces = self.vertices, self.faces
-        if vertices is None or faces is None:
-            vertices, faces = places.geometry(str(self.target))
-            if not len(faces):
-                raise InputError(f"/meshes/{self.target}/faces", "a target without faces given; give at least one")
+        vertices, faces = self.geometry(places)
         return pulls(places.elements(self), self.strength, *tree(vertices[cuts(faces)]))
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
