@@ -5,8 +5,11 @@ start) x (tip 1 - start). Energy per hinge S (theta - theta0)^2 / 2, with theta 
 (-pi, pi] and theta0 = rest angle x angle factor; a triangle without height has no fold and no
 force. S is the moment about the edge per radian, whatever the size of the triangles: a plate of
 bending stiffness D [force length] cut into parallel strips of width h has S = D l / h along folds
-of length l; `shell` finds what a plate needs on any mesh. Forces and moments of every hinge sum to
-zero. Source: Grinspun et al., "Discrete shells", 2003.
+of length l; `shell` finds what a plate needs on any mesh. With a limit the hinge yields: beyond
+this angle from rest the moment stays the same, S x limit, and at the end of the step the rest angle
+follows up to that angle. Forces and moments of every hinge sum to zero. Folds of origami are hinges
+with the angle of a mountain or valley as rest angle, and the folding as its factor. Source:
+Grinspun et al., "Discrete shells", 2003.
 
 E = S (theta - theta0)^2/2
 """
@@ -20,5 +23,6 @@ force = canvas.force(
     strength=_strength_,
     rest_angle=rest_angle_,
     angle_factor=_angle_factor_,
+    limit=_limit_,
     name=name_,
 )

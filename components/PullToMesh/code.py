@@ -5,8 +5,8 @@ The target is one of the scene's meshes by name, or vertices and faces of its ow
 particles and does not move with any. Quads count as both of their cuts into triangles. Of points
 equally near, that on the triangle given first is taken. A particle rests at a distance load / S
 from the mesh; a strength of 0 has no effect (it is not a hard constraint). Pulls do not know inside
-from outside. Source: Ericson, Real-Time Collision Detection, 2005, chapters 5 and 6 (closest
-points, trees of boxes).
+from outside (`collide_solid` does). Source: Ericson, Real-Time Collision Detection, 2005, chapters
+5 and 6 (closest points, trees of boxes).
 
 E = S |C - x|^2/2
 """

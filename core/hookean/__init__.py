@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from hookean.forces.anchor_spring import AnchorSpring as AnchorSpring
     from hookean.forces.angle import Angle as Angle
     from hookean.forces.angle_snap import AngleSnap as AngleSnap
+    from hookean.forces.area_weight import AreaWeight as AreaWeight
     from hookean.forces.base import Force as Force
     from hookean.forces.bend import Bend as Bend
     from hookean.forces.clamp_angle import ClampAngle as ClampAngle
@@ -41,18 +42,27 @@ if TYPE_CHECKING:
     from hookean.forces.co_spherical import CoSpherical as CoSpherical
     from hookean.forces.coincident import Coincident as Coincident
     from hookean.forces.collide import Collide as Collide
+    from hookean.forces.collide_curve import CollideCurve as CollideCurve
+    from hookean.forces.collide_lines import CollideLines as CollideLines
+    from hookean.forces.collide_solid import CollideSolid as CollideSolid
+    from hookean.forces.conical import Conical as Conical
     from hookean.forces.constant_tension import ConstantTension as ConstantTension
+    from hookean.forces.cyclic_quad import CyclicQuad as CyclicQuad
+    from hookean.forces.developable import Developable as Developable
     from hookean.forces.direction import Direction as Direction
     from hookean.forces.equal_angle import EqualAngle as EqualAngle
     from hookean.forces.equal_length import EqualLength as EqualLength
     from hookean.forces.floor import Floor as Floor
     from hookean.forces.gas import Gas as Gas
     from hookean.forces.hinge import Hinge as Hinge
+    from hookean.forces.hydrostatic import Hydrostatic as Hydrostatic
     from hookean.forces.length_ratio import LengthRatio as LengthRatio
     from hookean.forces.length_snap import LengthSnap as LengthSnap
     from hookean.forces.line_weight import LineWeight as LineWeight
     from hookean.forces.magnet_snap import MagnetSnap as MagnetSnap
     from hookean.forces.mirror import Mirror as Mirror
+    from hookean.forces.no_fold_through import NoFoldThrough as NoFoldThrough
+    from hookean.forces.planarize import Planarize as Planarize
     from hookean.forces.polygon_area import PolygonArea as PolygonArea
     from hookean.forces.power_law import PowerLaw as PowerLaw
     from hookean.forces.pressure import Pressure as Pressure
@@ -63,14 +73,18 @@ if TYPE_CHECKING:
     from hookean.forces.pull_to_plane import PullToPlane as PullToPlane
     from hookean.forces.self_weight import SelfWeight as SelfWeight
     from hookean.forces.shell import Shell as Shell
+    from hookean.forces.smooth import Smooth as Smooth
     from hookean.forces.soapfilm import SoapFilm as SoapFilm
     from hookean.forces.springs import Springs as Springs
+    from hookean.forces.tangent_incircles import TangentIncircles as TangentIncircles
+    from hookean.forces.tangential_smooth import TangentialSmooth as TangentialSmooth
     from hookean.forces.thrust import Thrust as Thrust
     from hookean.forces.transform_lock import TransformLock as TransformLock
     from hookean.forces.translation_lock import TranslationLock as TranslationLock
     from hookean.forces.unary import Unary as Unary
     from hookean.forces.volume import Volume as Volume
     from hookean.forces.vortex import Vortex as Vortex
+    from hookean.forces.wind import Wind as Wind
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
     from hookean.running.patch import Move as Move
@@ -126,6 +140,7 @@ __all__ = [
     "Anchors",
     "Angle",
     "AngleSnap",
+    "AreaWeight",
     "Bend",
     "ClampAngle",
     "ClampLength",
@@ -135,7 +150,13 @@ __all__ = [
     "CoSpherical",
     "Coincident",
     "Collide",
+    "CollideCurve",
+    "CollideLines",
+    "CollideSolid",
+    "Conical",
     "ConstantTension",
+    "CyclicQuad",
+    "Developable",
     "Direction",
     "EqualAngle",
     "EqualLength",
@@ -145,6 +166,7 @@ __all__ = [
     "Gas",
     "Geometry",
     "Hinge",
+    "Hydrostatic",
     "InputError",
     "LengthRatio",
     "LengthSnap",
@@ -153,7 +175,9 @@ __all__ = [
     "MeshData",
     "Mirror",
     "Move",
+    "NoFoldThrough",
     "Patch",
+    "Planarize",
     "PolygonArea",
     "PowerLaw",
     "Pressure",
@@ -170,10 +194,13 @@ __all__ = [
     "Settings",
     "Shell",
     "Simulation",
+    "Smooth",
     "SoapFilm",
     "Springs",
     "Status",
     "Stream",
+    "TangentIncircles",
+    "TangentialSmooth",
     "Thrust",
     "TransformLock",
     "TranslationLock",
@@ -181,6 +208,7 @@ __all__ = [
     "Units",
     "Volume",
     "Vortex",
+    "Wind",
     "open",
     "picture",
     "relax",
