@@ -255,3 +255,12 @@ def test_a_vertex_of_miura_ori_folds_in_its_one_way(degrees: float, folding: flo
     assert abs(angle[0]) == pytest.approx(folding * np.pi, abs=1e-6)
     assert np.abs(angle[2:]) == pytest.approx(np.abs(angle[:2]), abs=1e-6)
     assert np.tan(0.5 * abs(angle[1])) == pytest.approx(np.tan(0.5 * abs(angle[0])) * np.cos(sector), abs=1e-6)
+
+
+def test_a_sliver_has_no_moment() -> None:
+    """What is reported is what acts: a triangle without height has no fold, whatever its rest angle."""
+    x = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5, -1.0, 0.0]])
+    found = relax(
+        Scene(particles=x, forces=[Hinge(particles=[[0, 1, 2, 3]], rest_angle=0.5)], anchors=[{"particles": range(4)}])
+    )
+    assert found.forces[0]["moment"] == pytest.approx([0.0]) and not found.reactions["force"].any()

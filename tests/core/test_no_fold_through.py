@@ -74,3 +74,21 @@ def test_the_edges_of_a_mesh_are_those_of_its_triangles() -> None:
     system = compile(Scene(particles=x, meshes={"m": {"vertices": x, "faces": faces}}, forces=[force]))
     edges = {frozenset(row[:2]) for row in system.groups[0].block.indices.tolist()}
     assert edges == {frozenset((1, 2)), frozenset((1, 3))}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_relaxation_settles_a_net_of_folds(seed: int) -> None:
+    """Triangles at random heights, all of whose folds have a limit near what they start with: folds pass it and come
+    back below it, and the bound of the stiffness holds on either side."""
+    rng = np.random.default_rng(seed)
+    x = np.column_stack([*(c.ravel() for c in np.mgrid[0:4, 0:4].astype(float)), np.zeros(16)])
+    x += rng.uniform(-0.15, 0.15, x.shape)
+    faces = [f for i in (0, 1, 2, 4, 5, 6, 8, 9, 10) for f in ([i, i + 4, i + 1], [i + 1, i + 4, i + 5])]
+    forces: list[dict[str, Any]] = [
+        {"kind": "no_fold_through", "mesh": "m", "strength": 3.0, "limit": 0.15},
+        {"kind": "anchor_spring", "particles": range(16), "strength": 5.0},
+    ]
+    settings = {"solver": "relaxation", "max_iterations": 2000}
+    found = relax(Scene(particles=x, meshes={"m": {"vertices": x, "faces": faces}}, forces=forces, settings=settings))
+    assert found.converged, found.message
+    assert np.abs(found.forces[0]["angle"]).max() < 1.0

@@ -101,3 +101,12 @@ def test_rim_of_the_grid_is_where_it_was() -> None:
     x[5, 2] = 0.2
     found = relax(model(x, mesh.faces, anchors=[{"particles": naked_vertices(mesh)}]))
     assert found.converged and np.abs(found.particles[:, 2]).max() <= 1e-6
+
+
+def test_parallel_diagonals_have_no_distance_and_no_force() -> None:
+    """What is reported is what acts: nothing, where the diagonals have no common normal to speak of."""
+    x = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 1e-9, 1.0]])
+    force = {"kind": "planarize", "particles": [[0, 1, 2, 3]], "stiffness": 2.0}
+    found = relax(Scene(particles=x, forces=[force], anchors=[{"particles": range(4)}]))
+    assert found.forces[0]["force"] == pytest.approx([0.0]) and found.forces[0]["distance"] == pytest.approx([0.0])
+    assert not found.reactions["force"].any()

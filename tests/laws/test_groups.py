@@ -161,3 +161,14 @@ def test_where_multigrid_is_needed_a_large_group_leaves_stability_unknown() -> N
         system = compile(crumpled(count))
         assert system.no_tangent(sparse=False) == reason
         assert not system.no_tangent()
+
+
+@pytest.mark.parametrize("kind", [kind for kind, cls in KINDS.items() if cls.kernel is not None])
+def test_a_force_without_elements_adds_nothing_to_the_tangent(kind: str) -> None:
+    """As that of a mesh without interior vertices: a system has its other elements then."""
+    system = example_system(kind)
+    for group in system.groups:
+        group.block = group.block.some(slice(0, 0))
+    memory = [group.block.memory for group in system.groups]
+    for sparse in (False, True):
+        assert not any(len(group.block.indices) for group, _ in system.elements(system.x, memory, sparse=sparse))

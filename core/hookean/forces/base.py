@@ -111,6 +111,7 @@ class Force(Model):
     formula: ClassVar[str] = ""
     role: ClassVar[Literal["internal", "load", "support"]] = "internal"  # internal: forces and moments sum to zero
     conservative: ClassVar[bool] = True  # force = -gradient of the energy the kernel returns
+    bears: ClassVar[bool] = False  # a load that can also carry what is loaded, as water does
     oriented: ClassVar[bool] = False  # internal, but of a direction fixed in space: a turned shape has other forces
     constant: ClassVar[bool] = False  # the force is the same wherever the particles are
     # the column that bounds an element's stiffness in every shape (K <= k times the identity, of two particles k times

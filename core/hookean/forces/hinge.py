@@ -96,7 +96,8 @@ class Hinge(Force):
         strength, rest, factor, limit = block.parameters.T
         limit = np.where(limit > 0.0, limit, np.inf)
         off: Floats = np.clip(wrapped(angle - rest * factor - block.memory[:, 0]), -limit, limit)
-        return {"angle": angle, "moment": strength * off}
+        acts = element_forces.any(axis=(1, 2))  # a sliver has no fold
+        return {"angle": angle, "moment": np.where(acts, strength * off, 0.0)}
 
     @classmethod
     def example(cls) -> tuple[Hinge, Floats]:

@@ -114,6 +114,7 @@ class Hydrostatic(FaceLoad):
     level: float = Field(default=0.0, ge=-1e12, le=1e12, description="Level of the surface, z [length]")
 
     formula: ClassVar[str] = "p = γ (level - z)"
+    bears: ClassVar[bool] = True
     kernel: ClassVar[Any] = staticmethod(hydrostatic_kernel)
     hessian: ClassVar[Any] = staticmethod(hydrostatic_hessian)
 

@@ -32,10 +32,9 @@ def no_fold_through_kernel(x, v, indices, parameters, memory, f, w):  # type: ig
             continue
         angle = followed(parameters, memory, e, angle)
         more = max(np.abs(angle) - parameters[e, LIMIT], 0.0)
-        if more > 0.0:
-            moment = np.copysign(parameters[e, STRENGTH] * more, angle)
-            energy += 0.5 * parameters[e, STRENGTH] * more * more
-            turn(indices, e, parameters[e, STRENGTH], moment, g, f, w)
+        energy += 0.5 * parameters[e, STRENGTH] * more * more
+        # what is below the limit counts for the stiffness as well: it may pass it in the next step
+        turn(indices, e, parameters[e, STRENGTH], np.copysign(parameters[e, STRENGTH] * more, angle), g, f, w)
     return energy
 
 
@@ -89,7 +88,8 @@ class NoFoldThrough(Force):
         last = block.parameters[:, START] + block.memory[:, 0]
         angle: Floats = last + wrapped(fold_angles(x, block.indices) - last)
         more = np.maximum(np.abs(angle) - block.parameters[:, LIMIT], 0.0)
-        return {"angle": angle, "moment": block.parameters[:, STRENGTH] * np.copysign(more, angle)}
+        acts = element_forces.any(axis=(1, 2))  # a sliver has no fold
+        return {"angle": angle, "moment": np.where(acts, block.parameters[:, STRENGTH] * np.copysign(more, angle), 0.0)}
 
     @classmethod
     def example(cls) -> tuple[NoFoldThrough, Floats]:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.line_angles import cross
 from hookean.forces.soapfilm import SLIVER
 from hookean.values.columns import IndexRows, PointRows
@@ -127,11 +127,13 @@ class Planarize(Force):
         return Block.of(faces[(faces >= 0).all(axis=1) & (faces[:, 2] != faces[:, 3])], stiffness=self.stiffness)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Distance between the diagonals of each quad [length] and the force that closes it [force]."""
+        """Distance between the diagonals of each quad [length], 0 where they are parallel, and the force that closes it
+        [force]."""
         p, q, r, s = (x[corner] for corner in block.indices.T)
         normal = np.cross(r - p, s - q)
-        size = np.linalg.norm(normal, axis=1)
-        distance = np.abs(((q - p) * normal).sum(axis=1)) / np.where(size > 0.0, size, 1.0)
+        size = lengths(normal)
+        common = (size > SLIVER * lengths(r - p) * lengths(s - q)) & (size > 1e-140)
+        distance = np.where(common, np.abs(((q - p) * normal).sum(axis=1)) / np.where(common, size, 1.0), 0.0)
         return {"distance": distance, "force": block.parameters[:, 0] * distance}
 
     @classmethod

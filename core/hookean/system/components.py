@@ -39,14 +39,14 @@ def components(groups: list[Group], free: Floats, floor: bool) -> Components:
     """The components of particles with `free` (n, 3) 0 on held axes.
 
     One is supported by a particle that is held on some axis, by an element to one that is held on all, by a force that
-    acts from outside (an anchor spring, a pull), or by a `floor` that it may fall on.
+    acts from outside (an anchor spring, a pull, water), or by a `floor` that it may fall on.
     """
     n = len(free)
     parent, notes, label = np.arange(n), np.zeros(n, np.int64), np.empty(n, np.int64)
     for group in groups:
         index = group.cls.connected(group.block)
         if len(index) and (group.cls.role != "load" or index.shape[1] > 1):
-            dispatch.compiled(unite)(index, free, group.cls.role == "support", parent, notes)
+            dispatch.compiled(unite)(index, free, group.cls.role == "support" or group.cls.bears, parent, notes)
     first, flags = np.empty(n, np.int64), np.empty(n, np.int64)
     count = dispatch.compiled(number)(parent, free, floor, notes, label, first, flags)
     flags = flags[:count]

@@ -211,7 +211,8 @@ class System:
                 found.append((group, own))
                 continue
             found += [(Group(cls, block, []), block.memory) for cls, block in gathered]
-            node = max(node, *(int(block.indices.max(initial=-1)) + 1 for _, block in gathered))
+            for _, block in gathered:
+                node = max(node, int(block.indices.max(initial=-1)) + 1)
         return found
 
     def no_tangent(self, *, sparse: bool = True) -> str:
