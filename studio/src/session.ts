@@ -236,7 +236,11 @@ export class Session {
       const id = ++this.orders;
       const message = JSON.stringify({ id, ...order });
       if ("edit" in order && message.length > LONGEST_MESSAGE) {
-        api.edit(this.key, order.edit).then((made) => resolve(this.acknowledge(made)), reject);
+        const newer = (made: Summary) => {
+          const now = this.summary.value; // a state on the socket may have been faster than the answer
+          return now && now.revision >= made.revision ? now : made;
+        };
+        api.edit(this.key, order.edit).then((made) => resolve(this.acknowledge(newer(made))), reject);
         return;
       }
       this.waiting.set(id, { resolve, reject });

@@ -16,6 +16,7 @@ from websockets.sync.client import connect
 
 from hookean_server.problems import Problem
 from hookean_server.sessions import rows, upkeep
+from hookean_server.sessions.frames import _Client
 from hookean_server.sessions.live import Live
 from hookean_server.sessions.manager import Manager
 from hookean_server.sessions.process import SessionProcess
@@ -397,3 +398,45 @@ def test_news_that_come_late_do_not_replace_newer_ones() -> None:
         then = live.note({"revision": revision, "status": "running", "told": told})
         assert then["revision"] == revision
     assert live.described["revision"] == 2
+
+
+def test_an_answer_over_the_socket_is_never_older_than_the_state_before_it() -> None:
+    """A run that ends while its order is being answered: the last message tells that it ended, so a page that shows
+    the last message does not show it as playing for ever."""
+    live = Live("quick", "", {"revision": 0, "status": "running", "playing": False})
+    told: list[dict[str, Any]] = []
+
+    class Sessions:
+        closing = False
+
+        async def command(self, live: Live, do: str, **options: Any) -> dict[str, Any]:
+            begun = live.note({"revision": 0, "status": "running", "playing": True, "told": 1})
+            live.note({"revision": 0, "status": "converged", "playing": False, "told": 2})
+            await asyncio.sleep(0.01)  # the state goes out meanwhile
+            return begun
+
+    class Socket:
+        asked = asyncio.Event()
+
+        async def receive(self) -> dict[str, Any]:
+            if self.asked.is_set():
+                await asyncio.Event().wait()
+            self.asked.set()
+            return {"type": "websocket.receive", "text": json.dumps({"id": 1, "do": "relax"})}
+
+        async def send_text(self, text: str) -> None:
+            told.append(json.loads(text))
+
+    async def watched() -> None:
+        client = _Client(Socket(), Sessions(), live)  # type: ignore[arg-type]
+        tasks = [asyncio.create_task(client.send()), asyncio.create_task(client.receive())]
+        while not any("id" in message for message in told):
+            await asyncio.sleep(0.001)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    asyncio.run(asyncio.wait_for(watched(), HANG))
+    state, answer = told[-2]["state"], told[-1]["session"]
+    assert state["status"] == answer["status"] == "converged"
+    assert state["playing"] is answer["playing"] is False

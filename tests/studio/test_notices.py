@@ -118,7 +118,7 @@ def test_to_rest_is_what_relax_finds(open_studio: Opened) -> None:
     studio = session(open_studio, CABLE, "to-rest")
     wanted = relax(Scene.read(CABLE))
     studio.press("To rest")
-    studio.page.get_by_text("In equilibrium after").wait_for()  # a notice goes away by itself
+    studio.page.get_by_text("In equilibrium after").wait_for()
     studio.service.at_rest("to-rest")
     assert studio.service.summary("to-rest")["iteration"] == wanted.iterations
     assert np.array_equal(studio.service.particles("to-rest"), wanted.particles)

@@ -54,7 +54,7 @@ class Method(Solver):
                 linear = True
                 continue
             if group.cls is not Springs:
-                return f"{group.cls.__name__} is not linear; force_density supports springs of rest length 0 only"
+                return f"it has {group.cls.kind_name}; force_density supports loads and springs of rest length 0 only"
             p = group.block.parameters
             if (p[:, 2] * p[:, 3] != 0).any() or (p[:, 4:] != 0).any():
                 return "a spring has a rest length, a cutoff or plasticity; force_density supports rest length 0 only"

@@ -131,27 +131,29 @@ class _Client:
             order = await orders.get()
             answer: dict[str, Any] = {"id": order.get("id")}
             try:
-                answer["session"] = await self._done(order)
+                await self._done(order)
             except Problem as problem:
                 answer["problem"] = json.loads(problem.body(f"{self.live.key}"))
-            await self._text(answer)
+            async with self.lock:
+                if "problem" not in answer:  # as it stands now: a newer state may have been sent first
+                    answer["session"] = summary(self.live)
+                await self.socket.send_text(json.dumps(answer))
 
-    async def _done(self, order: dict[str, Any]) -> dict[str, Any]:
+    async def _done(self, order: dict[str, Any]) -> None:
         live, do = self.live, order.get("do")
         if "edit" in order:
-            now = await self.sessions.edit(live, json.dumps(order["edit"]).encode(), order.get("revision"))
+            await self.sessions.edit(live, json.dumps(order["edit"]).encode(), order.get("revision"))
         elif do in ("reset", "undo", "redo"):
-            now = await self.sessions.edit(live, json.dumps({do: True}).encode())
+            await self.sessions.edit(live, json.dumps({do: True}).encode())
         elif do == "step" and isinstance(order.get("frames", 1), int) and 1 <= order.get("frames", 1) <= 100_000:
-            now = await self.sessions.command(live, "step", frames=order.get("frames", 1))
+            await self.sessions.command(live, "step", frames=order.get("frames", 1))
         elif do == "play":
-            now = await self.sessions.command(live, "play", fast=order.get("fast") is True)
+            await self.sessions.command(live, "play", fast=order.get("fast") is True)
         elif do in ("relax", "pause"):
-            now = await self.sessions.command(live, do)
+            await self.sessions.command(live, do)
         else:
             said = "A message is an ack, an edit, or do: play, relax, pause, step, reset, undo, redo."
             raise Problem("invalid-input", said)
-        return summary(live, now)
 
     async def _text(self, value: dict[str, Any]) -> None:
         async with self.lock:
