@@ -209,6 +209,22 @@ def test_plane_shapes_are_seen_face_on() -> None:
         assert np.allclose(view @ view.T, np.eye(3)) and np.allclose(np.cross(view[0], view[1]), view[2])
 
 
+def test_arrows_are_loads_and_what_supports_carry() -> None:
+    """A soft anchor carries the weight, 4 N each, as a reaction; forces within a body are neither, and reactions of
+    rounding size are not drawn."""
+    x = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    body = {"kind": "rigid_body", "particles": range(4), "shape": 1.1 * x}
+    weight = {"kind": "unary", "particles": [0], "vector": [0, 0, -4.0]}
+    soft = {"kind": "anchor_spring", "particles": [0], "strength": 100.0}
+    hung = {"particles": x, "forces": [body, weight, soft], "settings": {"tolerance": 1e-9}}
+    things = collect(relax(Scene.read(hung)), None)
+    assert things.loads[:, 1] == pytest.approx(np.array([[0, 0, -4.0]]))
+    assert things.reactions[:, 1] == pytest.approx(np.array([[0, 0, 4.0]]), abs=1e-7)
+    free = {"particles": x, "forces": [body], "anchors": [{"particles": [0]}]}
+    things = collect(relax(Scene.read(free)), None)
+    assert not len(things.loads) and not len(things.reactions)
+
+
 def test_proportions_are_true(tmp_path: Path) -> None:
     square = [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [1, 0, 1]], [[1, 0, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 0]]]
     scene = Scene.read({"forces": [{"kind": "springs", "lines": square}]})

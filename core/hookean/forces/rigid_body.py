@@ -143,7 +143,7 @@ class RigidBody(groups.Grouped):
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
 
     formula: ClassVar[str] = "E = Σ k |x - (R q + c)|²/2"
-    creates: ClassVar[bool] = False
+    solid: ClassVar[bool] = False
     steady: ClassVar[str] = "strength"
     on_film: ClassVar[OnFilm] = "spread"
     unknowns: ClassVar[int] = 6

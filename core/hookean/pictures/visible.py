@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
+from hookean.forces import KINDS
 from hookean.forces.floor import Floor
 from hookean.running.result import Result
 from hookean.scene.scene import Scene
@@ -20,6 +21,7 @@ Ints = NDArray[np.int64]
 
 VIEWS = {"front": (-90.0, 0.0), "right": (0.0, 0.0), "top": (-90.0, 90.0), "isometric": (-60.0, 28.0)}
 """Named views as azimuth and elevation of the eye [degrees]."""
+NOISE = 10.0  # times what is out of balance: reactions no larger than that are rounding
 
 
 @dataclass
@@ -118,23 +120,33 @@ def _of_result(result: Result, scene: Scene | None) -> Things:
     pushes = [np.stack([x[held], np.asarray(result.reactions["force"]).reshape(-1, 3)], axis=1)]
     touching = np.asarray(result.contacts["particles"], dtype=np.int64)
     pushes.append(np.stack([x[touching], np.asarray(result.contacts["force"]).reshape(-1, 3)], axis=1))
+    pushes.append(_at_particles(result, "support"))
+    loads, reactions = (
+        _sizeable(result, vectors) for vectors in (_at_particles(result, "load"), np.concatenate(pushes))
+    )
     shape = _Meshes(result, scene).shape(x, pairs)
-    things = Things(shape, forces, x[held], _loads(result), np.concatenate(pushes))
+    things = Things(shape, forces, x[held], loads, reactions)
     if scene is not None:
         floors = [f for f in (scene.settings.floor, *scene.forces) if isinstance(f, Floor)]
         things.floors = [(np.asarray(f.point), np.asarray(f.normal) / np.linalg.norm(f.normal)) for f in floors]
     return things
 
 
-def _loads(result: Result) -> Floats:
-    """Sum of all loads on each loaded particle."""
+def _at_particles(result: Result, role: str) -> Floats:
+    """Sum of all forces of a role on each particle that one acts on by itself (k, 2, 3)."""
     total = np.zeros_like(result.particles)
     for columns in result.forces:
-        force, index = columns.get("force"), columns.get("particles")
-        if force is not None and index is not None and np.ndim(force) == 2 and np.shape(index)[1:] == (1,):
-            np.add.at(total, np.asarray(index)[:, 0], np.asarray(force))
+        cls, force = KINDS[columns["kind"]], columns.get("force")
+        if cls.role == role and cls.arity == 1 and force is not None and np.ndim(force) == 2:
+            np.add.at(total, np.asarray(columns["particles"])[:, 0], np.asarray(force))
     loaded = np.flatnonzero(total.any(axis=1))
     return np.stack([result.particles[loaded], total[loaded]], axis=1)
+
+
+def _sizeable(result: Result, vectors: Floats) -> Floats:
+    """Forces (k, 2, 3), none where all of them are no larger than what is out of balance."""
+    largest = float(np.linalg.norm(vectors[:, 1], axis=1).max(initial=0.0))
+    return vectors[: len(vectors) if largest > NOISE * result.out_of_balance else 0]
 
 
 class _Meshes:
