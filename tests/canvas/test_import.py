@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from canvas.kangaroo_samples import (
+    LENGTH,
     PHYSICS,
     SETTINGS,
+    SOLVER,
     SPRINGS,
     Kangaroo,
     cable,
@@ -205,6 +207,42 @@ def test_wires_into_inputs_without_counterpart_are_listed_with_the_reason() -> N
     assert [wire for wire, _ in report.lost] == ["Threshold > Solver.Threshold"]
     assert "residual" in report.lost[0][1]
     assert not report.complete
+
+
+@pytest.mark.parametrize("wired", [True, False])
+def test_a_solver_that_was_saved_paused_stays_paused(wired: bool) -> None:
+    """Its On, wired or typed, is the Engine's."""
+    d = Kangaroo("paused", "Paused", "A solver that is off.")
+    typed = tuple((name, False if name == "On" and not wired else value) for name, value in SOLVER)
+    spring = d.kangaroo("Length(Line)", LENGTH, ["S"], line=d.native("Line", start_point=d.point(0, 0, 0)))
+    wires_ = {"on": d.toggle("Switch", False)} if wired else {}
+    d.kangaroo("Solver", typed, ["I", "V", "O"], goalobjects=spring, **wires_)
+    after, report = translated(d)
+    [held] = behind(after, the(after, "Engine"), "on")
+    assert held.guid == BOOLEAN_TOGGLE and held.container is not None
+    assert held.container.value("ToggleValue") is False and report.complete
+
+
+@pytest.mark.parametrize(
+    ("name", "names", "guid", "helper", "column"),
+    [
+        ("SoapFilm", "Pts Strength", "0c68b153-3c88-4e62-9827-f3793c013f88", "Film", "mesh"),
+        ("SoapFilm", "M Strength", "76ab889c-8593-4892-861d-a80b5311a981", "Source", "mesh"),
+        ("CyclicQuad", "P0 P1 P2 P3 Strength", "15ab0db0-5093-4a37-854a-cee70457a847", "Faces", "mesh"),
+        ("TangentIncircles", "M B Strength", "3962cf86-9b9e-41d7-94f9-42bd0326291d", "Source", "mesh"),
+    ],
+)
+def test_versions_of_a_goal_are_told_apart_by_their_inputs(
+    name: str, names: str, guid: str, helper: str, column: str
+) -> None:
+    d = Kangaroo("versions", "Versions", "One goal, older or newer.")
+    source = d.parameter("Data", "Source")
+    wired = {one.lower(): source for one in names.split() if one not in ("B", "Strength")}
+    goal = d.kangaroo(name, [(one, None) for one in names.split()], ["G"], guid=UUID(guid), **wired)
+    d.solved(goal)
+    after, report = translated(d)
+    found = next(p for p in parts(after) if p.id == goal.id)
+    assert [part.label for part in behind(after, found, column)] == [helper] and report.complete
 
 
 def test_goals_in_one_stream_are_sorted_and_show_becomes_a_parameter() -> None:
