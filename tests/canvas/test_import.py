@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
+from canvas.archives import samples
 from canvas.kangaroo_samples import (
     LENGTH,
     PHYSICS,
@@ -32,6 +33,7 @@ from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, CLUSTER, PANEL, PARAMETERS, PYTHON3_SCRIPT
 from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, parts, sources
 from hookean_canvas.command import app
+from hookean_canvas.definitions import containers
 from hookean_canvas.inspect import lint
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.kangaroo.ids import COMPONENTS, Known, libraries, recognised
@@ -47,7 +49,7 @@ def translated(d: Kangaroo) -> tuple[Chunk, Report]:
     """A translation, after the checks that every one has to pass."""
     before = d.archive()
     after, report = kangaroo.translate(before, "sample.gh")
-    assert lint.faults(after) == []
+    assert lint.faults(after) == [] and overlapping(before, after) == []
     assert report.wires == len(wires(before)) == report.kept + len(report.lost)
     assert len(wires(before) & wires(after)) <= report.kept <= len(wires(after))
     assert remaining(after) == report.kangaroo - len(report.swapped)
@@ -100,18 +102,47 @@ def test_objects_stay_where_they_stand() -> None:
     assert places[0].items() <= places[1].items()
 
 
-def test_new_objects_stand_on_no_other() -> None:
-    after, _ = translated(tent())
-    boxes = {part.id: box for part in parts(after) if (box := bounds_of(part.container))}
-    old = {part.id for part in parts(tent().archive())}
-    new = {key: box for key, box in boxes.items() if key not in old}
-    assert len(new) >= 4
-    for key, box in new.items():
-        others = [other for id_, other in boxes.items() if id_ != key]
-        assert not any(
-            box[0] < o[0] + o[2] and o[0] < box[0] + box[2] and box[1] < o[1] + o[3] and o[1] < box[1] + box[3]
-            for o in others
-        )
+def overlapping(before: Chunk, after: Chunk) -> list[tuple[str, str]]:
+    """New objects that share their place with another object, and that one; by their labels."""
+    boxes = [(part, box) for part in parts(after) if (box := bounds_of(part.container))]
+    old = {part.id for part in parts(before)} | {
+        port.value("InstanceGuid") for part in parts(before) if part.container for port in outputs(part.container)
+    }
+    return [
+        (part.label, other.label)
+        for part, a in boxes
+        for other, b in boxes
+        if part.id not in old and other is not part
+        and all(a[i] < b[i] + b[i + 2] and b[i] < a[i] + a[i + 2] for i in (0, 1))
+    ]  # fmt: skip
+
+
+def test_new_objects_are_placed_where_nothing_is_on_a_crowded_canvas() -> None:
+    """Components side by side, as close as people put them, each with values and helpers of its own."""
+    d = Kangaroo("crowded", "Crowded", "Many goals.")
+    mesh, data = d.parameter("Mesh", "Mesh"), d.parameter("Data", "Data")
+    goals = []
+    for i in range(6):
+        typed = (("LineA", None), ("LineB", None), ("Upper", 1.5 + i), ("Lower", 0.5), ("Strength", 3.0 + i))
+        goals.append(d.kangaroo("ClampAngle", typed, ["C"], linea=data, lineb=data))
+        volume = (("Mesh", None), ("Volume", 2.0 + i), ("Strength", 3.0))
+        goals.append(d.kangaroo("Volume", volume, ["V"], mesh=mesh))
+    d.solved(*goals)
+    before = d.archive()
+    for i, part in enumerate(part for part in parts(before) if part.container is not None):
+        assert part.container is not None
+        containers.place(part.container, (100.0 * (i % 4), 60.0 * (i // 4), 80.0, 50.0))
+    after, report = kangaroo.translate(before, "crowded.gh")
+    new = len(parts(after)) - len(parts(before))
+    assert report.whole == 1 and new >= 6 * 5 and overlapping(before, after) == []
+
+
+def test_the_report_on_a_file_of_grasshopper_covers_nothing() -> None:
+    for file in samples():
+        root = archive.read(file)
+        if root.chunk("Definition") is not None:
+            after, _ = kangaroo.translate(root, file.name)
+            assert overlapping(root, after) == [] and the(after, "Translated for hookean")
 
 
 @pytest.mark.parametrize("both", [False, True])

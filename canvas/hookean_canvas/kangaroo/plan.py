@@ -8,13 +8,13 @@ from uuid import UUID
 from hookean.errors import InputError
 from hookean_canvas.archive import Chunk
 from hookean_canvas.archive.guids import CLUSTER
-from hookean_canvas.archive.parts import Part, inputs, outputs, parts, sources
+from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, parts, sources
 from hookean_canvas.kangaroo import make
 from hookean_canvas.kangaroo.ids import Known, hidden, key, libraries, recognised
 from hookean_canvas.kangaroo.pieces import Swap
 from hookean_canvas.kangaroo.report import Report
 from hookean_canvas.kangaroo.roles import Role, called, reason, role
-from hookean_canvas.kangaroo.space import Space
+from hookean_canvas.kangaroo.space import Space, size
 from hookean_canvas.kangaroo.streams import Streams, sound
 from hookean_canvas.kangaroo.swap import FLOATING, Swapping, connect, names_of, ports_of
 from hookean_canvas.kangaroo.systems import System, Systems
@@ -58,6 +58,7 @@ class Importing:
         self.report.objects = len(found)
         self.report.kangaroo = sum(known is not None for known in self.known.values())
         self._decide()
+        self._reserve()
         for part in found:
             known = self.known[id(part.chunk)]
             if known and id(part.chunk) in self.plan:
@@ -69,6 +70,15 @@ class Importing:
             if inside:
                 self.report.stays.append((part.label, inside))
         self._wire_doubles()
+
+    def _reserve(self) -> None:
+        """Room for what is larger than before, so that nothing new is placed there."""
+        for part in self.streams.parts:
+            swap, bounds = self.plan.get(id(part.chunk)), bounds_of(part.container)
+            if swap and bounds and part.container is not None and swap.pieces[0].bundle not in FLOATING:
+                of = make.recipe(swap.pieces[0].bundle)
+                box = size([slot.name for slot in of.inputs], [slot.name for slot in of.outputs])
+                self.space.taken[id(part.container)] = (bounds[0], bounds[1], *box)
 
     def _decide(self) -> None:
         """Which components are swapped: those of systems that are whole, and tools of no system that stays."""
