@@ -250,13 +250,13 @@ def spots(scene):
 
 def distinct(points, tolerance):
     """Points without those that are within the tolerance of one before."""
-    size, cells, found = max(float(tolerance), 1e-12), {}, []
+    size, cells, found = max(8.0 * tolerance, 1e-12), {}, []
     for place in points:
-        x, y, z = [int(part // size) for part in place]
-        cell = [(x + i, y + j, z + k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
-        near = [other for key in cell for other in cells.get(key, ())]
+        ranges = [range(int((x - tolerance) // size), int((x + tolerance) // size) + 1) for x in place]
+        keys = [(i, j, k) for i in ranges[0] for j in ranges[1] for k in ranges[2]]
+        near = (other for key in keys for other in cells.get(key, ()))
         if not any(sum((p - q) ** 2 for p, q in zip(place, other)) <= tolerance**2 for other in near):
-            cells.setdefault((x, y, z), []).append(place)
+            cells.setdefault(tuple(int(x // size) for x in place), []).append(place)
             found.append(place)
     return found
 

@@ -42,6 +42,7 @@ class Bench(Kangaroo):
         self.goals: list[Any] = []
         self.fixed: list[Any] = []
         self.expected: list[Sequence[float]] = []
+        self.around: list[tuple[Sequence[float], float]] = []
 
     def force(self, name: str, typed: dict[str, Any], **wires: Any) -> None:
         """A force with what is typed into it (None: wired or empty), known by its library and name."""
@@ -67,7 +68,16 @@ class Bench(Kangaroo):
         return self.native("Line", start_point=ends[0], end_point=ends[1])
 
     def check(self, tmp_path: Path) -> None:
-        """Run it; every expected particle is there. A solver that is not here leaves the choice to the Engine."""
+        """Run it; every expected particle is there."""
+        found = self.found(tmp_path)
+        for place in self.expected:
+            near = found[np.argmin(np.linalg.norm(found - np.array(place), axis=1))]
+            np.testing.assert_allclose(near, place, atol=1e-5)
+        for place, within in self.around:
+            assert np.linalg.norm(found - np.array(place), axis=1).min() < within
+
+    def found(self, tmp_path: Path) -> Any:
+        """The particles at rest. A solver that is not here leaves the choice to the Engine."""
         typed = [(name, {"Floor": False, "Solver": 2}.get(name, value)) for name, value in SETTINGS]
         setting = self.kangaroo("Kangaroo Settings", typed, ["Settings"], classic=True)
         made = self.kangaroo(
@@ -75,10 +85,7 @@ class Bench(Kangaroo):
             simulationreset=self.toggle("R", True), **({"anchorpoints": self.fixed} if self.fixed else {}),
         )  # fmt: skip
         self.panel("particles", made["ParticlesOut"])
-        found = places(ran(self, tmp_path))
-        for place in self.expected:
-            near = found[np.argmin(np.linalg.norm(found - np.array(place), axis=1))]
-            np.testing.assert_allclose(near, place, atol=1e-5)
+        return places(ran(self, tmp_path))
 
 
 def test_classic_forces_between_points_keep_their_laws(tmp_path: Path) -> None:
@@ -132,6 +139,42 @@ def test_classic_forces_between_points_keep_their_laws(tmp_path: Path) -> None:
     d.check(tmp_path)
 
 
+def test_classic_angles_become_equal_and_lines_parallel(tmp_path: Path) -> None:
+    """Anchors of h turn an angle back by h a^2 per radian at most, the moments of m turn it on: within h / m of it."""
+    d = Bench("angles")
+    strong = 1e4
+    corners = []
+    for y, degrees in ((0.0, 80.0), (5.0, 100.0)):
+        t = np.radians(degrees)
+        points = [d.point(1, y, 0), d.point(0, y, 0), d.point(float(np.cos(t)), y + float(np.sin(t)), 0)]
+        d.soft(points)
+        corners.append(points)
+    typed: dict[str, Any] = {"Point1": None, "Point2": None, "Point3": None, "Strength": strong}
+    given = {f"point{i + 1}": [points[i] for points in corners] for i in range(3)}
+    d.force("EqualizeAngles", typed, **given)
+    t = np.radians(170.0)
+    ends = [
+        d.point(0, 10, 0),
+        d.point(1, 10, 0),
+        d.point(0, 11, 0),
+        d.point(float(np.cos(t)), 11 + float(np.sin(t)), 0),
+    ]
+    d.soft(ends)
+    typed = {f"Align{i}": None for i in (1, 2, 3, 4)}
+    typed |= {"AlignStrength": strong, "Exponent": 0.0, "Cutoff": 0.0, "AngleRange": 0.0}
+    d.force("Align", typed, **{f"align{i + 1}": one for i, one in enumerate(ends)})
+    found = d.found(tmp_path)
+
+    def angle(a: Any, b: Any) -> float:
+        return float(np.arccos(a @ b / np.linalg.norm(a) / np.linalg.norm(b)))
+
+    rows = [found[np.abs(found[:, 1] - y) < 3] for y in (0.0, 5.0)]
+    first, second = (angle(row[0] - row[1], row[2] - row[1]) for row in rows)
+    assert abs(first - second) < np.radians(20) * HOLD / strong * 4
+    aligned = found[found[:, 1] > 8]
+    assert np.pi - angle(aligned[1] - aligned[0], aligned[3] - aligned[2]) < np.radians(10) * HOLD / strong * 4
+
+
 def test_classic_forces_on_triangles_and_meshes_keep_their_laws(tmp_path: Path) -> None:
     """A pressure of 6 N/m2 on half a square metre is 1 N on each corner. Water of 2 N/m3, 3 m deep, has that pressure.
     Gas of an octahedron, K (V0 / V - 1), pushes each tip by a third of it on its area vector, 2 r^2."""
@@ -160,7 +203,28 @@ def test_classic_forces_on_triangles_and_meshes_keep_their_laws(tmp_path: Path) 
     d.fixed += ring
     d.expected.append((20, 0, 0.6 / 4.0))
 
-    made = d.script("Meshes", MESHES, {}, ["solid", "tips"])
+    made = d.script("Meshes", MESHES, {}, ["solid", "tips", "flat", "rim", "sail", "plate", "twisted", "quad"])
+    d.force("MeshSmooth", {"Mesh": None, "Strength": 4.0}, mesh=made["flat"])
+    d.load(d.point(20, 0, 0), 0.0, 0.0, 0.6)  # with the Laplacian of this middle, above, and rims of a third each
+    d.fixed.append(made["rim"])
+    d.expected[-1] = (20, 0, 1.2 / (4.0 + 4.0 * (1 + 6 / 9)))
+
+    d.force("HydroMesh", {"Mesh": None, "Density": -0.5}, mesh=made["sail"])
+    d.force("WindMesh", {"Mesh": None, "Wind": (0.0, 0.0, 3.0), "Relative": False, "Strength": 2.0, "Waterline": 0},
+            mesh=made["sail"])  # fmt: skip
+    d.soft(made["plate"])
+    d.expected.append((11, 0, 1 / HOLD))  # at z = 0 it is dry
+
+    d.force("PlanarizeQuads", {"Mesh": None, "Strength": 10.0}, mesh=made["twisted"])
+    d.fixed.append(made["quad"])
+    d.around.append(((6, -19, 0), 0.06))  # it was 0.2 above, and moves along the gradient of the distance
+
+    inner = d.point(0.3, 0.3, 0.3)
+    typed = {"Solid": None, "Points": None, "Hardness": 0.5, "Traction": 0.5}
+    d.force("CollideMesh", typed, solid=made["solid"], points=inner)
+    d.soft(inner)
+    out = 0.3 + 0.1 / 3 * 1000 / (1000 + HOLD)
+    d.expected.append((out, out, out))  # a depth of 0.1 / sqrt(3) along the normal
     rest = 4 / 3 * 1.05**3
     d.force("GasVolume", {"Mesh": None, "Volume": rest, "K": 30.0}, mesh=made["solid"])
     d.soft(made["tips"])

@@ -235,6 +235,10 @@ plate = [rg.Point3d(*p) for p in plate]
 rim, flat = fan(20.0, 0.0)
 cone_rim, cone = fan(30.0, 0.3)
 held = [rg.Point3d(*p) for p in rim + cone_rim]
+rim = [rg.Point3d(*p) for p in rim]
+quad = [(5.0, -20.0, 0.0), (6.0, -20.0, 0.0), (6.0, -19.0, 0.2), (5.0, -19.0, 0.0)]
+twisted = of(quad, [(0, 1, 2, 3)])
+quad = [rg.Point3d(*p) for p in quad[:2] + quad[3:]]
 """
 
 
