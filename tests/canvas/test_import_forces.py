@@ -158,6 +158,20 @@ def test_points_are_fitted_and_kept_out_of_curves_by_the_whole_strength(tmp_path
     d.check(tmp_path)
 
 
+def test_points_of_a_rigid_body_keep_their_shape_and_move_as_one(tmp_path: Path) -> None:
+    """A square, one corner pulled by 4 N along x towards its neighbour: 4 anchors of h carry it, and the body is as
+    stiff as its strength: the force moves all of it by 1 N / h, and turns it about the middle, by M / (4 h r^2)."""
+    d = Bench("rigid")
+    corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+    points = [d.point(*p, 0) for p in corners]
+    d.goal("RigidPointSet", {"Points": None, "Plane": None, "Strength": 1e5}, points=points)
+    d.soft(points)
+    d.load(points[0], 4.0, 0.0, 0.0)
+    turn = 4.0 / (4 * HOLD * 2)
+    d.expected += [((x + 1 / HOLD - turn * y, y + turn * x, 0), 4e-4) for x, y in corners]  # turn^2 and h / k
+    d.check(tmp_path)
+
+
 def turned(start: Any, strength: float, law: Any) -> Any:
     """Ends of two lines at rest between soft anchors, by a published law of K2: couples on lines A and B."""
 

@@ -56,6 +56,19 @@ _LOAD = Swap(
     {"w": 1.0},
 )
 
+_CARRIED = "nothing is carried along; points that move with the body are particles of it"
+_RIGID = replace(
+    force(
+        "RigidBody",
+        "rigidbody",
+        "k for each particle; Kangaroo's law is not published",
+        points="point",
+        strength="strength",
+    ),
+    without=dict.fromkeys(("part", "plane"), _CARRIED),
+    usual=dict.fromkeys(("part", "plane"), None),
+)
+
 GOALS: dict[str, Swap] = {
     "length(line)": force("Springs", "s", line="connection", length="rest_length", strength="stiffness"),
     "edgelengths": force("Springs", "el", mesh="connection", lengthfactor="rest_factor", strength="stiffness"),
@@ -351,4 +364,6 @@ GOALS: dict[str, Swap] = {
         },
         {"strength": 1.0, "s": 1.0},
     ),
+    "rigidpointset": _RIGID,
+    "rigidbody": _RIGID,
 }
