@@ -322,3 +322,15 @@ def mesh_map(ghenv, points, source, target, distance):
 def split_at_corners(ghenv, curves, angles):
     """Points where each polyline turns by more than a number [rad], and its parts between them."""
     return each(ghenv, "split_at_corners", curves, ["points", "polylines"], turning_angle=default(angles, 1.0))
+
+
+def remesh(ghenv, meshes, lengths, angles, rounds):
+    """Each mesh as triangles with edges of about a length, folds above a number [rad] kept."""
+
+    def work():
+        if not listed(lengths):
+            raise canvas.scene.missing("length is missing; connect it")
+        many = {"length": listed(lengths), "feature_angle": default(angles, 0.5235987755982988)}
+        return each(ghenv, "remesh", meshes, ["mesh"], iterations=whole(rounds, 15, "iterations"), **many)
+
+    return (canvas._told(ghenv, work) or [None])[0]

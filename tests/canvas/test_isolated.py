@@ -91,6 +91,7 @@ SAMPLES: dict[str, dict[str, Any]] = {
     "RemoveDuplicatePoints": {"_points": [*ROW, *ROW]},
     "Refine": {"_mesh": [MESH], "_smooth_": [True]},
     "RefineStrips": {"_mesh": [MESH], "_level_": [2]},
+    "Remesh": {"_mesh": [MESH], "_length": [0.4]},
     "RhinoFile": {"_file": [str(MODEL)]},
     "Server": {},
     "Settings": {"_drag_": [5.0], "_fast_": [True]},

@@ -59,6 +59,8 @@ def test_meshes_are_those_of_the_core() -> None:
     for given, direction in (([], "along"), ([1], "warp"), (["Weft"], "weft")):
         [found] = run("RefineStrips", _mesh=[mesh], _direction_=given)["mesh"]
         assert same(found, hd.refine_strips(QUADS, 1, direction))
+    [found] = run("Remesh", _mesh=[mesh], _length=[0.4], _angle_=[0.2], _iterations_=[3])["mesh"]
+    assert same(found, hd.remesh(QUADS, 0.4, 0.2, 3))
     [found] = run("Diagonalize", _mesh=[mesh])["mesh"]
     assert same(found, hd.diagonalize(QUADS))
     assert [len(plain(one)[1]) for one in run("Refine", _mesh=[mesh] * 3, _level_=[0, 1, 2])["mesh"]] == [6, 24, 96]
@@ -134,6 +136,7 @@ def test_polylines_come_apart(rhino: Any) -> None:
         ("Refine", {"_mesh": 1, "_level_": [-1]}, "Level: -1 given; a whole number from 0 on is expected."),
         ("RefineStrips", {"_mesh": 1, "_direction_": ["up"]},
          'Direction: the text "up" is unknown; give one of 0 along, 1 warp, 2 weft.'),
+        ("Remesh", {"_mesh": 1}, "Length is missing; connect it."),
         ("CombineClean", {}, "Meshes is missing; connect it."),
         ("CombineClean", {"_meshes": ["x"]}, 'The text "x" is not a mesh; connect a mesh.'),
         ("FoldAngle", {"_start": ["0,0,0"], "_end": ["1,0,0"], "_tip_1": ["0,1,0"]},

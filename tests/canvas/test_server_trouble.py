@@ -81,6 +81,7 @@ def samples() -> dict[str, dict[str, Any]]:
         "CombineClean": {"_meshes": [mesh, mesh]},
         "FoldAngle": {"_start": row[:1], "_end": row[1:2], "_tip_1": row[2:], "_tip_2": [point(1, -1, 0)]},
         "MeshMap": {"_point": row, "_source": [mesh], "_target": [mesh]},
+        "Remesh": {"_mesh": [mesh], "_length": [0.5]},
         "RemoveDuplicatePoints": {"_points": row},
         "SplitAtCorners": {"_polyline": curve},
         "Catenary": {"_start": row[:1], "_end": row[2:], "_length": [4.0]},

@@ -59,6 +59,7 @@ def wanted() -> dict[str, dict[str, Any]]:
         "CombineClean": {"mesh": [hd.clean([MESH])]},
         "Refine": {"mesh": [hd.refine(MESH, smooth=True)]},
         "RefineStrips": {"mesh": [hd.refine_strips(MESH, 2)]},
+        "Remesh": {"mesh": [hd.remesh(MESH, 0.4)]},
         "Diagonalize": {"mesh": [hd.diagonalize(MESH)]},
         "Checkerboard": {"pattern": pattern, "first": first, "second": second},
         "HingePoints": hinges,

@@ -116,6 +116,7 @@ TAKEN = {"curve": curve, "surface": surface, "mesh": quads, "points": lambda: PO
 FOLD = ([(1.0, 0.0, 0.0)] * 4, [(0.0, 0.0, 9.0)] * 4, [(0.5, -7.0, 2.0)] * 4)
 MORE: dict[str, Any] = {
     "fold_angle": dict(zip(("Fold end", "Tip 1", "Tip 2"), FOLD, strict=True)),
+    "remesh": {"Length": 1.0},
     "mesh_map": {"Source": quads, "Target": quads},
 }
 """Options that have no default, as Hops sends them."""
@@ -145,7 +146,9 @@ def test_an_operation_gives_what_its_function_gives(name: str, service: Service)
     if operation.takes in ("mesh", "meshes"):
         source = doubles(geometry) if operation.takes == "mesh" else [doubles(each) for each in geometry]
     for value, (key, _) in zip(more.values(), operation.options.items(), strict=False):
-        options[key] = np.array(value) if isinstance(value, list) else doubles(value)
+        options[key] = (
+            np.array(value) if isinstance(value, list) else doubles(value) if hasattr(value, "Faces") else value
+        )
     truth = operation.function(source, **options)
     truths = truth if len(operation.gives) > 1 else (truth,)
     expected = [plain(gives, value, source) for gives, value in zip(operation.gives, truths, strict=True)]

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from hookean.discretize.nurbs import nurbs_curve as nurbs_curve
     from hookean.discretize.nurbs import nurbs_surface as nurbs_surface
     from hookean.discretize.polylines import split_at_corners as split_at_corners
+    from hookean.discretize.remeshing import remesh as remesh
     from hookean.discretize.subdivision import diagonalize as diagonalize
     from hookean.discretize.subdivision import refine as refine
     from hookean.discretize.subdivision import refine_strips as refine_strips
@@ -73,6 +74,7 @@ _NAMES = {
     "nurbs": "NurbsCurve NurbsSurface nurbs_curve nurbs_surface",
     "meshing": "mesh_surface",
     "polylines": "split_at_corners",
+    "remeshing": "remesh",
     "subdivision": "diagonalize refine refine_strips",
     "warpweft": "threads warp_weft",
 }

@@ -96,6 +96,9 @@ _OPTIONS = {
     "source": ("Source", "S", "Mesh near the points"),
     "target": ("Target", "T", "The same mesh, moved"),
     "distance": ("Distance", "D", "Factor of the heights over the mesh [-]"),
+    "length": ("Length", "L", "Length of the edges that is wanted [model unit]"),
+    "feature_angle": ("Feature angle", "A", "Folds and turns of the boundary above this are kept [rad]"),
+    "iterations": ("Iterations", "N", "Rounds of splitting, collapsing, flipping and smoothing"),
     "turning_angle": ("Turning angle", "A", "Corners turn by more than this [rad]"),
 }
 _KINDS = {"count": "Integer", "whole": "Integer", "level": "Integer", "number": "Number", "flag": "Boolean"}
@@ -218,6 +221,7 @@ _SUMMARIES = {
     "hinge_points": "The four points of the hinge at each inner edge of a mesh",
     "fold_angle": "Angles between pairs of triangles about their common edges",
     "vertex_neighbours": "The neighbours of the vertices of a mesh, in their order round the normal",
+    "remesh": "A mesh as triangles of one size, its boundary and folds kept",
     "mesh_map": "Points near a mesh moved as the mesh is",
     "split_at_corners": "A polyline cut where it turns",
     "remove_duplicate_points": "Points without duplicates",

@@ -61,6 +61,7 @@ def _imported(at: str) -> Callable[..., Any]:
 _GRID = {"u": ("count", None), "v": ("count", None)}
 _NEAR = {"tolerance": ("number", 1e-6)}
 _LEVEL = {"level": ("level", 1)}
+_REMESH = {"length": ("number", None), "feature_angle": ("number", np.pi / 6), "iterations": ("whole", 15)}
 _HANGING = {"length": ("numbers", None), "count": ("count", 50), "gravity": ("vectors", (0.0, 0.0, -1.0))}
 _SMOOTH = {"count": ("count", None), "degree": ("whole", 3)}
 PLACES = {"edges": "lines", "indices": "points", "naked": "naked_points", "clothed": "clothed_points",
@@ -112,6 +113,7 @@ OPERATIONS: dict[str, Operation] = {
     "vertex_neighbours": Operation(
         "adjacency:vertex_neighbours", "mesh", {"vertices": ("indices", ())}, ("neighbours", "normals")
     ),
+    "remesh": Operation("remeshing:remesh", "mesh", _REMESH, ("mesh",), "remeshing:expected_faces"),
     "mesh_map": Operation(
         "mapping:mesh_map", "points", {"source": ("mesh", None), "target": ("mesh", None), "distance": ("number", 1.0)}
     ),
