@@ -119,6 +119,30 @@ def draw(
         typer.echo(f"{output}: drawn without {', '.join(left)}; the file gives them no place on the canvas", err=True)
 
 
+@app.command()
+def convert(
+    source: Annotated[Path, typer.Argument(help="A .gh, .ghx or .ghuser file")],
+    target: Annotated[Path, typer.Argument(help="The file to write: .ghx in XML, .gh and .ghuser binary")],
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Write nothing; compare both files item by item and exit with 1 if they differ"),
+    ] = False,
+) -> None:
+    """Convert a Grasshopper file to the other form, XML or binary, with everything in it."""
+    from hookean_canvas import archive
+    from hookean_canvas.archive import compare
+
+    if not check:
+        root = _printed(lambda: compare.convert(source, target))
+        typer.echo(f"{target}: {sum(len(chunk.items) for chunk in root.walk())} items")
+        return
+    found = _printed(lambda: compare.difference(archive.read(source), archive.read(target)))
+    if found:
+        typer.echo(f"the first difference is at {found}")
+        raise typer.Exit(1)
+    typer.echo(f"{source} and {target} hold the same")
+
+
 @app.command("import")
 def import_(
     file: Annotated[Path, typer.Argument(help="A .gh or .ghx file with components of Kangaroo 0.099 or Kangaroo 2")],

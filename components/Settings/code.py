@@ -22,4 +22,5 @@ settings = canvas.settings(
     time=_time_unit_,
     fast=_fast_,
     allow_unstable=_allow_unstable_,
+    all_particles=_all_particles_,
 )

@@ -131,7 +131,7 @@ def anchors(ghenv, points, targets=None, x=True, y=True, z=True):
 
 def settings(ghenv, **fields):
     """Settings as text for the engine: those of a scene, its `weld_tolerance`, the units `length`, `force` and `time`,
-    and `fast`, whether it runs as quickly as it can."""
+    `fast`, whether it runs as quickly as it can, and `all_particles`, whether points of any force become particles."""
     return _told(ghenv, lambda: scene.settings(fields))
 
 
@@ -152,11 +152,11 @@ def _told(ghenv, make):
         return None
 
 
-def engine(ghenv, forces, anchors_=None, settings_=None, geometry_=None, reset=True):
+def engine(ghenv, forces, anchors_=None, settings_=None, geometry_=None, reset=True, on=True):
     """One solution of the engine; see `canvas_engine`."""
     from . import canvas_engine
 
-    return canvas_engine.solve(ghenv, forces, anchors_, settings_, geometry_, reset)
+    return canvas_engine.solve(ghenv, forces, anchors_, settings_, geometry_, reset, on)
 
 
 # what the service is asked

@@ -30,10 +30,12 @@ class Outputs(object):
 
 
 class Wanted(object):
-    """The inputs of one solution, read; `signature` is the same for the same inputs."""
+    """The inputs of one solution, read; `signature` is the same for the same inputs. `reset`: held at the start;
+    `paused`: held where it is."""
 
-    def __init__(self, forces, anchors, setting, rides, reset, length):
+    def __init__(self, forces, anchors, setting, rides, reset, length, paused=False):
         self.forces, self.anchors, self.setting, self.rides, self.reset = forces, anchors, setting, rides, reset
+        self.paused = paused and not reset
         self.length, self.fast = length, bool(setting and setting.get("fast"))
 
     def scene(self, anchors):
@@ -42,10 +44,10 @@ class Wanted(object):
         return compose.compose(self.forces, anchors, self.setting, carried, self.length)
 
 
-def solve(ghenv, forces, anchors, settings, rides, reset):
+def solve(ghenv, forces, anchors, settings, rides, reset, on=True):
     """One solution of the engine: its outputs."""
     player = _player(ghenv)
-    wanted = canvas._told(ghenv, lambda: _wanted(ghenv, player, forces, anchors, settings, rides, reset))
+    wanted = canvas._told(ghenv, lambda: _wanted(ghenv, player, forces, anchors, settings, rides, (reset, on)))
     if wanted is None:
         return Outputs()
     player.wanted = wanted
@@ -86,23 +88,29 @@ def _player(ghenv):
 # inputs
 
 
-def _wanted(ghenv, player, forces, anchors, settings, rides, reset):
+def _wanted(ghenv, player, forces, anchors, settings, rides, switches):
     texts = [str(item) for item in listed(forces)]
     if not texts:
         raise compose.missing("_forces is missing; connect the outputs of force components")
     held = _anchors(ghenv, anchors)
     setting = compose.read(settings, "settings", "settings_")[-1:]
-    flags = listed(reset)
+    held_at_start, on = [_switch(flag) for flag in switches]
     carried, prints = _rides(player, rides)
-    held_at_start, length = not flags or bool(compose._value(flags[0])), _length_unit()
-    signature = [texts, compose.text([held, setting, prints, held_at_start, length])]
+    length = _length_unit()
+    signature = [texts, compose.text([held, setting, prints, held_at_start, on, length])]
     old = player.wanted
     if old is not None and old.signature == signature:
         return old
     read = compose.read(texts, None, "_forces")
-    made = Wanted(read, held, setting[0] if setting else None, carried, held_at_start, length)
+    made = Wanted(read, held, setting[0] if setting else None, carried, held_at_start, length, not on)
     made.signature, made.prints = signature, prints
     return made
+
+
+def _switch(given):
+    """A truth value; True where nothing is connected."""
+    flags = listed(given)
+    return not flags or bool(compose._value(flags[0]))
 
 
 def _anchors(ghenv, given):
@@ -213,8 +221,11 @@ def _tell(ghenv, player):
         canvas.schedule(ghenv, POLL // 2)
         return
     frame = player.frame()
-    said = "held at the start" if player.kept.reset else {"running": "iteration %d", "converged": "at rest after %d"}
-    said = said if player.kept.reset else said.get(frame["status"], frame["status"])
+    said = {"running": "iteration %d", "converged": "at rest after %d"}.get(frame["status"], frame["status"])
+    if player.kept.reset:
+        said = "held at the start"
+    elif player.kept.paused and frame["status"] != "converged":
+        said = "paused at iteration %d"
     canvas.note(ghenv, said % frame["iteration"] if "%" in said else said)
     if not player.settled:
         canvas.schedule(ghenv, FRAME)

@@ -113,9 +113,9 @@ class Player(object):
 
     @property
     def rests(self):
-        """Whether it stands still: at rest, or held at the start."""
+        """Whether it stands still: at rest, paused, or held at the start."""
         frame = self.frame()
-        return bool(frame) and (self.kept.reset or frame["status"] != "running")
+        return bool(frame) and (self.kept.reset or self.kept.paused or frame["status"] != "running")
 
     @property
     def exact(self):
@@ -191,9 +191,11 @@ class Player(object):
         self.kept, self.refused = wanted, None
 
     def _set_going(self, session, wanted, new):
-        """Hold it at the start, or let it run; how it stands then."""
+        """Hold it at the start or where it is, or let it run; how it stands then."""
         if not wanted.reset:
             self.running = True
+            if wanted.paused:
+                return session.pause()
             return session.play(fast="true" if wanted.fast else "false")
         if not new and not self.running:
             return None

@@ -17,6 +17,7 @@ ONCE = ("direction", "point", "normal")  # one vector for the whole force
 WHOLE = ("sub_iterations", "max_iterations")
 SOLVERS = ("verlet", "yoshida", "momentum", "relaxation", "newton", "force_density")
 UNITS = ("length", "force", "time")
+WELD = 0.001  # the service's own distance at which points merge
 
 
 def missing(said):
@@ -144,7 +145,7 @@ def anchors(source, points, targets, axes):
 
 
 def settings(fields):
-    """The text of settings: `units`, `weld_tolerance`, `fast`, and `settings` as a scene has them."""
+    """The text of settings: `units`, `weld_tolerance`, `fast`, `all_particles`, and `settings` as a scene has them."""
     made = {"kind": "settings", "units": {}, "settings": {}}
     for name, value in sorted(fields.items()):
         items = listed(value)
@@ -160,7 +161,7 @@ def settings(fields):
             found = int(found)
         if name in UNITS:
             made["units"][name] = found
-        elif name in ("weld_tolerance", "fast"):
+        elif name in ("weld_tolerance", "fast", "all_particles"):
             made[name] = found
         elif name != "floor" or found:
             made["settings"][name] = found
@@ -212,6 +213,8 @@ def compose(forces, anchors, setting, carried, lengths=None):
     scene["units"] = dict({"length": lengths} if lengths else {}, **setting["units"])
     if "weld_tolerance" in setting:
         scene["weld_tolerance"] = setting["weld_tolerance"]
+    if setting.get("all_particles"):
+        scene["particles"] = distinct(spots(scene), float(setting.get("weld_tolerance", WELD)))
     scene["anchors"] = [
         {"name": one["name"], "points": [one["home"]], "targets": [one["target"]], "axes": one["axes"]}
         for one in anchors
@@ -242,6 +245,19 @@ def spots(scene):
             while rows and isinstance(rows[0][0], (list, tuple)):
                 rows = [row for several in rows for row in several]
             found.extend(rows)
+    return found
+
+
+def distinct(points, tolerance):
+    """Points without those that are within the tolerance of one before."""
+    size, cells, found = max(8.0 * tolerance, 1e-12), {}, []
+    for place in points:
+        ranges = [range(int((x - tolerance) // size), int((x + tolerance) // size) + 1) for x in place]
+        keys = [(i, j, k) for i in ranges[0] for j in ranges[1] for k in ranges[2]]
+        near = (other for key in keys for other in cells.get(key, ()))
+        if not any(sum((p - q) ** 2 for p, q in zip(place, other)) <= tolerance**2 for other in near):
+            cells.setdefault(tuple(int(x // size) for x in place), []).append(place)
+            found.append(place)
     return found
 
 

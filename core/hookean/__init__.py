@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from hookean.forces.pull_to_line import PullToLine as PullToLine
     from hookean.forces.pull_to_mesh import PullToMesh as PullToMesh
     from hookean.forces.pull_to_plane import PullToPlane as PullToPlane
+    from hookean.forces.rigid_body import RigidBody as RigidBody
     from hookean.forces.self_weight import SelfWeight as SelfWeight
     from hookean.forces.shell import Shell as Shell
     from hookean.forces.smooth import Smooth as Smooth
@@ -188,6 +189,7 @@ __all__ = [
     "PullToPlane",
     "Report",
     "Result",
+    "RigidBody",
     "Scene",
     "Script",
     "SelfWeight",

@@ -13,9 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
+from canvas.archives import samples
 from canvas.kangaroo_samples import (
+    LENGTH,
     PHYSICS,
     SETTINGS,
+    SOLVER,
     SPRINGS,
     Kangaroo,
     cable,
@@ -30,6 +33,7 @@ from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, CLUSTER, PANEL, PARAMETERS, PYTHON3_SCRIPT
 from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, parts, sources
 from hookean_canvas.command import app
+from hookean_canvas.definitions import containers
 from hookean_canvas.inspect import lint
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.kangaroo.ids import COMPONENTS, Known, libraries, recognised
@@ -45,7 +49,7 @@ def translated(d: Kangaroo) -> tuple[Chunk, Report]:
     """A translation, after the checks that every one has to pass."""
     before = d.archive()
     after, report = kangaroo.translate(before, "sample.gh")
-    assert lint.faults(after) == []
+    assert lint.faults(after) == [] and overlapping(before, after) == []
     assert report.wires == len(wires(before)) == report.kept + len(report.lost)
     assert len(wires(before) & wires(after)) <= report.kept <= len(wires(after))
     assert remaining(after) == report.kangaroo - len(report.swapped)
@@ -98,18 +102,47 @@ def test_objects_stay_where_they_stand() -> None:
     assert places[0].items() <= places[1].items()
 
 
-def test_new_objects_stand_on_no_other() -> None:
-    after, _ = translated(tent())
-    boxes = {part.id: box for part in parts(after) if (box := bounds_of(part.container))}
-    old = {part.id for part in parts(tent().archive())}
-    new = {key: box for key, box in boxes.items() if key not in old}
-    assert len(new) >= 4
-    for key, box in new.items():
-        others = [other for id_, other in boxes.items() if id_ != key]
-        assert not any(
-            box[0] < o[0] + o[2] and o[0] < box[0] + box[2] and box[1] < o[1] + o[3] and o[1] < box[1] + box[3]
-            for o in others
-        )
+def overlapping(before: Chunk, after: Chunk) -> list[tuple[str, str]]:
+    """New objects that share their place with another object, and that one; by their labels."""
+    boxes = [(part, box) for part in parts(after) if (box := bounds_of(part.container))]
+    old = {part.id for part in parts(before)} | {
+        port.value("InstanceGuid") for part in parts(before) if part.container for port in outputs(part.container)
+    }
+    return [
+        (part.label, other.label)
+        for part, a in boxes
+        for other, b in boxes
+        if part.id not in old and other is not part
+        and all(a[i] < b[i] + b[i + 2] and b[i] < a[i] + a[i + 2] for i in (0, 1))
+    ]  # fmt: skip
+
+
+def test_new_objects_are_placed_where_nothing_is_on_a_crowded_canvas() -> None:
+    """Components side by side, as close as people put them, each with values and helpers of its own."""
+    d = Kangaroo("crowded", "Crowded", "Many goals.")
+    mesh, data = d.parameter("Mesh", "Mesh"), d.parameter("Data", "Data")
+    goals = []
+    for i in range(6):
+        typed = (("LineA", None), ("LineB", None), ("Upper", 1.5 + i), ("Lower", 0.5), ("Strength", 3.0 + i))
+        goals.append(d.kangaroo("ClampAngle", typed, ["C"], linea=data, lineb=data))
+        volume = (("Mesh", None), ("Volume", 2.0 + i), ("Strength", 3.0))
+        goals.append(d.kangaroo("Volume", volume, ["V"], mesh=mesh))
+    d.solved(*goals)
+    before = d.archive()
+    for i, part in enumerate(part for part in parts(before) if part.container is not None):
+        assert part.container is not None
+        containers.place(part.container, (100.0 * (i % 4), 60.0 * (i // 4), 80.0, 50.0))
+    after, report = kangaroo.translate(before, "crowded.gh")
+    new = len(parts(after)) - len(parts(before))
+    assert report.whole == 1 and new >= 6 * 5 and overlapping(before, after) == []
+
+
+def test_the_report_on_a_file_of_grasshopper_covers_nothing() -> None:
+    for file in samples():
+        root = archive.read(file)
+        if root.chunk("Definition") is not None:
+            after, _ = kangaroo.translate(root, file.name)
+            assert overlapping(root, after) == [] and the(after, "Translated for hookean")
 
 
 @pytest.mark.parametrize("both", [False, True])
@@ -202,9 +235,45 @@ def test_settings_keep_the_floor_and_what_has_no_counterpart_is_told_only_where_
 
 def test_wires_into_inputs_without_counterpart_are_listed_with_the_reason() -> None:
     _, report = translated(tent())
-    assert [wire for wire, _ in report.lost] == ["Threshold > Solver.Threshold", "On > Solver.On"]
-    assert "residual" in report.lost[0][1] and "reset is False" in report.lost[1][1]
+    assert [wire for wire, _ in report.lost] == ["Threshold > Solver.Threshold"]
+    assert "residual" in report.lost[0][1]
     assert not report.complete
+
+
+@pytest.mark.parametrize("wired", [True, False])
+def test_a_solver_that_was_saved_paused_stays_paused(wired: bool) -> None:
+    """Its On, wired or typed, is the Engine's."""
+    d = Kangaroo("paused", "Paused", "A solver that is off.")
+    typed = tuple((name, False if name == "On" and not wired else value) for name, value in SOLVER)
+    spring = d.kangaroo("Length(Line)", LENGTH, ["S"], line=d.native("Line", start_point=d.point(0, 0, 0)))
+    wires_ = {"on": d.toggle("Switch", False)} if wired else {}
+    d.kangaroo("Solver", typed, ["I", "V", "O"], goalobjects=spring, **wires_)
+    after, report = translated(d)
+    [held] = behind(after, the(after, "Engine"), "on")
+    assert held.guid == BOOLEAN_TOGGLE and held.container is not None
+    assert held.container.value("ToggleValue") is False and report.complete
+
+
+@pytest.mark.parametrize(
+    ("name", "names", "guid", "helper", "column"),
+    [
+        ("SoapFilm", "Pts Strength", "0c68b153-3c88-4e62-9827-f3793c013f88", "Film", "mesh"),
+        ("SoapFilm", "M Strength", "76ab889c-8593-4892-861d-a80b5311a981", "Source", "mesh"),
+        ("CyclicQuad", "P0 P1 P2 P3 Strength", "15ab0db0-5093-4a37-854a-cee70457a847", "Faces", "mesh"),
+        ("TangentIncircles", "M B Strength", "3962cf86-9b9e-41d7-94f9-42bd0326291d", "Source", "mesh"),
+    ],
+)
+def test_versions_of_a_goal_are_told_apart_by_their_inputs(
+    name: str, names: str, guid: str, helper: str, column: str
+) -> None:
+    d = Kangaroo("versions", "Versions", "One goal, older or newer.")
+    source = d.parameter("Data", "Source")
+    wired = {one.lower(): source for one in names.split() if one not in ("B", "Strength")}
+    goal = d.kangaroo(name, [(one, None) for one in names.split()], ["G"], guid=UUID(guid), **wired)
+    d.solved(goal)
+    after, report = translated(d)
+    found = next(p for p in parts(after) if p.id == goal.id)
+    assert [part.label for part in behind(after, found, column)] == [helper] and report.complete
 
 
 def test_goals_in_one_stream_are_sorted_and_show_becomes_a_parameter() -> None:
@@ -280,13 +349,15 @@ def test_every_input_of_the_table_is_one_of_a_component_that_there_is() -> None:
     from hookean_canvas.components import bundles
     from hookean_canvas.kangaroo.make import recipe
 
-    for name, swap in [*CLASSIC.items(), *SECOND.items()]:
+    others = [(name, swap.other) for name, swap in [*CLASSIC.items(), *SECOND.items()] if swap.other]
+    for name, swap in [*CLASSIC.items(), *SECOND.items(), *others]:
         for piece in swap.pieces:
             if piece.bundle in FLOATING or not piece.bundle.startswith("*") and piece.bundle not in bundles.names():
                 continue
             made = recipe(piece.bundle)
             ours = {slot.name.strip("_") for slot in made.inputs}
-            assert {*piece.inputs.values(), *piece.values} <= ours, (name, piece)
+            taken = {one for both in piece.inputs.values() for one in both.split("|")}
+            assert {*taken, *piece.values} <= ours, (name, piece)
             assert {*piece.outputs, *piece.feeds} <= {slot.name for slot in made.outputs}, (name, piece)
 
 

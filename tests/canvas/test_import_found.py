@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from canvas.kangaroo_samples import wires
+from canvas.test_import import overlapping
 from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.archive import Chunk
@@ -50,6 +51,7 @@ def test_a_real_definition_is_translated_without_a_fault_or_a_wire_lost_unseen(f
     assert set(lint.faults(after)) <= set(lint.faults(before)) or lint.faults(after) == []
     assert report.wires == len(wires(before)) == report.kept + len(report.lost)
     assert {part.id for part in parts(before)} <= {part.id for part in parts(after)} | {None} | _shown(before)
+    assert overlapping(before, after) == []
     was, stays = of_kangaroo(before), of_kangaroo(after)
     assert sum(was.values()) == report.kangaroo == len(report.swapped) + sum(stays.values())
     told = Counter(what.split(" (")[0] for what, _ in report.stays)

@@ -256,7 +256,7 @@ def test_an_anchor_by_index_keeps_its_system(typed: bool) -> None:
     if typed:
         store(anchor.inputs["index"][1], [3])
     d.solved(spring, anchor)
-    assert untouched(d)["Anchor"] == "it goes by index; anchors here go by their points"
+    assert untouched(d)["Anchor"] == "it goes by index, and no solver has Points"
 
 
 def test_grab_becomes_nothing_as_it_acts_only_while_the_mouse_drags() -> None:

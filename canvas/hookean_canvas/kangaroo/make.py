@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 from uuid import UUID
@@ -15,6 +14,8 @@ from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, NAMES, PANEL, PARAMETER
 from hookean_canvas.components import bundles, inline
 from hookean_canvas.definitions import containers
 from hookean_canvas.definitions.containers import Slot
+from hookean_canvas.kangaroo import scripts
+from hookean_canvas.kangaroo.scripts import Recipe
 
 LENGTH = UUID("c75b62fa-0a33-4da7-a5bd-03fd0068fd93")
 
@@ -92,20 +93,8 @@ from hookean_client import canvas
 
 planes = canvas.listed(_planes)
 origin = [canvas.geometry.to_point([p.Origin.X, p.Origin.Y, p.Origin.Z]) for p in planes]
-normal = [canvas.geometry.to_vector([p.Normal.X, p.Normal.Y, p.Normal.Z]) for p in planes]
+normal = [canvas.geometry.to_vector([p.ZAxis.X, p.ZAxis.Y, p.ZAxis.Z]) for p in planes]
 '''
-
-
-@dataclass(frozen=True)
-class Recipe:
-    """What a component needs to be made: words, code, and its inputs and outputs."""
-
-    name: str
-    nickname: str
-    description: str
-    code: str
-    inputs: tuple[Slot, ...]
-    outputs: tuple[Slot, ...]
 
 
 HELPERS = {
@@ -147,6 +136,7 @@ HELPERS = {
         (Slot("_start", "Points", 1, "point"), Slot("_end", "Points", 1, "point")),
         (Slot("lines", "Lines"),),
     ),
+    **scripts.HELPERS,
 }
 """Small scripts where our components take other things than Kangaroo's."""
 
@@ -235,6 +225,8 @@ def _kind(item: Chunk, hint: str) -> str:
     for entry in item.items:
         if entry.name in _BY_ITEM:
             return _BY_ITEM[entry.name]
+        if entry.type == Type.PLANE:
+            return "Plane"
         if entry.name == "number":
             return "Integer" if entry.type == Type.INT32 else "Number"
     return _BY_HINT.get(hint, "Geometry")

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from uuid import UUID
 
 from hookean.errors import InputError
 from hookean_canvas.archive import Chunk
 from hookean_canvas.archive.guids import CLUSTER
-from hookean_canvas.archive.parts import Part, inputs, outputs, parts, sources
+from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, parts, sources
 from hookean_canvas.kangaroo import make
 from hookean_canvas.kangaroo.ids import Known, hidden, key, libraries, recognised
+from hookean_canvas.kangaroo.pieces import Swap
 from hookean_canvas.kangaroo.report import Report
 from hookean_canvas.kangaroo.roles import Role, called, reason, role
-from hookean_canvas.kangaroo.space import Space
+from hookean_canvas.kangaroo.space import Space, size
 from hookean_canvas.kangaroo.streams import Streams, sound
 from hookean_canvas.kangaroo.swap import FLOATING, Swapping, connect, names_of, ports_of
 from hookean_canvas.kangaroo.systems import System, Systems
-from hookean_canvas.kangaroo.table import Swap, swap_of
+from hookean_canvas.kangaroo.table import swap_of
 
 
 class Importing:
@@ -33,6 +34,7 @@ class Importing:
         self.libraries = libraries(definition)
         self.known = {id(part.chunk): self._recognised(part) for part in parts(root)}
         self.streams = Streams(root)
+        self.numbered = self._numbered()
         self.plan: dict[int, Swap] = {}
         self.stays: dict[int, str] = {}
         self.systems = Systems(root, self.streams, self.known, self._why_not)
@@ -56,6 +58,7 @@ class Importing:
         self.report.objects = len(found)
         self.report.kangaroo = sum(known is not None for known in self.known.values())
         self._decide()
+        self._reserve()
         for part in found:
             known = self.known[id(part.chunk)]
             if known and id(part.chunk) in self.plan:
@@ -67,6 +70,15 @@ class Importing:
             if inside:
                 self.report.stays.append((part.label, inside))
         self._wire_doubles()
+
+    def _reserve(self) -> None:
+        """Room for what is larger than before, so that nothing new is placed there."""
+        for part in self.streams.parts:
+            swap, bounds = self.plan.get(id(part.chunk)), bounds_of(part.container)
+            if swap and bounds and part.container is not None and swap.pieces[0].bundle not in FLOATING:
+                of = make.recipe(swap.pieces[0].bundle)
+                box = size([slot.name for slot in of.inputs], [slot.name for slot in of.outputs])
+                self.space.taken[id(part.container)] = (bounds[0], bounds[1], *box)
 
     def _decide(self) -> None:
         """Which components are swapped: those of systems that are whole, and tools of no system that stays."""
@@ -118,10 +130,19 @@ class Importing:
 
     def _swap(self, part: Part, known: Known) -> Swap | str:
         """The swap of a component, or why there is none."""
-        swap = swap_of(known)
+        swap, why = swap_of(known), ""
         given = {key(name): port for port in ports_of(part) for name in names_of(port)}
-        if swap is None or not set(swap.needs) <= given.keys():
-            return reason(known)
+        while swap is not None:
+            wrong = self._unfit(swap, part, given)
+            if wrong is None:
+                return swap
+            swap, why = swap.other, why or wrong
+        return why or reason(known)
+
+    def _unfit(self, swap: Swap, part: Part, given: Mapping[str, Chunk]) -> str | None:
+        """Why a component cannot be swapped so; empty where it is another version, None where it can."""
+        if not set(swap.needs) <= given.keys():
+            return ""
         if part.container is None or not (inputs(part.container) or swap.pieces[0].bundle == "*nothing"):
             return "it has no input or no output; the file is damaged"
         if not outputs(part.container):
@@ -130,12 +151,24 @@ class Importing:
             if name in given and (sources(given[name]) or make.stored(given[name])):
                 return why
         for piece in swap.pieces:
+            if piece.bundle == "*indexed" and not self.numbered:
+                return ""
             if piece.bundle not in FLOATING:
                 try:
                     make.recipe(piece.bundle)
                 except InputError:
                     return f"hookean has no component {piece.bundle}"
-        return swap
+        return None
+
+    def _numbered(self) -> list[UUID]:
+        """What is wired into the Points of the solver that takes goals by index; empty where several differ."""
+        found = []
+        for part in self.streams.parts:
+            known = self.known[id(part.chunk)]
+            if known and known.generation == "second" and role(known) is Role.SOLVER:
+                found += [sources(port) for port in ports_of(part) if "points" in map(key, names_of(port))]
+        wired = [one for one in found if one]
+        return wired[0] if wired and all(one == wired[0] for one in wired) else []
 
     def swapped(self, wanted: str, among: Sequence[Part]) -> Iterator[tuple[Part, Known]]:
         """Components among some that are swapped for pieces of a kind."""

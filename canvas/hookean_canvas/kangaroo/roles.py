@@ -28,32 +28,33 @@ unroller vertexneighbours warpweft counter sequence trail wave
 _SOLVERS, _TOOLS = frozenset(_SOLVER_NAMES.split()), frozenset(_TOOL_NAMES.split())
 
 _PURE = "geometry without mechanics of this kind is not here"
-_THERE = "hookean has this force (see From Kangaroo in its documentation), but it is not translated"
-_COLLIDE = "collisions other than of spheres and with floors are not here"
-_PURE_NAMES = "isothermic g2 gstring"
-_THERE_NAMES = """
-equalangle equalize equalizeangles align lengthratio lengthsnap anglesnap clampangle colinear cospherical cocircular
-polygonarea transform mirror translationlock magnetsnap plasticlength dynamicweight1d vortex gasvolume rocket
-tangentincircles conicalize developablize planarizequads cpmesh laplacian meshsmooth hydro hydromesh windmesh
-"""
-_COLLIDE_NAMES = """
-collide2d collider curvecollide curvepointcollide imagecircles softbodycollide solidpointcollide
-solidplanecollide rigidbody rigidbodycollide rigidpointset floorfriction collidemesh collidesurf
-"""
+_COLLIDE = "collisions of curves, meshes and boxes that move are not here"
+_RIGID = "contacts and joints of rigid bodies are not here"
+_SOLID = "elements of solids and membranes with a Young's modulus are not here"
+_LINE = (
+    "forces between lines, or points and lines, by a power of their distance are not here; Collide Lines is a contact"
+)
+_REASONS = {
+    _PURE: "isothermic g2 gstring levelset cpmesh reciprocalstructure rheotomicsurface",
+    _COLLIDE: "collide2d curvecollide imagecircles softbodycollide boxcollide",
+    _RIGID: "solidplanecollide rigidbodycollide concentric alignfaces",
+    _SOLID: "triangularelement tetrahedralelement",
+    _LINE: "lineline pointline",
+}
 REASONS: dict[str, str] = {
-    "fd": "Constant Tension takes a force; Springs with rest length 0 take the force density",
-    "areaweight": "Area Weight takes a mesh and a weight per area",
-    "tangentialsmooth": "SoapFilm keeps its triangles even by itself; TangentialSmooth takes a mesh and a stiffness",
-    "soapfilm": "connect a mesh to SoapFilm",
-    "pressure": "connect a mesh to Pressure",
-    "wind": "Wind takes a velocity pressure and a direction",
-    "volume": "Volume takes the bulk modulus of what is in the mesh, another quantity than the strength in Kangaroo",
+    "soapfilm": "warp and weft are families of a mesh's edges here; connect a mesh to SoapFilm",
+    "bomb": "impulses are not here",
+    "soft&hardsolver": "goals are not of two ranks here; anchors, locks and floors are exact",
+    "livesoap": "meshes do not change their faces while they relax",
+    "collidesurf": "connect a mesh to Collide Solid",
+    "shear": "a force of this kind is not here",
+    "edgebend": "Shell takes a mesh; Hinge takes edges with their tips",
+    "origami": "Hinge takes edges with their tips, rest angles and an angle factor",
+    "gravity": "Unary takes points and a vector",
     "particle": "masses and first velocities are fields of a scene; the canvas has no component for them",
     "beam": "beams of six degrees of freedom are not here",
     "support": "supports of six degrees of freedom are not here",
-    **dict.fromkeys(_PURE_NAMES.split(), _PURE),
-    **dict.fromkeys(_THERE_NAMES.split(), _THERE),
-    **dict.fromkeys(_COLLIDE_NAMES.split(), _COLLIDE),
+    **{name: why for why, names in _REASONS.items() for name in names.split()},
     "counter": "a tool; the Engine's iterations count, too",
     "sequence": "a tool; the service keeps the frames of a run",
     "meshcorners": "a tool for geometry that gives corners round the boundary; Mesh Corners here gives them by the"

@@ -13,9 +13,10 @@ from hookean_canvas.definitions import containers
 from hookean_canvas.definitions.containers import Slot, wire
 from hookean_canvas.kangaroo import make
 from hookean_canvas.kangaroo.ids import Known, key
+from hookean_canvas.kangaroo.pieces import Piece, Swap
 from hookean_canvas.kangaroo.roles import called, usual
+from hookean_canvas.kangaroo.scripts import Recipe
 from hookean_canvas.kangaroo.space import size
-from hookean_canvas.kangaroo.table import Piece, Swap
 
 if TYPE_CHECKING:
     from hookean_canvas.kangaroo.plan import Importing
@@ -39,7 +40,7 @@ class Swapping:
         self.results = {key(name): port for port in outputs(self.old) for name in reversed(names_of(port))}
         self.used: set[UUID] = set()
         self.made: list[Chunk] = []
-        self.recipes: list[make.Recipe] = []
+        self.recipes: list[Recipe] = []
 
     def run(self) -> None:
         """Make the pieces, then say what found no place."""
@@ -101,12 +102,14 @@ class Swapping:
                 self._connect(taken[name], port, slot)
             elif name in piece.values:
                 self._hold(port, slot, piece.values[name])
+            elif piece.bundle == "*indexed" and name == "points":
+                connect(port, self.whole.numbered)
 
     def _input(self, id_: UUID, piece: Piece, slot: Slot, taken: dict[str, Chunk]) -> UUID:
         """The id of an input: Kangaroo's where it stands for one of its inputs, else a new one."""
         name = slot.name.strip("_")
         for old, ours in piece.inputs.items():
-            if ours == name and old in self.given and name not in taken:
+            if name in ours.split("|") and old in self.given and name not in taken:
                 taken[name] = self.given[old]
                 found: UUID = taken[name].value("InstanceGuid")
                 if found not in self.used:

@@ -39,17 +39,17 @@ def rotate(a: Any, frame: Any, p: Any, q: Any) -> None:
         t = -t
     c = 1.0 / np.sqrt(t * t + 1.0)
     s = t * c
-    r = 3 - p - q
     a[p, p] -= t * a[p, q]
     a[q, q] += t * a[p, q]
     a[p, q] = a[q, p] = 0.0
-    rp, rq = a[r, p], a[r, q]
-    a[r, p] = a[p, r] = c * rp - s * rq
-    a[r, q] = a[q, r] = s * rp + c * rq
-    for i in range(3):
-        vp, vq = frame[p, i], frame[q, i]
-        frame[p, i] = c * vp - s * vq
-        frame[q, i] = s * vp + c * vq
+    for r in range(a.shape[0]):
+        if r != p and r != q:
+            rp, rq = a[r, p], a[r, q]
+            a[r, p] = a[p, r] = c * rp - s * rq
+            a[r, q] = a[q, r] = s * rp + c * rq
+        vp, vq = frame[p, r], frame[q, r]
+        frame[p, r] = c * vp - s * vq
+        frame[q, r] = s * vp + c * vq
 
 
 @device

@@ -5,7 +5,9 @@ the write: of two versions of a row the one with the larger number is the later 
 from __future__ import annotations
 
 import hashlib
+import sqlite3
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -21,23 +23,21 @@ REALS = ("created", "idle")
 
 @dataclass(frozen=True)
 class Table:
-    """One table: `key` and `values` are its columns, apart from `sum` and `seq`; the one that may be large is last."""
+    """One table: its key and all of its columns: the key, `sum`, `seq`, and values; one that may be large is last."""
 
     name: str
     key: tuple[str, ...]
-    values: tuple[str, ...]
-    kind: str
-    """What its rows belong to: a session or a job."""
+    columns: tuple[str, ...]
+
+    @property
+    def kind(self) -> str:
+        """What its rows belong to: a session or a job."""
+        return "job" if self.name == "jobs" or "job" in self.columns else "session"
 
     @property
     def of(self) -> str:
         """The column with the key of the session or job that a row belongs to."""
         return "job" if "job" in self.columns else self.key[0]
-
-    @cached_property
-    def columns(self) -> tuple[str, ...]:
-        """All columns, in the order of the file."""
-        return (*self.key, "sum", "seq", *self.values)
 
     @cached_property
     def summed(self) -> tuple[int, ...]:
@@ -67,22 +67,6 @@ class Table:
         """The key of the session or job that a row belongs to."""
         return str(row[self.columns.index(self.of)])
 
-
-TABLES = {
-    table.name: table
-    for table in (
-        Table("sessions", ("key",), ("since", "label", "nonce", "revision", "particles", "created", "idle"), "session"),
-        Table("bases", ("key",), ("since", "number", "revision", "base"), "session"),
-        Table("states", ("key",), ("since", "iteration", "status", "message"), "session"),
-        Table("shapes", ("key",), ("since", "state"), "session"),
-        Table("edits", ("key", "number"), ("since", "revision", "sets", "body"), "session"),
-        Table("notes", ("key",), ("since", "sentences"), "session"),
-        Table("jobs", ("id",), ("kind", "total", "status", "message", "created", "idle"), "job"),
-        Table("requests", ("job",), ("request",), "job"),
-        Table("items", ("job", "number"), ("event", "status", "body"), "job"),
-        Table("answers", ("key",), ("job", "digest", "status", "head", "idle", "body"), "job"),
-    )
-}
 
 SCHEMA = """
 CREATE TABLE sessions (
@@ -165,3 +149,20 @@ CREATE TABLE marks (
     value TEXT NOT NULL
 );
 """
+
+
+def _tables() -> dict[str, Table]:
+    """The tables of the schema, as SQLite reads them."""
+    with closing(sqlite3.connect(":memory:")) as db:
+        db.executescript(SCHEMA)
+        names = [
+            name for (name,) in db.execute("SELECT name FROM sqlite_schema WHERE type = 'table' AND name != 'marks'")
+        ]
+        columns = {name: db.execute("SELECT name, pk FROM pragma_table_info(?)", (name,)).fetchall() for name in names}
+    return {
+        name: Table(name, tuple(column for column, key in found if key), tuple(column for column, _ in found))
+        for name, found in columns.items()
+    }
+
+
+TABLES = _tables()
