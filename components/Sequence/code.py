@@ -1,4 +1,4 @@
-"""Resets in its first solution and lets run in the next ones: for the reset of an Engine.
+"""True in the first solution of a series and False in the next ones, for the reset of an Engine.
 
 It schedules its own solutions and ends after the last frame. Restart begins again when it is let
 go.
