@@ -19,11 +19,16 @@ from .canvas_geometry import Unfit, listed, matched
 
 __all__ = ["VERSION", "Unfit", "geometry", "listed", "matched"]
 TAKES = dict(
-    [(name, "curve") for name in ("divide", "shatter", "explode", "end_points", "length")]
+    [(name, "curve") for name in ("divide", "shatter", "explode", "end_points", "length", "split_at_corners")]
     + [(name, "surface") for name in ("mesh_surface", "mesh_faces")]
-    + [(name, "points") for name in ("remove_duplicate_points", "arc", "interpolate")]
+    + [(name, "points") for name in ("remove_duplicate_points", "arc", "interpolate", "fold_angle", "mesh_map")]
     + [(name, "lines") for name in ("remove_duplicate_lines", "catenary")]
+    + [("clean", "meshes")]
 )  # what an operation takes; all others take a mesh
+SHAPES = {"source": "mesh", "target": "mesh", "end": "points", "tip_1": "points", "tip_2": "points",
+          "vertices": "indices"}  # fmt: skip
+# options that are geometry, or lists
+WHOLE = ("count", "u", "v", "degree", "level", "iterations")  # options that are whole numbers
 PAUSE = 0.02  # seconds between two solutions, at least; runs of one follow each other without
 _turns = {}  # by component
 
@@ -203,11 +208,17 @@ def _plain(takes, item):
         return geometry.lines(item)[0]
     if takes == "points":
         return geometry.points(item)
+    if takes == "meshes":
+        return [geometry.mesh(one) for one in listed(item)]
+    if takes == "indices":
+        return [int(geometry.number(one)) for one in listed(item)]
     return getattr(geometry, takes)(item if takes == "mesh" else listed(item)[0])
 
 
 def _option(name, value):
     """An option as JSON has it: whole numbers stay whole, vectors become lists, one of a list stands alone."""
+    if name in SHAPES:
+        return _plain(SHAPES[name], value)
     items = [geometry.value(value)] if geometry.is_point(value) else listed(value)
     if len(items) > 1:
         return [_option(name, one) for one in items]
@@ -220,7 +231,7 @@ def _option(name, value):
         value = geometry.number(value)
     except Unfit as unfit:
         raise Unfit("%s: %s" % (name, unfit))
-    return int(value) if value == int(value) and name in ("count", "u", "v", "degree") else value
+    return int(value) if value == int(value) and name in WHOLE else value
 
 
 def _made(answer):
@@ -235,6 +246,8 @@ def _made(answer):
             value = [geometry.to_line(one) for one in value]
         elif name == "mesh":
             value = geometry.to_mesh(value)
+        elif name == "normals":
+            value = [geometry.to_vector(one) for one in value]
         found[name] = value
     return found
 

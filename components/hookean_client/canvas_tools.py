@@ -215,3 +215,122 @@ def remove_duplicate_lines(ghenv, lines, tolerance):
     near = default(tolerance, 0.01)[0]
     found = canvas.discretize(ghenv, "remove_duplicate_lines", lines, tolerance=near)
     return found and found["lines"]
+
+
+def remove_duplicate_points(ghenv, points, tolerance):
+    """The points of a branch without those that are near one before them."""
+    found = canvas.discretize(ghenv, "remove_duplicate_points", points, tolerance=default(tolerance, 0.01)[0])
+    return found and found["points"]
+
+
+def combine_clean(ghenv, meshes, tolerance):
+    """The meshes of a branch as one, welded, without duplicate faces and unused vertices."""
+    found = canvas.discretize(ghenv, "clean", meshes, tolerance=default(tolerance, 0.01)[0])
+    return found and found["mesh"]
+
+
+def refine(ghenv, meshes, levels, smooth):
+    """Each mesh with every face cut into four, so many times."""
+
+    def work():
+        return each(ghenv, "refine", meshes, ["mesh"], level=whole(levels, 1, "level", 0), smooth=flag(smooth, False))
+
+    return (canvas._told(ghenv, work) or [None])[0]
+
+
+def refine_strips(ghenv, meshes, levels, direction):
+    """Each mesh with every face cut in two across one direction, so many times."""
+
+    def work():
+        way = word(direction, ("along", "warp", "weft"), "direction")
+        return each(ghenv, "refine_strips", meshes, ["mesh"], level=whole(levels, 1, "level", 0), direction=way)
+
+    return (canvas._told(ghenv, work) or [None])[0]
+
+
+def diagonalize(ghenv, meshes):
+    """A mesh with a face for each edge of each mesh."""
+    return each(ghenv, "diagonalize", meshes, ["mesh"])[0]
+
+
+def checkerboard(ghenv, meshes, strict):
+    """Whether each face has the second colour, and the numbers of the faces of both."""
+    names = ["pattern", "first", "second"]
+    found = answers(ghenv, "checkerboard", meshes, strict=flag(strict, True))
+    if found is None:
+        return [None] * len(names)
+    for one in found:
+        one["pattern"] = [bool(value) for value in one["pattern"]]
+    return [column(ghenv, [one[name] for one in found]) for name in names]
+
+
+def hinge_points(ghenv, meshes):
+    """Start and end of the fold and the two tips of the hinge at each inner edge of each mesh."""
+    return each(ghenv, "hinge_points", meshes, ["start_points", "end_points", "tip_1_points", "tip_2_points"])
+
+
+def fold_angle(ghenv, starts, ends, tips_1, tips_2):
+    """Angles between the triangles start-end-tip 1 and end-start-tip 2, matched by the longest list."""
+
+    def work():
+        names = ("start", "end", "tip_1", "tip_2")
+        for name, given in zip(names, (starts, ends, tips_1, tips_2)):
+            if not listed(given):
+                raise canvas.scene.missing("%s is missing; connect points" % name)
+        rows = matched(*[geometry.points(given) for given in (starts, ends, tips_1, tips_2)])
+        found = canvas.discretize(ghenv, "fold_angle", rows[0], **dict(zip(names[1:], rows[1:])))
+        return found and found["angles"]
+
+    return canvas._told(ghenv, work)
+
+
+def vertex_neighbours(ghenv, meshes, vertices):
+    """The vertices asked for, a branch of neighbours and of their numbers for each, and the normals."""
+
+    def work():
+        wanted = [int(geometry.number(one)) for one in listed(vertices)]
+        found = answers(ghenv, "vertex_neighbours", meshes, vertices=[wanted] if wanted else None)
+        if found is None:
+            return None
+        places, rings, numbers, above = [], [], [], path(ghenv).strip("{}")
+        for i, (one, mesh) in enumerate(zip(found, listed(meshes))):
+            corners = [geometry.to_point(place) for place in geometry.mesh(mesh)["vertices"]]
+            places.append([corners[v] for v in wanted or range(len(corners))])
+            branch = "{%s;%%d}" % (above if len(found) == 1 else "%s;%d" % (above, i))
+            rings += [(branch % j, [corners[v] for v in ring]) for j, ring in enumerate(one["neighbours"])]
+            numbers += [(branch % j, ring) for j, ring in enumerate(one["neighbours"])]
+        normals = column(ghenv, [one["normals"] for one in found])
+        return column(ghenv, places), geometry.to_tree(rings), geometry.to_tree(numbers), normals
+
+    return canvas._told(ghenv, work) or [None] * 4
+
+
+def mesh_map(ghenv, points, source, target, distance):
+    """The points of a branch moved as their mesh is."""
+
+    def work():
+        for name, given in (("source", source), ("target", target)):
+            if not listed(given):
+                raise canvas.scene.missing("%s is missing; connect a mesh" % name)
+        meshes = {"source": source, "target": target}
+        found = canvas.discretize(ghenv, "mesh_map", points, distance=default(distance, 1.0)[0], **meshes)
+        return found and found["points"]
+
+    return canvas._told(ghenv, work)
+
+
+def split_at_corners(ghenv, curves, angles):
+    """Points where each polyline turns by more than a number [rad], and its parts between them."""
+    return each(ghenv, "split_at_corners", curves, ["points", "polylines"], turning_angle=default(angles, 1.0))
+
+
+def remesh(ghenv, meshes, lengths, angles, rounds):
+    """Each mesh as triangles with edges of about a length, folds above a number [rad] kept."""
+
+    def work():
+        if not listed(lengths):
+            raise canvas.scene.missing("length is missing; connect it")
+        many = {"length": listed(lengths), "feature_angle": default(angles, 0.5235987755982988)}
+        return each(ghenv, "remesh", meshes, ["mesh"], iterations=whole(rounds, 15, "iterations"), **many)
+
+    return (canvas._told(ghenv, work) or [None])[0]

@@ -299,7 +299,7 @@ def test_a_goal_without_counterpart_keeps_its_whole_system_as_it_was() -> None:
     after, report = translated(d)
     assert (report.solvers, report.whole, report.swapped, report.lost) == (1, 0, [], [])
     assert dict(report.stays) == {
-        "Refine": "a tool for geometry; it stays on, as it comes with Rhino",
+        "Refine": "a tool for geometry; it stays with the system that it feeds",
         "Isothermic": "geometry without mechanics of this kind is not here",
         "EdgeLengths": "it stays with Solver",
         "Solver": "it stays with all its goals, because of Isothermic",

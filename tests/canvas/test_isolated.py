@@ -67,25 +67,42 @@ CURVE = {"NurbsCurve": {"degree": 2, "points": [[0, 0, 0], [1, 2, 0.5], [2, 0, 1
                         "weights": [1, 0.5, 1]}}  # fmt: skip
 SURFACE = {"NurbsSurface": {"degree_u": 1, "degree_v": 1, "points": [[[0, 0, 0], [0, 2, 0]], [[3, 0, 0], [3, 2, 1]]],
                             "knots_u": [0, 1], "knots_v": [0, 1]}}  # fmt: skip
+MOVED = {"Mesh": {**QUADS, "vertices": [[y, 5 - x, 2 * z + 1] for x, y, z in QUADS["vertices"]]}}
+FOLD = [[point(0, 0, 0)], [point(1, 0, 0)], [point(0, 1, 0), point(0, 1, 1)], [point(0, -1, 0)]]
 SAMPLES: dict[str, dict[str, Any]] = {
     **{cls.__name__: wired.inputs(kind) for kind, cls in KINDS.items()},
     "Anchors": {"_point": ROW, "_x_": [True, False]},
+    "Checkerboard": {"_mesh": [MESH]},
+    "CombineClean": {"_meshes": [MESH, MESH]},
     "Catenary": {"_start": ROW[:1], "_end": ROW[3:], "_length": [4.0], "_count_": [5]},
+    "Counter": {"_reset_": [True]},
+    "Diagonalize": {"_mesh": [MESH]},
     "Diagonals": {"_mesh": [MESH], "_pattern_": ["both"]},
     "Divide": {"_curve": [CURVE], "_count_": [7]},
+    "FoldAngle": dict(zip(("_start", "_end", "_tip_1", "_tip_2"), FOLD, strict=True)),
+    "HingePoints": {"_mesh": [MESH]},
     "Interpolate": {"_points": ROW, "_count_": [6]},
     "MeshCorners": {"_mesh": [MESH]},
     "MeshEdges": {"_mesh": [MESH]},
+    "MeshMap": {"_point": ROW, "_source": [MESH], "_target": [MOVED]},
     "MeshSurface": {"_surface": [SURFACE], "_u_": [3], "_v_": [2]},
     "MeshVertices": {"_mesh": [MESH]},
     "NakedVertices": {"_mesh": [MESH]},
     "RemoveDuplicateLines": {"_lines": [line((0, 0, 0), (1, 0, 0)), line((1, 0, 0), (0, 0, 0))]},
+    "RemoveDuplicatePoints": {"_points": [*ROW, *ROW]},
+    "Refine": {"_mesh": [MESH], "_smooth_": [True]},
+    "RefineStrips": {"_mesh": [MESH], "_level_": [2]},
+    "Remesh": {"_mesh": [MESH], "_length": [0.4]},
     "RhinoFile": {"_file": [str(MODEL)]},
+    "Sequence": {"_frames_": [2], "_restart_": [True]},
     "Server": {},
     "Settings": {"_drag_": [5.0], "_fast_": [True]},
     "Shatter": {"_curve": [CURVE], "_count_": [4]},
+    "SplitAtCorners": {"_polyline": [{"Polyline": [[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0]]}]},
     "Springs": {"_connection": [line((i, 0, 0), (i + 1, 0, 0)) for i in range(10)], "_stiffness_": [1000.0]},
     "Unary": {"_point": [point(i, 0, 0) for i in range(11)], "_force": [{"Vector3d": [0, 0, -10]}]},
+    "Trail": {"_points": ROW, "_record_": [False]},
+    "VertexNeighbours": {"_mesh": [MESH], "vertices_": [1, 4]},
     "WarpWeft": {"_mesh": [MESH]},
 }
 

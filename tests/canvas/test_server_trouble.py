@@ -74,9 +74,16 @@ def samples() -> dict[str, dict[str, Any]]:
         canvas.force(load, "unary", points=places, vector=stand_in.Vector3d(0, 0, -20)),
     ]
     held = {"_forces": forces, "anchors_": [places[0], places[-1]]}
-    meshes = ("Diagonals", "MeshCorners", "MeshEdges", "NakedVertices", "WarpWeft")
+    meshes = ("Diagonals", "MeshCorners", "MeshEdges", "NakedVertices", "WarpWeft", "Refine", "RefineStrips")
+    meshes += ("Checkerboard", "Diagonalize", "HingePoints", "VertexNeighbours")
     return {
         **{name: {"_mesh": [mesh]} for name in meshes},
+        "CombineClean": {"_meshes": [mesh, mesh]},
+        "FoldAngle": {"_start": row[:1], "_end": row[1:2], "_tip_1": row[2:], "_tip_2": [point(1, -1, 0)]},
+        "MeshMap": {"_point": row, "_source": [mesh], "_target": [mesh]},
+        "Remesh": {"_mesh": [mesh], "_length": [0.5]},
+        "RemoveDuplicatePoints": {"_points": row},
+        "SplitAtCorners": {"_polyline": curve},
         "Catenary": {"_start": row[:1], "_end": row[2:], "_length": [4.0]},
         "Divide": {"_curve": curve, "_count_": [4]},
         "Engine": {**held, "_reset": False, "settings_": [settings(drag=5.0)]},

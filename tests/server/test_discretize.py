@@ -42,20 +42,26 @@ def test_an_operation_is_its_function(client: httpx.Client, name: str) -> None:
     operation = OPERATIONS[name]
     answer = client.post(f"/v1/discretize/{name}", json=SMALL[name])
     assert answer.status_code == 200, answer.text
-    given = dict(SMALL[name])
-    geometry = given.pop(operation.takes)
-    if operation.takes == "mesh":
-        geometry = (geometry["vertices"], geometry["faces"])
-    elif operation.takes in ("curve", "points", "lines"):
-        geometry = np.array(geometry)
-    wanted = operation.function(geometry, **given)
+    given = {key: read(value) for key, value in SMALL[name].items()}
+    wanted = operation.function(given.pop(operation.takes), **given)
     found = answer.json()
     several = wanted if len(operation.gives) > 1 else (wanted,)
     for key, value in zip(operation.gives, several, strict=True):
         if key == "mesh":
             assert found[key] == {"vertices": value.vertices.tolist(), "faces": value.faces.tolist()}
+        elif key == "neighbours":
+            assert found[key] == [ring.tolist() for ring in value]
         else:
             assert found[key] == np.asarray(value).tolist()
+
+
+def read(value: Any) -> Any:
+    """An input of the body as functions accept it."""
+    if isinstance(value, dict):
+        return value["vertices"], value["faces"]
+    if isinstance(value, list):
+        return [read(one) for one in value] if isinstance(value[0], dict) else np.array(value)
+    return value
 
 
 def test_curves_as_compas_and_rhino(client: httpx.Client) -> None:
@@ -183,6 +189,24 @@ GRID = SMALL["edges"]["mesh"]
         ("diagonals", {"mesh": GRID, "pattern": "all"}, "/pattern"),
         ("warp_weft", {"mesh": GRID, "strict": 1}, "/strict"),
         ("weld", {"mesh": GRID, "tolerance": -1}, "/tolerance"),
+        ("refine", {"mesh": GRID, "level": -1}, "/level"),
+        ("refine", {"mesh": GRID, "level": 20}, "/level"),
+        ("refine", {"mesh": GRID, "level": 9}, "/level"),
+        ("refine_strips", {"mesh": GRID, "direction": "up"}, "/direction"),
+        ("remesh", {"mesh": GRID}, "/length"),
+        ("remesh", {"mesh": GRID, "length": 0}, "/length"),
+        ("remesh", {"mesh": GRID, "length": 1e-4}, "/length"),
+        ("remesh", {"mesh": GRID, "length": 1, "feature_angle": 0}, "/feature_angle"),
+        ("clean", {"meshes": GRID}, "/meshes"),
+        ("clean", {"meshes": []}, "/meshes"),
+        ("clean", {"meshes": [GRID, {"vertices": GRID["vertices"], "faces": [[0, 1, 99]]}]}, "/meshes/1/faces/0/2"),
+        ("vertex_neighbours", {"mesh": GRID, "vertices": [9]}, "/vertices/0"),
+        ("vertex_neighbours", {"mesh": GRID, "vertices": [0.5]}, "/vertices/0"),
+        ("fold_angle", {**SMALL["fold_angle"], "end": [[0, 0]]}, "/end"),
+        ("fold_angle", {**SMALL["fold_angle"], "tip_1": SMALL["fold_angle"]["end"]}, "/tip_1/0"),
+        ("mesh_map", {"points": GRID["vertices"], "source": GRID}, "/target"),
+        ("mesh_map", {**SMALL["mesh_map"], "target": {**GRID, "faces": [[0, 1, 3]]}}, "/target"),
+        ("split_at_corners", {"curve": SMALL["divide"]["curve"], "turning_angle": 4}, "/turning_angle"),
         ("remove_duplicate_lines", {"lines": [[[0, 0, 0]]]}, "/lines"),
         ("remove_duplicate_points", {"points": [[0, 0, 0], [1, 2]]}, "/points"),
     ],

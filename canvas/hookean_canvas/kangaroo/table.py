@@ -6,43 +6,12 @@ their variables without underscores. Sources of the differences: docs/from-kanga
 
 from __future__ import annotations
 
-from hookean_canvas.kangaroo import classic, engines, goals, scripts
+from hookean_canvas.kangaroo import classic, engines, goals, scripts, tools
 from hookean_canvas.kangaroo.ids import Known, key
-from hookean_canvas.kangaroo.pieces import Piece, Swap
+from hookean_canvas.kangaroo.pieces import Swap
 
-_TOOLS = {
-    "nakedvertices": Swap(
-        (
-            Piece(
-                "NakedVertices",
-                {"m": "mesh", "mesh": "mesh"},
-                {
-                    "clothed_index": "clothedi|clothedindex",
-                    "naked_index": "nakedi|nakedindex",
-                    "clothed_points": "clothedpts",
-                    "naked_points": "nakedpts",
-                },
-            ),
-        )
-    ),
-    "warpweft": Swap(
-        (
-            Piece(
-                "WarpWeft",
-                {"m": "mesh", "mesh": "mesh"},
-                {"warp": "a", "weft": "b", "warp_naked": "na", "weft_naked": "nb"},
-            ),
-        ),
-        "which family comes first may differ; a mesh without two is an error, unless `_strict_` is False",
-    ),
-    "removeduplicatelines": Swap(
-        (Piece("RemoveDuplicateLines", {"lines": "lines", "tolerance": "tolerance"}, {"lines": "q"}),)
-    ),
-}
-"""Tools of both generations."""
-
-CLASSIC: dict[str, Swap] = {**engines.CLASSIC, **classic.FORCES, **_TOOLS}
-SECOND: dict[str, Swap] = {**engines.SECOND, **goals.GOALS, **_TOOLS}
+CLASSIC: dict[str, Swap] = {**engines.CLASSIC, **classic.FORCES, **tools.CLASSIC}
+SECOND: dict[str, Swap] = {**engines.SECOND, **goals.GOALS, **tools.SECOND}
 
 
 def swap_of(known: Known) -> Swap | None:

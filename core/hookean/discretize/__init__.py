@@ -8,12 +8,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from hookean.discretize.adjacency import checkerboard as checkerboard
+    from hookean.discretize.adjacency import fold_angle as fold_angle
+    from hookean.discretize.adjacency import hinge_points as hinge_points
+    from hookean.discretize.adjacency import vertex_neighbours as vertex_neighbours
     from hookean.discretize.arcs import arc as arc
     from hookean.discretize.arcs import arc_of_length as arc_of_length
     from hookean.discretize.arcs import arc_through as arc_through
     from hookean.discretize.arcs import interpolate as interpolate
     from hookean.discretize.breps import is_trimmed as is_trimmed
     from hookean.discretize.breps import mesh_faces as mesh_faces
+    from hookean.discretize.cleaning import clean as clean
     from hookean.discretize.curves import divide as divide
     from hookean.discretize.curves import end_points as end_points
     from hookean.discretize.curves import explode as explode
@@ -25,6 +30,7 @@ if TYPE_CHECKING:
     from hookean.discretize.duplicates import unique_points as unique_points
     from hookean.discretize.grids import grid as grid
     from hookean.discretize.grids import quads as quads
+    from hookean.discretize.mapping import mesh_map as mesh_map
     from hookean.discretize.measures import area as area
     from hookean.discretize.measures import volume as volume
     from hookean.discretize.meshes import as_mesh as as_mesh
@@ -45,20 +51,31 @@ if TYPE_CHECKING:
     from hookean.discretize.nurbs import NurbsSurface as NurbsSurface
     from hookean.discretize.nurbs import nurbs_curve as nurbs_curve
     from hookean.discretize.nurbs import nurbs_surface as nurbs_surface
+    from hookean.discretize.polylines import split_at_corners as split_at_corners
+    from hookean.discretize.remeshing import remesh as remesh
+    from hookean.discretize.subdivision import diagonalize as diagonalize
+    from hookean.discretize.subdivision import refine as refine
+    from hookean.discretize.subdivision import refine_strips as refine_strips
     from hookean.discretize.warpweft import threads as threads
     from hookean.discretize.warpweft import warp_weft as warp_weft
 
 _NAMES = {
+    "adjacency": "checkerboard fold_angle hinge_points vertex_neighbours",
     "arcs": "arc arc_of_length arc_through interpolate",
     "breps": "is_trimmed mesh_faces",
+    "cleaning": "clean",
     "curves": "divide end_points explode length shatter",
     "duplicates": "remove_duplicate_lines remove_duplicate_points unique_lines unique_points",
     "grids": "grid quads",
+    "mapping": "mesh_map",
     "measures": "area volume",
     "meshes": "as_mesh boundary clothed_vertices corners diagonals edges join naked_edges naked_vertices on_boundary "
     "triangles vertices weld",
     "nurbs": "NurbsCurve NurbsSurface nurbs_curve nurbs_surface",
     "meshing": "mesh_surface",
+    "polylines": "split_at_corners",
+    "remeshing": "remesh",
+    "subdivision": "diagonalize refine refine_strips",
     "warpweft": "threads warp_weft",
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}

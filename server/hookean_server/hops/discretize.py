@@ -8,7 +8,7 @@ import numpy as np
 
 from hookean.errors import InputError
 from hookean.values.mesh import Mesh
-from hookean_server.hops.model import Function, Inputs, Parameter, item
+from hookean_server.hops.model import MANY, Function, Inputs, Parameter, item
 from hookean_server.workers.discretize_task import OPERATIONS, Operation
 from hookean_server.workers.task import Cancelled
 
@@ -16,9 +16,22 @@ _TAKES = {
     "curve": item("Curve", "C", "Curve", "A curve of any kind"),
     "surface": item("Surface", "S", "Surface", "A surface, extrusion or Brep"),
     "mesh": item("Mesh", "M", "Mesh", "A mesh of triangles and quads"),
+    "meshes": Parameter("Meshes", "M", "Mesh", "Meshes of triangles and quads"),
     "lines": Parameter("Lines", "L", "Line", "Lines, or curves made of straight pieces"),
     "points": Parameter("Points", "Pt", "Point", "Points [model unit]"),
 }
+_NAMED = {"fold_angle": Parameter("Fold start", "P1", "Point", "Starts of the folds [model unit]")}
+"""Inputs that have a name of their own, by operation."""
+
+
+def _vertices(name: str, nickname: str, said: str) -> tuple[Parameter, ...]:
+    """Vertices of a mesh, and their indices."""
+    return (
+        Parameter(name, nickname, "Point", f"{said} [model unit]"),
+        Parameter(f"{name} indices", f"{nickname}i", "Integer", "Their indices in the mesh, from 0"),
+    )
+
+
 _GIVES: dict[str, tuple[Parameter, ...]] = {
     "points": (Parameter("Points", "Pt", "Point", "The points [model unit]"),),
     "lines": (Parameter("Lines", "L", "Line", "The lines"),),
@@ -47,7 +60,23 @@ _GIVES: dict[str, tuple[Parameter, ...]] = {
     "weft": (Parameter("Weft", "We", "Line", "Edges of the other family"),),
     "warp_naked": (Parameter("Naked warp", "WaN", "Boolean", "Of each edge of warp, whether it is on the boundary"),),
     "weft_naked": (Parameter("Naked weft", "WeN", "Boolean", "Of each edge of weft, whether it is on the boundary"),),
+    "pattern": (Parameter("Pattern", "P", "Boolean", "Of each face, whether it has the second colour"),),
+    "first": (Parameter("First", "A", "Integer", "Indices of the faces of the first colour, from 0"),),
+    "second": (Parameter("Second", "B", "Integer", "Indices of the faces of the second colour, from 0"),),
+    "start": _vertices("Fold start", "P1", "Starts of the folds"),
+    "end": _vertices("Fold end", "P2", "Ends of the folds"),
+    "tip_1": _vertices("Tip 1", "P3", "Tips of the triangles on the left of the folds"),
+    "tip_2": _vertices("Tip 2", "P4", "Tips of the triangles on the right of the folds"),
+    "angles": (Parameter("Angles", "A", "Number", "Fold angles, 0 flat, from -pi to pi [rad]"),),
+    "neighbours": (
+        Parameter("Neighbours", "N", "Integer", "Indices of the neighbours of one vertex after the other, from 0"),
+        Parameter("Counts", "C", "Integer", "How many of them each vertex has"),
+    ),
+    "normals": (Parameter("Normals", "Z", "Vector", "Unit normals at the vertices [-]"),),
 }
+_DIRECT = {"points", "lines", "length", "mesh", "polylines", "warp_naked", "weft_naked", "pattern", "first", "second",
+           "angles", "normals"}  # fmt: skip
+"""Results that are outputs as they are."""
 _OPTIONS = {
     "count": ("Count", "N", "Number of pieces"),
     "u": ("U", "U", "Faces along u"),
@@ -57,15 +86,32 @@ _OPTIONS = {
     "strict": ("Strict", "S", "True: a mesh without two families is an error; False: the family reached first"),
     "degree": ("Degree", "D", "Degree of the curve"),
     "pattern": ("Pattern", "P", "both, one or other diagonal of each quad"),
+    "level": ("Level", "L", "How many times faces are cut"),
+    "smooth": ("Smooth", "S", "True: each level averages vertices; False: they stay in the faces of the mesh"),
+    "direction": ("Direction", "D", "along the strips, or the family warp or weft: the edges that are halved"),
+    "end": ("Fold end", "P2", "Ends of the folds [model unit]"),
+    "tip_1": ("Tip 1", "P3", "Tips of the triangles on the left of the folds [model unit]"),
+    "tip_2": ("Tip 2", "P4", "Tips of the triangles on the right of the folds [model unit]"),
+    "vertices": ("Vertices", "V", "Indices of vertices, from 0; none: all"),
+    "source": ("Source", "S", "Mesh near the points"),
+    "target": ("Target", "T", "The same mesh, moved"),
+    "distance": ("Distance", "D", "Factor of the heights over the mesh [-]"),
+    "length": ("Length", "L", "Length of the edges that is wanted [model unit]"),
+    "feature_angle": ("Feature angle", "A", "Folds and turns of the boundary above this are kept [rad]"),
+    "iterations": ("Iterations", "N", "Rounds of splitting, collapsing, flipping and smoothing"),
+    "turning_angle": ("Turning angle", "A", "Corners turn by more than this [rad]"),
 }
-_KINDS = {"count": "Integer", "whole": "Integer", "number": "Number", "flag": "Boolean"}
+_KINDS = {"count": "Integer", "whole": "Integer", "level": "Integer", "number": "Number", "flag": "Boolean"}
+_GEOMETRY = {"mesh": "Mesh", "points": "Point", "indices": "Integer"}
 
 
 def _input(name: str, kind: str, default: Any) -> Parameter:
     title, nickname, said = _OPTIONS[name]
-    bounds: dict[str, Any] = (
-        {"minimum": 1} if _KINDS.get(kind) == "Integer" else {"minimum": 0.0} if kind == "number" else {}
-    )
+    if kind in _GEOMETRY:
+        most = 1 if kind == "mesh" else MANY
+        return Parameter(title, nickname, _GEOMETRY[kind], said, 0 if default is not None else 1, most)
+    low = {"count": 1, "whole": 1, "level": 0, "number": 0.0}
+    bounds: dict[str, Any] = {"minimum": low[kind]} if kind in low and name != "distance" else {}
     if kind not in _KINDS:
         bounds["choices"] = tuple(kind.split())
     start = 10 if kind == "count" and default is None else default
@@ -73,26 +119,32 @@ def _input(name: str, kind: str, default: Any) -> Parameter:
 
 
 def _function(name: str, operation: Operation, summary: str) -> Function:
-    inputs = (_TAKES[operation.takes], *(_input(n, *option) for n, option in operation.options.items()))
+    inputs = (_taking(name, operation), *(_input(n, *option) for n, option in operation.options.items()))
     outputs = tuple(parameter for gives in operation.gives for parameter in _GIVES[gives])
 
     def run(inputs: Inputs, cancelled: Cancelled) -> dict[str, Any]:
-        return _run(operation, inputs)
+        return _run(name, operation, inputs)
 
     title = name.replace("_", " ").capitalize()
     return Function(title, title.title().replace(" ", ""), summary, inputs, outputs, run, "Discretize")
 
 
-def _run(operation: Operation, inputs: Inputs) -> dict[str, Any]:
-    takes = _TAKES[operation.takes].name
+def _taking(name: str, operation: Operation) -> Parameter:
+    return _NAMED.get(name) or _TAKES[operation.takes]
+
+
+def _run(function: str, operation: Operation, inputs: Inputs) -> dict[str, Any]:
+    takes = _taking(function, operation).name
     geometry = _taken(operation, inputs, takes)
-    given = {name: inputs.one(_OPTIONS[name][0]) for name in operation.options}
+    given = {name: _option(inputs, kind, _OPTIONS[name][0]) for name, (kind, _) in operation.options.items()}
     made = len(geometry.Faces) if operation.at == "breps:mesh_faces" and hasattr(geometry, "Edges") else 1
     for name, (kind, _) in operation.options.items():
         if kind == "count":
             made *= given[name]
             inputs.makes(made, f"/{_OPTIONS[name][0]}")
     try:
+        if faces := operation.pieces(geometry, given):
+            inputs.makes(faces, f"/{_OPTIONS[next(iter(given))][0]}")
         found = operation.function(geometry, **given)
     except InputError as error:
         first = error.pointer.lstrip("/").partition("/")[0]
@@ -104,18 +156,28 @@ def _run(operation: Operation, inputs: Inputs) -> dict[str, Any]:
     return answer
 
 
+def _option(inputs: Inputs, kind: str, name: str) -> Any:
+    if kind == "points":
+        return inputs.points(name)
+    return inputs.many(name) if kind == "indices" else inputs.one(name)
+
+
 def _taken(operation: Operation, inputs: Inputs, name: str) -> Any:
     if operation.takes == "lines":
         return inputs.lines(name)
     if operation.takes == "points":
         return inputs.points(name)
+    if operation.takes == "meshes":
+        return inputs.many(name)
     return inputs.surface(name) if operation.at == "surfaces:mesh_surface" else inputs.one(name)
 
 
 def _given(gives: str, value: Any, geometry: Any) -> dict[str, Any]:
     """The outputs of one result of an operation."""
-    if gives in ("points", "lines", "length", "mesh", "polylines", "warp_naked", "weft_naked"):
+    if gives in _DIRECT:
         return {_GIVES[gives][0].name: value}
+    if gives == "neighbours":
+        return {"Neighbours": [index for ring in value for index in ring.tolist()], "Counts": [*map(len, value)]}
     from hookean.discretize.meshes import as_mesh
 
     mesh = as_mesh(geometry)
@@ -151,6 +213,17 @@ _SUMMARIES = {
     "diagonals": "Diagonals of the quads of a mesh",
     "triangles": "A mesh with every quad cut along its shorter diagonal",
     "weld": "A mesh with near vertices merged",
+    "clean": "Several meshes as one, welded, without duplicate faces and unused vertices",
+    "refine": "A mesh with each quad and each triangle cut into four",
+    "refine_strips": "A mesh with each quad cut in two across one direction",
+    "diagonalize": "A mesh with a face for each edge of another",
+    "checkerboard": "The faces of a mesh in two colours",
+    "hinge_points": "The four points of the hinge at each inner edge of a mesh",
+    "fold_angle": "Angles between pairs of triangles about their common edges",
+    "vertex_neighbours": "The neighbours of the vertices of a mesh, in their order round the normal",
+    "remesh": "A mesh as triangles of one size, its boundary and folds kept",
+    "mesh_map": "Points near a mesh moved as the mesh is",
+    "split_at_corners": "A polyline cut where it turns",
     "remove_duplicate_points": "Points without duplicates",
     "remove_duplicate_lines": "Lines without duplicates, in either direction",
 }

@@ -246,6 +246,7 @@ _TAKES: dict[str, dict[str, Any]] = {
     "curve": {"anyOf": [_POINTS["anyOf"][0], _BUFFER, _CURVES, _DOCUMENT, _RHINO]},
     "surface": {"anyOf": [_SURFACES, _RHINO]},
     "mesh": _MESH,
+    "meshes": {"type": "array", "items": _MESH, "minItems": 1},
     "points": {"anyOf": [*_POINTS["anyOf"], _DOCUMENT, {"type": "array", "items": _DOCUMENT, "minItems": 1}]},
     "lines": {"anyOf": [*_LINES["anyOf"], _DOCUMENT, {"type": "array", "items": _DOCUMENT, "minItems": 1}]},
 }
@@ -254,10 +255,15 @@ _GIVES: dict[str, dict[str, Any]] = {
     "lines": _LINES,
     "mesh": {"anyOf": _MESH["anyOf"][:2]},
     "length": _NUMBER,
+    "neighbours": {"type": "array", "items": _ARRAY},
 }
 _OPTIONS: dict[str, dict[str, Any]] = {
     "count": {"type": "integer", "minimum": 1},
     "whole": {"type": "integer", "minimum": 1, "maximum": 1000},
+    "level": {"type": "integer", "minimum": 0, "maximum": 30},
+    "indices": _ARRAY,
+    "mesh": _MESH,
+    "points": _POINTS,
     "number": _NUMBER,
     "numbers": {"anyOf": [_NUMBER, *_ARRAY["anyOf"]]},
     "vectors": {"anyOf": [_POINT, *_POINTS["anyOf"]]},
@@ -285,9 +291,12 @@ _GRID = {
 _SMALL = {
     "curve": _CURVE,
     "mesh": _GRID,
+    "meshes": [_GRID, _GRID],
     "points": [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
     "lines": [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]],
 }
+_OTHER = {"fold_angle": {"end": [[1.0, 0.0, 1.0]], "tip_1": [[0.0, 0.0, 9.0]], "tip_2": [[-3.0, 7.0, 2.0]]}}
+"""Options of which a sample is not like that of others of their kind."""
 _CABLE = {
     "particles": [[2.0 * i, 0.0, 0.0] for i in range(6)],
     "forces": [
@@ -336,7 +345,8 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "discretize": {
         name: {
             o.takes: _SMALL[o.takes],
-            **{option: 4 for option, (kind, default) in o.options.items() if default is None},
+            **{option: _SMALL.get(kind, 4) for option, (kind, default) in o.options.items() if default is None},
+            **_OTHER.get(name, {}),
         }
         for name, o in OPERATIONS.items()
         if o.takes in _SMALL

@@ -14,7 +14,7 @@ from hookean.discretize import nurbs
 from hookean.errors import InputError
 from hookean.files import compas_json
 from hookean.scene.text import parse
-from hookean.values.columns import Faces, Lines, Points, Reals, Table, Vectors
+from hookean.values.columns import Faces, Indices, Lines, Points, Reals, Table, Vectors
 from hookean.values.mesh import Mesh
 from hookean_server.http import answers
 from hookean_server.workers.task import Cancelled, Clock, Done
@@ -25,22 +25,26 @@ class Operation:
     """One operation: where its function is, what geometry it takes, its options and what it gives.
 
     `at`: `module:function`, of `hookean.discretize`. `takes`: `curve`, `surface`,
-    `mesh`, `lines` or `points`. `options`: name -> `count`, `whole`, `number`, `numbers`, `vectors`, `flag` or the
-    words to choose from; those with None as default must be given. `gives`: names of the function's results; their
-    places are added to edges and vertices of a mesh, see `PLACES`.
+    `mesh`, `meshes`, `lines` or `points`. `options`: name -> `count`, `whole`, `level`, `number`, `numbers`, `vectors`,
+    `indices`, `flag`, one of the kinds that `takes` names, or the words to choose from; those with None as default must
+    be given. `gives`: names of the function's results; their places are added to edges and vertices of a mesh, see
+    `PLACES`. `made`: `module:function` that counts the faces of the result beforehand, from the same arguments.
     """
 
     at: str
     takes: str
     options: dict[str, tuple[str, Any]] = field(default_factory=dict)
     gives: tuple[str, ...] = ("points",)
+    made: str = ""
 
     @property
     def function(self) -> Callable[..., Any]:
         """The function, imported when first used."""
-        module, name = self.at.split(":")
-        found: Callable[..., Any] = getattr(importlib.import_module(f"hookean.discretize.{module}"), name)
-        return found
+        return _imported(self.at)
+
+    def pieces(self, geometry: Any, given: dict[str, Any]) -> int:
+        """How many faces the result will have, where that is to be checked; else 0."""
+        return int(_imported(self.made)(geometry, **given)) if self.made else 0
 
     @property
     def summary(self) -> str:
@@ -48,12 +52,21 @@ class Operation:
         return (self.function.__doc__ or "").strip().splitlines()[0]
 
 
+def _imported(at: str) -> Callable[..., Any]:
+    module, name = at.split(":")
+    found: Callable[..., Any] = getattr(importlib.import_module(f"hookean.discretize.{module}"), name)
+    return found
+
+
 _GRID = {"u": ("count", None), "v": ("count", None)}
 _NEAR = {"tolerance": ("number", 1e-6)}
+_LEVEL = {"level": ("level", 1)}
+_REMESH = {"length": ("number", None), "feature_angle": ("number", np.pi / 6), "iterations": ("whole", 15)}
 _HANGING = {"length": ("numbers", None), "count": ("count", 50), "gravity": ("vectors", (0.0, 0.0, -1.0))}
 _SMOOTH = {"count": ("count", None), "degree": ("whole", 3)}
 PLACES = {"edges": "lines", "indices": "points", "naked": "naked_points", "clothed": "clothed_points",
-          "warp": "warp_lines", "weft": "weft_lines"}  # fmt: skip
+          "warp": "warp_lines", "weft": "weft_lines", "start": "start_points", "end": "end_points",
+          "tip_1": "tip_1_points", "tip_2": "tip_2_points"}  # fmt: skip
 """Results that are numbers of vertices, and the names of their coordinates."""
 
 OPERATIONS: dict[str, Operation] = {
@@ -81,6 +94,32 @@ OPERATIONS: dict[str, Operation] = {
     "diagonals": Operation("meshes:diagonals", "mesh", {"pattern": ("both one other", "both")}, ("edges",)),
     "triangles": Operation("meshes:triangles", "mesh", gives=("triangles",)),
     "weld": Operation("meshes:weld", "mesh", _NEAR, ("mesh",)),
+    "clean": Operation("cleaning:clean", "meshes", {"tolerance": ("number", 0.01)}, ("mesh",)),
+    "refine": Operation(
+        *("subdivision:refine", "mesh", {**_LEVEL, "smooth": ("flag", False)}, ("mesh",)), "subdivision:refined_faces"
+    ),
+    "refine_strips": Operation(
+        *("subdivision:refine_strips", "mesh", {**_LEVEL, "direction": ("along warp weft", "along")}, ("mesh",)),
+        "subdivision:strip_faces",
+    ),
+    "diagonalize": Operation("subdivision:diagonalize", "mesh", gives=("mesh",)),
+    "checkerboard": Operation(
+        "adjacency:checkerboard", "mesh", {"strict": ("flag", True)}, ("pattern", "first", "second")
+    ),
+    "hinge_points": Operation("adjacency:hinge_points", "mesh", gives=("start", "end", "tip_1", "tip_2")),
+    "fold_angle": Operation(
+        "adjacency:fold_angle", "points", dict.fromkeys(("end", "tip_1", "tip_2"), ("points", None)), ("angles",)
+    ),
+    "vertex_neighbours": Operation(
+        "adjacency:vertex_neighbours", "mesh", {"vertices": ("indices", ())}, ("neighbours", "normals")
+    ),
+    "remesh": Operation("remeshing:remesh", "mesh", _REMESH, ("mesh",), "remeshing:expected_faces"),
+    "mesh_map": Operation(
+        "mapping:mesh_map", "points", {"source": ("mesh", None), "target": ("mesh", None), "distance": ("number", 1.0)}
+    ),
+    "split_at_corners": Operation(
+        "polylines:split_at_corners", "curve", {"turning_angle": ("number", 1.0)}, ("points", "polylines")
+    ),
     "remove_duplicate_points": Operation("duplicates:remove_duplicate_points", "points", _NEAR),
     "remove_duplicate_lines": Operation("duplicates:remove_duplicate_lines", "lines", _NEAR, ("lines",)),
 }
@@ -105,6 +144,7 @@ def discretize(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Do
         _check_many(len(geometry) * given.get("count", operation.options["count"][1]), "/count", options["largest"])
     clock.lap("decode")
     try:
+        _check_many(operation.pieces(geometry, given), f"/{next(iter(operation.options), '')}", options["largest"])
         found = operation.function(geometry, **given)
     except InputError as error:
         raise InputError(_placed(error.pointer, operation.takes), error.sentence) from None
@@ -154,12 +194,14 @@ def _check_many(pieces: int, pointer: str, largest: int) -> None:
 
 
 def _option(value: Any, kind: str, pointer: str, largest: int) -> Any:
-    if kind == "count":
-        if type(value) is not int or not 1 <= value <= largest:
-            raise InputError(pointer, f"a whole number from 1 to {largest} is expected")
-    elif kind == "whole":
-        if type(value) is not int or not 1 <= value <= 1000:
-            raise InputError(pointer, "a whole number from 1 to 1000 is expected")
+    if kind in _READERS:
+        return _READERS[kind](value, pointer)
+    if kind in ("count", "whole", "level"):
+        low, high = {"count": (1, largest), "whole": (1, 1000), "level": (0, 30)}[kind]
+        if type(value) is not int or not low <= value <= high:
+            raise InputError(pointer, f"a whole number from {low} to {high} is expected")
+    elif kind == "indices":
+        return _checked(_INDICES, value, pointer)
     elif kind in ("numbers", "vectors"):
         return _checked(_REALS if kind == "numbers" else _VECTORS, value, pointer)
     elif kind == "number":
@@ -219,6 +261,12 @@ def _mesh(value: Any, pointer: str) -> Any:
         said = f"vertex {faces[row, column]} does not exist; the mesh has {len(vertices)}, counted from 0"
         raise InputError(f"{pointer}/faces/{row}/{column}", said)
     return Mesh(vertices, faces)
+
+
+def _meshes(value: Any, pointer: str) -> Any:
+    if not isinstance(value, list):
+        raise InputError(pointer, "a list of meshes is expected")
+    return [_mesh(one, f"{pointer}/{i}") for i, one in enumerate(value)]
 
 
 def _points(value: Any, pointer: str) -> Any:
@@ -291,6 +339,7 @@ def _outputs(operation: Operation, found: Any, geometry: Any, documents: str) ->
 _POINTS: TypeAdapter[Any] = TypeAdapter(Points, config={"arbitrary_types_allowed": True})
 _LINES: TypeAdapter[Any] = TypeAdapter(Lines, config={"arbitrary_types_allowed": True})
 _REALS: TypeAdapter[Any] = TypeAdapter(Reals, config={"arbitrary_types_allowed": True})
+_INDICES: TypeAdapter[Any] = TypeAdapter(Indices, config={"arbitrary_types_allowed": True})
 _TABLE: TypeAdapter[Any] = TypeAdapter(Table, config={"arbitrary_types_allowed": True})
 _VECTORS: TypeAdapter[Any] = TypeAdapter(Vectors, config={"arbitrary_types_allowed": True})
 _FACES: TypeAdapter[Any] = TypeAdapter(Faces, config={"arbitrary_types_allowed": True})
@@ -299,6 +348,7 @@ _READERS: dict[str, Callable[[Any, str], Any]] = {
     "curve": _curve,
     "surface": _surface,
     "mesh": _mesh,
+    "meshes": _meshes,
     "points": _points,
     "lines": _lines,
 }

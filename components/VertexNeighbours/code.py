@@ -1,0 +1,12 @@
+"""The neighbours of the vertices of meshes in their order round the normal, and the normals.
+
+Neighbours are joined to the vertex by an edge; they run counter-clockwise about the normal, at a
+boundary from its one edge to the other. Normals are those of the sum of the vector areas of the
+faces at the vertex.
+
+A branch of neighbours for each vertex
+"""
+
+from hookean_client import canvas_tools as tools
+
+points, neighbours, indices, normals = tools.vertex_neighbours(ghenv, _mesh, vertices_)
