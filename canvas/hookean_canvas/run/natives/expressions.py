@@ -35,7 +35,7 @@ _OPERATORS: dict[type, Callable[..., Any]] = {
 
 
 def _power(a: Any, b: Any) -> Any:
-    whole = isinstance(a, int) and isinstance(b, int) and 0 <= b and a.bit_length() * b <= LONGEST
+    whole = isinstance(a, int) and isinstance(b, int) and b >= 0 and a.bit_length() * b <= LONGEST
     return a**b if whole else math.pow(a, b)
 
 

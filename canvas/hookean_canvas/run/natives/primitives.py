@@ -111,19 +111,26 @@ def _arc(frame: Any, radius: float, start: float, end: float) -> Any:
 
 @native("d93100b6-d50b-40b2-831a-814659dc38e3", "Rectangle", "Rectangle",
         f"{_PLANE}; X Size (X): domain; Y Size (Y): domain; Radius (R): number = 0.0",
-        "Rectangle (R); Length (L)", remark="corners are not rounded")  # fmt: skip
+        "Rectangle (R); Length (L)")  # fmt: skip
 def rectangle(frame: Any, x: Any, y: Any, radius: float) -> tuple[Any, float]:
     """A rectangle over two domains along the axes of a plane, and the length of its outline."""
+    _square(radius)
     return _rectangle(frame, x.T0, x.T1, y.T0, y.T1)
 
 
 @native("575660b1-8c79-4b8d-9222-7ab4a6ddb359", "Rectangle 2Pt", "Rec 2Pt",
         f"{_PLANE}; Point A (A): point; Point B (B): point; Radius (R): number = 0.0",
-        "Rectangle (R); Length (L)", remark="corners are not rounded")  # fmt: skip
+        "Rectangle (R); Length (L)")  # fmt: skip
 def rectangle_between(frame: Any, a: Any, b: Any, radius: float) -> tuple[Any, float]:
     """A rectangle along the axes of a plane between two opposite corners."""
+    _square(radius)
     (x0, y0, _), (x1, y1, _) = shapes.coordinates(frame, shapes.rows([a, b]))
     return _rectangle(frame, x0, x1, y0, y1)
+
+
+def _square(radius: float) -> None:
+    if radius > 0.0:
+        raise Unfit("corners are not rounded here; set the radius to 0")
 
 
 def _rectangle(frame: Any, x0: float, x1: float, y0: float, y1: float) -> tuple[Any, float]:
@@ -133,9 +140,10 @@ def _rectangle(frame: Any, x0: float, x1: float, y0: float, y1: float) -> tuple[
 
 @native("845527a6-5cea-4ae9-a667-96ae1667a4e8", "Polygon", "Polygon",
         f"{_PLANE}; Radius (R): number = 1.0; Segments (S): integer = 5; Fillet Radius (Rf): number = 0.0",
-        "Polygon (P); Length (L)", remark="corners are not rounded")  # fmt: skip
+        "Polygon (P); Length (L)")  # fmt: skip
 def polygon(frame: Any, radius: float, count: int, fillet: float) -> tuple[Any, float]:
     """A regular polygon in a plane, its first corner on the x axis, and the length of its outline."""
+    _square(fillet)
     if count < 3:
         raise Unfit("a polygon needs at least three segments")
     turns = 2.0 * math.pi * np.arange(count) / count
