@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from hookean_canvas.run.natives import shapes
+from hookean_canvas.run.natives import BY_NAME, PLUGINS, as_kind, shapes
 from hookean_canvas.run.rhino import rhino3dm
 from hookean_canvas.run.trees import Tree
 
@@ -49,6 +49,22 @@ def plain(value: Any) -> Any:
         corners = shapes.corners(value)
         return "a curve" if corners is None else [tuple(row) for row in corners.tolist()]
     return (value.X, value.Y, value.Z) if hasattr(value, "Z") else value
+
+
+def called(name: str, *given: Any, **named: Any) -> list[Any]:
+    """What a native gives for values of a table, taken as its inputs take them, as plain values."""
+    native = BY_NAME.get(name) or PLUGINS[name]
+    kinds = [of.kind for of in native.inputs] + [native.inputs[-1].kind] * len(given)
+    values = [_taken(kind, made(value)) for kind, value in zip(kinds, given, strict=False)]
+    return [plain(one) for one in native.run(*values, **named)]
+
+
+def _taken(kind: str, value: Any) -> Any:
+    if isinstance(value, Tree):
+        return value
+    if isinstance(value, list):
+        return [_taken(kind, one) for one in value]
+    return value if kind == "rectangle" and isinstance(value, tuple) else as_kind(kind, value)
 
 
 def near(found: Any, expected: Any) -> bool:

@@ -10,21 +10,16 @@ from uuid import UUID
 import numpy as np
 import pytest
 
+from canvas.native_values import called as run
 from canvas.native_values import made, near, plain
 from canvas.natives_table import LISTS, MATHS, VECTORS, XY
 from hookean_canvas.archive import Chunk, Type, guids
 from hookean_canvas.definitions.write import Definition, flat
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas, Outcome
-from hookean_canvas.run.natives import BY_NAME, INERT, NATIVES, PARAMETERS, PLUGINS, Unfit
+from hookean_canvas.run.natives import BY_NAME, INERT, NATIVES, PARAMETERS, Unfit
 from hookean_canvas.run.natives.expressions import evaluated
 from hookean_canvas.run.trees import Tree, text_of
-
-
-def run(name: str, *given: Any, **named: Any) -> list[Any]:
-    """What a native gives, as plain values."""
-    native = BY_NAME.get(name) or PLUGINS[name]
-    return [plain(one) for one in native.run(*map(made, given), **named)]
 
 
 @pytest.mark.parametrize(("name", "given", "expected"), [*LISTS, *MATHS, *VECTORS], ids=lambda part: str(part)[:40])
