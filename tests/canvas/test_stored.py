@@ -72,6 +72,8 @@ def test_an_internalised_mesh_is_read_with_all_its_digits() -> None:
         (item("ON_Data", Type.BYTEARRAY, internalised(shapes.polyline([(0, 0, 0), (1, 2, 3)]))),
          [(0, 0, 0), (1, 2, 3)]),
         (item("plane", Type.PLANE, (1, 2, 3, 1, 0, 0, 0, 1, 0)), ((1, 2, 3), (1, 0, 0), (0, 1, 0))),
+        (item("Plane", Type.PLANE, (1, 0, 0, 1, 0, 0, 0, 1, 0)).put("Size", Type.INTERVAL2D, (-1.0, 1.0, 0.0, 3.0)),
+         [(0, 0, 0), (2, 0, 0), (2, 3, 0), (0, 3, 0), (0, 0, 0)]),
         (item("Line", Type.LINE, (0, 0, 0, 1, 2, 3)), [(0, 0, 0), (1, 2, 3)]),
         (item("Interval", Type.INTERVAL1D, (1.0, 2.0)), (1.0, 2.0)),
         (item("number", Type.DOUBLE, 2.5), 2.5),

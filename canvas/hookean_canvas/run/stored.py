@@ -16,6 +16,7 @@ from typing import Any
 from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.archive.chunk import MOST_BYTES
 from hookean_canvas.run import stand_in as untyped
+from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.rhino import rhino3dm
 
 stand_in: Any = untyped
@@ -31,6 +32,9 @@ class Unread:
 
 def stored(chunk: Chunk) -> Any:
     """A stored value; None for a null, Unread for what cannot be read here."""
+    found = _with_plane(chunk)
+    if found is not None:
+        return found
     for name, (kinds, read) in _KINDS.items():
         item = chunk.item(name)
         if item is not None and item.type in kinds:
@@ -38,8 +42,6 @@ def stored(chunk: Chunk) -> Any:
     data = chunk.item("ON_Data")
     if data is not None and data.type is Type.BYTEARRAY:
         return _geometry(data.value)
-    if {"plane", "radius"} <= {item.name.lower() for item in chunk.items}:
-        return _circle(chunk)
     for inner in chunk.chunks:  # data of any kind: its type's name, and the value in a chunk of its own
         found = stored(inner)
         if not isinstance(found, Unread):
@@ -51,11 +53,20 @@ def stored(chunk: Chunk) -> Any:
     return Unread(names or [inner.name for inner in chunk.chunks], why)
 
 
-def _circle(chunk: Chunk) -> Any:
+def _with_plane(chunk: Chunk) -> Any:
+    """A rectangle or circle, which are stored as a plane and a size; None for anything but a plane with a companion."""
     values = {item.name.lower(): item for item in chunk.items}
-    frame = _plane(values["plane"])
-    found = rhino3dm.ArcCurve.CreateFromCircle(rhino3dm.Circle(float(values["radius"].value)))
-    world = rhino3dm.Plane(rhino3dm.Point3d(0, 0, 0), rhino3dm.Vector3d(1, 0, 0), rhino3dm.Vector3d(0, 1, 0))
+    held = values.pop("plane", None)
+    if held is None or held.type is not Type.PLANE or not values or "refid" in values:
+        return None
+    frame, size, radius = _plane(held), values.get("size"), values.get("radius")
+    if size is not None and size.type is Type.INTERVAL2D:
+        x0, x1, y0, y1 = size.value
+        return shapes.polyline(shapes.in_plane(frame, [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]), closed=True)
+    if radius is None or radius.type is not Type.DOUBLE or len(values) > 1:
+        return Unread([item.name for item in chunk.items])
+    found = rhino3dm.ArcCurve.CreateFromCircle(rhino3dm.Circle(radius.value))
+    world = shapes.plane((0, 0, 0), (1, 0, 0), (0, 1, 0))
     found.Transform(rhino3dm.Transform.PlaneToPlane(world, frame))
     return found
 
