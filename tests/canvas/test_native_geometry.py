@@ -184,6 +184,16 @@ def test_naked_edges_stay_where_they_are_fixed() -> None:
     assert rounded[:, 0].min() > 0.01
 
 
+def test_a_box_has_six_faces_twelve_edges_and_eight_vertices_and_its_faces_divide() -> None:
+    box = BY_NAME["Box 2Pt"].run(made(("point", 0, 0, 0)), made(("point", 1, 2, 3)), None)[0].ToBrep()
+    faces, edges, vertices = BY_NAME["Deconstruct Brep"].run(box)
+    assert (len(faces), len(edges), len(vertices)) == (6, 12, 8)
+    assert near(sum(run("Length", edge)[0] for edge in edges), 4.0 * (1 + 2 + 3))
+    places, normals, _ = run("Divide Surface", as_kind("surface", faces[0]), 2, 1)
+    assert [len(row) for row in places] == [2, 2, 2] and near([math.dist(n, (0, 0, 0)) for n in normals[0]], [1.0, 1.0])
+    assert near(np.mean(places[1], axis=0), np.mean([*places[0], *places[2]], axis=0))
+
+
 def test_control_points_are_those_of_the_nurbs_form() -> None:
     points = [(0, 0, 0), (1, 1, 0), (2, -1, 0), (3, 0, 0)]
     curve = BY_NAME["Nurbs Curve"].run([made(("point", *p)) for p in points], 3, False)[0]

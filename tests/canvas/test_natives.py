@@ -58,6 +58,8 @@ TREE = Tree({(0, 0): [1, 2], (0, 1): [3]})
         ("Simplify Tree", [TREE, Tree()], {(0,): [1, 2], (1,): [3]}),
         ("Simplify Tree", [Tree({(0, 1, 0): [1], (0, 2, 0): [2]}), Tree()], {(1,): [1], (2,): [2]}),
         ("Simplify Tree", [Tree({(0, 1, 0): [1], (0, 2, 0): [2]}), Tree.of([True])], {(1, 0): [1], (2, 0): [2]}),
+        ("Simplify Tree", [Tree({(0, 0): [1]}), Tree()], {(0, 0): [1]}),
+        ("Simplify Tree", [Tree({(0,): [1], (0, 2): [2]}), Tree()], {(0,): [1], (0, 2): [2]}),
         ("Clean Tree", [*[Tree.of([True])] * 3, Tree({(0,): [1, None], (1,): [None]})], {(0,): [1]}),
         ("Clean Tree", [Tree.of([True]), Tree(), Tree(), Tree({(0,): [1, None], (1,): [None]})],
          {(0,): [1], (1,): []}),

@@ -169,6 +169,8 @@ a4011be0-1c91-45bd-8280-17dd3a9f46f1 Voronoi
 4bc9dbbf-fec8-4348-a3af-e33e7edc8e7b Mesh Join
 58cf422f-19f7-42f7-9619-fc198c51c657 Mesh Surface
 4a0180e5-d8f9-46e7-bd34-ced804601462 Settings (Custom)
+1b0ee096-cc76-4847-8941-04a9e256de76 Settings (Quality)
+255ca3e9-2c1e-443a-a404-e76b5c63f4cb Settings (Speed)
 c3f9cea5-6fd4-4db5-959b-08cd08ed9fe1 Simple Mesh
 e45aa4a0-e40d-421c-a335-5185dd131836 Smooth Mesh
 3fba11d5-b30a-4146-8d80-d591e7a0a287 Triangulate
@@ -248,6 +250,7 @@ b8e2aa8f-8830-4ee1-bb59-613ea279c281 Unflatten Tree
 """
 
 SURFACE = """
+5106bafc-d5d4-4983-83e7-7be3ed07f502 Divide Surface
 2e205f24-9279-47b2-b414-d06dcd0b21a7 Area
 0148a65d-6f42-414a-9db7-9a9b2eb78437 Brep Edges
 4beead95-8aa2-4613-8bb9-24758a0f5c4c Brep Closest Point

@@ -18,6 +18,7 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     meshes_made,
     primitives,
     subdivision,
+    surfaces,
     transforms,
     vectors,
 )

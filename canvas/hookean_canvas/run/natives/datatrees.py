@@ -55,13 +55,16 @@ def flatten_tree(tree: Tree, paths: Tree) -> Tree:
 @native("1303da7b-e339-4e65-a051-82c4dce8224d", "Simplify Tree", "Simplify",
         f"{_TREE}; Front (F): boolean tree optional", "Tree (T): tree")  # fmt: skip
 def simplify_tree(tree: Tree, front: Tree) -> Tree:
-    """Paths without the indices that all of them share; with Front only those at the start of the paths."""
-    simple = modified(tree, simplify=True)
-    if any(front.values_in_order()) or len({len(path) for path in simple}) != 1:
-        return simple
-    paths = simple.paths
-    kept = [k for k in range(len(paths[0])) if len({path[k] for path in paths}) > 1] or [0]
-    return Tree({tuple(path[k] for k in kept): values for path, values in simple.branches()})
+    """Paths without the indices that all of them share, with Front only those at their start; one branch stays."""
+    paths = tree.paths
+    if len(paths) < 2:
+        return tree
+    shared = [k for k in range(min(map(len, paths))) if len({path[k] for path in paths}) == 1]
+    if any(front.values_in_order()):
+        shared = [k for k in shared if k == shared.index(k)]
+    if len(shared) == min(map(len, paths)):
+        shared = shared[1:]
+    return Tree({tuple(i for k, i in enumerate(path) if k not in shared): v for path, v in tree.branches()})
 
 
 @native("071c3940-a12d-4b77-bb23-42b5d3314a0d", "Clean Tree", "Clean",

@@ -1,4 +1,4 @@
-"""Natives that only show: they take part in a run without doing anything, and what they feed gets no data."""
+"""Natives that only show, or set how Rhino meshes: they have no effect, and what they feed gets no data."""
 
 from __future__ import annotations
 
@@ -18,6 +18,9 @@ INERT: dict[UUID, str] = {
 11e95a7b-1e2c-4b66-bd95-fcad51f8662a Vector Display Ex
 3b220754-4114-4170-b6c3-b286b86ed524 Text Tag
 5a41528b-12b9-40dc-a3f2-842034d267c4 Text Tag 3D
+4a0180e5-d8f9-46e7-bd34-ced804601462 Settings (Custom)
+1b0ee096-cc76-4847-8941-04a9e256de76 Settings (Quality)
+255ca3e9-2c1e-443a-a404-e76b5c63f4cb Settings (Speed)
 6b1bd8b2-47a4-4aa6-a471-3fd91c62a486 Dot Display
 cc14daa5-911a-4fcc-8b3b-1149bf7f2eeb Point List
 1f18e802-4ab9-444f-bf3c-3e7e421a2acf Point List
@@ -25,7 +28,7 @@ f6867cdd-2216-4451-9134-7da94bdcd5af Legend
 """.strip().split("\n")
     )
 }
-"""Components that only draw, by their ids."""
+"""Components without effect, by their ids."""
 
 SWATCH = next(guid for guid, names in guids.NAMES.items() if "Colour Swatch" in names)
 """A colour that a person has chosen."""

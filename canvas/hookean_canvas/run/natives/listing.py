@@ -13,7 +13,7 @@ SUBJECTS = {
     "lists": "Lists", "datatrees": "Data trees", "maths": "Maths", "logic": "Comparisons, domains, text",
     "expressions": "Expressions", "vectors": "Points, vectors, planes", "transforms": "Transformations",
     "primitives": "Curves", "curves": "On curves", "meshes": "Meshes", "meshes_made": "Making meshes",
-    "subdivision": "Weaverbird, by name", "measures": "Measures and boxes",
+    "subdivision": "Weaverbird, by name", "measures": "Measures and boxes", "surfaces": "Surfaces",
 }  # fmt: skip
 """Headings by the modules that declare natives."""
 
@@ -26,7 +26,7 @@ def listing() -> str:
         for subject, heading in SUBJECTS.items()
     }
     rows["Parameters"] = [name for name, _ in PARAMETERS.values()]
-    rows["Shown only, without effect"] = list(dict.fromkeys(INERT.values()))
+    rows["Without effect"] = list(dict.fromkeys(INERT.values()))
     differ = sorted({f"{native.name}: {native.remark}" for native in natives if native.remark})
     lines = [_wrapped(f"- **{heading}**: {', '.join(names)}.") for heading, names in rows.items()]
     return "\n".join([*lines, "", "What differs from Grasshopper:", "", *(_wrapped(f"- {line}.") for line in differ)])
