@@ -156,8 +156,13 @@ def import_(
 
 
 def _printed(work: Callable[[], Any]) -> Any:
-    """The result of the work; an InputError becomes one line and exit code 2."""
+    """The result of the work; an InputError becomes one line, or a line for each of its faults, and exit code 2."""
     try:
         return work()
     except InputError as error:
-        fail(error)
+        if len(error.faults) == 1:
+            fail(error)
+        typer.echo(f"hookean: {error.pointer}: {error.sentence.split(': ')[0]}:", err=True)
+        for fault in error.faults:
+            typer.echo(f"  {fault}", err=True)
+        raise typer.Exit(2) from None

@@ -14,6 +14,7 @@ import pytest
 from canvas.canvasing import let_go
 from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, cable, star, tent
 from hookean import Scene, relax
+from hookean_canvas.archive import Type
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas, Outcome
@@ -230,3 +231,47 @@ def test_lines_with_a_radius_push_each_other_apart_by_half_of_the_strength(tmp_p
     solver = d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goals, reset=d.toggle("Reset", False))
     d.panel("particles", solver["V"])
     np.testing.assert_allclose(np.sort(places(ran(d, tmp_path))[:, 2]), [-0.025, -0.025, 0.325, 0.325], atol=1e-5)
+
+
+def test_a_net_made_by_grasshoppers_own_components_comes_to_the_shape_of_the_same_scene(tmp_path: Path) -> None:
+    """A mesh plane, its edges as springs of no length, its corners held, loads on its vertices: as files for Kangaroo
+    have them, with the rectangle that Grasshopper stores in Mesh Plane."""
+    d = Kangaroo("net", "Net", "A mesh plane that hangs from its corners.")
+    mesh = d.native("Mesh Plane", width_count=4, height_count=4)
+    stored = mesh.inputs["boundary"][1].add("PersistentData").put("Count", Type.INT32, 1)
+    branch = stored.add("Branch", 0).put("Count", Type.INT32, 1).put("Path", Type.STRING, "{0}")
+    rectangle = branch.add("Item", 0).put("Plane", Type.PLANE, (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0))
+    rectangle.put("Size", Type.INTERVAL2D, (-10.0, 10.0, -10.0, 10.0))
+    edges = d.native("Mesh Edges", mesh=mesh["Mesh"])
+    lines = d.native("Merge", data_1=[edges["Naked Edges"], edges["Interior Edges"]])
+    vertices = d.native("Deconstruct Mesh", mesh=mesh["Mesh"])["Vertices"]
+    corners = d.native("List Item", list=vertices, index=d.parameter("Integer", "Corners", [0, 4, 20, 24]), wrap=True)
+    goals = [
+        d.kangaroo("Length(Line)", (("Line", None), ("Length", 0.0), ("Strength", 10.0)), ["S"], line=lines),
+        d.kangaroo("Anchor", ANCHOR, ["A"], guid=SOFT, p=corners),
+        d.kangaroo("Load", (("P", None), ("FV", None)), ["U"], p=vertices, fv=d.native("Unit Z", factor=-2)),
+    ]
+    solver = d.kangaroo("Solver", SOLVER, ["I", "V", "O"], goalobjects=goals, reset=d.toggle("Reset", False))
+    d.panel("particles", solver["V"])
+    found = places(ran(d, tmp_path))
+    x = np.array([[5.0 * i - 10, 5.0 * j - 10, 0.0] for j in range(5) for i in range(5)])
+    rows = [[5 * j + i, 5 * j + i + 1] for j in range(5) for i in range(4)]
+    rows += [[5 * j + i, 5 * j + i + 5] for j in range(4) for i in range(5)]
+    scene = Scene.read(
+        {
+            "particles": x.tolist(),
+            "forces": [
+                {"kind": "springs", "particles": rows, "rest_length": 0.0, "stiffness": 10.0},
+                {"kind": "unary", "particles": list(range(25)), "vector": [0, 0, -2]},
+            ],
+            "anchors": [{"particles": [0, 4, 20, 24]}],
+            "settings": {"tolerance": 1e-9},
+        }
+    )
+    expected = relax(scene).particles
+    assert len(found) == 25 and expected[12, 2] < -0.5
+    order = [np.lexsort(np.round(one[:, :2], 2).T) for one in (found, expected)]
+    # anchors of 10^4 N/m yield under the pull of two springs and a load; nothing moves further, as the net is linear
+    pull = 10.0 * (expected[1] + expected[5] - 2.0 * expected[0]) + [0, 0, -2]
+    yielding = float(np.abs(pull).max()) / 1e4
+    np.testing.assert_allclose(found[order[0]], expected[order[1]], atol=1.001 * yielding)

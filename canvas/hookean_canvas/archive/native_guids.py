@@ -6,6 +6,10 @@ gh_docs_generation/grasshopper_components.md); the sample of github.com/mcneel/c
 """
 
 CURVE = """
+ccc7b468-e743-4049-891f-299432545898 Curve Middle
+424eb433-2b3a-4859-beaf-804d8af0afd7 Control Points
+ccfd6ba8-ecb1-44df-a47e-08126a653c51 Curve Domain
+323f3245-af49-4489-8677-7a2c73664077 Closed
 11bbd48b-bb0a-4f1b-8167-fa297590390d End Points
 fc6979e4-7e91-4508-8e05-37c680779751 Evaluate Curve
 6b021f56-b194-4210-b9a1-6cef3b7d0848 Evaluate Length
@@ -76,6 +80,24 @@ cc14daa5-911a-4fcc-8b3b-1149bf7f2eeb Point List
 """
 
 MATHS = """
+de4a0d86-2709-4564-935a-88bf4d40af89 Gate Xor
+b6aedcac-bf43-42d4-899e-d763612f834d Gate Xnor
+5ca5de6b-bc71-46c4-a8f7-7f30d7040acb Gate Nand
+548177c2-d1db-4172-b667-bec979e2d38b Gate Nor
+7e3185eb-a38c-4949-bcf2-0e80dee3a344 Cube
+5b0be57a-31f5-4446-a11a-ae0d348bca90 Cube Root
+27d6f724-a701-4585-992f-3897488abf08 Logarithm
+23afc7aa-2d2f-4ae7-b876-bf366246b826 Natural logarithm
+2ebb82ef-1f90-4ac9-9a71-1fe0f4ef7044 Power of 10
+7a1e5fd7-b7da-4244-a261-f1da66614992 Power of 2
+c717f26f-e4a0-475c-8e1c-b8f77af1bc99 Power of E
+cc15ba56-fae7-4f05-b599-cb7c43b60e11 ArcSine
+49584390-d541-41f7-b5f6-1f9515ac0f73 ArcCosine
+b4647919-d041-419e-99f5-fa0dc0ddb8b6 ArcTangent
+cb22d3ed-93d8-4629-bdf2-c0c7c25afd2c Golden Ratio
+b6cac37c-21b9-46c6-bd0d-17ff67796578 Natural logarithm
+e44c1bd7-72cc-4697-80c9-02787baf7bb4 Mass Multiplication
+dd17d442-3776-40b3-ad5b-5e188b56bd4c Relative Differences
 f44b92b0-3b5b-493a-86f4-fd7408c3daf3 Bounds
 d1a28e95-cf96-4936-bf34-8bf142d731bf Construct Domain
 8555a743-36c1-42b8-abcc-06d9cb94519f Construct Domain²
@@ -121,6 +143,9 @@ a50c4a3b-0177-4c91-8556-db95de6c56c8 Round
 """
 
 MESH = """
+47814a17-ca9e-4305-9400-3a9c8d71c19d Unweld Mesh
+d0f1311b-8287-4484-b2ea-1475c6770926 Delete Faces
+4dce5963-dc1a-4710-8991-9437ea23888d Disjoint Mesh
 aab142b1-b870-46de-8e86-654c9a554d90 Deconstruct Face
 ba2d8f57-0738-42b4-b5a5-fe4d853517eb Deconstruct Mesh
 0b4ac802-fc4a-4201-9c66-0078b837c1eb Face Boundaries
@@ -144,6 +169,8 @@ a4011be0-1c91-45bd-8280-17dd3a9f46f1 Voronoi
 4bc9dbbf-fec8-4348-a3af-e33e7edc8e7b Mesh Join
 58cf422f-19f7-42f7-9619-fc198c51c657 Mesh Surface
 4a0180e5-d8f9-46e7-bd34-ced804601462 Settings (Custom)
+1b0ee096-cc76-4847-8941-04a9e256de76 Settings (Quality)
+255ca3e9-2c1e-443a-a404-e76b5c63f4cb Settings (Speed)
 c3f9cea5-6fd4-4db5-959b-08cd08ed9fe1 Simple Mesh
 e45aa4a0-e40d-421c-a335-5185dd131836 Smooth Mesh
 3fba11d5-b30a-4146-8d80-d591e7a0a287 Triangulate
@@ -152,6 +179,11 @@ ca6a48f4-b681-4989-b0c1-301a2929a84c Unify Mesh
 """
 
 SETS = """
+fe769f85-8900-45dd-ba11-ec9cd6c778c6 Prune Tree
+df6d9197-9a6e-41a2-9c9d-d2221accb49e Deconstruct Path
+c74efd0e-7fe3-4c2d-8c9d-295c5672fb13 Null Item
+f3230ecb-3631-4d6f-86f2-ef4b2ed37f45 Replace Nulls
+5a13ec19-e4e9-43da-bf65-f93025fa87ca Shortest List
 e7c80ff6-0299-4303-be36-3080977c14a1 Combine Data
 36947590-f0cb-4807-a8f9-9c90c9b20621 Cross Reference
 d8332545-21b2-4716-96e3-8559a9876e17 Dispatch
@@ -218,6 +250,7 @@ b8e2aa8f-8830-4ee1-bb59-613ea279c281 Unflatten Tree
 """
 
 SURFACE = """
+5106bafc-d5d4-4983-83e7-7be3ed07f502 Divide Surface
 2e205f24-9279-47b2-b414-d06dcd0b21a7 Area
 0148a65d-6f42-414a-9db7-9a9b2eb78437 Brep Edges
 4beead95-8aa2-4613-8bb9-24758a0f5c4c Brep Closest Point
@@ -272,6 +305,9 @@ b7798b74-037e-4f0c-8ac7-dc1043d093e0 Rotate
 """
 
 VECTOR = """
+75eec078-a905-47a1-b0d2-0934182b1e3d Plane Origin
+f6f14b09-6497-4564-8403-09e4eb5a6b82 Rotate Plane
+33bfc73c-19b2-480b-81e6-f3523a012ea6 Plane Fit
 125dc122-8544-4617-945e-bb9a0c101c50 Hexagonal
 e2d958e8-9f08-44f7-bf47-a684882d0b2a Populate 2D
 e202025b-dc8e-4c51-ae19-4415b172886f Populate 3D

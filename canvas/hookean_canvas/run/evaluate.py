@@ -19,25 +19,26 @@ from uuid import UUID
 import rhino3dm
 
 from hookean.errors import InputError
+from hookean_canvas.archive import Type
 from hookean_canvas.archive.guids import (
     BOOLEAN_TOGGLE,
     BUTTON,
     NUMBER_SLIDER,
     PANEL,
-    PARAM_VIEWER,
-    RELAY,
-    TIMER,
     VALUE_LIST,
 )
 from hookean_canvas.archive.parts import given as typed
 from hookean_canvas.run import stand_in as untyped
-from hookean_canvas.run.graph import Graph, Node, Port, Unread
-from hookean_canvas.run.natives import NATIVES, PARAMETERS, Native, Unfit, as_kind
+from hookean_canvas.run.components import inputs_of, outputs_of, run_native
+from hookean_canvas.run.graph import Graph, Node, Port
+from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind, native_of
+from hookean_canvas.run.natives.display import SWATCH
+from hookean_canvas.run.natives.expressions import evaluated
 from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
-from hookean_canvas.run.trees import ITEM, LIST, TREE, Run, Tree, modified, runs
+from hookean_canvas.run.trees import ITEM, TREE, Run, Tree, modified, runs
+from hookean_canvas.run.unsupported import require_known
 
 stand_in: Any = untyped
-VALUES = (NUMBER_SLIDER, BOOLEAN_TOGGLE, PANEL, VALUE_LIST, BUTTON, RELAY, PARAM_VIEWER, TIMER)
 LONGEST_WAIT = 1.0  # s between scheduled solutions, however long one asks to wait
 
 
@@ -67,7 +68,7 @@ class Canvas:
     def __init__(self, graph: Graph, settings: Mapping[str, str] | None = None) -> None:
         self.graph = graph
         self._order = graph.ordered()
-        _known(graph)
+        require_known(graph)
         self._document = stand_in.Document(path=str(graph.file) if graph.file else None, identity=str(graph.id))
         self._set = _settings(graph, settings or {})
         self._pressed = [node for node in _resets(graph) if node.id not in self._set]
@@ -159,10 +160,12 @@ class Canvas:
             self._results[port.id] = Tree()
         if node.locked:
             return
+        if node.guid in INERT:
+            return
         if node.floating:
             self._results[node.id] = self._floating(node)
-        elif node.guid in NATIVES:
-            self._native(node, NATIVES[node.guid])
+        elif (native := native_of(node.guid, node.name)) is not None:
+            self._native(node, native)
         else:
             self._script(node, self._scripts[node.id])
 
@@ -173,7 +176,15 @@ class Canvas:
             found.take(self._results.get(source, Tree()))
         if not port.sources and port.data is not None:
             found.take(port.data)
-        return modified(found, port.mapping, port.reverse, port.simplify)
+        found = modified(found, port.mapping, port.reverse, port.simplify)
+        return self._expressed(port, found) if port.expression else found
+
+    def _expressed(self, port: Port, tree: Tree) -> Tree:
+        """Each value x after the expression that a person has put on the input."""
+        found = Tree()
+        for path, values in tree.branches():
+            found[path] = [None if x is None else evaluated(port.expression, _variables(x)) for x in values]
+        return found
 
     def _floating(self, node: Node) -> Tree:
         port = node.inputs[0]
@@ -186,25 +197,22 @@ class Canvas:
         return self._cast(node, port, PARAMETERS[node.guid][1], found) if node.guid in PARAMETERS else found
 
     def _native(self, node: Node, native: Native) -> None:
-        given: list[tuple[int, Tree]] = []
-        for port, wanted in zip(node.inputs, native.inputs, strict=True):
-            tree = self._cast(node, port, wanted.kind, self._given(port))
-            if not tree:
-                self._say(node, "warning", f"Input parameter {port.nickname} failed to collect data")
+        def say(level: str, text: str) -> None:
+            self._say(node, level, text)
+
+        if native.remark:
+            say("remark", native.remark)
+        given: list[tuple[Input, Tree]] = []
+        for port, of in inputs_of(node, native) or []:
+            tree = Tree() if port is None else self._cast(node, port, of.kind, self._given(port))
+            if port is not None and not tree and not of.optional:
+                say("warning", f"Input parameter {port.nickname} failed to collect data")
                 return
-            given.append((wanted.access, tree))
-        for run in runs(given):
-            if any(value is None and access == ITEM for value, (access, _) in zip(run.values, given, strict=True)):
-                continue  # an item that is null, or an empty branch
-            try:
-                found: Sequence[Any] = native.run(*run.values)
-            except Unfit as error:
-                self._say(node, "error", str(error))
-                continue
-            nested = any(access == ITEM for access, _ in given)
-            for port, result, value in zip(node.outputs, native.outputs, found, strict=True):
-                path = (*run.path, run.number) if result.access == LIST and nested else run.path
-                self._results[port.id].add(path, value if result.access == LIST else [value])
+            given.append((of, tree))
+        results = run_native(node, native, given, say)
+        for (output, _), tree in zip(outputs_of(node, native) or [], results, strict=True):
+            if output is not None:
+                self._results[output.id] = modified(tree, output.mapping, output.reverse, output.simplify)
 
     def _script(self, node: Node, script: Script) -> None:
         del script.component.messages[:]
@@ -269,36 +277,6 @@ class _standing:
         self._canvas.remove()
 
 
-def _known(graph: Graph) -> None:
-    """InputError that names every object that cannot be run, and stored data that cannot be read."""
-    where = str(graph.file or graph.name)
-    if graph.damage:
-        raise InputError(where, f"the file is damaged: {'; '.join(graph.damage)}")
-    unknown = []
-    for node in graph.nodes:
-        unknown += [f"{node.label} ({node.name}{why})" for why in [_strange(node)] if why]
-        for port in node.inputs:
-            odd = [value for value in (port.data or Tree()).values_in_order() if isinstance(value, Unread)]
-            if odd:
-                unknown.append(f"data stored in {node.label}, {port.nickname}: {', '.join(odd[0].items)}")
-    if unknown:
-        said = "these objects have no stand-in: " if len(unknown) > 1 else "this object has no stand-in: "
-        raise InputError(where, said + "; ".join(unknown))
-
-
-def _strange(node: Node) -> str:
-    """Why an object has no stand-in, as words that follow its name; empty where it has one."""
-    if node.guid in SCRIPTS:
-        return "" if code_of(node) is not None else ": its code is not Python"
-    if node.guid in NATIVES:
-        of = NATIVES[node.guid]
-        held, usual = (f"{len(one.inputs)} inputs and {len(one.outputs)} outputs" for one in (node, of))
-        return "" if held == usual else f" with {held}, not {usual}"
-    if node.guid in PARAMETERS or node.guid in VALUES:
-        return "" if node.floating else " with inputs or outputs of its own"
-    return f", {node.guid}"
-
-
 def _resets(graph: Graph) -> list[Node]:
     """Toggles that feed an input called reset."""
     found: dict[UUID, Node] = {}
@@ -352,6 +330,11 @@ def _set_value(node: Node, text: str) -> Any:
     return value
 
 
+def _variables(x: Any) -> dict[str, Any]:
+    """What an expression on an input calls the value: x, or whatever the input is called."""
+    return {"x": x, "X": x}
+
+
 def _slid(slider: Any, value: float) -> float | int:
     digits, whole = typed(slider, "Digits", 0), typed(slider, "Interval", 0)
     return round(value) if whole and math.isfinite(value) else round(float(value), digits)
@@ -394,6 +377,7 @@ _OWN: dict[UUID, Callable[[Node], list[Any]]] = {
     VALUE_LIST: _list_value,
     PANEL: _panel_value,
     BUTTON: lambda _: [False],
+    SWATCH: lambda node: [stand_in.Color(*i.value) for i in node.container.items if i.type is Type.DRAWING_COLOR][:1],
 }
 """What an object has by itself, where no wire reaches it."""
 

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 from uuid import UUID
 
 from hookean.errors import InputError
@@ -15,6 +14,7 @@ from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.archive import parts as chunks
 from hookean_canvas.archive.guids import GROUP, SCRIBBLE
 from hookean_canvas.archive.parts import SCRIPTS, Part, Rectangle, bounds_of, given, sources
+from hookean_canvas.run.stored import Unread, stored
 from hookean_canvas.run.trees import Tree, path_of
 
 
@@ -34,6 +34,7 @@ class Port:
     hint: UUID | None = None
     data: Tree | None = None
     faint: bool = False
+    expression: str = ""
 
 
 @dataclass
@@ -216,41 +217,16 @@ def port(chunk: Chunk) -> Port:
         hint=hint if isinstance(hint, UUID) else None,
         data=_persistent(data) if data is not None else None,
         faint=given(chunk, "WireDisplay", 0) != 0,
+        expression=given(chunk, "InternalExpression", ""),
     )
 
 
 def _persistent(chunk: Chunk) -> Tree:
     tree = Tree()
     for branch in chunk.chunks:
-        values = [_stored(item) for item in branch.chunks]
+        values = [stored(item) for item in branch.chunks]
         try:
             tree.add(path_of(given(branch, "Path", "{0}")), values)
         except ValueError:
             tree.add((branch.index,), [Unread(["Path"])])
     return tree
-
-
-def _stored(chunk: Chunk) -> Any:
-    """A stored value: a number, text, a truth or the coordinates of a point or vector; anything else is Unread."""
-    for name, kinds in _KINDS.items():
-        item = chunk.item(name)
-        if item is not None and item.type in kinds:
-            return item.value
-    return Unread([item.name for item in chunk.items])
-
-
-_KINDS = {
-    "number": (Type.INT32, Type.INT64, Type.SINGLE, Type.DOUBLE),
-    "string": (Type.STRING,),
-    "boolean": (Type.BOOL,),
-    "Coordinate": (Type.POINT3D,),
-    "vector": (Type.POINT3D,),
-}
-"""Under which names values are stored, and as which types."""
-
-
-@dataclass(frozen=True)
-class Unread:
-    """A stored value of a kind that is not read; `items` are the names under which it is stored."""
-
-    items: list[str]

@@ -70,12 +70,14 @@ def _simplified(tree: Tree) -> Tree:
 class Run:
     """One run of a component: the path its results go to, the number of the run in this path, and a value an input.
 
-    An input with list access gets a list, one with tree access the Tree, one without data None or an empty list.
+    An input with list access gets a list, one with tree access the Tree, one without data None or an empty list;
+    `lacking` are the numbers of those inputs.
     """
 
     path: Path
     number: int
     values: list[Any]
+    lacking: frozenset[int] = frozenset()
 
 
 def runs(inputs: Sequence[tuple[int, Tree]]) -> Iterator[Run]:
@@ -87,11 +89,13 @@ def runs(inputs: Sequence[tuple[int, Tree]]) -> Iterator[Run]:
     """
     matched = [tree for access, tree in inputs if access != TREE and tree]
     if not matched:
-        yield Run((0,), 0, [_lone(access, tree) for access, tree in inputs])
+        lone = frozenset(i for i, (access, _) in enumerate(inputs) if access != TREE)
+        yield Run((0,), 0, [_lone(access, tree) for access, tree in inputs], lone)
         return
     leading = max(matched, key=len)
     for i, path in enumerate(leading.paths):
         here = [_branch(tree, i) if access != TREE else [] for access, tree in inputs]
+        lacking = frozenset(i for i, (access, _) in enumerate(inputs) if access != TREE and not here[i])
         lengths = [len(branch) for (access, _), branch in zip(inputs, here, strict=True) if access == ITEM and branch]
         for k in range(max(lengths, default=1)):
             values: list[Any] = []
@@ -102,7 +106,7 @@ def runs(inputs: Sequence[tuple[int, Tree]]) -> Iterator[Run]:
                     values.append(list(branch))
                 else:
                     values.append(branch[min(k, len(branch) - 1)] if branch else None)
-            yield Run(path, k, values)
+            yield Run(path, k, values, lacking)
 
 
 def _branch(tree: Tree, i: int) -> list[Any]:

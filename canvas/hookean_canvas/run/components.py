@@ -1,0 +1,109 @@
+"""Native components of a definition: their inputs and outputs found by place or name, and their runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from hookean_canvas.run.graph import Node, Port
+from hookean_canvas.run.natives import Native, Unfit
+from hookean_canvas.run.natives.declare import BRANCHES, Input, Output
+from hookean_canvas.run.trees import ITEM, LIST, TREE, Path, Run, Tree, runs
+
+Say = Callable[[str, str], None]
+
+
+def inputs_of(node: Node, native: Native) -> list[tuple[Port | None, Input]] | None:
+    """The declared inputs with those of the object; None where they do not belong together.
+
+    By their places where their numbers agree or a person may add some; else by their names, where those that the
+    object lacks are optional.
+    """
+    declared = list(native.inputs)
+    if native.more_inputs and len(node.inputs) >= len(declared) - 1:
+        declared += declared[-1:] * (len(node.inputs) - len(declared))
+        return list(zip(node.inputs, declared, strict=False))
+    if len(node.inputs) == len(declared):
+        return list(zip(node.inputs, declared, strict=True))
+    named = _named(node.inputs, declared)
+    if named is None or any(port is None and not of.optional for port, of in named):
+        return None
+    return named
+
+
+def outputs_of(node: Node, native: Native) -> list[tuple[Port | None, Output]] | None:
+    """The declared outputs with those of the object, which may lack some; None where they do not belong together."""
+    declared = list(native.outputs)
+    if native.more_outputs:
+        declared += declared[-1:] * (len(node.outputs) - len(declared))
+        return list(zip(node.outputs, declared, strict=False))
+    if len(node.outputs) == len(declared):
+        return list(zip(node.outputs, declared, strict=True))
+    return _named(node.outputs, declared)
+
+
+def _named(ports: Sequence[Port], declared: Sequence[Any]) -> list[tuple[Port | None, Any]] | None:
+    rest = list(ports)
+    found: list[tuple[Port | None, Any]] = []
+    for of in declared:
+        port = next((p for p in rest if of.name.lower() == p.name.lower() or of.nickname == p.nickname), None)
+        if port is not None:
+            rest.remove(port)
+        found.append((port, of))
+    return found if not rest else None
+
+
+def run_native(node: Node, native: Native, given: Sequence[tuple[Input, Tree]], say: Say) -> list[Tree]:
+    """Trees for the declared outputs; `given` has the data of each declared input."""
+    outputs = outputs_of(node, native) or []
+    results = [Tree() for _ in outputs]
+    accesses = [of.access for of, _ in given]
+    matched = list(runs([(of.access, tree) for of, tree in given]))
+    several = {run.path for run in matched if run.number}
+    for run in matched:
+        empty = [i for i in run.lacking if accesses[i] == ITEM and not given[i][0].optional]
+        if empty:
+            for tree in results:
+                tree.add(run.path, [])
+            continue
+        nested = LIST not in accesses and ITEM in accesses or run.path in several
+        _keep(results, outputs, run, _values(node, native, given, run, say), nested)
+    return results
+
+
+def _values(
+    node: Node, native: Native, given: Sequence[tuple[Input, Tree]], run: Run, say: Say
+) -> Sequence[Any] | None:
+    """What a run gives; None where a needed item is null, or the component reports an error."""
+    values = []
+    for i, ((of, _), value) in enumerate(zip(given, run.values, strict=True)):
+        if value is None and of.access == ITEM and not of.optional:
+            return None
+        values.append(None if i in run.lacking and of.optional and of.access == LIST else value)
+    try:
+        return native.run(*values, node=node) if native.sees else native.run(*values)
+    except Unfit as error:
+        say("error", str(error))
+    except (ArithmeticError, ValueError, TypeError, IndexError, RuntimeError) as error:
+        say("error", f"Solution exception: {error or type(error).__name__}")
+    return None
+
+
+def _keep(
+    results: list[Tree], outputs: Sequence[tuple[Port | None, Output]], run: Run, values: Sequence[Any] | None,
+    nested: bool,
+) -> None:  # fmt: skip
+    """Put what a run gave into the trees; an item is null where it gave nothing."""
+    below: Path = (*run.path, run.number) if nested else run.path
+    for k, (tree, (_, of)) in enumerate(zip(results, outputs, strict=True)):
+        if values is None or k >= len(values):
+            tree.add(run.path if of.access == ITEM else below, [None] if of.access == ITEM else [])
+        elif of.access == TREE:
+            tree.take(values[k])
+        elif of.access == BRANCHES:
+            for number, branch in enumerate(values[k]):
+                tree.add((*below, number), branch)
+        elif of.access == LIST:
+            tree.add(below, values[k])
+        else:
+            tree.add(run.path, [values[k]])

@@ -1,0 +1,41 @@
+"""Stand-ins for Grasshopper's own components and parameters, so that definitions run without it.
+
+Each does what its tooltip in Grasshopper and the component index (https://grasshopperdocs.com) describe. A new one is
+one function in the module of its subject, with its declaration (`declare`). Ids: `guids`, and public definitions.
+"""
+
+from __future__ import annotations
+
+from hookean_canvas.run.natives import (  # noqa: F401  each declares the natives of a subject
+    curves,
+    datatrees,
+    expressions,
+    lists,
+    logic,
+    maths,
+    measures,
+    meshes,
+    meshes_made,
+    primitives,
+    subdivision,
+    surfaces,
+    transforms,
+    vectors,
+)
+from hookean_canvas.run.natives.declare import BY_NAME, NATIVES, PLUGINS, Input, Native, Output, Unfit, native_of
+from hookean_canvas.run.natives.display import INERT
+from hookean_canvas.run.natives.kinds import PARAMETERS, as_kind
+
+__all__ = [
+    "BY_NAME",
+    "INERT",
+    "NATIVES",
+    "PARAMETERS",
+    "PLUGINS",
+    "Input",
+    "Native",
+    "Output",
+    "Unfit",
+    "as_kind",
+    "native_of",
+]

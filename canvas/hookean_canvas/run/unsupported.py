@@ -1,0 +1,65 @@
+"""What of a definition cannot be run without Grasshopper: all of it at once, a line for each kind of object."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from hookean.errors import InputError
+from hookean_canvas.archive import guids
+from hookean_canvas.run.components import inputs_of, outputs_of
+from hookean_canvas.run.graph import Graph, Node
+from hookean_canvas.run.natives import INERT, PARAMETERS, native_of
+from hookean_canvas.run.natives.display import SWATCH
+from hookean_canvas.run.scripts import SCRIPTS, code_of
+from hookean_canvas.run.stored import Unread
+from hookean_canvas.run.trees import Tree
+
+VALUES = (
+    guids.NUMBER_SLIDER, guids.BOOLEAN_TOGGLE, guids.PANEL, guids.VALUE_LIST, guids.BUTTON, guids.RELAY,
+    guids.PARAM_VIEWER, guids.TIMER, SWATCH,
+)  # fmt: skip
+"""Objects that hold or pass on values, besides parameters."""
+
+
+def require_known(graph: Graph) -> None:
+    """InputError for a damaged file, and for one with objects or stored data that cannot be run; a fault for each."""
+    where = str(graph.file or graph.name)
+    if graph.damage:
+        raise InputError(where, f"the file is damaged: {'; '.join(graph.damage)}")
+    faults = [InputError(f"{count} x {what}", why) for (what, why), count in unsupported(graph).most_common()]
+    if faults:
+        listed = "; ".join(map(str, faults))
+        raise InputError(where, f"nothing was run; these cannot be run without Grasshopper: {listed}", faults)
+
+
+def unsupported(graph: Graph) -> Counter[tuple[str, str]]:
+    """How many objects and stored values there are of each kind that cannot be run: what it is, and why."""
+    found: Counter[tuple[str, str]] = Counter()
+    for node in graph.nodes:
+        why = _strange(node)
+        if why:
+            found[node.name, why] += 1
+        for port in node.inputs if not why and node.guid not in INERT else ():
+            odd = [value for value in (port.data or Tree()).values_in_order() if isinstance(value, Unread)]
+            if odd and not port.sources:
+                told = odd[0].why or f"stored as {', '.join(odd[0].items)}"
+                what = node.name if node.floating else f"{node.name}, {port.name or port.nickname}"
+                found[f"data stored in {what}", told] += len(odd)
+    return found
+
+
+def _strange(node: Node) -> str:
+    """Why an object has no stand-in; empty where it has one."""
+    if node.guid in INERT:
+        return ""
+    if node.guid in SCRIPTS:
+        return "" if code_of(node) is not None else "its code is not Python"
+    native = native_of(node.guid, node.name)
+    if native is not None:
+        if inputs_of(node, native) is not None and outputs_of(node, native) is not None:
+            return ""
+        held, usual = (f"{len(one.inputs)} inputs and {len(one.outputs)} outputs" for one in (node, native))
+        return f"it has {held}, not {usual}"
+    if node.guid in PARAMETERS or node.guid in VALUES:
+        return "" if node.floating else "it has inputs or outputs of its own"
+    return f"{node.guid} has no stand-in"
