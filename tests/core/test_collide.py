@@ -258,3 +258,10 @@ def test_newton_follows_contacts_that_come_and_go(seed: int) -> None:
     f = system.evaluate(state)[0][1:]
     assert found.converged
     assert np.linalg.norm(f, axis=1).max() == pytest.approx(found.out_of_balance, rel=1e-6)
+
+
+def test_multigrid_refuses_contacts_that_come_and_go() -> None:
+    """Its blocks are worked out once, for the pairs that overlap at the start."""
+    x = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]])
+    with pytest.raises(InputError, match="/settings/solver: multilevel does not support contacts that come and go"):
+        relax(Scene(particles=x, forces=[crowd(x)], settings={"solver": "multilevel"}))
