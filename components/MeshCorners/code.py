@@ -8,4 +8,4 @@ Sum of the angles of the faces at a vertex < limit
 
 from hookean_client import canvas_tools as tools
 
-corners, indices = tools.mesh_corners(ghenv, _mesh, _angle_)
+corners, indices = tools.mesh_corners(ghenv, _mesh, _angle_, _order_)

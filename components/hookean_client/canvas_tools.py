@@ -179,10 +179,14 @@ def mesh_vertices(ghenv, meshes):
     return canvas._told(ghenv, work)
 
 
-def mesh_corners(ghenv, meshes, angles):
+def mesh_corners(ghenv, meshes, angles, order):
     """Boundary vertices whose angle inside the mesh is below a number [rad], and their numbers."""
-    limits = default(angles, 2.356194490192345)
-    return each(ghenv, "corners", meshes, ["points", "indices"], angle=limits)
+
+    def work():
+        options = {"angle": default(angles, 2.356194490192345), "order": word(order, ("index", "boundary"), "order")}
+        return each(ghenv, "corners", meshes, ["points", "indices"], **options)
+
+    return canvas._told(ghenv, work) or (None, None)
 
 
 def naked_vertices(ghenv, meshes):

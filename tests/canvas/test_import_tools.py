@@ -40,6 +40,8 @@ FIRST = {
               ["trail"]),
 }  # fmt: skip
 LATER = {
+    "MeshCorners": ((("Mesh", None), ("Angle", 2.356194490192345)), ("Corners",), "MeshCorners", {"mesh": "mesh"},
+                    ["corners"]),
     "Diagonalize": (MESH, ("DiagonalMesh",), "Diagonalize", {"mesh": "mesh"}, ["mesh"]),
     "Checkerboard": (MESH, ("A",), "Checkerboard", {"mesh": "mesh"}, ["pattern"]),
     "SimpleRemesh": ((("Geometry", None), ("Length", None), ("Creases", None), ("Corners", None), ("Steps", 50)),
@@ -72,6 +74,15 @@ def test_a_tool_is_swapped_with_its_wires(
     places = [place for place, _ in made.outputs.values()]
     titles = {port.value("InstanceGuid"): port.value("Name") for port in outputs(found.container)}
     assert [titles[place] for place in places] == ours
+
+
+def test_corners_of_an_import_come_along_the_boundary() -> None:
+    """A panel says so, as lists that go with the corners follow the boundary."""
+    d = Kangaroo("corners", "Corners", "MeshCorners.")
+    d.kangaroo("MeshCorners", (("Mesh", None), ("Angle", 2.0)), ["Corners"], mesh=d.parameter("Mesh", "Given"))
+    after, _ = translated(d)
+    told = [behind(after, the(after, "Corners"), name) for name in ("order", "angle")]
+    assert [part.container.value("UserText") for (part,) in told if part.container] == ["boundary", "2"]
 
 
 def test_what_is_typed_into_a_tool_is_kept_or_listed() -> None:

@@ -12,6 +12,7 @@ import pytest
 from canvas.native_values import called as run
 from canvas.native_values import made, near, plain
 from canvas.natives_table import XY
+from hookean.discretize import measures
 from hookean_canvas.run.natives import BY_NAME, Unfit, as_kind, shapes
 from hookean_canvas.run.rhino import rhino3dm
 
@@ -80,6 +81,12 @@ def line(*ends: tuple[float, ...]) -> tuple[Any, ...]:
         ("Weld Mesh", (PAIR, math.pi), [([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2), (1, 3, 2)])]),
         ("Triangulate", (("mesh", [(0, 0, 0), (2, 0, 0), (3, 2, 0), (0, 1, 0)], [(0, 1, 2, 3)]),),
          [([(0, 0, 0), (2, 0, 0), (3, 2, 0), (0, 1, 0)], [(0, 1, 3), (1, 2, 3)]), 1]),
+        ("Combine&Clean", ([("mesh", PAIR[1][:3], [(0, 1, 2)]), ("mesh", PAIR[1][3:], [(0, 1, 2)])],),
+         [([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2), (1, 3, 2)])]),
+        ("MeshCorners", (QUAD, 0.75 * math.pi), [[(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)]]),
+        ("MeshCorners", (QUAD, 0.4 * math.pi), [[]]),
+        ("removeDuplicatePts", ([("point", 0, 0, 0), ("point", 0, 0, 0.001), ("point", 1, 0, 0)], 0.01),
+         [[(0, 0, 0), (1, 0, 0)]]),
         ("Delaunay Mesh", ([("point", 0, 0, 0), ("point", 1, 0, 5), ("point", 0, 1, 0)], XY),
          [([(0, 0, 0), (1, 0, 5), (0, 1, 0)], None)]),
         ("Mesh Closest Point", (("point", 1, 0.5, 3), QUAD), [(1, 0.5, 0), 0, None]),
@@ -93,6 +100,41 @@ def test_a_native_makes_the_known_shape(name: str, given: Any, expected: Any) ->
         assert near(found[0][0], expected[0][0]) and sorted(found[0][1][0]) == [0, 1, 2]
     else:
         assert near(found[: len(expected)], expected), found
+
+
+def test_a_pipe_is_prisms_that_meet_where_the_angle_is_halved() -> None:
+    """The volume of cut prisms is that of their section, 3 r^2 for 12 sides, along the middle line; of a closed one,
+    the same without caps. Every corner is r from the line of its piece."""
+    open_path, radius = [(0, 0, 0), (3, 0, 0), (3, 4, 0), (3, 4, 5)], 0.5
+    mesh = BY_NAME["Pipe"].run(made(open_path), radius, 1)[0]
+    assert measures.volume(shapes.mesh_parts(mesh)) == pytest.approx(3.0 * radius**2 * 12.0, rel=1e-6)
+    vertices = shapes.mesh_parts(mesh)[0][:48].reshape(4, 12, 3)
+    for ring, place, way in zip(vertices, open_path, np.eye(3)[[0, 0, 1, 2]], strict=True):
+        off = ring - place
+        assert np.linalg.norm(off - (off @ way)[:, None] * way, axis=1) == pytest.approx(np.full(12, radius), abs=1e-6)
+    ring = BY_NAME["Pipe"].run(made(SQUARE), radius, 1)[0]
+    assert measures.volume(shapes.mesh_parts(ring)) == pytest.approx(3.0 * radius**2 * 8.0, rel=1e-6)
+    curved = BY_NAME["Pipe"].run(BY_NAME["Circle"].run(made(XY), 2.0)[0], 0.1, 0)[0]
+    assert measures.volume(shapes.mesh_parts(curved)) == pytest.approx(0.03 * 100.0 * 2.0 * math.sin(math.pi / 50.0))
+    for path, r, said in ((open_path, 0.0, "the radius must be positive"), ([(0, 0, 0), (1, 0, 0), (0, 0, 0)], 0.1,
+                          "the curve turns back on itself")):  # fmt: skip
+        with pytest.raises(Unfit, match=said):
+            BY_NAME["Pipe"].run(made(path), r, 0)
+
+
+def test_surfaces_of_straight_lines() -> None:
+    """Half way between two curves is the mean of their points; an extruded square of side 2 by 3 has 4 x 2 x 3."""
+    high = [(0, 0, 4), (2, 0, 4), (2, 2, 6)]
+    (surface,) = BY_NAME["Loft"].run([made(SQUARE[:3]), made(high)], None)[0]
+    (u0, u1), (v0, v1) = ((d.T0, d.T1) for d in (surface.Domain(0), surface.Domain(1)))
+    middle = plain(surface.PointAt(0.5 * (u0 + u1), 0.5 * (v0 + v1)))
+    assert near(middle, (2, 0, 2)) and near(plain(surface.PointAt(u1, v1)), (2, 2, 6))
+    assert len(BY_NAME["Loft"].run([made(SQUARE), made(high), made(SQUARE)], None)[0]) == 2
+    walls = BY_NAME["Extrude"].run(made(SQUARE), made(("vector", 0, 0, 3)))[0]
+    mesh = BY_NAME["Mesh Surface"].run(walls, 8, 2, False, False)[0]
+    assert measures.area(shapes.mesh_parts(mesh)) == pytest.approx(24.0, rel=1e-6)
+    with pytest.raises(Unfit, match="two curves or more are needed"):
+        BY_NAME["Loft"].run([made(SQUARE)], None)
 
 
 def test_rotate_turns_counter_clockwise_about_a_plane_an_axis_and_a_point() -> None:

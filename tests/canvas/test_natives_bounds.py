@@ -1,4 +1,4 @@
-"""Natives asked for too much, expressions that grow without end, nulls among points: said in a sentence, in little time.
+"""Natives asked for too much, expressions that grow without end, nulls among points: refused in a sentence.
 
 What is asked for would need hours or more memory than there is, so that a test ends only where it is refused.
 """

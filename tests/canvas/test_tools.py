@@ -212,6 +212,7 @@ def test_parts_of_meshes(rhino: Any) -> None:
     assert corners["indices"] == meshes.corners(QUADS).tolist() == [0, 2, 9, 11]
     assert (places(corners["corners"]) == v[corners["indices"]]).all()
     assert run("MeshCorners", _mesh=[mesh], _angle_=[3.5])["indices"] == meshes.corners(QUADS, 3.5).tolist()
+    assert run("MeshCorners", _mesh=[mesh], _order_=["boundary"])["indices"] == [0, 9, 11, 2]
     sides = run("NakedVertices", _mesh=[mesh])
     assert sides["naked_index"] == meshes.naked_vertices(QUADS).tolist()
     assert sides["clothed_index"] == meshes.clothed_vertices(QUADS).tolist() == [4, 7]

@@ -234,3 +234,34 @@ def test_spheres_dropped_into_a_box_come_to_rest_at_a_random_packing(count: int,
     assert least <= volume / (side * side * (high - low)) <= most
     apart = np.linalg.norm(rest[:, None] - rest[None], axis=2) + 2.0 * np.eye(count)
     assert apart.min() > 0.9 * 2.0 * r
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_newton_follows_contacts_that_come_and_go(seed: int) -> None:
+    """Spheres that springs draw to one place touch others at rest than at the start. At rest the largest force that is
+    out of balance, by an evaluation of its own, is what the result says, and the shape is stable or free to turn."""
+    rng = np.random.default_rng(seed)
+    x = rng.normal(size=(11, 3)) * 2.0
+    x[0] = 0.0
+    spring = {"kind": "springs", "particles": [(0, i) for i in range(1, 11)], "rest_length": 0.2}
+    contact = {"kind": "collide", "particles": range(1, 11), "radius": rng.uniform(0.3, 0.9, 10), "strength": 300.0}
+    scene = Scene(
+        particles=x,
+        forces=[{**spring, "stiffness": rng.uniform(1.0, 20.0, 10)}, contact],
+        anchors=[{"particles": [0]}],
+        settings={"solver": "newton", "tolerance": 1e-8},
+    )
+    found = relax(scene)
+    system = compile(scene)
+    state = system.start()
+    state.x[:] = found.particles
+    f = system.evaluate(state)[0][1:]
+    assert found.converged
+    assert np.linalg.norm(f, axis=1).max() == pytest.approx(found.out_of_balance, rel=1e-6)
+
+
+def test_multigrid_refuses_contacts_that_come_and_go() -> None:
+    """Its blocks are worked out once, for the pairs that overlap at the start."""
+    x = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]])
+    with pytest.raises(InputError, match="/settings/solver: multilevel does not support contacts that come and go"):
+        relax(Scene(particles=x, forces=[crowd(x)], settings={"solver": "multilevel"}))

@@ -121,7 +121,12 @@ def test_a_curve_given_with_its_first_corner_again_is_the_same() -> None:
     [
         *(
             ({"curve": curve, "normal": normal}, "/forces/0/curve: the curve encloses no area square to its normal")
-            for curve, normal in ((SQUARE[:2], [0, 0, 1]), (SQUARE[:1] * 5, [0, 0, 1]), (SQUARE, [1, 0, 0]))
+            for curve, normal in (
+                ([], [0, 0, 1]),
+                (SQUARE[:2], [0, 0, 1]),
+                (SQUARE[:1] * 5, [0, 0, 1]),
+                (SQUARE, [1, 0, 0]),
+            )
         ),
         ({"curve": SQUARE, "normal": [0, 0, 0]}, "/forces/0/normal"),
     ],

@@ -140,3 +140,30 @@ def test_a_box_on_a_slope_slides_above_the_angle_of_friction() -> None:
     known = 0.5 * (math.sin(angle) - 0.5 * math.cos(angle)) * 2.0**2
     assert down == pytest.approx(np.full(8, known), rel=0.02)
     assert np.abs(away).max() < 2e-3
+
+
+def test_a_shape_given_far_away_pushes_nothing_as_a_whole() -> None:
+    """Places in a body count from its mean: forces sum to zero to the rounding of sizes of 10, not of 1e9 (1e-7)."""
+    system = compile(body(CUBE[:7], shape=2.0 * CUBE[:7] + 1e9))
+    f = system.evaluate(system.start())[0]
+    assert np.abs(f).max() > 100.0 and np.abs(f.sum(axis=0)).max() < 7 * 1000.0 * 10.0 * 1e-15
+
+
+@pytest.mark.parametrize("count", [2, 3, 8])
+def test_one_place_for_all_particles_is_that_of_each(count: int) -> None:
+    """A shape of one vector is a body without size: its particles are pulled to their mean, E = sum k |x - c|^2 / 2."""
+    x = CUBE[:count]
+    system = compile(body(x, shape=[1.0, 2.0, 3.0]))
+    assert energy(system, x) == pytest.approx(500.0 * ((x - x.mean(axis=0)) ** 2).sum(), rel=1e-12)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-9])
+def test_a_free_body_under_stress_is_a_mechanism_whatever_the_tolerance(tolerance: float) -> None:
+    """A particle with two places in its body stresses it. It moves and turns freely: six motions meet no resistance,
+    none gains energy, though what is left out of balance turns the tangent a little."""
+    shape = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 1.2, 0.3]]
+    forces = [{"kind": "rigid_body", "particles": [0, 1, 2, 2], "shape": shape}]
+    settings = {"tolerance": tolerance, "position_tolerance": None}
+    found = relax(Scene.read({"particles": CUBE[[0, 4, 2]], "forces": forces, "settings": settings}))
+    assert found.converged and found.energy["total"] > 1.0
+    assert (found.stability, found.soft_modes) == ("mechanism", 6)

@@ -35,6 +35,28 @@ def grid(n: int, m: int, turn: np.random.Generator | None = None) -> Mesh:
     return Mesh(v, f)
 
 
+def test_corners_follow_one_another_along_a_boundary() -> None:
+    """Of a square with a square hole: its own corners counter-clockwise as its faces, the hole's the other way; also
+    where faces are turned over, the neighbours of a corner are its neighbours along the boundary."""
+    whole = grid(5, 4)
+    middle = whole.vertices[whole.faces].mean(axis=1)
+    holed = Mesh(whole.vertices, whole.faces[np.abs(middle - [2.5, 2.0, 0.0]).max(axis=1) > 1.0])
+    found = hd.corners(holed, order="boundary")
+    assert found.tolist() == [0, 5, 29, 24]
+    rim = hd.corners(holed, 7.0, order="boundary").tolist()
+    assert sorted(rim) == hd.naked_vertices(holed).tolist()
+    inner = rim[18:]
+    hole = holed.vertices[inner][:, :2] - [2.5, 2.0]
+    turns = np.cross(np.pad(hole, ((0, 0), (0, 1))), np.pad(np.roll(hole, -1, axis=0), ((0, 0), (0, 1))))[:, 2]
+    assert len(inner) == 10 and (turns < 0.0).all()
+    for seed in range(5):
+        rows = grid(5, 4, np.random.default_rng(seed))
+        loop = rows.vertices[hd.corners(rows, 7.0, order="boundary")]
+        assert np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1) == pytest.approx(np.ones(18))
+    with pytest.raises(InputError, match=r'order: unknown order .round.; give "index" or "boundary"'):
+        hd.corners(whole, order="round")
+
+
 @few
 @given(size, size, st.integers(0, 999))
 def test_grid_parts_are_counted_by_formula(n: int, m: int, seed: int) -> None:

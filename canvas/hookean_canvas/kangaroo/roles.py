@@ -55,8 +55,6 @@ REASONS: dict[str, str] = {
     "beam": "beams of six degrees of freedom are not here",
     "support": "supports of six degrees of freedom are not here",
     **{name: why for why, names in _REASONS.items() for name in names.split()},
-    "meshcorners": "a tool for geometry that gives corners round the boundary; Mesh Corners here gives them by the"
-    " numbers of the vertices, which would mix up lists that go with them",
 }
 """Why a component has no counterpart, or what to use instead."""
 _KNOWN = {key(known.name) for known in COMPONENTS.values()} | {*CLASSIC, *SECOND, *REASONS}

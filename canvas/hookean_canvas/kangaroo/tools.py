@@ -142,6 +142,10 @@ CLASSIC: dict[str, Swap] = {
 
 SECOND: dict[str, Swap] = {
     **BOTH,
+    "meshcorners": Swap(
+        (Piece("MeshCorners", {**_MESH, "angle": "angle"}, {"corners": "corners|c"}, {"order": "boundary"}),),
+        "corners follow one another along the boundary; which comes first may differ",
+    ),
     "simpleremesh": _tool(
         "Remesh",
         {"geometry": "mesh", "length": "length"},

@@ -121,22 +121,41 @@ def on_boundary(mesh: Any, pairs: Index) -> NDArray[np.bool_]:
     return found
 
 
-def corners(mesh: Any, angle: float = 0.75 * np.pi) -> Index:
-    """Indices `(k,)`, ascending, of boundary vertices whose inside angle is below `angle` (radians).
+def corners(mesh: Any, angle: float = 0.75 * np.pi, order: str = "index") -> Index:
+    """Indices `(k,)` of boundary vertices whose inside angle is below `angle` (radians), 135 degrees by default.
 
-    The inside angle is the sum of the angles of the faces that meet there. The default is 135 degrees.
-    Raises InputError where `angle` is not a positive number.
+    The inside angle is the sum of the angles of the faces that meet there. The order is ascending, or with "boundary"
+    as they follow one another along each boundary, in the direction of its faces and from its lowest vertex. Raises
+    InputError where `angle` is not a positive number or `order` is another word.
     """
     if not (np.isfinite(angle) and angle > 0):
         raise InputError("angle", f"it is {angle!r}; give a positive angle in radians")
+    if order not in ("index", "boundary"):
+        raise InputError("order", f'unknown order {order!r}; give "index" or "boundary"')
     m = as_mesh(mesh)
     inside = np.zeros(len(m.vertices))
     for corner, before, after in _corner_triples(m.faces):
         u, v = m.vertices[before] - m.vertices[corner], m.vertices[after] - m.vertices[corner]
         across = np.linalg.norm(np.cross(u, v), axis=1)
         np.add.at(inside, corner, np.arctan2(across, np.einsum("ij,ij->i", u, v)))
-    naked = naked_vertices(m)
+    naked = naked_vertices(m) if order == "index" else _along_boundaries(m)
     return naked[inside[naked] < angle]
+
+
+def _along_boundaries(mesh: Mesh) -> Index:
+    """The naked vertices along each boundary, in the direction of its faces and from its lowest vertex."""
+    _, first, which = _edges(mesh)
+    alone = np.bincount(which[which >= 0], minlength=len(first)) == 1
+    beside: dict[int, list[tuple[int, int]]] = {}  # with the direction of the face first
+    for start, end in face_sides(mesh.faces).reshape(-1, 2)[(which >= 0) & alone[which]].tolist():
+        beside.setdefault(start, []).append((0, end))
+        beside.setdefault(end, []).append((1, start))
+    found: dict[int, None] = {}
+    for vertex in sorted(beside):
+        while vertex not in found:
+            found[vertex] = None
+            vertex = next((other for _, other in sorted(beside[vertex]) if other not in found), vertex)
+    return np.fromiter(found, np.int64, len(found))
 
 
 def diagonals(mesh: Any, pattern: str = "both") -> Index:

@@ -125,6 +125,7 @@ class Force(Model):
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
     shared: ClassVar[tuple[str, ...]] = ()  # columns of the force as a whole, not one row for each element
     solid: ClassVar[bool] = True  # something lies between the particles of an element, which others may touch
+    rewired: ClassVar[bool] = False  # which of its elements feel one another changes with the shape
     is_film: ClassVar[bool] = False  # has no stiffness along itself
     on_film: ClassVar[OnFilm] = "whole"
     # columns of a result with their unit: length, force, moment, angle or none

@@ -238,6 +238,7 @@ class Crowd(Force):
 
     creates: ClassVar[bool] = False
     solid: ClassVar[bool] = False
+    rewired: ClassVar[bool] = True
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(collide_kernel)
 

@@ -75,7 +75,7 @@ def outline(curve: Floats, normal: Floats) -> tuple[Floats, Floats]:
     """Pieces (m, 3, 3) of a closed polyline, moved along a unit normal into the plane through the origin, each with its
     last corner twice, and outward normals (m, 21) of their parts, as `pseudonormals`; none where it has no area."""
     flat = curve - (curve @ normal)[:, None] * normal
-    size = float(np.ptp(flat, axis=0).max(initial=0.0))
+    size = float(np.ptp(flat, axis=0).max()) if len(flat) else 0.0
     flat = flat[lengths(flat - np.roll(flat, 1, axis=0)) > 1e-12 * size]
     after = np.roll(flat, -1, axis=0)
     pieces = np.stack([flat, after, after], axis=1)

@@ -71,6 +71,15 @@ def following(parameters: Any, row: Any) -> Any:
     return row + step if step > 0 else -1
 
 
+def extents(block: Block, x: Floats) -> Floats:
+    """The largest extent along an axis (m,) [length] of the group of each row."""
+    head, at = heads(block), x[block.indices]
+    low, high = np.full((len(head), 3), np.inf), np.full((len(head), 3), -np.inf)
+    np.minimum.at(low, head, at.min(axis=1))
+    np.maximum.at(high, head, at.max(axis=1))
+    return np.asarray((high - low)[head].max(axis=1))
+
+
 def by_size(block: Block) -> list[Ints]:
     """The rows (k, members) of all groups of as many members, from small groups to large ones."""
     head = heads(block)

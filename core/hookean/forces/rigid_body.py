@@ -153,8 +153,9 @@ class RigidBody(groups.Grouped):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: links of the groups, strength, and places in the bodies from their centres."""
         index = places.elements(self)
-        shape = places.x[index[:, 0]] if self.shape is None else np.asarray(self.shape)
+        shape = places.x[index[:, 0]] if self.shape is None else np.atleast_2d(self.shape)
         block = Block.of(index, links=groups.links(index, self.group), strength=self.strength, shape=shape)
+        block.parameters[:, SHAPE:] -= block.parameters[groups.heads(block), SHAPE:]  # means of what is far are rounded
         block.parameters[:, SHAPE:] -= _centres(block)
         return block
 

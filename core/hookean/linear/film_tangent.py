@@ -58,7 +58,7 @@ class Across(Pattern):
             dispatch.compiled(turn_blocks)(axes, some.indices, blocks)
             return blocks
 
-        return self._gathered(system.elements(state.x, state.memory, sparse=True), turned)
+        return self._gathered(self.elements(system, state), turned)
 
     def of_films(self, system: System, state: State, numbers: Floats) -> Floats:
         """The same of blocks that are a number (m, 3, 3) for each pair of corners of the triangles of films."""
@@ -70,7 +70,7 @@ class Across(Pattern):
                 dispatch.compiled(turn_numbers)(self.axes, index, numbers[part], blocks)
             return blocks
 
-        return self._gathered(system.elements(state.x, state.memory, sparse=True), turned)
+        return self._gathered(self.elements(system, state), turned)
 
     def _gathered(
         self, elements: list[tuple[Group, Floats]], turned: Callable[[Group, Floats, slice], Floats]

@@ -11,7 +11,7 @@ from hookean.linear.sparse_factors import Factors
 
 if TYPE_CHECKING:
     from hookean.system.state import State
-    from hookean.system.system import System
+    from hookean.system.system import Group, System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,8 +27,11 @@ class Pattern:
     def __init__(self, system: System, free: Floats) -> None:
         self.free = free
         self.dofs = np.flatnonzero(free.ravel() > 0)
-        elements = system.elements(system.x, [g.block.memory for g in system.groups], sparse=True)
-        groups = [g for g, _ in elements]
+        self._lay_out([g for g, _ in system.elements(system.x, [g.block.memory for g in system.groups], sparse=True)])
+
+    def _lay_out(self, groups: list[Group]) -> None:
+        """Work out the pattern of these elements."""
+        free, self.wiring = self.free, [g.block.indices for g in groups]
         nodes = max((int(g.block.indices.max(initial=-1)) + 1 for g in groups), default=0)
         own_nodes = np.tile([1.0, 0.0, 0.0], (max(nodes - len(free), 0), 1))
         free = np.concatenate([free, own_nodes])
@@ -48,6 +51,13 @@ class Pattern:
             self.takes.append(corner[mine >= 0])
             places.append(mine[mine >= 0])
         self.places = np.concatenate(places)
+
+    def elements(self, system: System, state: State) -> list[tuple[Group, Floats]]:
+        """All elements of a shape. Where others feel one another than before, the pattern is worked out again."""
+        found = system.elements(state.x, state.memory, sparse=True)
+        if not same_wiring(self.wiring, [group.block.indices for group, _ in found]):
+            self._lay_out([group for group, _ in found])
+        return found
 
     def gather(self, vectors: Floats) -> Floats:
         """Vectors (n, 3) as unknowns, those of held axes left out."""
@@ -88,12 +98,17 @@ class Pattern:
 
     def tangent(self, system: System, state: State) -> Floats:
         """Values of the lower triangle of the sparse tangent stiffness."""
-        values = [np.zeros(0)]
-        for (group, memory), take in zip(system.elements(state.x, state.memory, sparse=True), self.takes, strict=True):
+        values, elements = [np.zeros(0)], self.elements(system, state)
+        for (group, memory), take in zip(elements, self.takes, strict=True):
             if len(take):
                 values.append(system.stiffness_blocks(group, state, memory).ravel()[take])
         summed: Floats = np.bincount(self.places, np.concatenate(values), self.count).astype(np.float64)
         return summed
+
+
+def same_wiring(known: list[Ints], found: list[Ints]) -> bool:
+    """Whether groups of elements have the same particles."""
+    return len(known) == len(found) and all(a is b or np.array_equal(a, b) for a, b in zip(known, found, strict=True))
 
 
 def _lower(index: Ints) -> Ints:

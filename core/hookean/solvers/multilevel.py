@@ -70,6 +70,8 @@ class Method(Solver):
         """A sentence where there are films, or where a particle meets a floor: what slides or sticks has no tangent."""
         if system.films is not None:
             return "multilevel does not support soap films; use auto"
+        if any(group.cls.rewired for group in system.groups):
+            return "multilevel does not support contacts that come and go; use auto, newton or relaxation"
         return "multilevel does not support floors; use auto or relaxation" if system.contacts else ""
 
     def start(self, system: System, state: State) -> None:

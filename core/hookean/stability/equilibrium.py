@@ -153,6 +153,8 @@ def _by_modes(system: System, state: State, found: Balance, method: Solver | Non
         modes = factored(system, state, found, DENSE)
     elif missing := system.no_tangent(sparse=False):
         return unknown(missing)
+    elif any(group.cls.rewired for group in system.groups):
+        return unknown(f"contacts that come and go among {unknowns} unknowns are too many to factor")
     else:
         modes = iterated(system, state, found, None if method is None else method.tangent)
     return _concluded(modes, found)

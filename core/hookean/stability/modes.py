@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
+from hookean.forces import groups
 from hookean.linear.block_kernels import multiply
 from hookean.linear.sparse_factors import Factors
 from hookean.system.balance import Balance, extents
@@ -76,7 +77,7 @@ class Scaled:
         dofs = np.flatnonzero(free.ravel() > 0.0)
         w = found.stiffness
         w = np.maximum(w, 1e-9 * w.max()) if w.max() > 0.0 else np.ones_like(w)
-        apart = extents(system, state) * w
+        apart = _extents(system, state) * w
         turning = np.abs(found.forces).max(axis=1) / np.where(apart > 0.0, apart, np.inf)
         scale = 1.0 / np.sqrt(np.repeat(w, 3)[dofs])
         left = found.forces if axes is None else np.einsum("nij,nj->ni", axes, found.forces)
@@ -111,6 +112,16 @@ class Scaled:
             known = np.finfo(float).eps if group.cls.hessian is not None else group.cls.blur
             noise += float(known * (sizes * (own**2).sum(axis=2)).sum(axis=1).max())
         return total, noise
+
+
+def _extents(system: System, state: State) -> Floats:
+    """The largest extent along an axis (n,) [length] of the elements at each particle, and of the groups of these."""
+    extent = extents(system, state)
+    for group in system.groups:
+        if issubclass(group.cls, groups.Grouped) and len(group.block.indices):
+            wide = groups.extents(group.block, state.x)
+            np.maximum.at(extent, group.block.indices, wide[:, None])
+    return extent
 
 
 def _blurred(system: System, state: State, w: Floats) -> float:
@@ -207,11 +218,12 @@ def _sparse(scaled: Scaled) -> Modes:
     from hookean.linear.film_tangent import patterned
 
     pattern = patterned(scaled.system, scaled.state, scaled.state.free)
+    tangent = pattern.tangent(scaled.system, scaled.state)  # first, since it may work out the pattern again
     rows, starts = pattern.factors.rows, pattern.factors.starts
     column = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     own = np.zeros(len(starts) - 1 - len(scaled.dofs))  # unknowns of elements, which nothing pushes
     scale = np.append(scaled.scale, own + 1.0)
-    values = pattern.tangent(scaled.system, scaled.state) * scale[rows] * scale[column]
+    values = tangent * scale[rows] * scale[column]
 
     def shifted(shift: float) -> Floats:
         moved = values.copy()

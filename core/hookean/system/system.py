@@ -404,7 +404,7 @@ def _warn(system: System) -> None:
             if alike:
                 warnings.append(
                     f"/forces/{part.number}: {alike} of {len(same)} elements start and end at one particle (first: "
-                    f"element {int(np.argmax(same))}) and do nothing; lengthen them or lower weld_tolerance"
+                    f"element {int(np.argmax(same))}) and have no length; lengthen them or lower weld_tolerance"
                 )
             if short:
                 warnings.append(

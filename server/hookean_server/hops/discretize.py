@@ -82,6 +82,7 @@ _OPTIONS = {
     "u": ("U", "U", "Faces along u"),
     "v": ("V", "V", "Faces along v"),
     "angle": ("Angle", "A", "Corners have an inside angle below this [rad]"),
+    "order": ("Order", "O", "index: by the numbers of the vertices; boundary: along each boundary"),
     "tolerance": ("Tolerance", "T", "Points nearer than this become one [model unit]"),
     "strict": ("Strict", "S", "True: a mesh without two families is an error; False: the family reached first"),
     "degree": ("Degree", "D", "Degree of the curve"),

@@ -86,7 +86,12 @@ OPERATIONS: dict[str, Operation] = {
     "naked_vertices": Operation("meshes:naked_vertices", "mesh", gives=("indices",)),
     "clothed_vertices": Operation("meshes:clothed_vertices", "mesh", gives=("indices",)),
     "boundary": Operation("meshes:boundary", "mesh", gives=("naked", "clothed")),
-    "corners": Operation("meshes:corners", "mesh", {"angle": ("number", 0.75 * np.pi)}, ("indices",)),
+    "corners": Operation(
+        "meshes:corners",
+        "mesh",
+        {"angle": ("number", 0.75 * np.pi), "order": ("index boundary", "index")},
+        ("indices",),
+    ),
     "warp_weft": Operation("warpweft:warp_weft", "mesh", {"strict": ("flag", True)}, ("warp", "weft")),
     "threads": Operation(
         "warpweft:threads", "mesh", {"strict": ("flag", True)}, ("warp", "weft", "warp_naked", "weft_naked")

@@ -19,6 +19,7 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     primitives,
     subdivision,
     surfaces,
+    tools,
     transforms,
     vectors,
 )

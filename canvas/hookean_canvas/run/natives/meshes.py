@@ -11,7 +11,6 @@ import numpy as np
 
 from hookean.discretize import meshes as core
 from hookean.discretize.duplicates import unique_points
-from hookean.values.mesh import Mesh
 from hookean_canvas.run import stand_in as untyped
 from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.natives.declare import Unfit, native
@@ -154,8 +153,11 @@ def mesh_join(given: list[Any]) -> Any:
     return shapes.mesh(np.concatenate(places), faces)
 
 
-def _of_core(mesh: Mesh) -> Any:
-    return shapes.mesh(mesh.vertices, mesh.faces)
+def combined(given: list[Any]) -> Any:
+    """Meshes as one without unused vertices, and vertices in one place made one."""
+    vertices, faces = shapes.mesh_parts(mesh_join(given))
+    of = in_place(vertices)
+    return _compact(vertices, [tuple(of[i] for i in face) for face in faces])
 
 
 @native("9f6d85c9-1143-4538-bca7-69dcb11a74ef", "Weld Mesh", "Weld",

@@ -1,13 +1,19 @@
-"""Natives of the tab Surface that need no more than points of surfaces and the parts of Breps."""
+"""Natives of the tab Surface that need no more than points of surfaces, parts of Breps, and straight lines."""
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from hookean.discretize import curves as arc_lengths
+from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
+
+AROUND, ALONG = 12, 50  # sides of a pipe, and pieces of a curve
+SHARPEST = 1e-3  # of 2: below it a polyline turns back
 
 
 @native("5106bafc-d5d4-4983-83e7-7be3ed07f502", "Divide Surface", "SDivide",
@@ -37,3 +43,78 @@ def deconstruct_brep(brep: Any) -> tuple[list[Any], list[Any], list[Any]]:
     faces = [whole.Faces[i].DuplicateFace(False) for i in range(len(whole.Faces))]
     edges = [whole.Edges[i].ToNurbsCurve() for i in range(len(whole.Edges))]
     return faces, edges, [whole.Vertices[i].Location for i in range(len(whole.Vertices))]
+
+
+@native("6e5de495-ba76-42d0-9985-a5c265e9aeca", "Ruled Surface", "RuleSrf",
+        "Curve A (A): curve; Curve B (B): curve", "Surface (S)")  # fmt: skip
+def ruled_surface(a: Any, b: Any) -> Any:
+    """The surface of straight lines between two curves."""
+    found = rhino3dm.NurbsSurface.CreateRuledSurface(a, b)
+    if found is None:
+        raise Unfit("no surface can be made between these curves")
+    return found
+
+
+@native("a7a41d0a-2188-4f7a-82cc-1a2c4e4ec850", "Loft", "Loft",
+        "Curves (C): curve list; Options (O): any optional", "Loft (L): list",
+        remark="straight between one curve and the next, whatever the options")  # fmt: skip
+def loft(curves: list[Any], options: Any) -> list[Any]:
+    """A surface between each curve and the next one."""
+    given = [curve for curve in curves if curve is not None]
+    if len(given) < 2:
+        raise Unfit("two curves or more are needed")
+    return [ruled_surface(a, b) for a, b in pairwise(given)]
+
+
+@native("962034e9-cc27-4394-afc4-5c16e3447cf9", "Extrude", "Extr",
+        "Base (B): curve; Direction (D): vector", "Extrusion (E)", remark="curves alone are extruded")  # fmt: skip
+def extrude(base: Any, direction: Any) -> Any:
+    """The surface that a curve leaves on its way along a vector."""
+    moved = base.ToNurbsCurve()
+    moved.Translate(direction)
+    return ruled_surface(base, moved)
+
+
+@native("c277f778-6fdf-4890-8f78-347efb23c406", "Pipe", "Pipe",
+        "Curve (C): curve; Radius (R): number = 1.0; Caps (E): integer = 0", "Pipe (P)",
+        remark=f"a mesh of {AROUND} sides; curves are cut into {ALONG} pieces; caps are flat")  # fmt: skip
+def pipe(curve: Any, radius: float, caps: int) -> Any:
+    """A pipe of a radius round a curve: each piece is a prism, and two meet in the plane that halves their angle."""
+    if not radius > 0.0:
+        raise Unfit("the radius must be positive")
+    at = shapes.corners(curve)
+    if at is None:
+        at = np.array(arc_lengths.divide(curve, ALONG))
+    at = at[np.append(True, np.linalg.norm(np.diff(at, axis=0), axis=1) > 0.0)]
+    if len(at) < 2:
+        raise Unfit("the curve has no length")
+    rings = _rings(at, radius)
+    sides = [(i, (i + 1) % AROUND) for i in range(AROUND)]
+    starts = range(0, AROUND * (len(at) - 1), AROUND)
+    faces: shapes.Faces = [(k + i, k + j, k + AROUND + j, k + AROUND + i) for k in starts for i, j in sides]
+    places, end = rings.reshape(-1, 3), AROUND * (len(at) - 1)
+    if caps and (at[0] - at[-1]).any():
+        faces += [(j, i, len(places)) for i, j in sides]
+        faces += [(end + i, end + j, len(places) + 1) for i, j in sides]
+        places = np.concatenate([places, at[:1], at[-1:]])
+    return shapes.mesh(places, faces)
+
+
+def _rings(at: shapes.Array, radius: float) -> shapes.Array:
+    """Corners (n, AROUND, 3) of the prisms round a polyline (n, 3), ring by ring along its pieces."""
+    ways = np.array([shapes.unit(step) for step in np.diff(at, axis=0)])
+    closed = not (at[0] - at[-1]).any()
+    before = np.concatenate([ways[-1:] if closed else ways[:1], ways])
+    after = np.concatenate([ways, ways[:1] if closed else ways[-1:]])
+    across = np.eye(3)[np.abs(ways[0]).argmin()]
+    x = shapes.unit(np.cross(ways[0], across))
+    turn = 2.0 * np.pi * np.arange(AROUND)[:, None] / AROUND
+    ring = at[0] + radius * (np.cos(turn) * x + np.sin(turn) * np.cross(ways[0], x))
+    found = []
+    for place, way, one, other in zip(at, [ways[0], *ways], before, after, strict=True):
+        normal = one + other
+        if float(normal @ way) < SHARPEST:
+            raise Unfit("the curve turns back on itself")
+        ring = ring + ((place - ring) @ normal / (way @ normal))[:, None] * way
+        found.append(ring)
+    return np.array(found)
