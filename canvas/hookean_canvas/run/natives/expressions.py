@@ -56,13 +56,16 @@ def evaluated(text: str, values: Mapping[str, Any]) -> Any:
     if len(text) > 4000:
         raise Unfit("the expression has more than 4000 characters")
     try:
-        return _value(ast.parse(_python(text), mode="eval").body, values)
+        value = _value(ast.parse(_python(text), mode="eval").body, values)
     except (SyntaxError, RecursionError, MemoryError):
         raise Unfit(f"{_cut(text)!r} is not an expression that is read here") from None
     except (ArithmeticError, ValueError, TypeError) as error:
         if isinstance(error, Unfit):
             raise
         raise Unfit(f"{_cut(text)!r} has no value: {error}") from None
+    if isinstance(value, float) and not math.isfinite(value):
+        raise Unfit(f"{_cut(text)!r} has no value: it is beyond floating point")
+    return value
 
 
 def _cut(text: str) -> str:
