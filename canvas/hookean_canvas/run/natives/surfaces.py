@@ -9,7 +9,7 @@ import numpy as np
 
 from hookean.discretize import curves as arc_lengths
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
 AROUND, ALONG = 12, 50  # sides of a pipe, and pieces of a curve
@@ -23,6 +23,7 @@ def divide_surface(surface: Any, nu: int, nv: int) -> tuple[list[list[Any]], ...
     """Points at even steps of the parameters of a surface, normals and parameters, a branch for each step of u."""
     if min(nu, nv) < 1:
         raise Unfit("U Count and V Count must be at least 1")
+    bounded(nu * nv)
     (u0, u1), (v0, v1) = ((domain.T0, domain.T1) for domain in (surface.Domain(0), surface.Domain(1)))
     at = [[(u, v) for v in np.linspace(v0, v1, nv + 1).tolist()] for u in np.linspace(u0, u1, nu + 1).tolist()]
     return (
