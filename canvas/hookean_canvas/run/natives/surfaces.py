@@ -55,6 +55,34 @@ def ruled_surface(a: Any, b: Any) -> Any:
     return found
 
 
+@native("d51e9b65-aa4e-4fd6-976c-cef35d421d05", "Boundary Surfaces", "Boundary",
+        "Edges (E): curve list", "Surfaces (S): list",
+        remark="one surface for each closed curve: curves within others cut no holes, and are not joined")  # fmt: skip
+def boundary_surfaces(edges: list[Any]) -> list[Any]:
+    """The plane within each closed planar curve; four straight sides are those of a surface."""
+    return [_within(edge) for edge in edges if edge is not None]
+
+
+def _within(edge: Any) -> Any:
+    if not edge.IsClosed or not edge.IsPlanar():
+        raise Unfit("an edge is not closed or not planar")
+    at = shapes.corners(edge)
+    if at is not None and len(at) == 5 and _convex(at[:4]):
+        a, b, c, d = shapes.points(at[:4])
+        return ruled_surface(rhino3dm.LineCurve(a, b), rhino3dm.LineCurve(d, c))
+    places = at if at is not None else np.array(arc_lengths.divide(edge, ALONG))
+    found = rhino3dm.Brep.CreateTrimmedPlane(shapes.fitted_plane(places), edge)
+    if found is None:
+        raise Unfit("no surface can be made within this curve")
+    return found
+
+
+def _convex(at: shapes.Array) -> bool:
+    sides = np.roll(at, -1, axis=0) - at
+    turns = np.cross(sides, np.roll(sides, -1, axis=0))
+    return bool((turns @ turns.sum(axis=0) > 0.0).all())
+
+
 @native("a7a41d0a-2188-4f7a-82cc-1a2c4e4ec850", "Loft", "Loft",
         "Curves (C): curve list; Options (O): any optional", "Loft (L): list",
         remark="straight between one curve and the next, whatever the options")  # fmt: skip
