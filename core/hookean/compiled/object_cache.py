@@ -142,7 +142,7 @@ class Entry:
         """The function behind `run`; what it needs is in its own variables, which is quicker to reach than ours."""
         kinds, numbers, head, end = self.kinds, self.numbers, tuple(self.head), 8 * self.end
         pack, call, returned = self.row.pack, self.call, self.returned.unpack_from
-        single, nothing = len(self.returned.format) == 2, len(self.returned.format) == 1
+        count = len(self.returned.unpack(bytes(self.returned.size)))
 
         def run(values: tuple[Any, ...]) -> Any:
             if tuple(map(type, values)) != kinds and tuple(map(_plain, values)) != kinds:
@@ -158,10 +158,10 @@ class Entry:
                 if ended == DIFFERS:
                     return REFUSED
                 raise MemoryError("compiled code got no memory")
-            if nothing:
+            if not count:
                 return None
             found = returned(row, end)
-            return found[0] if single else found
+            return found[0] if count == 1 else found
 
         return run
 
