@@ -94,6 +94,7 @@ def test_the_pages_of_physics_and_solvers_describe_what_is_there():
 def test_what_kangaroo_users_are_sent_to_exists():
     """Every name in the second column of docs/from-kangaroo.md names something of hookean."""
     import hookean
+    import hookean.discretize
     from hookean.forces import KINDS
     from hookean.scene.scene import Scene
     from hookean.scene.scene import Settings as SceneSettings
@@ -104,6 +105,7 @@ def test_what_kangaroo_users_are_sent_to_exists():
     named = {name for column in columns for name in re.findall(r"`([^`]+)`", column)}
     fields = {field for cls in KINDS.values() for field in cls.model_fields}
     known = {*KINDS, *fields, *SOLVERS, *Scene.model_fields, *SceneSettings.model_fields, *hookean.__all__}
+    known |= set(hookean.discretize.__all__)
     known |= {"axes", "lines", "mesh", "move", "pin", "release", "patch", "discretize", "hookean relax"}
     known |= {"corners:", "naked:", 'edges = "warp"', "rest_factor = 0", "settings.floor"}
     assert named <= known, named - known

@@ -116,7 +116,9 @@ class Client(object):
                 break
             except FAILURES:
                 connection.close()
-                if not more or _now() > until:
+                if _now() > until:
+                    raise Problem("lost", "No answer to %s within %g s; it may still be done." % (method, timeout))
+                if not more:
                     raise Problem("lost", "No answer to %s; it may or may not have been done." % method)
             finally:
                 cut.cancel()

@@ -42,7 +42,7 @@ hookean_client.ANSWER = 120.0
 scene = json.loads(sys.argv[3])
 client = hookean_client.connect(start=False, folder=sys.argv[2])
 scene["particles"] = hookean_client.buffer(scene["particles"])
-assert client.relax(scene)["status"] == "converged"
+assert client.relax(scene, timeout=600.0)["status"] == "converged"
 session = client.session("v%d%d" % sys.version_info[:2])
 session.put(scene)
 frames = session.frames()

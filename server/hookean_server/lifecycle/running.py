@@ -27,7 +27,8 @@ from hookean_server.workers.memory import return_pages
 def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, idle_seconds: float) -> int:
     """Serve on a socket that listens; the exit code. See `main.serve`."""
     Connection.header_seconds, Connection.write_seconds = settings.header_seconds, settings.write_seconds
-    Connection.most = min(Connection.most, _open_files() // 4)
+    files = _open_files()
+    Connection.most = min(Connection.most, files // 4)
     return_pages()
     as_json = logs.begin(settings.log, queued=True)
     app = create_app(settings)
@@ -49,7 +50,7 @@ def run(settings: Settings, sock: socket, place: Path | None, parent_pid: int, i
         server_header=False,
         date_header=True,
         http=Connection,
-        backlog=64,  # so many are accepted before any is counted
+        backlog=min(64, files // 16),  # as many again and again are accepted before the oldest are closed
         h11_max_incomplete_event_size=2 * settings.header_limit,
         timeout_graceful_shutdown=1,
         timeout_keep_alive=16,  # longer than clients do: a request down a connection that just ended is lost
