@@ -6,6 +6,7 @@ shape nothing. Source: Piegl and Tiller, The NURBS Book, 1997, chapters 2 to 4.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -93,6 +94,35 @@ def nurbs_surface(
     p, q = _degree(degree_u, "degree_u", rows), _degree(degree_v, "degree_v", columns)
     of_u, of_v = _knots(knots_u, "knots_u", rows, p), _knots(knots_v, "knots_v", columns, q)
     return NurbsSurface(p, q, xyz, _weights(weights, (rows, columns)), of_u, of_v)
+
+
+def as_nurbs_surface(surface: Any) -> NurbsSurface:
+    """A `NurbsSurface`, the NURBS form of a rhino3dm surface or untrimmed face, or of a mapping with the arguments of
+    `nurbs_surface`, checked. Raises InputError naming what does not fit."""
+    if isinstance(surface, NurbsSurface):
+        return surface
+    if isinstance(surface, Mapping):
+        return _of_mapping(surface)
+    nurbs = getattr(surface, "UnderlyingSurface", lambda: surface)()
+    nurbs = nurbs.ToNurbsSurface() if hasattr(nurbs, "ToNurbsSurface") else None
+    if nurbs is None:
+        said = "is not a surface; give degree_u, degree_v, points, knots_u, knots_v and weights, or a rhino3dm surface"
+        raise InputError("", f"{type(surface).__name__} {said}")
+    count_u, count_v = nurbs.Points.CountU, nurbs.Points.CountV
+    found = [nurbs.Points.GetControlPoint(i, j) for i in range(count_u) for j in range(count_v)]
+    four = np.array([[p.X, p.Y, p.Z, p.W] for p in found]).reshape(count_u, count_v, 4)
+    points, weights = four[..., :3] / four[..., 3:], four[..., 3]  # rhino3dm has points times weights
+    knots = list(nurbs.KnotsU), list(nurbs.KnotsV)
+    return nurbs_surface(int(nurbs.Degree(0)), int(nurbs.Degree(1)), points, *knots, weights)
+
+
+def _of_mapping(given: Mapping[str, Any]) -> NurbsSurface:
+    names = ("degree_u", "degree_v", "points", "knots_u", "knots_v")
+    lost, odd = [n for n in names if n not in given], [n for n in given if n not in (*names, "weights")]
+    if lost or odd:
+        said = f"{lost[0]} is missing" if lost else f"a surface has no {odd[0]!r}"
+        raise InputError("", f"{said}; a surface has {', '.join(names)} and weights")
+    return nurbs_surface(**given)
 
 
 def _array(value: Any, name: str, dimensions: int) -> Array:
