@@ -1,0 +1,220 @@
+"""Convex solids that touch: the energy by scipy's polyhedra, Winkler's foundation, Coulomb's slope, both momenta."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull, Delaunay, HalfspaceIntersection
+from scipy.spatial.transform import Rotation
+
+from hookean import InputError, Scene, relax
+from hookean.forces import KINDS
+from hookean.forces.rigid_body import TURN, poses
+from hookean.running.run import relax_state
+from hookean.solvers import solver
+from hookean.system.system import compile
+
+CUBE = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)]) - 0.5
+
+
+def solids(bodies: Any, settings: Any = None, held: Any = (), forces: Any = (), **columns: Any) -> Scene:
+    """Rigid bodies (a list of corners of each) that collide; some of them held, with other forces."""
+    x = np.vstack(bodies)
+    group = np.repeat(range(len(bodies)), [len(body) for body in bodies])
+    both = {"particles": range(len(x)), "group": group}
+    given = [{"kind": "rigid_body", **both, "strength": 1e4}, {"kind": "rigid_collide", **both, **columns}, *forces]
+    anchors = [{"particles": np.flatnonzero(group == body)} for body in held]
+    return Scene.read({"particles": x, "forces": given, "anchors": anchors, "settings": settings or {}})
+
+
+def weight(first: int, force: Any, count: int = 8) -> dict[str, Any]:
+    """A force on a body, shared by all of its particles."""
+    return {"kind": "unary", "particles": range(first, first + count), "vector": np.asarray(force, float) / count}
+
+
+def energy(bodies: list[np.ndarray], **columns: Any) -> float:
+    x = np.vstack(bodies)
+    group = np.repeat(range(len(bodies)), [len(body) for body in bodies])
+    force = KINDS["rigid_collide"](particles=range(len(x)), group=group, **columns)
+    system = compile(Scene(particles=x, forces=[force]))
+    return float(system.evaluate(system.start())[2].sum())
+
+
+def overlap(a: np.ndarray, b: np.ndarray) -> tuple[float, np.ndarray]:
+    """Volume and centroid of what two convex hulls share, by scipy's half spaces and tetrahedra."""
+    spaces = np.vstack([ConvexHull(a).equations, ConvexHull(b).equations])
+    inner = linprog([0, 0, 0, -1], np.column_stack([spaces[:, :3], np.ones(len(spaces))]), -spaces[:, 3],
+                    bounds=[(None, None)] * 4)  # fmt: skip
+    if inner.status or inner.x[3] < 1e-7:
+        return 0.0, np.zeros(3)
+    corners = HalfspaceIntersection(spaces, inner.x[:3]).intersections
+    cells = corners[Delaunay(corners).simplices]
+    volumes = np.abs(np.linalg.det(cells[:, 1:] - cells[:, :1])) / 6.0
+    return float(volumes.sum()), volumes @ cells.mean(axis=1) / volumes.sum()
+
+
+def two(seed: int) -> list[np.ndarray]:
+    """A box and some other solid, of any sizes, turned, near each other."""
+    rng = np.random.default_rng(seed)
+    shapes = [CUBE * rng.uniform(0.5, 3.0, 3), rng.normal(size=(7, 3))]
+    if seed % 3 == 0:
+        turn = np.arange(6) * np.pi / 3.0
+        ring = np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
+        shapes[1] = np.vstack([ring, 0.7 * ring + [0, 0, 1.5]])
+    bodies = [s @ Rotation.random(random_state=rng.integers(1e9)).as_matrix().T for s in shapes]
+    return [bodies[0], bodies[1] + rng.uniform(0.6, 1.4) * rng.normal(size=3)]
+
+
+@settings(derandomize=True, deadline=None, max_examples=100, database=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_the_energy_is_the_integral_of_the_depth_below_the_nearest_face(seed: int) -> None:
+    """k V d: V the volume of the overlap, d the depth of its centroid below the nearest face, both by scipy; to 1e-6,
+    as tetrahedra are."""
+    bodies = two(seed)
+    volume, middle = overlap(*bodies)
+    depth = min(-(ConvexHull(body).equations @ [*middle, 1.0]).max() for body in bodies)
+    assert energy(bodies, strength=7.0) == pytest.approx(7.0 * volume * depth, rel=1e-6, abs=1e-9)
+
+
+def test_crossed_edges_push_each_other_apart() -> None:
+    """A ridge on a ridge at right angles, no corner near: boxes on their edges. Apart they feel nothing; twice as deep
+    all lengths of the overlap are doubled, and the energy, a volume times a depth, is 16 times as large. The force
+    upwards is 4 E / h, and nothing else by symmetry."""
+    log = CUBE @ np.diag([8.0, 1.0, 1.0]) @ Rotation.from_euler("x", 45, degrees=True).as_matrix().T
+    other = log @ Rotation.from_euler("z", 90, degrees=True).as_matrix().T
+    high = 2.0 * math.sqrt(0.5)
+    found = [energy([log, other + [0, 0, high - h]], strength=1.0) for h in (-0.01, 0.1, 0.2)]
+    assert found[0] == 0.0 and found[1] > 0.0
+    assert found[2] == pytest.approx(2.0**4 * found[1], rel=1e-9)
+    system = compile(solids([log, other + [0, 0, high - 0.1]], strength=1.0))
+    push = system.evaluate(system.start())[0][8:].sum(axis=0)
+    assert push[2] == pytest.approx(4.0 * found[1] / 0.1, rel=1e-9)
+
+
+def on_slab(load: Any, k: float = 1e5, **columns: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Where the centre of a cube of 1 comes to rest on a held slab, and its rotation, by what is on its top corners."""
+    slab, cube = CUBE * [4, 4, 1] - [0, 0, 0.5], CUBE + [0.3, -0.2, 0.5]
+    force = {"kind": "unary", "particles": range(12, 16), "vector": np.column_stack([np.zeros((4, 2)), load])}
+    scene = solids([slab, cube], {"tolerance": 1e-9}, [0], [force], strength=k, **columns)
+    found = relax(scene)
+    assert found.converged
+    block = compile(scene).groups[0].block
+    pose = poses(block, found.particles)[8]
+    return pose[:3] - cube.mean(axis=0), pose[TURN : TURN + 9].reshape(3, 3)
+
+
+def test_a_box_sinks_by_its_weight_over_k_times_the_area() -> None:
+    """Winkler: depth F / (k A), rotation M / (k I), I = 1/12, so that the centre at a height of 1/2 moves, too. Loads
+    that go with the box turn it by another part, F / (k I), 1.2e-3, twice over."""
+    k, loads = 1e5, np.array([-2.0, -2.0, -3.0, -3.0])
+    moved, turn = on_slab(loads, k, friction=0.5)
+    angle = 0.5 * (loads[2:].sum() - loads[:2].sum()) / (k / 12.0)  # forces at y = -1/2 and 1/2
+    assert moved == pytest.approx([0.0, -0.5 * angle, -10.0 / k], abs=3e-3 * 10.0 / k)
+    assert Rotation.from_matrix(turn).as_rotvec() == pytest.approx([angle, 0.0, 0.0], abs=3e-3 * abs(angle))
+
+
+def test_a_load_outside_the_core_lifts_one_edge() -> None:
+    """At e from the centre of a width b, b / 6 < e < b / 2, the contact is 3 (b / 2 - e) long, and deepest at the edge
+    by 2 F / (3 w (b / 2 - e) k) (Hetenyi, Beams on Elastic Foundation, 1946). The load goes with the box by its height
+    times the rotation, 2e-4, which is a part of 2e-3 of b / 2 - e, and of all that follows."""
+    k, loads = 1e6, np.array([-0.5, -0.5, -4.5, -4.5])
+    e, total = 0.5 * 8.0 / 10.0, 10.0
+    moved, turn = on_slab(loads, k, friction=0.5)
+    deepest, length = 2.0 * total / (3.0 * (0.5 - e) * k), 3.0 * (0.5 - e)
+    edges = moved[2] + 0.5 + turn[2, 1] * np.array([-0.5, 0.5]) - 0.5 * turn[2, 2]
+    assert edges == pytest.approx([-deepest + deepest / length, -deepest], rel=1e-2)
+
+
+def slope(tangent: float, **given: Any) -> tuple[Scene, np.ndarray]:
+    """A box of weight 8 on a held plank of some slope, friction 0.5, and the directions down the slope and off it."""
+    turn = Rotation.from_euler("y", math.atan(tangent)).as_matrix()
+    plank, box = (CUBE * [9, 3, 1] - [0, 0, 0.5]) @ turn.T, (CUBE + [-2, 0, 0.5]) @ turn.T
+    scene = solids([plank, box], given, [0], [weight(8, [0, 0, -8.0])], strength=1e4, friction=0.5)
+    return scene, turn[:, [0, 2]]
+
+
+@pytest.mark.parametrize("tangent", [0.2, 0.3, 0.45])
+def test_a_box_on_another_rests_below_the_angle_of_friction(tangent: float) -> None:
+    """It sinks by N / k and creeps by T / k while it sticks; the moment T / 2 of its weight about the contact turns it
+    by T / 2 / (k I - N / 2), I = 1/12, the centre moving along by half of that; to 2e-3. Beyond tan a = 1/3 it stands
+    on a part of its face alone, and moves by more. It stays there in time."""
+    scene, directions = slope(tangent, tolerance=1e-10)
+    system = compile(scene)
+    state = system.start()
+    assert relax_state(system, state, solver("relaxation")).converged
+    moved, k, angle = (state.x - system.x)[8:].mean(axis=0) @ directions, 1e4, math.atan(tangent)
+    down, normal = 8.0 * math.sin(angle), 8.0 * math.cos(angle)
+    known = down / k + 0.25 * down / (k / 12.0 - 0.5 * normal)
+    if tangent < 1.0 / 3.0:
+        assert moved == pytest.approx([known, -normal / k], rel=2e-3)
+    assert moved[0] < 1.2 * known
+    rest = state.x.copy()
+    solver("verlet").advance(system, state, 500, 0.0)
+    assert np.abs(state.x - rest).max() < 1e-3 * known
+
+
+def test_a_box_on_another_slides_above_the_angle_of_friction() -> None:
+    """By g (sin a - 0.5 cos a) t^2 / 2 (Coulomb): the second difference of three places, which it vibrates about as it
+    is let go, by up to some 8e-4 each; 2 per cent of it."""
+    scene, directions = slope(0.7, solver="verlet", time_step=0.002, drag=0.0)
+    system = compile(scene)
+    state, places = system.start(), []
+    for _ in range(3):
+        solver("verlet").advance(system, state, 600, 0.0)
+        places.append(float((state.x[8:].mean(axis=0) @ directions)[0]))
+    angle = math.atan(0.7)
+    known = (math.sin(angle) - 0.5 * math.cos(angle)) * 1.2**2
+    assert places[2] - 2.0 * places[1] + places[0] == pytest.approx(known, rel=0.02)
+
+
+def test_bodies_that_meet_keep_both_momenta() -> None:
+    """Spinning boxes that hit each other off their centres, with friction: to rounding, 1e-11 of the sizes."""
+    bodies = [CUBE, CUBE @ Rotation.from_euler("xyz", [0.4, 0.5, 0.6]).as_matrix().T + [1.4, 0.5, 0.3]]
+    given = {"solver": "verlet", "time_step": 0.001, "drag": 0.0}
+    system = compile(solids(bodies, given, strength=1e4, friction=0.4))
+    state = system.start()
+    state.v[:8] = [2.0, 0.0, 0.0]
+    state.v[8:] = np.cross([3.0, -2.0, 5.0], state.x[8:] - state.x[8:].mean(axis=0))
+    before = state.v.sum(axis=0), np.cross(state.x, state.v).sum(axis=0), state.v.copy()
+    solver("verlet").advance(system, state, 1000, 0.0)
+    assert np.abs(state.v - before[2]).max() > 1.0
+    assert state.v.sum(axis=0) == pytest.approx(before[0], abs=1e-10)
+    assert np.cross(state.x, state.v).sum(axis=0) == pytest.approx(before[1], abs=1e-10)
+
+
+def test_forces_do_not_depend_on_when_the_list_of_neighbours_was_made() -> None:
+    """To the bit: with the list of a shape before, a new one, and none."""
+    rng = np.random.default_rng(1)
+    bodies = [CUBE * rng.uniform(0.5, 1.5, 3) + rng.uniform(0.0, 4.0, 3) for _ in range(40)]
+    system = compile(solids(bodies, friction=0.3))
+    state, room = system.start(), system.groups[1].block.rooms[0]
+    first = system.evaluate(state)[0]
+    state.x += rng.uniform(-0.01, 0.01, state.x.shape)  # less than half of the skin
+    found = []
+    for count, pairs in ((room[0, 3], room[0, 1]), (-1.0, room[0, 1]), (-1.0, 3.0)):
+        room[0, 3], room[0, 1] = count, pairs
+        found.append(system.evaluate(state))
+    assert np.abs(found[0][0] - first).max() > 0.0
+    for other in found[1:]:
+        assert all((a == b).all() for a, b in zip(found[0], other, strict=True))
+
+
+def test_solids_of_one_collision_group_ignore_each_other() -> None:
+    """Two cubes half in each other: nothing if they are of one group, k ab h^2 / 2 if not."""
+    bodies = [CUBE, CUBE * [2, 2, 1] + [0, 0, 0.9]]
+    assert energy(bodies, strength=3.0) == pytest.approx(3.0 * 0.5 * 0.1**2, rel=1e-9)
+    assert energy(bodies, strength=3.0, collision_group=[1] * 16) == 0.0
+    assert energy(bodies, strength=[3.0] * 8 + [1.0] * 8, collision_group=[0] * 16) == pytest.approx(0.005, rel=1e-9)
+
+
+@pytest.mark.parametrize("x", [CUBE[:3], CUBE * [1, 1, 0]])
+def test_a_flat_solid_is_refused(x: np.ndarray) -> None:
+    force = {"kind": "rigid_collide", "particles": range(len(x))}
+    with pytest.raises(InputError, match=r"/forces/0: the . corners of a solid .all particles. lie in a plane"):
+        compile(Scene.read({"particles": x, "forces": [force]}))
