@@ -33,8 +33,7 @@ def run(folder: Path) -> Outcome:
         "pair: angle of wall and caps": np.degrees(2.0 * np.arctan(apex / rim)),
         "pair: distance of the wall from its plane, largest": np.abs(wall(result)[:, 0] - module.SIDE).max(),
     }
-    start = {"start: boxes of 1 m3": relax(scene.model_copy(update={"settings": {"max_iterations": 0}})).particles}
-    panel = Panel(result, scene, "a balloon, and two bubbles with a wall", view=(-70.0, 18.0), frames=start)
+    panel = Panel(result, scene, "a balloon, and two bubbles with a wall", view=(-70.0, 18.0))
     return Outcome(numbers, [panel, graph(given, balloon, left)])
 
 
