@@ -86,6 +86,10 @@ def _values(
         say("error", str(error))
     except (ArithmeticError, ValueError, TypeError, IndexError, RuntimeError) as error:
         say("error", f"Solution exception: {error or type(error).__name__}")
+    except (AttributeError, KeyError):
+        say("error", "Solution exception: an item is null, or not of the kind that is needed")
+    except MemoryError:
+        say("error", "Solution exception: the memory does not suffice for the result")
     return None
 
 

@@ -169,7 +169,7 @@ class Canvas:
         else:
             self._script(node, self._scripts[node.id])
 
-    def _given(self, port: Port) -> Tree:
+    def _given(self, node: Node, port: Port) -> Tree:
         """The data that reaches an input, by wires or its own, after its modifiers."""
         found = Tree()
         for source in port.sources:
@@ -177,14 +177,13 @@ class Canvas:
         if not port.sources and port.data is not None:
             found.take(port.data)
         found = modified(found, port.mapping, port.reverse, port.simplify)
-        return self._expressed(port, found) if port.expression else found
+        return self._expressed(node, port, found) if port.expression else found
 
-    def _expressed(self, port: Port, tree: Tree) -> Tree:
+    def _expressed(self, node: Node, port: Port, tree: Tree) -> Tree:
         """Each value x after the expression that a person has put on the input."""
-        found = Tree()
-        for path, values in tree.branches():
-            found[path] = [None if x is None else evaluated(port.expression, _variables(x)) for x in values]
-        return found
+        return self._converted(
+            node, port, tree, lambda x: None if x is None else evaluated(port.expression, _variables(x))
+        )
 
     def _floating(self, node: Node) -> Tree:
         port = node.inputs[0]
@@ -193,7 +192,7 @@ class Canvas:
             return Tree.of([value])
         if not port.sources and node.guid in _OWN:
             return Tree.of(_OWN[node.guid](node))
-        found = self._given(port)
+        found = self._given(node, port)
         return self._cast(node, port, PARAMETERS[node.guid][1], found) if node.guid in PARAMETERS else found
 
     def _native(self, node: Node, native: Native) -> None:
@@ -204,7 +203,7 @@ class Canvas:
             say("remark", native.remark)
         given: list[tuple[Input, Tree]] = []
         for port, of in inputs_of(node, native) or []:
-            tree = Tree() if port is None else self._cast(node, port, of.kind, self._given(port))
+            tree = Tree() if port is None else self._cast(node, port, of.kind, self._given(node, port))
             if port is not None and not tree and not of.optional:
                 say("warning", f"Input parameter {port.nickname} failed to collect data")
                 return
@@ -222,7 +221,7 @@ class Canvas:
         script.component.RunCount = 0
         given: list[tuple[int, Tree]] = []
         for port in node.inputs:
-            tree = self._hinted(node, port, self._given(port))
+            tree = self._hinted(node, port, self._given(node, port))
             if not tree and not port.optional:
                 self._say(node, "warning", f"Input parameter {port.nickname} failed to collect data")
                 return

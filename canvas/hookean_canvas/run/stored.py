@@ -136,6 +136,7 @@ def _inflated(data: bytes) -> bytes:
 
 # records and types of MS-NRBF, sections 2.1.2 and 2.3
 _LIBRARY, _CLASSES, _OBJECT_STRING, _BYTES, _REFERENCE, _NULL, _END = 12, (4, 5), 6, 15, 9, 10, 11
+_MOST_RECORDS = 100  # records of a stream and members of its object; geometry has four members in five records
 _WIDTHS = {1: "?", 2: "B", 6: "d", 7: "h", 8: "i", 9: "q", 11: "f", 14: "H", 15: "I", 16: "Q"}
 
 
@@ -159,6 +160,8 @@ class _Reader:
             shift += 7
             if byte < 128:
                 break
+            if shift > 28:
+                raise ValueError("text without end")
         if length > len(self.data) - self.at:
             raise ValueError("text beyond the end")
         self.at += length
@@ -178,8 +181,11 @@ def _members(data: bytes) -> dict[str, Any]:
     reader = _Reader(data)
     members: dict[str, Any] = {}
     later: dict[int, str] = {}
+    records = 0
     while reader.at < len(data):
-        record = reader.number("B")
+        record, records = reader.number("B"), records + 1
+        if records > _MOST_RECORDS:
+            raise ValueError("too many records")
         if record == _LIBRARY:
             reader.number()
             reader.text()
@@ -199,7 +205,10 @@ def _object(reader: _Reader, record: int, members: dict[str, Any], later: dict[i
     """The values of an object; `later` gets the ids of arrays that follow it."""
     reader.number()
     reader.text()
-    names = [reader.text() for _ in range(reader.number())]
+    count = reader.number()
+    if count > _MOST_RECORDS:
+        raise ValueError("too many members")
+    names = [reader.text() for _ in range(count)]
     kinds = [reader.number("B") for _ in names]
     more = [reader.number("B") if kind in (0, 7) else reader.text() if kind == 3 else None for kind in kinds]
     if record == 5:

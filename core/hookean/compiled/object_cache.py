@@ -39,19 +39,19 @@ class Compiled:
         self.name, self.folder, self.dispatcher, self.kind = name, folder, dispatcher, kind
         self.loaded = self.made = 0  # how many were found on disk, and how many were not
         self._entries: dict[Kind, Entry | None] = {}
-        self._called: tuple[Entry, ...] = ()
+        self._called: tuple[Callable[[tuple[Any, ...]], Any], ...] = ()
 
     def __call__(self, *values: Any) -> Any:
-        for entry in self._called:  # quicker than looking what values are
-            if (found := entry(values)) is not REFUSED:
+        for run in self._called:  # quicker than looking what values are
+            if (found := run(values)) is not REFUSED:
                 return found
         kind = kind_of(values)
         if kind is not None and (self.kind is None or kind == self.kind):
             new = self.entry(kind, values)
             if new is not None:
-                if new not in self._called:
-                    self._called = (*self._called, new)
-                if (found := new(values)) is not REFUSED:
+                if new.run not in self._called:
+                    self._called = (*self._called, new.run)
+                if (found := new.run(values)) is not REFUSED:
                     return found
         return self.dispatcher()(*values)
 
@@ -136,25 +136,34 @@ class Entry:
             raise ValueError("no entry")
         self.call = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(where)
         self.address: int = ctypes.c_int64.from_address(native).value  # for numba's own way of calling
+        self.run = self._caller()  # what the code returns for values; REFUSED where it does not take these
 
-    def __call__(self, values: tuple[Any, ...]) -> Any:
-        """What the code returns; REFUSED where it does not take these values."""
-        if tuple(map(type, values)) != self.kinds and tuple(map(_plain, values)) != self.kinds:
-            return REFUSED
-        numbers: list[Any] = list(map(id, values))
-        for place in self.numbers:
-            numbers[place] = values[place]
-        try:
-            row = self.row.pack(*self.head, *numbers)  # bytes of nobody else's: the code may write at their end
-        except struct.error:  # an integer of more than 64 bits
-            return REFUSED
-        ended = self.call(row)
-        if ended == DIFFERS:
-            return REFUSED
-        if ended:
-            raise MemoryError("compiled code got no memory")
-        found = self.returned.unpack_from(row, 8 * self.end)
-        return found[0] if len(found) == 1 else found or None
+    def _caller(self) -> Callable[[tuple[Any, ...]], Any]:
+        """The function behind `run`; what it needs is in its own variables, which is quicker to reach than ours."""
+        kinds, numbers, head, end = self.kinds, self.numbers, tuple(self.head), 8 * self.end
+        pack, call, returned = self.row.pack, self.call, self.returned.unpack_from
+        count = len(self.returned.unpack(bytes(self.returned.size)))
+
+        def run(values: tuple[Any, ...]) -> Any:
+            if tuple(map(type, values)) != kinds and tuple(map(_plain, values)) != kinds:
+                return REFUSED
+            words: list[Any] = list(map(id, values))
+            for place in numbers:
+                words[place] = values[place]
+            try:
+                row = pack(*head, *words)  # bytes of nobody else's: the code may write at their end
+            except struct.error:  # an integer of more than 64 bits
+                return REFUSED
+            if ended := call(row):
+                if ended == DIFFERS:
+                    return REFUSED
+                raise MemoryError("compiled code got no memory")
+            if not count:
+                return None
+            found = returned(row, end)
+            return found[0] if count == 1 else found
+
+        return run
 
 
 def _plain(value: Any) -> type | None:

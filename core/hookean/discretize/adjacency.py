@@ -104,7 +104,10 @@ def vertex_neighbours(mesh: Any, vertices: Iterable[int] = ()) -> tuple[list[Ind
     Raises InputError for a vertex that the mesh does not have.
     """
     m = as_mesh(mesh)
-    wanted = np.asarray(list(vertices), dtype=np.int64)
+    try:
+        wanted = np.asarray(list(vertices), dtype=np.int64).ravel()
+    except (TypeError, ValueError, OverflowError):
+        raise InputError("vertices", "they are not whole numbers; give numbers of vertices, counted from 0") from None
     wanted = wanted if len(wanted) else np.arange(len(m.vertices))
     bad = np.flatnonzero((wanted < 0) | (wanted >= len(m.vertices)))
     if len(bad):

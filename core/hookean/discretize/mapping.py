@@ -14,6 +14,7 @@ from hookean.errors import InputError
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
+_FARTHEST = 1e150  # squares of larger lengths overflow
 _BLOCK = 2048  # points compared in one go, which bounds the memory
 
 
@@ -37,12 +38,14 @@ def mesh_map(points: ArrayLike, source: Any, target: Any, distance: float = 1.0)
     t = triangles(a)
     if not len(t):
         raise InputError("source", "it has no faces; give a mesh with faces")
+    if np.abs(p).max(initial=0.0) > _FARTHEST or np.abs(a.vertices).max() > _FARTHEST:
+        raise InputError("points", f"coordinates are beyond {_FARTHEST:g}; use larger units")
     near = t[Closest(a.vertices, t)(p)[0]]
     origin, u, v, n = _frames(a.vertices, near, "source")
     apart = p - origin
-    uu, uv, vv, up, vp = ((x * y).sum(axis=1) for x, y in ((u, u), (u, v), (v, v), (u, apart), (v, apart)))
-    area = (uu * vv - uv * uv)[:, None]
-    one, two = (vv * up - uv * vp)[:, None] / area, (uu * vp - uv * up)[:, None] / area
+    area = np.linalg.norm(np.cross(u, v), axis=1)
+    one, two = ((np.cross(*pair) * n).sum(axis=1) / area for pair in ((apart, v), (u, apart)))
+    one, two = one[:, None], two[:, None]
     height = (apart * n).sum(axis=1)[:, None]
     there, u, v, n = _frames(b.vertices, near, "target")
     out: Array = there + one * u + two * v + distance * height * n

@@ -47,7 +47,13 @@ def as_mesh(obj: Any) -> Mesh:
         raise InputError(
             "mesh", f"{type(obj).__name__} is not a mesh; give a rhino3dm or COMPAS Mesh or (vertices, faces)"
         )
-    points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
+    try:
+        points = np.array(vertices, dtype=np.float64)
+    except (TypeError, ValueError):
+        points = np.zeros(1)
+    points = points.reshape(0, 3) if points.shape == (0,) else points
+    if points.shape[1:] != (3,):
+        raise InputError("mesh/vertices", "they are not numbers of shape (n, 3); give three coordinates for each")
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise InputError(f"mesh/vertices/{bad[0]}", "it is not finite; give finite coordinates")
@@ -238,9 +244,14 @@ def _quads(points: Array, faces: Iterable[Any]) -> Index:
     table = faces if isinstance(faces, np.ndarray) and faces.dtype == np.int64 else np.zeros(0, np.int64)
     if table.shape[1:] == (4,) and table.size and table.min() >= 0 and table.max() < len(points):
         return table.copy()
+    if not isinstance(faces, Iterable):
+        raise InputError("mesh/faces", f"{type(faces).__name__} is not a list of faces; give the vertices of each")
     rows: list[list[int]] = []
     for number, face in enumerate(faces):
-        corner = [int(v) for v in face]
+        try:
+            corner = [int(v) for v in face]
+        except (TypeError, ValueError, OverflowError):
+            raise InputError(f"mesh/faces/{number}", "it is not a list of whole numbers; give its vertices") from None
         if len(corner) < 3 or min(corner) < 0 or max(corner) >= len(points):
             raise InputError(
                 f"mesh/faces/{number}", f"{corner} must name 3 or more of the {len(points)} vertices, counted from 0"

@@ -47,7 +47,8 @@ def remesh(mesh: Any, length: float, feature_angle: float = np.pi / 6, iteration
 
 
 def expected_faces(mesh: Any, length: float, feature_angle: float = np.pi / 6, iterations: int = 15) -> int:
-    """About how many faces `remesh` makes, area / (sqrt(3) / 4 length^2); raises what it raises for its options."""
+    """About how many faces `remesh` makes at most, area / (sqrt(3) / 4 length^2), or more where it has to split slender
+    faces; raises what it raises for its options."""
     if not (np.isfinite(length) and length > 0.0):
         raise InputError("length", f"it is {length!r}; give a positive length")
     if not 0.0 < feature_angle <= np.pi:
@@ -57,10 +58,20 @@ def expected_faces(mesh: Any, length: float, feature_angle: float = np.pi / 6, i
     m = as_mesh(mesh)
     if not len(m.faces):
         raise InputError("mesh", "it has no faces; give a mesh with faces")
-    faces = area(m) / (0.25 * np.sqrt(3.0) * length * length)
+    faces = max(area(m) / (0.25 * np.sqrt(3.0)) / length / length, _halves(m, _LONG * length))
+    if not np.isfinite(faces):
+        raise InputError("length", "it is too small, or the mesh too large, for float64 arithmetic; use other units")
     if faces > MOST_FACES:
         raise InputError("length", f"it makes about {faces:.2g} faces; at most {MOST_FACES} are possible")
     return int(faces) + 1
+
+
+def _halves(mesh: Mesh, longest: float) -> float:
+    """About how many faces splitting makes, whatever their area: the pieces of the longest side times those of the
+    shortest, of each triangle that is split."""
+    p = mesh.vertices[triangles(mesh)]
+    sides = np.sort(np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2) / longest, axis=1)
+    return float((sides[:, 2] * np.maximum(sides[:, 0], 1.0))[sides[:, 2] > 1.0].sum())
 
 
 def _net(mesh: Mesh, angle: float) -> Net:

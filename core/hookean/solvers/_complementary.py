@@ -119,7 +119,7 @@ class Method(Solver):
         """The step after the last one, by the tangent of that."""
         if self._step is None:
             return None
-        moved = np.zeros_like(state.x)
+        moved = np.zeros(state.x.shape)
         moved[self._moving] = self._step
         return moved
 

@@ -95,7 +95,7 @@ class Method(Solver):
 
     def correction(self, system: System, state: State, found: Balance) -> Floats | None:
         """The next solve, by the factors of the last one, or one cycle."""
-        moved = np.zeros_like(state.x)
+        moved = np.zeros(state.x.shape)
         for solved in self._solved:
             solved.correct(found.forces, moved)
         return moved if self.certain else None

@@ -102,9 +102,10 @@ class System:
     def size(self) -> float:
         """Length scale of the model [length]: the diagonal of its start and its anchors' targets, or how far from
         the origin it is."""
-        reach = np.concatenate([self.x, *(anchor.targets for anchor in self.held)])
-        diagonal = math.hypot(*(float(column.max() - column.min()) for column in reach.T))
-        return diagonal or float(np.abs(reach).max()) or 1.0
+        box = np.full((2, 3), -np.inf)
+        for points in (self.x, *(anchor.targets for anchor in self.held)):
+            dispatch.compiled(widen)(points, box)
+        return math.hypot(*(box[0] + box[1]).tolist()) or float(np.abs(box).max()) or 1.0
 
     @property
     def steady(self) -> bool:
@@ -134,12 +135,12 @@ class System:
 
     def start(self) -> State:
         """The state before the first iteration: anchors at their targets, memories empty."""
-        free = np.ones_like(self.x)
+        free = np.ones(self.x.shape)
         state = State(x=self.x.copy(), v=self.v.copy(), free=free)
         for anchor in self.held:
             hold(state, anchor)
         self.put_outside(state)
-        state.memory = [np.zeros_like(g.block.memory) for g in self.groups]
+        state.memory = [np.zeros(g.block.memory.shape) for g in self.groups]
         return state
 
     def components(self, state: State) -> Components:
@@ -175,8 +176,7 @@ class System:
 
     def support(self, state: State, f: Floats) -> Floats:
         """Take from `f` what contacts carry at rest; returns their force on the particles (n, 3)."""
-        carried = np.zeros_like(f)
-        still = np.zeros_like(f)
+        carried, still = np.zeros(f.shape), np.zeros(f.shape)
         for group in self.contacts:
             hook = dispatch.compiled(group.cls.support, "support")
             hook(state.x, still, f, carried, state.free, self.mass, 0.0, group.block.parameters)
@@ -195,9 +195,9 @@ class System:
         count, arity = b.indices.shape
         private = state.x.take(b.indices.ravel(), axis=0)  # many times quicker than an index
         index = np.arange(count * arity, dtype=np.int64).reshape(count, arity)
-        f, w = np.zeros_like(private), np.zeros(len(private))
+        f, w = np.zeros(private.shape), np.zeros(len(private))
         kernel = dispatch.compiled(group.cls.kernel, "force")
-        kernel(private, np.zeros_like(private), index, b.parameters, memory, f, w)
+        kernel(private, np.zeros(private.shape), index, b.parameters, memory, f, w)
         return f.reshape(count, arity, 3)
 
     def elements(self, x: Floats, memory: list[Floats], *, sparse: bool = False) -> list[tuple[Group, Floats]]:
@@ -246,7 +246,7 @@ class System:
         private = state.x.take(b.indices.ravel(), axis=0)  # many times quicker than an index
         index = np.arange(count * arity, dtype=np.int64).reshape(count, arity)
         kernel = dispatch.compiled(group.cls.kernel, "force")
-        still, w = np.zeros_like(private), np.zeros(len(private))
+        still, w = np.zeros(private.shape), np.zeros(len(private))
         reach = np.ptp(private.reshape(count, arity, 3), axis=1).max(axis=1) if count else np.zeros(0)
         step = 1e-6 * np.where(reach > 0, reach, 1.0)
         for i in range(arity):
@@ -255,18 +255,26 @@ class System:
                 for sign in (1.0, -1.0):
                     moved = private.copy()
                     moved[i::arity, c] += sign * step
-                    f = np.zeros_like(private)
+                    f = np.zeros(private.shape)
                     kernel(moved, still, index, b.parameters, memory, f, w)
                     sides.append(f.reshape(count, -1))
                 blocks[:, :, 3 * i + c] = (sides[1] - sides[0]) / (2.0 * step)[:, None]
         return 0.5 * (blocks + blocks.transpose(0, 2, 1))
 
 
+def widen(points, box):  # type: ignore[no-untyped-def]
+    """Widen a box, its largest coordinates and the negatives of its least ones, to hold points."""
+    for i in range(points.shape[0]):
+        for c in range(3):
+            box[0, c] = max(box[0, c], points[i, c])
+            box[1, c] = max(box[1, c], -points[i, c])
+
+
 def hold(state: State, anchor: Held) -> None:
     """Hold an anchor's particles at its targets, on its axes."""
     held, particles = anchor.free == 0, anchor.particles
     for values, there in ((state.free, 0.0), (state.x, anchor.targets), (state.v, 0.0)):
-        values[particles] = np.where(held, there, values[particles])
+        values[particles] = there if held.all() else np.where(held, there, values[particles])
 
 
 def compile(scene: Scene) -> System:
@@ -286,7 +294,7 @@ def compile(scene: Scene) -> System:
     for group in groups:
         if group.cls.role == "load":
             load_count += np.bincount(group.block.indices.ravel(), minlength=len(x))
-    v = np.zeros_like(x)
+    v = np.zeros(x.shape)
     if scene.velocities is not None:
         v[: len(scene.velocities)] = scene.velocities
     mass = np.ones(len(x))

@@ -7,6 +7,7 @@ one function in the module of its subject, with its declaration (`declare`). Ids
 from __future__ import annotations
 
 from hookean_canvas.run.natives import (  # noqa: F401  each declares the natives of a subject
+    chance,
     curves,
     datatrees,
     expressions,

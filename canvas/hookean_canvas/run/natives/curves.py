@@ -10,7 +10,7 @@ import numpy as np
 
 from hookean.discretize import curves as arc_lengths
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
 _CURVE = "Curve (C): curve"
@@ -43,6 +43,7 @@ def divide_curve(curve: Any, count: int, kinks: bool) -> tuple[list[Any], list[A
     closed. With Kinks also the points where its direction jumps."""
     if count < 1:
         raise Unfit("Count must be at least 1")
+    bounded(count)
     at = [_parameter(curve, place) for place in arc_lengths.divide(curve, count)]
     domain = curve.Domain
     at[0], at[-1] = domain.T0, domain.T1
@@ -60,6 +61,7 @@ def divide_distance(curve: Any, apart: float) -> tuple[list[Any], list[Any], lis
     """Points along a curve with equal straight distances from each other, the first at its start."""
     if apart <= 0.0:
         raise Unfit("Distance must be above 0")
+    bounded(arc_lengths.length(curve) / apart)
     domain = curve.Domain
     samples = np.linspace(domain.T0, domain.T1, 4001)
     places = shapes.rows(curve.PointAt(float(t)) for t in samples)
@@ -85,6 +87,7 @@ def divide_length(curve: Any, step: float) -> tuple[list[Any], list[Any], list[f
     """Points along a curve at a preset length from each other, the first at its start."""
     if step <= 0.0:
         raise Unfit("Length must be above 0")
+    bounded(arc_lengths.length(curve) / step)
     count = math.floor(arc_lengths.length(curve) / step * (1.0 + 1e-12))
     at = [curve.Domain.T0] + [_at_length(curve, step * i) for i in range(1, count + 1)]
     return _evaluated(curve, at)

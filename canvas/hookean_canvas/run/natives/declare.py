@@ -25,10 +25,17 @@ from hookean_canvas.archive import guids
 from hookean_canvas.run.trees import ITEM, LIST, TREE
 
 BRANCHES = 3
+MOST = 1_000_000  # items, faces or points that one component makes in one run
 
 
 class Unfit(ValueError):
     """A value that an input cannot take; the message is the component's."""
+
+
+def bounded(count: float) -> None:
+    """Unfit where a component would make more than MOST items."""
+    if count > MOST:
+        raise Unfit(f"this makes more than {MOST} items; give a lower count")
 
 
 @dataclass(frozen=True)

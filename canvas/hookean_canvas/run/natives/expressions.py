@@ -14,19 +14,19 @@ from hookean_canvas.run.natives.declare import Unfit, native
 LONGEST = 1024  # bits of whole numbers; powers above this are computed in floating point
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "abs": abs, "acos": math.acos, "asin": math.asin, "atan": math.atan, "atan2": math.atan2,
-    "ceiling": math.ceil, "cos": math.cos, "cosh": math.cosh, "cube": lambda x: x**3, "deg": math.degrees,
+    "ceiling": math.ceil, "cos": math.cos, "cosh": math.cosh, "cube": lambda x: _power(x, 3), "deg": math.degrees,
     "exp": math.exp, "fix": math.trunc, "floor": math.floor, "int": lambda x: math.floor(x + 0.5), "ln": math.log,
     "log": lambda x, base=None: math.log10(x) if base is None else math.log(x, base), "log10": math.log10,
     "max": max, "min": min, "mod": math.fmod, "pow": lambda a, b: _power(a, b), "rad": math.radians,
-    "round": lambda x, digits=0: round(x, int(digits)) if digits else math.floor(x + 0.5),
+    "round": lambda x, digits=0: _rounded(x, digits),
     "sgn": lambda x: (x > 0) - (x < 0), "sign": lambda x: (x > 0) - (x < 0), "sin": math.sin, "sinh": math.sinh,
-    "sqr": lambda x: x * x, "sqrt": math.sqrt, "tan": math.tan, "tanh": math.tanh, "trunc": math.trunc,
+    "sqr": lambda x: _product(x, x), "sqrt": math.sqrt, "tan": math.tan, "tanh": math.tanh, "trunc": math.trunc,
 }  # fmt: skip
 """Functions by their names in lower case; `if` is known beside them."""
 CONSTANTS = {"pi": math.pi, "e": math.e, "true": True, "false": False}
 
 _OPERATORS: dict[type, Callable[..., Any]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: lambda a, b: _product(a, b), ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv, ast.Mod: math.fmod, ast.Pow: lambda a, b: _power(a, b),
     ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Not: operator.not_,
     ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge,
@@ -39,6 +39,15 @@ def _power(a: Any, b: Any) -> Any:
     return a**b if whole else math.pow(a, b)
 
 
+def _product(a: Any, b: Any) -> Any:
+    long = isinstance(a, int) and isinstance(b, int) and a.bit_length() + b.bit_length() > LONGEST
+    return float(a) * b if long else a * b
+
+
+def _rounded(x: Any, digits: Any) -> Any:
+    return round(float(x), max(-LONGEST, min(int(digits), LONGEST))) if digits else math.floor(x + 0.5)
+
+
 def evaluated(text: str, values: Mapping[str, Any]) -> Any:
     """The value of an expression such as `sin(x) + y^2`, with values of variables by name; Unfit where it has none.
 
@@ -47,13 +56,20 @@ def evaluated(text: str, values: Mapping[str, Any]) -> Any:
     if len(text) > 4000:
         raise Unfit("the expression has more than 4000 characters")
     try:
-        return _value(ast.parse(_python(text), mode="eval").body, values)
+        value = _value(ast.parse(_python(text), mode="eval").body, values)
     except (SyntaxError, RecursionError, MemoryError):
-        raise Unfit(f"{text!r} is not an expression that is read here") from None
+        raise Unfit(f"{_cut(text)!r} is not an expression that is read here") from None
     except (ArithmeticError, ValueError, TypeError) as error:
         if isinstance(error, Unfit):
             raise
-        raise Unfit(f"{text!r} has no value: {error}") from None
+        raise Unfit(f"{_cut(text)!r} has no value: {error}") from None
+    if isinstance(value, float) and not math.isfinite(value):
+        raise Unfit(f"{_cut(text)!r} has no value: it is beyond floating point")
+    return value
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _python(text: str) -> str:
@@ -83,7 +99,7 @@ def _value(node: ast.expr, values: Mapping[str, Any]) -> Any:
             return _value(yes if _value(test, values) else no, values)
         case ast.Call(func=ast.Name(id=name), args=parts, keywords=[]) if name.lower() in FUNCTIONS:
             return FUNCTIONS[name.lower()](*(_value(part, values) for part in parts))
-    raise Unfit(f"{ast.unparse(node)!r} is not part of an expression that is read here")
+    raise Unfit(f"{_cut(ast.unparse(node))!r} is not part of an expression that is read here")
 
 
 def _combined(op: type, a: Any, b: Any) -> Any:

@@ -14,7 +14,7 @@ SUBJECTS = {
     "expressions": "Expressions", "vectors": "Points, vectors, planes", "transforms": "Transformations",
     "primitives": "Curves", "curves": "On curves", "meshes": "Meshes", "meshes_made": "Making meshes",
     "subdivision": "Weaverbird, by name", "measures": "Measures and boxes", "surfaces": "Surfaces",
-    "tools": "Tools of Kangaroo",
+    "tools": "Tools of Kangaroo", "chance": "By chance",
 }  # fmt: skip
 """Headings by the modules that declare natives."""
 

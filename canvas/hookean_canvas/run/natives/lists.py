@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 
 _ANY = "List (L): any list"
 Values = list[Any]
@@ -33,6 +33,7 @@ def series(start: float, step: float, count: int) -> Values:
     """Count numbers, the first is Start, each next one larger by Step; a list for each run."""
     if count < 0:
         raise Unfit("Count must not be negative")
+    bounded(count)
     return [start + step * i for i in range(count)]
 
 
@@ -42,6 +43,7 @@ def steps(domain: Any, count: int) -> Values:
     """Numbers at equal steps over a domain, both ends included: one more than steps."""
     if count < 1:
         raise Unfit("Steps must be at least 1")
+    bounded(count)
     return [domain.T0 + (domain.T1 - domain.T0) * i / count for i in range(count + 1)]
 
 
@@ -145,6 +147,7 @@ def split_list(values: Values, index: int) -> tuple[Values, Values]:
 def sub_list(values: Values, domain: Any, wrap: bool) -> tuple[Values, list[int]]:
     """The items at the whole numbers of a domain, both ends included, and their indices."""
     first, last = math.floor(domain.T0 + 0.5), math.floor(domain.T1 + 0.5)
+    bounded(abs(last - first))
     run = range(first, last + 1) if first <= last else range(first, last - 1, -1)
     places = [place for place in (_place(i, len(values), wrap) for i in run) if place is not None]
     return [values[i] for i in places], places
@@ -182,6 +185,7 @@ def partition_list(values: Values, sizes: list[int]) -> list[Values]:
         "Data (D): any list; Number (N): integer = 2; Order (O): boolean = True", "Data (D): list")  # fmt: skip
 def duplicate_data(values: Values, number: int, order: bool) -> Values:
     """The list a number of times: whole lists after each other, or without Order each item as often in its place."""
+    bounded(len(values) * number)
     return values * max(number, 0) if order else [value for value in values for _ in range(number)]
 
 
@@ -189,6 +193,7 @@ def duplicate_data(values: Values, number: int, order: bool) -> Values:
         "Data (D): any list; Length (L): integer", "Data (D): list")  # fmt: skip
 def repeat_data(values: Values, length: int) -> Values:
     """A pattern repeated up to a length."""
+    bounded(length)
     return list(_repeated(values, max(length, 0)))
 
 
@@ -196,7 +201,9 @@ def repeat_data(values: Values, length: int) -> Values:
         "Data (D): any list; Stack (S): integer list", "Data (D): list")  # fmt: skip
 def stack_data(values: Values, pattern: list[int]) -> Values:
     """Each item as often as a repeated pattern states."""
-    return [value for value, count in zip(values, _repeated(pattern, len(values)), strict=True) for _ in range(count)]
+    counts = list(_repeated(pattern, len(values)))
+    bounded(sum(max(count, 0) for count in counts))
+    return [value for value, count in zip(values, counts, strict=True) for _ in range(count)]
 
 
 @native("e2039b07-d3f3-40f8-af88-d74fed238727", "Insert Items", "Ins",
@@ -301,4 +308,5 @@ def shortest_list(*lists: Values) -> tuple[Values, ...]:
         "List (A): any list; List (B): any list", "List (A): list; List (B): list")  # fmt: skip
 def cross_reference(first: Values, second: Values) -> tuple[Values, Values]:
     """All pairs of the items of two lists, the second list in full for each item of the first."""
+    bounded(len(first) * len(second))
     return [a for a in first for _ in second], second * len(first)

@@ -7,7 +7,7 @@ from functools import reduce
 from itertools import pairwise
 from typing import Any
 
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
 _NUMBERS = "First Number (A): number; Second Number (B): number = 0.0"
@@ -100,6 +100,7 @@ def divide_domain(domain: Any, count: int) -> list[Any]:
     """Domains of equal length that a domain consists of."""
     if count < 1:
         raise Unfit("Count must be at least 1")
+    bounded(count)
     ends = [domain.T0 + (domain.T1 - domain.T0) * i / count for i in range(count + 1)]
     return [rhino3dm.Interval(a, b) for a, b in pairwise(ends)]
 

@@ -88,6 +88,11 @@ def _mesh(geometry: Any) -> tuple[Array, Any]:
     return made.vertices, made.faces
 
 
+def surface_mesh(geometry: Any) -> tuple[Array, Array, Array]:
+    """The corners `(n, 3)` each of the triangles of a mesh, a surface or a Brep."""
+    return _triangles(*_mesh(geometry))
+
+
 def _triangles(vertices: Array, faces: Any) -> tuple[Array, Array, Array]:
     rows = [tuple(map(int, face)) for face in faces]
     cut = np.array([(row[0], row[k], row[k + 1]) for row in rows for k in range(1, len(row) - 1)])

@@ -11,7 +11,7 @@ from hookean.discretize.breps import mesh_faces
 from hookean.discretize.meshing import mesh_surface as core_mesh_surface
 from hookean.errors import InputError
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.natives.meshes import sides
 from hookean_canvas.run.natives.shapes import Array, Faces
 from hookean_canvas.run.rhino import rhino3dm
@@ -27,6 +27,7 @@ def mesh_plane(boundary: tuple[Any, float, float], nx: int, ny: int) -> tuple[An
     frame, width, height = boundary
     if min(nx, ny) < 1:
         raise Unfit("Width count and Height count must be at least 1")
+    bounded(nx * ny)
     vertices, faces = _grid(nx, ny)
     return shapes.mesh(shapes.in_plane(frame, vertices * (width, height)), faces), width * height
 
@@ -48,6 +49,7 @@ def mesh_box(box: Any, nx: int, ny: int, nz: int) -> Any:
     """Equal quads on the six sides of a box, normals outwards; the sides do not share vertices."""
     if min(nx, ny, nz) < 1:
         raise Unfit("counts must be at least 1")
+    bounded(2 * (nx * ny + ny * nz + nz * nx))
     low, size = shapes.xyz(box.Min), shapes.xyz(box.Max) - shapes.xyz(box.Min)
     count = (nx, ny, nz)
     vertices: list[Array] = []
@@ -71,6 +73,7 @@ def mesh_sphere(frame: Any, radius: float, nu: int, nv: int) -> Any:
     """A sphere of faces round it and from pole to pole; those at the poles are triangles."""
     if nu < 3 or nv < 2:
         raise Unfit("U Count must be at least 3 and V Count at least 2")
+    bounded(nu * nv)
     rings = [(math.sin(math.pi * j / nv), -math.cos(math.pi * j / nv)) for j in range(1, nv)]
     turns = 2.0 * math.pi * np.arange(nu) / nu
     local = [(0.0, 0.0, -1.0)] + [(r * math.cos(t), r * math.sin(t), z) for r, z in rings for t in turns] + [(0, 0, 1)]
@@ -98,6 +101,7 @@ def mesh_brep(brep: Any, settings: Any) -> Any:
         remark="quads are at even steps of the parameters, also with Equalize")  # fmt: skip
 def mesh_surface(surface: Any, nu: int, nv: int, overhang: bool, equalize: bool) -> Any:
     """Quads at even steps over a surface."""
+    bounded(nu * nv)
     return _of_core(lambda: core_mesh_surface(surface, nu, nv))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from hookean.discretize import catenary as chains
 from hookean.discretize import curves as arc_lengths
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
 _PLANE = "Plane (P): plane"
@@ -146,6 +146,7 @@ def polygon(frame: Any, radius: float, count: int, fillet: float) -> tuple[Any, 
     _square(fillet)
     if count < 3:
         raise Unfit("a polygon needs at least three segments")
+    bounded(count)
     turns = 2.0 * math.pi * np.arange(count) / count
     places = shapes.in_plane(frame, radius * np.stack([np.cos(turns), np.sin(turns)], axis=1))
     return shapes.polyline(places, closed=True), 2.0 * count * radius * math.sin(math.pi / count)

@@ -10,7 +10,7 @@ import numpy as np
 
 from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.natives.declare import Unfit, native
-from hookean_canvas.run.natives.meshes import edges, in_place, sides
+from hookean_canvas.run.natives.meshes import combined, edges, in_place, mesh_join, sides
 from hookean_canvas.run.natives.shapes import Array, Faces
 
 MOST = 6  # steps, each of which makes four times as many faces
@@ -28,6 +28,13 @@ def catmull_clark_mesh(mesh: Any, level: int, naked: int) -> Any:
 def loop_mesh(mesh: Any, level: int, naked: int) -> Any:
     """Triangles that tend to a smooth surface."""
     return _subdivided(mesh, level, naked, loop)
+
+
+@native("", "Weaverbird's Join Meshes and Weld", "wbJoin", "Meshes (M+): mesh list; Weld (W): boolean = True",
+        "Mesh (M)")  # fmt: skip
+def join_meshes(meshes: list[Any], weld: bool) -> Any:
+    """Meshes as one, and vertices in one place made one if wanted."""
+    return combined(meshes) if weld else mesh_join(meshes)
 
 
 def _subdivided(mesh: Any, level: int, naked: int, rule: Callable[[Array, Faces], tuple[Array, Faces]]) -> Any:

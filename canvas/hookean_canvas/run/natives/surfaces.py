@@ -9,7 +9,7 @@ import numpy as np
 
 from hookean.discretize import curves as arc_lengths
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
 AROUND, ALONG = 12, 50  # sides of a pipe, and pieces of a curve
@@ -23,6 +23,7 @@ def divide_surface(surface: Any, nu: int, nv: int) -> tuple[list[list[Any]], ...
     """Points at even steps of the parameters of a surface, normals and parameters, a branch for each step of u."""
     if min(nu, nv) < 1:
         raise Unfit("U Count and V Count must be at least 1")
+    bounded(nu * nv)
     (u0, u1), (v0, v1) = ((domain.T0, domain.T1) for domain in (surface.Domain(0), surface.Domain(1)))
     at = [[(u, v) for v in np.linspace(v0, v1, nv + 1).tolist()] for u in np.linspace(u0, u1, nu + 1).tolist()]
     return (
@@ -52,6 +53,34 @@ def ruled_surface(a: Any, b: Any) -> Any:
     if found is None:
         raise Unfit("no surface can be made between these curves")
     return found
+
+
+@native("d51e9b65-aa4e-4fd6-976c-cef35d421d05", "Boundary Surfaces", "Boundary",
+        "Edges (E): curve list", "Surfaces (S): list",
+        remark="one surface for each closed curve: curves within others cut no holes, and are not joined")  # fmt: skip
+def boundary_surfaces(edges: list[Any]) -> list[Any]:
+    """The plane within each closed planar curve; four straight sides are those of a surface."""
+    return [_within(edge) for edge in edges if edge is not None]
+
+
+def _within(edge: Any) -> Any:
+    if not edge.IsClosed or not edge.IsPlanar():
+        raise Unfit("an edge is not closed or not planar")
+    at = shapes.corners(edge)
+    if at is not None and len(at) == 5 and _convex(at[:4]):
+        a, b, c, d = shapes.points(at[:4])
+        return ruled_surface(rhino3dm.LineCurve(a, b), rhino3dm.LineCurve(d, c))
+    places = at if at is not None else np.array(arc_lengths.divide(edge, ALONG))
+    found = rhino3dm.Brep.CreateTrimmedPlane(shapes.fitted_plane(places), edge)
+    if found is None:
+        raise Unfit("no surface can be made within this curve")
+    return found
+
+
+def _convex(at: shapes.Array) -> bool:
+    sides = np.roll(at, -1, axis=0) - at
+    turns = np.cross(sides, np.roll(sides, -1, axis=0))
+    return bool((turns @ turns.sum(axis=0) > 0.0).all())
 
 
 @native("a7a41d0a-2188-4f7a-82cc-1a2c4e4ec850", "Loft", "Loft",

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
 _OUT = "Geometry (G); Transform (X)"
@@ -99,6 +99,7 @@ def linear_array(geometry: Any, step: Any, count: int) -> tuple[list[Any], list[
     """Copies of geometry at equal steps along a vector, the first one in place."""
     if count < 1:
         raise Unfit("Count must be at least 1")
+    bounded(count)
     changes = [rhino3dm.Transform.Translation(i * step.X, i * step.Y, i * step.Z) for i in range(count)]
     return [shapes.transformed(geometry, change) for change in changes], changes
 
@@ -110,6 +111,7 @@ def polar_array(geometry: Any, frame: Any, count: int, angle: float) -> tuple[li
     """Copies of geometry at equal turns about the z axis of a plane; those of a full turn do not meet."""
     if count < 1:
         raise Unfit("Count must be at least 1")
+    bounded(count)
     full = abs(abs(angle) - 2.0 * math.pi) < 1e-9
     step = angle / count if full else angle / max(count - 1, 1)
     changes = [rhino3dm.Transform.Rotation(i * step, frame.ZAxis, frame.Origin) for i in range(count)]

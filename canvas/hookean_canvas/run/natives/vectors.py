@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
 _XYZ = ("X", "Y", "Z")
@@ -315,6 +315,7 @@ def _grid(frame: Any, size: tuple[float, float], count: tuple[int, int]) -> tupl
     nx, ny = count
     if min(count) < 1:
         raise Unfit("a grid needs at least one cell each way")
+    bounded(nx * ny)
     local = [[[i * size[0], j * size[1]] for j in range(ny + 1)] for i in range(nx + 1)]
     at = [shapes.in_plane(frame, column) for column in local]
     cells = [
