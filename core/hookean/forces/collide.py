@@ -7,21 +7,28 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled import dispatch
+from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.cells import GROUP, PARALLEL, RADIUS, ends, nearest
 from hookean.forces.neighbours import (
+    AS_GIVEN,
+    FOUND,
+    HEAD,
     HERE,
-    NUMBER,
-    PARALLEL,
-    ROW,
     capacity,
-    ignore,
+    forget,
+    gather,
     listed,
     make_room,
-    nearest,
     order_in,
-    sums,
+    pairs_in,
+    renew,
+    seen_in,
+    served,
+    some_pairs,
     tables,
+    unmoved,
 )
 from hookean.forces.springs import Springs
 from hookean.values.columns import IndexRows, Labels, Points, Positives
@@ -31,6 +38,10 @@ STIFFNESS, SKIN, ROOM = 2, 3, 4  # columns of parameters, after the two that nei
 SKIN_PART = 0.15  # of the mean radius: how far beyond their reach neighbours are listed
 NEAREST = 1e-20  # distance of centres from which a pair has a direction
 TINY = 1e-280  # square of a length: what is smaller is a point
+SEVERAL = 128  # pairs at a time: what is between stays in the nearest cache
+# packed, a row of parameters for each room: where its elements start and how many they are, k, skin, address, and the
+# first particle where rows are consecutive particles, else -1
+BEGIN, SIZE, K, REACH, ADDRESS, PARTICLE, PACKED = range(7)
 
 
 @device
@@ -46,43 +57,79 @@ def end_of_crowd(parameters: Any, start: Any) -> Any:
 
 
 @device
-def push_apart(here: Any, i: Any, j: Any, skin: Any, stiffness: Any) -> Any:
-    """Add the forces of two spheres, and how often they count for the stiffness; returns their energy."""
-    dx = here[j, 0] - here[i, 0]
-    dy = here[j, 1] - here[i, 1]
-    dz = here[j, 2] - here[i, 2]
-    reach = here[i, 3] + here[j, 3]
-    square = dx * dx + dy * dy + dz * dz
-    length = np.sqrt(square)
-    overlap = max(reach - length, 0.0)
-    # those that nearly touch count as well: they may before the stiffness is asked for again
-    counts = 1.0 if length < reach + skin else 0.0
-    push = stiffness * overlap / length if length > NEAREST else 0.0
-    dx *= push
-    dy *= push
-    dz *= push
-    here[i, 4] -= dx
-    here[i, 5] -= dy
-    here[i, 6] -= dz
-    here[i, 7] += counts
-    here[j, 4] += dx
-    here[j, 5] += dy
-    here[j, 6] += dz
-    here[j, 7] += counts
-    return 0.5 * stiffness * overlap * overlap
+def touching(at: Any, pairs: Any, reaches: Any, first: Any, last: Any, margin: Any, some: Any, table: Any) -> Any:
+    """Of pairs from `first` to `last` those that are within a margin of their reach: the pairs in `some`, squares of
+    their distances and their reach in the rows of `table`; how many."""
+    count = 0
+    for n in range(first, last):
+        pair, reach = pairs[np.uint64(n)], reaches[np.uint64(n)]
+        i, j = ends(pair)
+        dx = at[j, 0] - at[i, 0]
+        dy = at[j, 1] - at[i, 1]
+        dz = at[j, 2] - at[i, 2]
+        square, near, k = dx * dx + dy * dy + dz * dz, reach + margin, np.uint64(count)
+        some[k] = pair  # overwritten by the next unless it counts: quicker than a branch
+        table[0, k] = square
+        table[1, k] = reach
+        count += 1 if square < near * near else 0
+    return count
+
+
+@device
+def densities(squares: Any, reach: Any, count: Any, stiffness: Any) -> None:
+    """Force by distance of pairs, in the place of the squares of their distances, and overlaps in that of reaches."""
+    for n in range(count):
+        length = np.sqrt(squares[n])
+        overlap = max(reach[n] - length, 0.0)
+        push = stiffness * overlap / length
+        reach[n] = overlap
+        squares[n] = push if length > NEAREST else 0.0
+
+
+@device
+def push_spheres(  # type: ignore[no-untyped-def]
+    at, sums, counts, pairs, reach, number, stiffness, margin, some, table, energy
+) -> Any:  # fmt: skip
+    """Add the forces of pairs of spheres; with a margin also how often each counts for the stiffness, and energy."""
+    for first in range(0, number, SEVERAL):
+        count = touching(at, pairs, reach, first, min(number, first + SEVERAL), margin, some, table)
+        densities(table[0], table[1], count, stiffness)
+        if margin > 0.0:
+            for n in range(count):
+                i, j = ends(some[np.uint64(n)])
+                # those that nearly touch count as well: they may before the stiffness is asked for again
+                counts[i] += 1.0
+                counts[j] += 1.0
+                energy += 0.5 * stiffness * table[1, np.uint64(n)] * table[1, np.uint64(n)]
+        for n in range(count):
+            (i, j), push = ends(some[np.uint64(n)]), table[0, np.uint64(n)]
+            d0 = (at[j, 0] - at[i, 0]) * push
+            d1 = (at[j, 1] - at[i, 1]) * push
+            d2 = (at[j, 2] - at[i, 2]) * push
+            d3 = (at[j, 3] - at[i, 3]) * push  # zeros: four columns are one operation
+            sums[i, 0] -= d0
+            sums[i, 1] -= d1
+            sums[i, 2] -= d2
+            sums[i, 3] -= d3
+            sums[j, 0] += d0
+            sums[j, 1] += d1
+            sums[j, 2] += d2
+            sums[j, 3] += d3
+    return energy
 
 
 @device
 def gap(here: Any, i: Any, j: Any) -> Any:
-    """Squared distance of the axes of two elements, the sum of their radii, and where on the axes they are nearest."""
-    s, t, radius = 0.0, 0.0, 3
-    if here.shape[1] != HERE:
-        s, t = nearest(here, i, j, 4)
-        radius = 7
-    square = 0.0
+    """Squared distance of the axes of two elements, and where on the axes they are nearest."""
+    s, t, square = 0.0, 0.0, 0.0
+    if here.shape[1] == HERE:
+        for c in range(3):
+            square += (here[j, c] - here[i, c]) ** 2
+        return square, s, t
+    s, t = nearest(here, i, j, 4)
     for c in range(3):
         square += (here[j, c] + t * here[j, 4 + c] - here[i, c] - s * here[i, 4 + c]) ** 2
-    return square, here[i, radius] + here[j, radius], s, t
+    return square, s, t
 
 
 @device
@@ -107,14 +154,16 @@ def stiffer(here: Any, i: Any, j: Any, s: Any, t: Any, length: Any, overlap: Any
 
 @device
 def push_capsules(here: Any, i: Any, j: Any, skin: Any, stiffness: Any) -> Any:
-    """`push_apart` for capsules: forces on both ends of each, by where on the axis they act."""
+    """Add the forces of two capsules on both ends of each, by where on the axis they act, and how often they count for
+    the stiffness; returns their energy."""
     apart = 0.0
     for c in range(3):
         apart += (here[j, c] - here[i, c]) ** 2
     reach = here[i, 3] + here[j, 3] + skin
     if apart >= reach * reach:
         return 0.0
-    square, reach, s, t = gap(here, i, j)
+    square, s, t = gap(here, i, j)
+    reach = here[i, 7] + here[j, 7]
     if square >= (reach + skin) * (reach + skin):
         return 0.0
     here[i, 15] += 1.0
@@ -137,44 +186,74 @@ def push_capsules(here: Any, i: Any, j: Any, skin: Any, stiffness: Any) -> Any:
 
 
 @device
-def push_all(parameters, start, here, short, order, starts, found) -> Any:  # type: ignore[no-untyped-def]
+def push_all(parameters, start, here, sums, counts, order, short, room, margin) -> Any:  # type: ignore[no-untyped-def]
     """Forces of all pairs of a crowd: those of the `short` list, else every one; returns their energy."""
-    energy = 0.0
-    skin, stiffness, spheres = parameters[start, SKIN], parameters[start, STIFFNESS], here.shape[1] == HERE
-    for i in range(here.shape[0]):
-        first = int(starts[i, 0]) if short else i + 1
-        last = int(starts[i + 1, 0]) if short else here.shape[0]
-        for s in range(first, last):
-            j = int(found[np.uint64(s), 0]) if short else s
-            if not short and ignore(parameters, start + int(order[i, NUMBER]), start + int(order[j, NUMBER])):
-                continue
-            if spheres:
-                energy += push_apart(here, np.uint64(i), np.uint64(j), skin, stiffness)
-            else:
-                energy += push_capsules(here, i, j, skin, stiffness)
+    energy, several = 0.0, here.shape[0]
+    some, table = np.empty(SEVERAL, np.int64), np.empty((2, SEVERAL))
+    pairs, reach = pairs_in(room)
+    skin, stiffness = parameters[start, SKIN], parameters[start, STIFFNESS]
+    number = int(rows(room, 1.0, HEAD)[0, FOUND])
+    if short:
+        several = 1
+    else:
+        pairs, reach = np.empty(several, np.int64), np.empty(several)
+    for i in range(several):
+        if not short:
+            number = some_pairs(parameters, start, order, i, pairs, reach)
+        if here.shape[1] == HERE:
+            energy = push_spheres(here, sums, counts, pairs, reach, number, stiffness, margin, some, table, energy)
+            continue
+        for n in range(number):
+            one, other = ends(pairs[n])
+            energy += push_capsules(here, one, other, skin, stiffness)
     return energy
 
 
+@device
+def push_packed(x, indices, crowd, parameters, f) -> None:  # type: ignore[no-untyped-def]
+    """Forces of a packed crowd of spheres."""
+    start, size, room, skin = int(crowd[BEGIN]), int(crowd[SIZE]), crowd[ADDRESS], crowd[REACH]
+    (here, sums, counts), order, seen = tables(room, size), order_in(room, size), seen_in(room)
+    most, straight, a = served(room, size, skin, 0.0), crowd[PARTICLE] >= 0.0, int(max(crowd[PARTICLE], 0.0))
+    at = x[a : a + size] if straight else here
+    if not straight:
+        gather(x, indices, start, here, sums, counts, order)
+    short = most >= 0.0 and unmoved(at, seen, most)
+    if not short:
+        gather(x, indices, start, here, sums, counts, order)
+        short = renew(here, parameters, start, order, room, skin)
+    if straight:
+        push_all(parameters, start, at, f[a : a + size], counts, order, short, room, 0.0)
+        return
+    push_all(parameters, start, here, sums, counts, order, short, room, 0.0)
+    for i in range(size):
+        a = indices[start + int(order[i]), 0]
+        for c in range(3):
+            f[a, c] += sums[i, c]
+
+
 def collide_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    if parameters.shape[1] == PACKED:
+        for n in range(parameters.shape[0]):
+            push_packed(x, indices, parameters[n], memory, f)
+        return 0.0
     energy = 0.0
     stop = 0
     while stop < indices.shape[0]:
         start = stop
         room, skin, stop = parameters[start, ROOM], parameters[start, SKIN], end_of_crowd(parameters, start)
-        here = sums(room, stop - start)
+        here, sums, counts = tables(room, stop - start)
         order = order_in(room, stop - start)
-        short = listed(x, indices, parameters, start, here, order, room, skin)
-        _, starts, found = tables(room)
-        energy += push_all(parameters, start, here, short, order, starts, found)
-        force, count = (4, 7) if here.shape[1] == HERE else (8, 15)
+        short = listed(x, indices, parameters, start, here, sums, counts, order, room, skin)
+        energy += push_all(parameters, start, here, sums, counts, order, short, room, skin)
         stiffness = 2.0 * parameters[start, STIFFNESS]
-        for e in range(start, stop):
-            i = np.uint64(int(order[e - start, ROW]))
+        for i in range(stop - start):
+            e, often = start + int(order[i]), counts[i] if here.shape[1] == HERE else here[i, 15]
             for end in range(indices.shape[1]):
                 a = indices[e, end]
-                w[a] += stiffness * (1.0 + here[i, count])
+                w[a] += stiffness * (1.0 + often)
                 for c in range(3):
-                    f[a, c] += here[i, force + 3 * end + c]
+                    f[a, c] += sums[i, c] if here.shape[1] == HERE else here[i, 8 + 3 * end + c]
     return energy
 
 
@@ -186,22 +265,23 @@ def overlaps(x, indices, parameters, pair, place):  # type: ignore[no-untyped-de
     while stop < indices.shape[0]:
         start = stop
         room, skin, stop = parameters[start, ROOM], parameters[start, SKIN], end_of_crowd(parameters, start)
-        here = sums(room, stop - start)
+        here, sums, counts = tables(room, stop - start)
         order = order_in(room, stop - start)
-        short = listed(x, indices, parameters, start, here, order, room, skin)
-        _, starts, found = tables(room)
-        for i in range(stop - start):
-            first = int(starts[i, 0]) if short else i + 1
-            last = int(starts[i + 1, 0]) if short else stop - start
-            e = start + int(order[i, NUMBER])
-            for n in range(first, last):
-                j = int(found[n, 0]) if short else n
-                o = start + int(order[j, NUMBER])
-                square, reach, s, t = gap(here, i, j)
-                if square < reach * reach and (short or not ignore(parameters, e, o)):
+        short = listed(x, indices, parameters, start, here, sums, counts, order, room, skin)
+        pairs, reaches = pairs_in(room)
+        number = int(rows(room, 1.0, HEAD)[0, FOUND])
+        if not short:
+            pairs, reaches = np.empty(stop - start, np.int64), np.empty(stop - start)
+        for row in range(1 if short else stop - start):
+            if not short:
+                number = some_pairs(parameters, start, order, row, pairs, reaches)
+            for n in range(number):
+                i, j = ends(pairs[n])
+                square, s, t = gap(here, i, j)
+                if square < reaches[n] * reaches[n]:
                     if count < len(pair):
-                        pair[count, 0], pair[count, 1] = e, o
-                        place[count, 0], place[count, 1], place[count, 2] = reach, s, t
+                        pair[count, 0], pair[count, 1] = start + int(order[i]), start + int(order[j])
+                        place[count, 0], place[count, 1], place[count, 2] = reaches[n], s, t
                     count += 1
     return count
 
@@ -252,6 +332,25 @@ class Crowd(Force):
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
         """All elements: each may touch any other."""
         return np.arange(len(block.indices)), block
+
+    @classmethod
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats, Floats] | None:
+        """Of spheres a row for each room (`PACKED`), and the parameters in the place of memory."""
+        index, table = block.indices, block.parameters
+        if index.shape[1] != 1 or not len(index):
+            return None
+        first = np.flatnonzero(np.diff(table[:, ROOM], prepend=-1.0))
+        crowds = np.zeros((len(first), PACKED))
+        for row, start, stop in zip(crowds, first, [*first[1:], len(index)], strict=True):
+            address, part = table[start, ROOM], table[start:stop]
+            room = next(room for room in block.rooms if room.ctypes.data == address)
+            if capacity(room.ctypes.data) != stop - start:
+                return None  # some were left out
+            forget(room, part[:, RADIUS], part[:, GROUP])
+            particle = index[start, 0]
+            straight = room[0, AS_GIVEN] and np.array_equal(index[start:stop, 0], particle + np.arange(stop - start))
+            row[:] = start, stop - start, part[0, STIFFNESS], part[0, SKIN], address, particle if straight else -1
+        return index, crowds, table
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Force of all contacts on each element [force]."""

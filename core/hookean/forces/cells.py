@@ -1,0 +1,272 @@
+"""Cells: all pairs of many elements that are near one another, found in a time that grows with their number.
+
+Elements lie in a grid of cells, by the spheres about them, and each looks in its own cell and in 13 of the 26 about it.
+A grid of more cells than there is place for is folded: cells far apart share a place. Elements much larger than most
+look at all others. Source: Hockney and Eastwood, "Computer simulation using particles", 1981, 8.4 (cells and lists).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from hookean.compiled.marks import device
+
+RADIUS, GROUP, START, END = 0, 1, 5, 6  # columns of parameters that are read here; the last two of capsules alone
+SEEN = 5  # of each element: the sphere about it, x y z and radius, and its group; of a capsule
+SEEN_CAPSULE = 9  # also half of its axis x y z, and its own radius
+LARGE = 4.0  # times the mean radius: what is larger looks at all others
+PARALLEL = 1e-12  # square of the angle of two segments below which they are parallel
+FARTHEST = 1e15  # cells from the origin
+FEWEST = 3  # cells along an axis, so that the two beside one are different
+PER_CELL = 2.0  # cells of an element that there is place for, at most
+
+
+@device
+def both(i: Any, j: Any) -> Any:
+    """A pair of rows as one number, the lower one first."""
+    return np.int64(min(i, j)) | np.int64(max(i, j)) << 32
+
+
+@device
+def ends(pair: Any) -> Any:
+    """The two rows of a pair; unsigned: no index counts from the end."""
+    return np.uint64(pair) & np.uint64(0xFFFFFFFF), np.uint64(pair) >> np.uint64(32)
+
+
+@device
+def cell_of(coordinate: Any, width: Any) -> Any:
+    """The number of the cell of a coordinate along its axis."""
+    if not abs(coordinate) < np.inf:
+        return 0
+    return int(np.floor(min(max(coordinate / width, -FARTHEST), FARTHEST)))
+
+
+@device
+def sides(spheres: Any, width: Any, low: Any, side: Any) -> Any:
+    """Write the lowest cell of the grid, and how many cells it has along each axis; returns their number."""
+    count = spheres.shape[0]
+    for c in range(3):
+        high = low[c] = cell_of(spheres[0, c], width)
+        for i in range(count):
+            k = cell_of(spheres[i, c], width)
+            low[c], high = min(low[c], k), max(high, k)
+        side[c] = min(max(high - low[c] + 1, FEWEST), max(count, FEWEST))
+    most = max(PER_CELL * count, float(FEWEST**3))
+    while float(side[0]) * float(side[1]) * float(side[2]) > most:
+        longest = 0
+        for c in range(3):
+            longest = c if side[c] > side[longest] else longest
+        side[longest] = max((side[longest] + 1) // 2, FEWEST)
+    return side[0] * side[1] * side[2]
+
+
+@device
+def sort_cells(spheres: Any, width: Any, low: Any, side: Any, most: Any, first: Any, number: Any, at: Any) -> None:
+    """All elements but the large ones in the order of their cells, x y z and radius in `at`, their rows in `number`;
+    `first`: where each cell starts."""
+    count = spheres.shape[0]
+    cell = np.empty(count, np.int64)
+    for i in range(count):
+        k = 0
+        for c in range(3):
+            along = cell_of(spheres[i, c], width) - low[c]
+            k = k * side[c] + (along if along < side[c] else along % side[c])
+        cell[i] = k if spheres[i, 3] <= most else -1
+        if cell[i] >= 0:
+            first[k + 1] += 1
+    for k in range(first.shape[0] - 1):
+        first[k + 1] += first[k]
+    for back in range(count):
+        i = count - 1 - back
+        k = cell[i] + 1
+        if k > 0:  # from the end, so that `first` ends as the start of the cell, one place too far
+            first[k] -= 1
+            s = first[k]
+            number[s] = i
+            for c in range(4):
+                at[s, c] = spheres[i, c]
+
+
+@device
+def runs_about(a: Any, b: Any, c: Any, side: Any, first: Any, runs: Any) -> Any:
+    """The elements of cell (a, b, c), the next along z, and the three in each of four columns beside them, as runs in
+    the order of cells; how many runs."""
+    k, layer = (a * side[1] + b) * side[2] + c, side[1] * side[2]
+    runs[0, 0], runs[0, 1], count = first[k], first[k + 1], 1
+    if a + 1 < side[0] and 0 < b < side[1] - 1 and 0 < c < side[2] - 1:
+        runs[0, 0], runs[0, 1] = first[k], first[k + 2]
+        runs[1, 0], runs[1, 1] = first[k + side[2] - 1], first[k + side[2] + 2]
+        for n in range(3):
+            q = k + layer + (n - 1) * side[2]
+            runs[2 + n, 0], runs[2 + n, 1] = first[q - 1], first[q + 2]
+        return 5
+    for n in range(13):
+        # (0, 0, 1), then (0, 1), (1, -1), (1, 0), (1, 1) with -1, 0, 1 along z
+        column = (n + 2) // 3
+        da, db, dc = (1 if column > 1 else 0), (column - 3 if column > 1 else column), ((n + 2) % 3 - 1 if n else 1)
+        p, q, r = a + da, b + db, c + dc
+        p = 0 if p == side[0] else p
+        q = 0 if q == side[1] else (side[1] - 1 if q < 0 else q)
+        r = 0 if r == side[2] else (side[2] - 1 if r < 0 else r)
+        k = (p * side[1] + q) * side[2] + r
+        if first[k] == first[k + 1]:
+            continue
+        if runs[count - 1, 1] == first[k]:
+            runs[count - 1, 1] = first[k + 1]
+        else:
+            runs[count, 0], runs[count, 1] = first[k], first[k + 1]
+            count += 1
+    return count
+
+
+@device
+def collect(at, number, begin, end, xs, ys, zs, radii, who, count) -> Any:  # type: ignore[no-untyped-def]
+    """Lay the elements of a run side by side; how many lie there then."""
+    for s in range(begin, end):
+        t, k = np.uint64(s), np.uint64(count)
+        who[k] = number[t]
+        xs[k] = at[t, 0]
+        ys[k] = at[t, 1]
+        zs[k] = at[t, 2]
+        radii[k] = at[t, 3]
+        count += 1
+    return count
+
+
+@device
+def meet(xs, ys, zs, radii, who, first, size, beyond, found, count) -> Any:  # type: ignore[no-untyped-def]
+    """List the first of some elements that lie side by side with all later ones that are within `beyond` of its reach;
+    how many pairs are listed then, -1 if there is no place."""
+    if count < 0 or count + size - first > found.shape[0]:
+        return -1
+    x, y, z, reach, own = xs[first], ys[first], zs[first], radii[first] + beyond, who[first] << 32
+    for n in range(first + 1, size):
+        t = np.uint64(n)
+        dx, dy, dz, apart = xs[t] - x, ys[t] - y, zs[t] - z, radii[t] + reach
+        found[np.uint64(count)] = own | who[t]  # overwritten unless it counts: quicker than a branch
+        count += 1 if dx * dx + dy * dy + dz * dz < apart * apart else 0
+    return count
+
+
+@device
+def ignore(parameters: Any, e: Any, o: Any) -> Any:
+    """Whether two elements ignore each other: those of one group, 0 being none, and capsules that share a particle."""
+    if parameters[e, GROUP] == parameters[o, GROUP] and parameters[e, GROUP] != 0.0:
+        return True
+    if parameters.shape[1] <= END:
+        return False
+    a, b, c, d = parameters[e, START], parameters[e, END], parameters[o, START], parameters[o, END]
+    return a in (c, d) or b in (c, d)
+
+
+@device
+def nearest(at: Any, i: Any, j: Any, axis: Any) -> Any:
+    """Closest points of two segments, rows of a table with their centres and from a column on their half axes: how far
+    along, from -1 to 1. Of parallel ones, the middle of where they are beside each other. Source: Ericson, Real-Time
+    Collision Detection, 2005, 5.1.9."""
+    uu, vv, uv, ur, vr, turn, part = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for c in range(3):
+        d, k = (c + 1) % 3, (c + 2) % 3
+        u, v, r = at[i, axis + c], at[j, axis + c], at[i, c] - at[j, c]
+        uu, vv, uv, ur, vr = uu + u * u, vv + v * v, uv + u * v, ur + u * r, vr + v * r
+        cross = at[i, axis + d] * at[j, axis + k] - at[i, axis + k] * at[j, axis + d]
+        turn += cross * cross
+        part += cross * (at[j, axis + d] * (at[i, k] - at[j, k]) - at[j, axis + k] * (at[i, d] - at[j, d]))
+    if turn > PARALLEL * uu * vv:
+        s = min(max(part / turn, -1.0), 1.0)
+    elif uu > 0.0:
+        reach = abs(uv) / uu
+        low, high = max((-ur / uu) - reach, -1.0), min((-ur / uu) + reach, 1.0)
+        s = min(max(0.5 * (low + high), -1.0), 1.0)
+    else:
+        s = 0.0
+    t = min(max((uv * s + vr) / vv, -1.0), 1.0) if vv > 0.0 else 0.0
+    if uu > 0.0 and (t == 1.0 or t == -1.0):
+        s = min(max((uv * t - ur) / uu, -1.0), 1.0)
+    return s, t
+
+
+@device
+def near(seen: Any, parameters: Any, start: Any, order: Any, i: Any, j: Any, beyond: Any) -> Any:
+    """Whether two elements whose spheres are near are to be listed."""
+    if ignore(parameters, start + int(order[i]), start + int(order[j])):
+        return False
+    if seen.shape[1] == SEEN:
+        return True
+    s, t = nearest(seen, i, j, SEEN)
+    apart = 0.0
+    for c in range(3):
+        apart += (seen[i, c] + s * seen[i, SEEN + c] - seen[j, c] - t * seen[j, SEEN + c]) ** 2
+    reach = seen[i, SEEN + 3] + seen[j, SEEN + 3] + beyond
+    return apart < reach * reach
+
+
+@device
+def thin(spheres, parameters, start, order, beyond, found, first, count) -> Any:  # type: ignore[no-untyped-def]
+    """Keep of the pairs listed from `first` on those that are `near`; how many pairs are listed then."""
+    kept = max(first, 0)
+    for n in range(kept, count):
+        i, j = ends(found[n])
+        found[kept] = found[n]
+        kept += 1 if near(spheres, parameters, start, order, int(i), int(j), beyond) else 0
+    return kept if count >= 0 else count
+
+
+@device
+def find_pairs(spheres, parameters, start, order, beyond, picky, found) -> Any:  # type: ignore[no-untyped-def]
+    """List all pairs of elements (n, SEEN or more) that are within `beyond` of their reach, once each; how many, -1 if
+    there is no place for them. `picky`: some may ignore others, or are capsules."""
+    size, mean, widest = spheres.shape[0], 0.0, 0.0
+    for i in range(size):
+        mean += spheres[i, 3] / size
+    for i in range(size):
+        widest = max(widest, spheres[i, 3]) if spheres[i, 3] <= LARGE * mean else widest
+    width, low, side = 2.0 * widest + beyond, np.empty(3, np.int64), np.empty(3, np.int64)
+    cells = sides(spheres, width, low, side)
+    first, number, at = np.zeros(cells + 2, np.int64), np.empty(size, np.int64), np.empty((size, 4))
+    sort_cells(spheres, width, low, side, LARGE * mean, first, number, at)
+    first, runs, count = first[1:], np.empty((13, 2), np.int64), 0
+    beside, who = np.empty((4, size)), np.empty(size, np.int64)
+    xs, ys, zs, radii = beside[0], beside[1], beside[2], beside[3]
+    for a in range(side[0]):
+        for b in range(side[1]):
+            for c in range(side[2]):
+                k = (a * side[1] + b) * side[2] + c
+                if first[k] == first[k + 1]:
+                    continue
+                several = 0
+                for n in range(runs_about(a, b, c, side, first, runs)):
+                    several = collect(at, number, runs[n, 0], runs[n, 1], xs, ys, zs, radii, who, several)
+                for s in range(first[k + 1] - first[k]):
+                    before = count
+                    count = meet(xs, ys, zs, radii, who, s, several, beyond, found, count)
+                    if picky:
+                        count = thin(spheres, parameters, start, order, beyond, found, before, count)
+    for n in range(count):
+        i, j = ends(found[n])
+        found[n] = both(i, j)
+    if first[cells] < size:
+        count = meet_large(spheres, parameters, start, order, LARGE * mean, beyond, picky, found, count)
+    return count
+
+
+@device
+def meet_large(spheres, parameters, start, order, most, beyond, picky, found, count) -> Any:  # type: ignore[no-untyped-def]
+    """List the spheres with radii above `most` with all others; how many pairs are listed then, -1 if there is no
+    place."""
+    for i in range(spheres.shape[0]):
+        if spheres[i, 3] <= most:
+            continue
+        for j in range(spheres.shape[0]):
+            apart = 0.0
+            for c in range(3):
+                apart += (spheres[i, c] - spheres[j, c]) ** 2
+            reach = spheres[i, 3] + spheres[j, 3] + beyond
+            if apart < reach * reach and (j > i or (j < i and spheres[j, 3] <= most)):
+                if count < 0 or count >= found.shape[0]:
+                    return -1
+                found[count] = both(i, j)
+                count += 1 if not picky or near(spheres, parameters, start, order, i, j, beyond) else 0
+    return count

@@ -1,0 +1,211 @@
+"""The list of neighbours: all pairs in its range and no others, in one order; and sums that do not show when it was
+made."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hookean import Scene
+from hookean.compiled import dispatch
+from hookean.forces import KINDS, cells, neighbours
+from hookean.forces.base import Block
+from hookean.system.system import compile
+
+FORCE = KINDS["collide"]
+
+
+def spheres(x: np.ndarray, radius: Any = 0.5, **more: Any) -> Block:
+    """The compiled block of spheres about all particles, k = 10."""
+    force = {"kind": "collide", "particles": list(range(len(x))), "radius": radius, "strength": 10.0, **more}
+    return compile(Scene(particles=x, forces=[force])).groups[0].block
+
+
+def whole(block: Block, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Forces (n, 3), lumped stiffness (n,) and energy."""
+    f, w = np.zeros_like(x), np.zeros(len(x))
+    kernel = dispatch.compiled(FORCE.kernel, "force")
+    energy = kernel(x, np.zeros_like(x), block.indices, block.parameters, block.memory, f, w)
+    return f, w, float(energy)
+
+
+def packed(block: Block, x: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Forces (n, 3) added to a load as the loops of solvers do it."""
+    four, f = np.zeros((2, len(x), 4))
+    four[:, :3], f[:, :3] = x, load
+    given = FORCE.pack(block, block.memory, False)
+    assert given is not None
+    dispatch.compiled(FORCE.kernel, "force")(four, np.zeros_like(four), *given, f, np.zeros(len(x)))  # type: ignore[misc]
+    assert not f[:, 3].any()
+    return f[:, :3]
+
+
+def of_all_pairs(x: np.ndarray, radius: np.ndarray, k: float) -> tuple[np.ndarray, float]:
+    """Forces and energy by the formula, pair by pair."""
+    apart = x[None] - x[:, None]
+    distance = np.sqrt((apart**2).sum(axis=2)) + np.eye(len(x))
+    overlap = np.where(np.eye(len(x)), 0.0, np.maximum(radius[:, None] + radius - distance, 0.0))
+    return -k * np.einsum("ij,ijc->ic", overlap / distance, apart), 0.25 * k * float((overlap**2).sum())
+
+
+def cloud(seed: int, count: int, *, ordered: bool, density: float = 1.2) -> np.ndarray:
+    """Centres at random; ordered by cells, or not."""
+    x = np.random.default_rng(seed).uniform(0.0, (count / density) ** (1 / 3), (count, 3))
+    return x[np.lexsort(np.floor(x).T)] if ordered else x
+
+
+def pairs_of(block: Block) -> np.ndarray:
+    """The pairs of elements (k, 2) in the list."""
+    room = block.rooms[0]
+    pairs = neighbours.pairs_in(room.ctypes.data)[0][: int(room[0, neighbours.FOUND])]
+    order = neighbours.order_in(room.ctypes.data, len(block.indices)).astype(np.int64)
+    found: np.ndarray = order[np.column_stack([pairs & 0xFFFFFFFF, pairs >> 32])]
+    return found
+
+
+@settings(derandomize=True, deadline=None, max_examples=60, database=None)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    count=st.integers(1, 200),
+    shape=st.sampled_from([(1, 1, 1), (1, 1, 0), (30, 1, 0), (1, 0, 0), (0, 0, 1000), (1, 1e6, 1e10)]),
+    large=st.integers(0, 2),
+    ordered=st.booleans(),
+)
+def test_the_list_has_all_pairs_in_its_range_and_no_others(
+    seed: int, count: int, shape: tuple[float, ...], large: int, ordered: bool
+) -> None:
+    """Once each, by their rows, in boxes of all shapes, flat, long, and too long for a cell each; as every distance
+    tells. A negative control is below."""
+    rng = np.random.default_rng(seed)
+    x = rng.uniform(0.0, 1.0, (count, 3)) * shape * (count / 1.2) ** (1 / 3)
+    x = x[np.lexsort(np.floor(x).T)] if ordered else x
+    radius = rng.uniform(0.3, 0.6, count)
+    radius[:large] *= 8.0
+    block = spheres(x, radius)
+    whole(block, x)
+    room = block.rooms[0]
+    if room[0, neighbours.COUNT] != count:
+        assert large or shape.count(0) == 2  # more than there is place for: large ones, or all on a line
+        return
+    found = pairs_of(block)
+    apart = np.sqrt(((x[:, None] - x) ** 2).sum(axis=2)) - radius[:, None] - radius - room[0, neighbours.RANGE]
+    i, j = np.nonzero(np.triu(apart < 0.0, 1))
+    assert {(a, b) for a, b in np.sort(found, axis=1).tolist()} == set(zip(i.tolist(), j.tolist(), strict=True))
+    pairs = neighbours.pairs_in(room.ctypes.data)[0][: len(found)]
+    assert len(found) == len(i) and (np.diff((pairs & 0xFFFFFFFF) << 32 | pairs >> 32) > 0).all()
+
+
+@pytest.mark.parametrize("ordered", [True, False])
+def test_forces_in_loops_do_not_show_the_age_of_the_list(ordered: bool) -> None:
+    """To the bit: with a list of the shape before, new ones of the least and the greatest range, and none; and they are
+    the sums over all pairs, to 1e-12 of the largest. Spheres in order have no table of their own."""
+    x = cloud(3, 700, ordered=ordered)
+    block, load = spheres(x), np.random.default_rng(4).normal(size=x.shape)
+    room, skin = block.rooms[0], 0.075
+    assert room[0, neighbours.AS_GIVEN] == ordered
+    packed(block, x, load)
+    moved = x + np.random.default_rng(5).uniform(-0.03, 0.03, x.shape)  # less than half of the range, 2 skins
+    before = room[0, : neighbours.USED].copy()
+    found = [packed(block, moved, load)]
+    assert (room[0, : neighbours.USED] == before).all() and room[0, neighbours.USED] == 1.0
+    for part in (neighbours.LEAST, neighbours.MOST):
+        room[0, [neighbours.RANGE, neighbours.COUNT]] = part * skin, len(x)
+        # moved too far for this range, and of use for as long as it takes to keep it
+        room[0, neighbours.USED] = neighbours.BALANCE / part
+        far = packed(block, moved + 10.0, load)
+        assert room[0, neighbours.RANGE] == part * skin and np.abs(far - found[0]).max() < 1e-9
+        room[0, neighbours.USED] = neighbours.BALANCE / part
+        found.append(packed(block, moved, load))
+        assert room[0, neighbours.RANGE] == part * skin
+    place = room[0, neighbours.PAIRS]
+    room[0, [neighbours.COUNT, neighbours.PAIRS]] = -1.0, 1.0
+    found.append(packed(block, moved, load))
+    assert room[0, neighbours.COUNT] == -1.0
+    room[0, neighbours.PAIRS] = place
+    for one in found[1:]:
+        assert (one == found[0]).all()
+    expected, _ = of_all_pairs(moved, np.full(len(x), 0.5), 10.0)
+    assert np.abs(found[0] - load - expected).max() <= 1e-12 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sums_are_those_over_all_pairs(seed: int) -> None:
+    """Forces and energy to 1e-12 of the largest, along a walk that makes new lists."""
+    rng = np.random.default_rng(seed)
+    x = cloud(seed, 400, ordered=seed % 2 == 0)
+    radius = rng.uniform(0.3, 0.6, 400)
+    block = spheres(x, radius)
+    for step in (0.0, 0.01, 0.01, 0.1, 1.0, 0.01):
+        x = x + step * rng.normal(size=x.shape)
+        expected, least = of_all_pairs(x, radius, 10.0)
+        f, _, energy = whole(block, x)
+        assert np.abs(f - expected).max() <= 1e-12 * np.abs(expected).max()
+        assert energy == pytest.approx(least, rel=1e-12)
+        assert np.abs(packed(block, x, np.zeros_like(x)) - expected).max() <= 1e-12 * np.abs(expected).max()
+
+
+def test_a_list_without_one_touching_pair_is_noticed() -> None:
+    """The negative control: one pair less, and the sums differ from those over all pairs by its force."""
+    x = cloud(7, 300, ordered=True)
+    block = spheres(x)
+    room = block.rooms[0]
+    whole(block, x)
+    pairs = neighbours.pairs_in(room.ctypes.data)[0][: int(room[0, neighbours.FOUND])]
+    i, j = pairs & 0xFFFFFFFF, pairs >> 32
+    overlap = 1.0 - np.sqrt(((x[i] - x[j]) ** 2).sum(axis=1))
+    out = int(np.argmax(overlap))
+    pairs[out:-1] = pairs[out + 1 :].copy()
+    room[0, neighbours.FOUND] -= 1.0
+    expected, _ = of_all_pairs(x, np.full(len(x), 0.5), 10.0)
+    for f in (whole(block, x)[0], packed(block, x, np.zeros_like(x))):
+        assert np.abs(f - expected).max() == pytest.approx(
+            10.0 * overlap[out] * np.abs(x[i[out]] - x[j[out]]).max() / (1.0 - overlap[out]), rel=1e-9
+        )
+
+
+def test_the_range_follows_the_motion() -> None:
+    """At rest a list ends with the least range, and pairs that are too many are gone; where every sphere moves by a
+    skin each time, it has the greatest."""
+    x = cloud(2, 400, ordered=True)
+    block, skin, rng = spheres(x), 0.075, np.random.default_rng(0)
+    room, still = block.rooms[0], np.zeros_like(x)
+    packed(block, x, still)
+    first = room[0, neighbours.FOUND]
+    for _ in range(int(2 * neighbours.STEP * neighbours.BALANCE / neighbours.LEAST)):
+        packed(block, x, still)
+    assert room[0, neighbours.RANGE] == neighbours.LEAST * skin and room[0, neighbours.FOUND] < first
+    for _ in range(60):
+        turn = rng.normal(size=x.shape)
+        x = x + skin * turn / np.sqrt((turn**2).sum(axis=1))[:, None]
+        packed(block, x, still)
+    assert room[0, neighbours.RANGE] == neighbours.MOST * skin
+
+
+def test_packed_spheres_have_the_radii_and_groups_of_now() -> None:
+    """Parameters written after the list was made: forces are those of a new scene, to the bit."""
+    x = cloud(9, 200, ordered=True)
+    block, still = spheres(x), np.zeros_like(x)
+    packed(block, x, still)
+    block.parameters[:, cells.RADIUS] = 0.6
+    assert (packed(block, x, still) == packed(spheres(x, 0.6), x, still)).all()
+    block.parameters[:, cells.GROUP] = 1.0
+    assert not packed(block, x, still).any()
+
+
+def test_a_sphere_that_is_nowhere_leaves_the_others_as_they_are() -> None:
+    """Its coordinates are not numbers, or infinite: nothing touches it, and forces of the others are the bits of a
+    scene in which it is far away; once it is back, it is felt again."""
+    x = cloud(11, 200, ordered=True)
+    block, still = spheres(x), np.zeros_like(x)
+    away, back = x.copy(), packed(spheres(x), x, still)
+    away[0] = 1e3
+    expected = packed(spheres(x), away, still)
+    for nowhere in (np.nan, np.inf):
+        lost = x.copy()
+        lost[0] = nowhere
+        assert (packed(block, lost, still)[1:] == expected[1:]).all()
+        assert (packed(block, x, still) == back).all() and np.abs(back[0]).max() > 0.0
