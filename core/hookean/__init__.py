@@ -28,6 +28,7 @@ from hookean.errors import InputError as InputError
 if TYPE_CHECKING:
     from hookean.files.save import open as open
     from hookean.files.save import save as save
+    from hookean.forces.align_faces import AlignFaces as AlignFaces
     from hookean.forces.anchor_spring import AnchorSpring as AnchorSpring
     from hookean.forces.angle import Angle as Angle
     from hookean.forces.angle_snap import AngleSnap as AngleSnap
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from hookean.forces.collide_curve import CollideCurve as CollideCurve
     from hookean.forces.collide_lines import CollideLines as CollideLines
     from hookean.forces.collide_solid import CollideSolid as CollideSolid
+    from hookean.forces.concentric import Concentric as Concentric
     from hookean.forces.conical import Conical as Conical
     from hookean.forces.constant_tension import ConstantTension as ConstantTension
     from hookean.forces.cyclic_quad import CyclicQuad as CyclicQuad
@@ -54,10 +56,13 @@ if TYPE_CHECKING:
     from hookean.forces.equal_length import EqualLength as EqualLength
     from hookean.forces.floor import Floor as Floor
     from hookean.forces.gas import Gas as Gas
+    from hookean.forces.geodesic_strip import GeodesicStrip as GeodesicStrip
     from hookean.forces.hinge import Hinge as Hinge
     from hookean.forces.hydrostatic import Hydrostatic as Hydrostatic
+    from hookean.forces.isothermic import Isothermic as Isothermic
     from hookean.forces.length_ratio import LengthRatio as LengthRatio
     from hookean.forces.length_snap import LengthSnap as LengthSnap
+    from hookean.forces.level_set import LevelSet as LevelSet
     from hookean.forces.line_weight import LineWeight as LineWeight
     from hookean.forces.magnet_snap import MagnetSnap as MagnetSnap
     from hookean.forces.mirror import Mirror as Mirror
@@ -71,11 +76,14 @@ if TYPE_CHECKING:
     from hookean.forces.pull_to_line import PullToLine as PullToLine
     from hookean.forces.pull_to_mesh import PullToMesh as PullToMesh
     from hookean.forces.pull_to_plane import PullToPlane as PullToPlane
+    from hookean.forces.pull_to_surface import PullToSurface as PullToSurface
     from hookean.forces.rigid_body import RigidBody as RigidBody
+    from hookean.forces.rigid_collide import RigidCollide as RigidCollide
     from hookean.forces.self_weight import SelfWeight as SelfWeight
     from hookean.forces.shell import Shell as Shell
     from hookean.forces.smooth import Smooth as Smooth
     from hookean.forces.soapfilm import SoapFilm as SoapFilm
+    from hookean.forces.solid_plane_collide import SolidPlaneCollide as SolidPlaneCollide
     from hookean.forces.springs import Springs as Springs
     from hookean.forces.tangent_incircles import TangentIncircles as TangentIncircles
     from hookean.forces.tangential_smooth import TangentialSmooth as TangentialSmooth
@@ -136,6 +144,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "AlignFaces",
     "Anchor",
     "AnchorSpring",
     "Anchors",
@@ -154,6 +163,7 @@ __all__ = [
     "CollideCurve",
     "CollideLines",
     "CollideSolid",
+    "Concentric",
     "Conical",
     "ConstantTension",
     "CyclicQuad",
@@ -165,12 +175,15 @@ __all__ = [
     "Force",
     "Frame",
     "Gas",
+    "GeodesicStrip",
     "Geometry",
     "Hinge",
     "Hydrostatic",
     "InputError",
+    "Isothermic",
     "LengthRatio",
     "LengthSnap",
+    "LevelSet",
     "LineWeight",
     "MagnetSnap",
     "MeshData",
@@ -187,9 +200,11 @@ __all__ = [
     "PullToLine",
     "PullToMesh",
     "PullToPlane",
+    "PullToSurface",
     "Report",
     "Result",
     "RigidBody",
+    "RigidCollide",
     "Scene",
     "Script",
     "SelfWeight",
@@ -198,6 +213,7 @@ __all__ = [
     "Simulation",
     "Smooth",
     "SoapFilm",
+    "SolidPlaneCollide",
     "Springs",
     "Status",
     "Stream",

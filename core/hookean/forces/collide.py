@@ -7,14 +7,11 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled import dispatch
-from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.cells import GROUP, PARALLEL, RADIUS, ends, nearest
 from hookean.forces.neighbours import (
     AS_GIVEN,
-    FOUND,
-    HEAD,
     HERE,
     capacity,
     forget,
@@ -22,7 +19,7 @@ from hookean.forces.neighbours import (
     listed,
     make_room,
     order_in,
-    pairs_in,
+    pairs_listed,
     renew,
     seen_in,
     served,
@@ -190,9 +187,8 @@ def push_all(parameters, start, here, sums, counts, order, short, room, margin) 
     """Forces of all pairs of a crowd: those of the `short` list, else every one; returns their energy."""
     energy, several = 0.0, here.shape[0]
     some, table = np.empty(SEVERAL, np.int64), np.empty((2, SEVERAL))
-    pairs, reach = pairs_in(room)
+    pairs, reach, number = pairs_listed(room)
     skin, stiffness = parameters[start, SKIN], parameters[start, STIFFNESS]
-    number = int(rows(room, 1.0, HEAD)[0, FOUND])
     if short:
         several = 1
     else:
@@ -268,8 +264,7 @@ def overlaps(x, indices, parameters, pair, place):  # type: ignore[no-untyped-de
         here, sums, counts = tables(room, stop - start)
         order = order_in(room, stop - start)
         short = listed(x, indices, parameters, start, here, sums, counts, order, room, skin)
-        pairs, reaches = pairs_in(room)
-        number = int(rows(room, 1.0, HEAD)[0, FOUND])
+        pairs, reaches, number = pairs_listed(room)
         if not short:
             pairs, reaches = np.empty(stop - start, np.int64), np.empty(stop - start)
         for row in range(1 if short else stop - start):
@@ -334,7 +329,9 @@ class Crowd(Force):
         return np.arange(len(block.indices)), block
 
     @classmethod
-    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats, Floats] | None:
+    def pack(
+        cls, block: Block, memory: Floats, damped: bool
+    ) -> tuple[Ints, Floats] | tuple[Ints, Floats, Floats] | None:
         """Of spheres a row for each room (`PACKED`), and the parameters in the place of memory."""
         index, table = block.indices, block.parameters
         if index.shape[1] != 1 or not len(index):

@@ -101,6 +101,13 @@ def pairs_in(room: Any) -> Any:
 
 
 @device
+def pairs_listed(room: Any) -> Any:
+    """`pairs_in` a room, and how many are listed."""
+    pairs, reach = pairs_in(room)
+    return pairs, reach, int(rows(room, 1.0, HEAD)[0, FOUND])
+
+
+@device
 def seen_in(room: Any) -> Any:
     """The elements in the room at an address as they were when the list was made."""
     seen, _, _, _, columns = parts(room)

@@ -12,6 +12,7 @@ from hookean.compiled.marks import device
 from hookean.errors import InputError
 from hookean.forces import groups
 from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.cells import ends
 from hookean.forces.collide import Crowd
 from hookean.forces.convex import (
     BASE,
@@ -46,7 +47,7 @@ from hookean.forces.convex import (
     touch,
 )
 from hookean.forces.groups import begins, following
-from hookean.forces.neighbours import NUMBER, ignore, listed, make_room, order_in, sums, tables
+from hookean.forces.neighbours import listed, make_room, order_in, pairs_listed, some_pairs, tables
 from hookean.forces.rigid_body import CENTRE, POSE, SHAPE, find_pose
 from hookean.forces.sticking import ANCHOR, PARTNER, STARTED, grip, hold_on
 from hookean.values.columns import IndexRows, Labels, NonNegatives, Points
@@ -205,18 +206,19 @@ def spread(indices: Any, parameters: Any, bodies: Any, count: Any, f: Any, w: An
 def all_pairs(parameters: Any, memory: Any, start: Any, solids: Any, centres: Any, desk: Any, noting: Any) -> Any:
     """All contacts of a crowd, in the order of the list of neighbours; returns their energy."""
     room, count, energy = parameters[start, ROOM], centres.shape[0], 0.0
-    plain = centres[:, 3:5]
-    here, order = sums(room, count), order_in(room, count)
-    short = listed(centres, np.arange(count).reshape(count, 1), plain, 0, here, order, room, parameters[start, SKIN])
-    _, starts, found = tables(room)
-    for i in range(count):
-        first = int(starts[i, 0]) if short else i + 1
-        last = int(starts[i + 1, 0]) if short else count
-        one = int(order[i, NUMBER])
-        for s in range(first, last):
-            other = int(order[int(found[s, 0]) if short else s, NUMBER])
-            if short or not ignore(plain, one, other):
-                energy += meet(parameters, memory, one, other, solids, desk, noting)
+    plain, index = centres[:, 3:5], np.arange(count).reshape(count, 1)
+    here, sums, counts = tables(room, count)
+    order, several = order_in(room, count), 1
+    short = listed(centres, index, plain, 0, here, sums, counts, order, room, parameters[start, SKIN])
+    pairs, reach, number = pairs_listed(room)
+    if not short:
+        pairs, reach, several = np.empty(count, np.int64), np.empty(count), count
+    for i in range(several):
+        if not short:
+            number = some_pairs(plain, 0, order, i, pairs, reach)
+        for n in range(number):
+            one, other = ends(pairs[n])
+            energy += meet(parameters, memory, int(order[one]), int(order[other]), solids, desk, noting)
     return energy
 
 
@@ -343,7 +345,7 @@ class RigidCollide(Crowd):
         return found, np.array(centres).reshape(-1, 3)
 
     @classmethod
-    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats]:
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
         """The same, without what is for the stiffness."""
         parameters = block.parameters.copy()
         parameters[:, QUIET] = 1.0
