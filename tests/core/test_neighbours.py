@@ -209,3 +209,18 @@ def test_a_sphere_that_is_nowhere_leaves_the_others_as_they_are() -> None:
         lost[0] = nowhere
         assert (packed(block, lost, still)[1:] == expected[1:]).all()
         assert (packed(block, x, still) == back).all() and np.abs(back[0]).max() > 0.0
+
+
+def test_several_crowds_on_particles_in_any_order_are_packed() -> None:
+    """Two forces in one block, on consecutive particles and on the others in disorder, which do not feel each other:
+    forces in loops are those over all pairs of each, to 1e-12 of the largest."""
+    rng, x = np.random.default_rng(13), cloud(13, 300, ordered=True, density=2.4)
+    parts = np.arange(120, 240), rng.permutation(np.r_[:120, 240:300])
+    forces = [{"kind": "collide", "particles": part, "radius": 0.5, "strength": 10.0} for part in parts]
+    block = compile(Scene(particles=x, forces=forces)).groups[0].block
+    expected = np.zeros_like(x)
+    for part in parts:
+        expected[part], _ = of_all_pairs(x[part], np.full(len(part), 0.5), 10.0)
+    for moved in (x, x + [5.0, 0.0, 0.0]):
+        difference = packed(block, moved, np.zeros_like(x)) - expected
+        assert np.abs(difference).max() <= 1e-12 * np.abs(expected).max() * (1.0 + np.abs(moved).max())

@@ -213,19 +213,21 @@ def push_packed(x, indices, crowd, parameters, f) -> None:  # type: ignore[no-un
     most, straight, a = served(room, size, skin, 0.0), crowd[PARTICLE] >= 0.0, int(max(crowd[PARTICLE], 0.0))
     at = x[a : a + size] if straight else here
     if not straight:
-        gather(x, indices, start, here, sums, counts, order)
+        gather(x, indices, start, here, sums, counts, order, True)
     short = most >= 0.0 and unmoved(at, seen, most)
     if not short:
-        gather(x, indices, start, here, sums, counts, order)
+        gather(x, indices, start, here, sums, counts, order, True)
         short = renew(here, parameters, start, order, room, skin)
     if straight:
         push_all(parameters, start, at, f[a : a + size], counts, order, short, room, 0.0)
         return
     push_all(parameters, start, here, sums, counts, order, short, room, 0.0)
-    for i in range(size):
-        a = indices[start + int(order[i]), 0]
-        for c in range(3):
-            f[a, c] += sums[i, c]
+    for n in range(size):
+        i, end = np.uint64(n), np.uint64(indices[start + n, 0])
+        f[end, 0] += sums[i, 0]
+        f[end, 1] += sums[i, 1]
+        f[end, 2] += sums[i, 2]
+        f[end, 3] += sums[i, 3]
 
 
 def collide_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -332,7 +334,7 @@ class Crowd(Force):
     def pack(
         cls, block: Block, memory: Floats, damped: bool
     ) -> tuple[Ints, Floats] | tuple[Ints, Floats, Floats] | None:
-        """Of spheres a row for each room (`PACKED`), and the parameters in the place of memory."""
+        """Of spheres their particles by rows; a row for each room (`PACKED`); the parameters in the place of memory."""
         index, table = block.indices, block.parameters
         if index.shape[1] != 1 or not len(index):
             return None
@@ -346,6 +348,10 @@ class Crowd(Force):
             forget(room, part[:, RADIUS], part[:, GROUP])
             particle = index[start, 0]
             straight = room[0, AS_GIVEN] and np.array_equal(index[start:stop, 0], particle + np.arange(stop - start))
+            if not room[0, AS_GIVEN]:
+                index = index.copy() if index is block.indices else index
+                order = order_in(room.ctypes.data, stop - start).astype(np.int64)
+                index[start:stop] = block.indices[start:stop][order]
             row[:] = start, stop - start, part[0, STIFFNESS], part[0, SKIN], address, particle if straight else -1
         return index, crowds, table
 

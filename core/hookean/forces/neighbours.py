@@ -51,8 +51,8 @@ def make_room(corners: Any) -> np.ndarray:
 
 
 def in_layers(points: Any) -> Any:
-    """Numbers of points (n, 3) layer by layer along the longest axis, line by line, cell by cell: whoever goes through
-    them meets neighbours in a few even streams."""
+    """Numbers of points (n, 3) layer by layer along the longest axis, line by line, cell by cell: on the way through
+    them neighbours come in a few even streams."""
     low, high = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
     width = (high - low).max(initial=0.0) / max(len(points), 1) ** (1.0 / 3.0)
     cells = np.floor((points - low) / (width or 1.0))
@@ -65,7 +65,7 @@ def way(points: Any) -> float:
 
 
 def forget(room: Any, radius: Any, group: Any) -> None:
-    """Have the list of a room of spheres made anew if these are not the radii and groups (n,) that it was made for."""
+    """Have the list of a room of spheres made again if these are not the radii and groups (n,) that it was made for."""
     count = len(radius)
     if room[0, COUNT] == count:
         start = HEAD + (HERE + SUMS + 1) * count
@@ -155,10 +155,10 @@ def unmoved(at: Any, seen: Any, most: Any) -> Any:
 
 
 @device
-def gather(x: Any, indices: Any, start: Any, here: Any, sums: Any, counts: Any, order: Any) -> None:
-    """Where the elements are, by rows, and no forces yet."""
+def gather(x, indices, start, here, sums, counts, order, by_rows) -> None:  # type: ignore[no-untyped-def]
+    """Where the elements are, by rows, and no forces yet; `by_rows`: so are the indices."""
     for n in range(here.shape[0]):
-        i, e = np.uint64(n), start + int(order[n])
+        i, e = np.uint64(n), start + (n if by_rows else int(order[n]))
         if here.shape[1] != HERE:
             capsule(x, indices, e, here, i)
             continue
@@ -286,7 +286,7 @@ def served(room: Any, count: Any, skin: Any, margin: Any) -> Any:
 
 @device
 def renew(here: Any, parameters: Any, start: Any, order: Any, room: Any, skin: Any) -> Any:
-    """Make the list anew with the range that suits how long it was of use; whether there is place for it."""
+    """Make the list again with the range that suits how long it was of use; whether there is place for it."""
     head = rows(room, 1.0, HEAD)
     beyond, uses = head[0, RANGE], head[0, USED]
     if head[0, COUNT] < 0.0:
@@ -304,8 +304,8 @@ def renew(here: Any, parameters: Any, start: Any, order: Any, room: Any, skin: A
 @device
 def listed(x, indices, parameters, start, here, sums, counts, order, room, skin) -> Any:  # type: ignore[no-untyped-def]
     """Gather elements, and see that the list in the room at an address holds all pairs within a skin [length] of their
-    reach: it is made anew if needed. If there is no place for it, False: every pair has to be checked."""
-    gather(x, indices, start, here, sums, counts, order)
+    reach: it is made again if needed. If there is no place for it, False: every pair has to be checked."""
+    gather(x, indices, start, here, sums, counts, order, False)
     count = here.shape[0]
     most = served(room, count, skin, skin)
     seen = seen_in(room)
