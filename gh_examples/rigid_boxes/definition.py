@@ -74,8 +74,8 @@ def definition() -> Definition:
     d = Definition(
         "rigid_boxes",
         "A wall of loose bricks",
-        "Each brick is a rigid body of its eight corners, and Rigid Collide keeps bricks apart, with friction. Set Reset "
-        "to False: they fall onto each other by the width of a joint, and stay.",
+        "Each brick is a rigid body of its eight corners, and Rigid Collide keeps bricks apart, with friction. Set "
+        "Reset to False: they fall onto each other by the width of a joint, and stay.",
     )
     with d.group("Wall"):
         sliders = {
