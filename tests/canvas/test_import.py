@@ -159,6 +159,54 @@ def test_points_and_a_solid_become_a_contact_with_it(both: bool) -> None:
     assert report.complete == (not both) and ("the solid stays where it is" in report.text()) == both
 
 
+def test_two_meshes_become_solids_that_collide() -> None:
+    """Corners of both, with the number of their mesh; planes that are empty are reported as nothing."""
+    d = Kangaroo("solids", "Solids", "RigidBodyCollide.")
+    typed = (("MeshA", None), ("MeshB", None), ("PlaneA", None), ("PlaneB", None), ("Strength", 7.0))
+    one, other = d.parameter("Mesh", "One"), d.parameter("Mesh", "Other")
+    d.solved(d.kangaroo("RigidBodyCollide", typed, ["SolidCollide"], mesha=one, meshb=other))
+    after, report = translated(d)
+    found, solids = the(after, "RigidCollide"), the(after, "Solids")
+    assert [part.id for part in behind(after, found, "point")] == [solids.id]
+    assert [part.id for part in behind(after, found, "group")] == [solids.id]
+    assert [part.label for part in behind(after, solids, "meshes")] == ["One"]
+    assert [part.label for part in behind(after, solids, "others")] == ["Other"]
+    assert report.complete and "convex hulls" in report.text()
+
+
+def test_a_mesh_and_a_plane_become_a_contact_of_its_corners() -> None:
+    d = Kangaroo("plane", "Plane", "SolidPlaneCollide.")
+    typed = (("Solid", None), ("SolidPlane", None), ("CollisionPlane", None), ("Strength", 7.0))
+    solid, plane = d.parameter("Mesh", "Block"), d.parameter("Plane", "Ground")
+    d.solved(d.kangaroo("SolidPlaneCollide", typed, ["SolidPlaneCollide"], solid=solid, collisionplane=plane))
+    after, report = translated(d)
+    found, planes = the(after, "SolidPlaneCollide"), the(after, "Planes")
+    assert [part.id for part in behind(after, found, "normal")] == [planes.id]
+    assert [part.id for part in behind(after, found, "origin")] == [planes.id]
+    assert [part.label for part in behind(after, planes, "planes")] == ["Ground"]
+    assert [part.label for part in behind(after, the(after, "MVerts"), "mesh")] == ["Block"]
+    assert report.complete
+
+
+@pytest.mark.parametrize(
+    ("name", "inputs", "ours", "helper"),
+    [("Concentric", "Axis", "Concentric", "Ends"), ("AlignFaces", "Face", "AlignFaces", "Mates")],
+)
+@pytest.mark.parametrize("flip", [False, True])
+def test_mates_take_the_corners_of_what_they_join(name: str, inputs: str, ours: str, helper: str, flip: bool) -> None:
+    """Whether normals become the same is kept; an axis has no direction here, which is reported."""
+    d = Kangaroo("mates", "Mates", f"{name}.")
+    a, b = f"{inputs}A", f"{inputs}B"
+    typed = (("PlaneA", None), ("PlaneB", None), (a, None), (b, None), ("Flip", flip), ("Strength", 7.0))
+    one, other = d.parameter("Curve", "One"), d.parameter("Curve", "Other")
+    d.solved(d.kangaroo(name, typed, [name], **{a.lower(): one, b.lower(): other}))
+    after, report = translated(d)
+    found, before = the(after, ours), the(after, helper)
+    for i in range(1, 7 if name == "AlignFaces" else 5):
+        assert [part.id for part in behind(after, found, f"point_{i}")] == [before.id]
+    assert report.complete == (name == "AlignFaces" or not flip)
+
+
 def test_typed_values_are_kept_and_those_that_are_ours_anyway_are_not_repeated() -> None:
     d = Kangaroo("typed", "Typed", "Values in components.")
     line = d.native("Line", start_point=d.point(0, 0, 0), end_point=d.point(1, 0, 0))

@@ -364,6 +364,51 @@ GOALS: dict[str, Swap] = {
         },
         {"strength": 1.0, "s": 1.0},
     ),
+    "rigidbodycollide": Swap(
+        (
+            Piece("RigidCollide", {"strength": "strength"}, {"force": "solidcollide"}),
+            Piece("*solids", {"mesha": "meshes", "meshb": "others"}, feeds={"points": "0.point", "numbers": "0.group"}),
+        ),
+        "the convex hulls of both meshes; k is a pressure by depth here, and Kangaroo's law is not published",
+        without=dict.fromkeys(("planea", "planeb"), _CARRIED),
+        usual=dict.fromkeys(("planea", "planeb"), None),
+    ),
+    "solidplanecollide": Swap(
+        (
+            Piece("SolidPlaneCollide", {"strength": "strength"}, {"force": "solidplanecollide"}),
+            Piece("MeshVertices", {"solid": "mesh"}, feeds={"points": "0.point"}),
+            Piece("*plane", {"collisionplane": "planes"}, feeds={"origin": "0.origin", "normal": "0.normal"}),
+        ),
+        "k for each corner; Kangaroo's law is not published",
+        without={"solidplane": _CARRIED},
+        usual={"solidplane": None},
+    ),
+    "concentric": Swap(
+        (
+            Piece("Concentric", {"strength": "strength"}, {"force": "concentric"}),
+            Piece(
+                "*ends",
+                {"axisa": "lines", "axisb": "others"},
+                feeds={f"point_{i}": f"0.point_{i}" for i in (1, 2, 3, 4)},
+            ),
+        ),
+        "axes start and end at points of their bodies; Kangaroo's law is not published",
+        without={**dict.fromkeys(("planea", "planeb"), _CARRIED), "flip": "an axis has no direction here"},
+        usual={"planea": None, "planeb": None, "flip": False},
+    ),
+    "alignfaces": Swap(
+        (
+            Piece("AlignFaces", {"strength": "strength", "flip": "flip"}, {"force": "alignfaces"}),
+            Piece(
+                "*mates",
+                {"facea": "faces", "faceb": "others"},
+                feeds={f"point_{i}": f"0.point_{i}" for i in (1, 2, 3, 4, 5, 6)},
+            ),
+        ),
+        "faces are outlines with corners at points of their bodies; Kangaroo's law is not published",
+        without=dict.fromkeys(("planea", "planeb"), _CARRIED),
+        usual=dict.fromkeys(("planea", "planeb"), None),
+    ),
     "rigidpointset": _RIGID,
     "rigidbody": _RIGID,
 }

@@ -29,7 +29,6 @@ _SOLVERS, _TOOLS = frozenset(_SOLVER_NAMES.split()), frozenset(_TOOL_NAMES.split
 
 _PURE = "geometry without mechanics of this kind is not here"
 _COLLIDE = "collisions of curves, meshes and boxes that move are not here"
-_RIGID = "contacts and joints of rigid bodies are not here"
 _SOLID = "elements of solids and membranes with a Young's modulus are not here"
 _LINE = (
     "forces between lines, or points and lines, by a power of their distance are not here; Collide Lines is a contact"
@@ -37,7 +36,6 @@ _LINE = (
 _REASONS = {
     _PURE: "isothermic g2 gstring levelset cpmesh reciprocalstructure rheotomicsurface",
     _COLLIDE: "collide2d curvecollide imagecircles softbodycollide boxcollide",
-    _RIGID: "solidplanecollide rigidbodycollide concentric alignfaces",
     _SOLID: "triangularelement tetrahedralelement",
     _LINE: "lineline pointline",
 }

@@ -246,8 +246,43 @@ def at(item):
 places = [canvas.geometry.to_point(at(item)) for item in chosen or given]
 targets = [canvas.geometry.to_point(at(item)) for item in given] or places
 '''
+SOLIDS = '''"""The corners of meshes, and the number of the mesh of each."""
+
+from hookean_client import canvas
+
+points, numbers = [], []
+for number, item in enumerate(canvas.listed(_meshes) + canvas.listed(_others)):
+    for place in canvas.geometry.mesh(item)["vertices"]:
+        points.append(canvas.geometry.to_point(place))
+        numbers.append(number)
+'''
+MATES = '''"""Three corners of each of two faces."""
+
+from hookean_client import canvas
+
+columns = point_1, point_2, point_3, point_4, point_5, point_6 = [], [], [], [], [], []
+for one, other in zip(*canvas.matched(canvas.listed(_faces), canvas.listed(_others))):
+    for points, place in zip(columns, canvas.geometry.straight(one)[:3] + canvas.geometry.straight(other)[:3]):
+        points.append(canvas.geometry.to_point(place))
+'''
 
 HELPERS = {
+    "*solids": Recipe(
+        "Solids",
+        "Solids",
+        "Corners of meshes by their bodies",
+        SOLIDS,
+        (Slot("_meshes", "Meshes", 1, "mesh"), Slot("_others", "Other meshes", 1, "mesh")),
+        (Slot("points", "Corners"), Slot("numbers", "Number of the mesh of each")),
+    ),
+    "*mates": Recipe(
+        "Mates",
+        "Mates",
+        "Corners of pairs of faces",
+        MATES,
+        (Slot("_faces", "Outlines of faces", 1), Slot("_others", "Outlines, one for each", 1)),
+        tuple(Slot(f"point_{i}", f"Point {i} of each pair") for i in (1, 2, 3, 4, 5, 6)),
+    ),
     "*ends": Recipe("Ends", "Ends", "Ends of pairs of lines", ENDS, _PAIR, _POINTS),
     "*snap": Recipe(
         "Snap Strengths",
@@ -355,6 +390,8 @@ HELPERS = {
     ),
 }
 TOLD = {
+    "*solids": "a script for corners",
+    "*mates": "a script for corners",
     "*ends": "a script for ends",
     "*snap": "a script for ends and moments",
     "*clamp": "a script for ends and moments",
