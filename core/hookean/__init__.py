@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from hookean.forces.area_weight import AreaWeight as AreaWeight
     from hookean.forces.base import Force as Force
     from hookean.forces.bend import Bend as Bend
+    from hookean.forces.box_collide import BoxCollide as BoxCollide
+    from hookean.forces.circle_image import CircleImage as CircleImage
     from hookean.forces.clamp_angle import ClampAngle as ClampAngle
     from hookean.forces.clamp_length import ClampLength as ClampLength
     from hookean.forces.co_circular import CoCircular as CoCircular
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
     from hookean.forces.co_spherical import CoSpherical as CoSpherical
     from hookean.forces.coincident import Coincident as Coincident
     from hookean.forces.collide import Collide as Collide
+    from hookean.forces.collide_2d import Collide2d as Collide2d
     from hookean.forces.collide_curve import CollideCurve as CollideCurve
     from hookean.forces.collide_lines import CollideLines as CollideLines
     from hookean.forces.collide_solid import CollideSolid as CollideSolid
@@ -83,6 +86,7 @@ if TYPE_CHECKING:
     from hookean.forces.shell import Shell as Shell
     from hookean.forces.smooth import Smooth as Smooth
     from hookean.forces.soapfilm import SoapFilm as SoapFilm
+    from hookean.forces.soft_collide import SoftCollide as SoftCollide
     from hookean.forces.solid_plane_collide import SolidPlaneCollide as SolidPlaneCollide
     from hookean.forces.springs import Springs as Springs
     from hookean.forces.tangent_incircles import TangentIncircles as TangentIncircles
@@ -152,6 +156,8 @@ __all__ = [
     "AngleSnap",
     "AreaWeight",
     "Bend",
+    "BoxCollide",
+    "CircleImage",
     "ClampAngle",
     "ClampLength",
     "CoCircular",
@@ -160,6 +166,7 @@ __all__ = [
     "CoSpherical",
     "Coincident",
     "Collide",
+    "Collide2d",
     "CollideCurve",
     "CollideLines",
     "CollideSolid",
@@ -213,6 +220,7 @@ __all__ = [
     "Simulation",
     "Smooth",
     "SoapFilm",
+    "SoftCollide",
     "SolidPlaneCollide",
     "Springs",
     "Status",

@@ -11,9 +11,10 @@ from hookean.compiled import dispatch
 from hookean.compiled.dispatch import keep, rows
 from hookean.compiled.marks import device
 from hookean.forces import groups
-from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.cells import ends
 from hookean.forces.collide import NEAREST, SKIN, STIFFNESS, Crowd, crowd, end_of_crowd, overlapping
-from hookean.forces.neighbours import NUMBER, ROW, ignore, listed, order_in, sums, tables
+from hookean.forces.neighbours import listed, order_in, pairs_listed, some_pairs, tables
 from hookean.values.columns import IndexRows, Labels, Points, Table, fault
 from hookean.values.fields import Field, Maybe
 
@@ -65,7 +66,7 @@ def steepness(g: Any) -> Any:
 
 
 @device
-def press(here: Any, i: Any, j: Any, parameters: Any, start: Any, b: Any, g: Any) -> Any:
+def press(here, sums, counts, i, j, parameters, start, b, g) -> Any:  # type: ignore[no-untyped-def]
     """Add the forces of two circles, and what they count for the stiffness; returns their energy."""
     square, stiffness = 0.0, parameters[start, STIFFNESS]
     for c in range(3):
@@ -80,11 +81,11 @@ def press(here: Any, i: Any, j: Any, parameters: Any, start: Any, b: Any, g: Any
     for side in range(2):
         own = i if side == 0 else j
         bend = g[side, XX] * g[side, XX] + 2.0 * g[side, XY] * g[side, XY] + g[side, YY] * g[side, YY]
-        here[own, 7] += (1.0 + steepness(g[side])) * steep + overlap * np.sqrt(bend)
+        counts[own] += (1.0 + steepness(g[side])) * steep + overlap * np.sqrt(bend)
         for c in range(3):
             away = (here[j, c] - here[i, c]) / length if length > NEAREST else 0.0
             slope = (away if side == 0 else -away) + (g[side, X + c] if c < 2 else 0.0)
-            here[own, 4 + c] -= stiffness * overlap * slope
+            sums[own, c] -= stiffness * overlap * slope
     return 0.5 * stiffness * overlap * overlap
 
 
@@ -93,26 +94,28 @@ def circle_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-u
     while stop < indices.shape[0]:
         start = stop
         room, skin, stop = parameters[start, ROOM], parameters[start, SKIN], end_of_crowd(parameters, start)
-        here = sums(room, stop - start)
-        order = order_in(room, stop - start)
+        size, several = stop - start, 1
+        here, sums, counts = tables(room, size)
+        order = order_in(room, size)
         # the list has all that would touch as large as they can be
-        short = listed(x, indices, parameters, start, here, order, room, skin)
-        _, starts, found = tables(room)
-        for i in range(stop - start):
+        short = listed(x, indices, parameters, start, here, sums, counts, order, room, skin)
+        pairs, reach, number = pairs_listed(room)
+        if not short:
+            pairs, reach, several = np.empty(size, np.int64), np.empty(size), size
+        for i in range(size):
             radius_at(parameters, start, here[i, 0], here[i, 1], b, g[0])
             here[i, 3] = g[0, R]
-        for i in range(stop - start):
-            first = int(starts[i, 0]) if short else i + 1
-            last = int(starts[i + 1, 0]) if short else stop - start
-            for s in range(first, last):
-                j = int(found[s, 0]) if short else s
-                if short or not ignore(parameters, start + int(order[i, NUMBER]), start + int(order[j, NUMBER])):
-                    energy += press(here, i, j, parameters, start, b, g)
-        for e in range(start, stop):
-            i, a = int(order[e - start, ROW]), indices[e, 0]
-            w[a] += parameters[start, STIFFNESS] * (2.0 + here[i, 7])
+        for row in range(several):
+            if not short:
+                number = some_pairs(parameters, start, order, row, pairs, reach)
+            for n in range(number):
+                one, other = ends(pairs[n])
+                energy += press(here, sums, counts, one, other, parameters, start, b, g)
+        for i in range(size):
+            a = indices[start + int(order[i]), 0]
+            w[a] += parameters[start, STIFFNESS] * (2.0 + counts[i])
             for c in range(3):
-                f[a, c] += here[i, 4 + c]
+                f[a, c] += sums[i, c]
     return energy
 
 
@@ -178,6 +181,11 @@ class CircleImage(Crowd):
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Radius of each circle where it is [length], and the force of all contacts on it [force]."""
         return {"radius": _radii(block, x)[:, R], "force": element_forces.sum(axis=1)}
+
+    @classmethod
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
+        """As they are: radii change on the way."""
+        return None
 
     @classmethod
     def gathered(
