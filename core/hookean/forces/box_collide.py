@@ -214,10 +214,10 @@ class BoxCollide(Crowd):
         largest = np.abs(size[met]).max(initial=0.0)
         flat = ~(np.abs(size[met]).max(axis=0, initial=0.0) > 1e-9 * largest)
         size[:, flat] = 0.0
-        thin = np.asarray((np.abs(size) <= 1e-9 * largest) & ~flat & met[:, None])
-        if thin.any():
-            at = int(np.argmax(thin.any(axis=1)))
-            said = f"box {at} is flat along {'xyz'[int(np.argmax(thin[at]))]}, others are not; give it a size there"
+        thin = np.argwhere((np.abs(size) <= 1e-9 * largest) & ~flat & met.reshape(-1, 1))
+        if len(thin):
+            at, axis = thin[0].tolist()
+            said = f"box {at} is flat along {'xyz'[axis]}, others are not; give it a size there"
             raise InputError("", said)
         return Block.of(
             index,
