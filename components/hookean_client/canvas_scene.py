@@ -12,8 +12,9 @@ from . import canvas_link as link
 from .canvas_geometry import Unfit, listed, matched
 
 PLACES = ("lines", "points", "mesh", "particles")
-FIXED = PLACES + ("kind", "edges", "name", "curve", "closed", "target", "vertices", "faces")
 SHARED = ("control_points", "charges", "charge", "corners", "image", "path")  # rows of numbers as text
+SURFACE = ("degree_u", "degree_v", "knots_u", "knots_v", "weights")
+FIXED = PLACES + SHARED + SURFACE + ("kind", "edges", "name", "curve", "closed", "target", "vertices", "faces")
 ONCE = ("direction", "point", "normal")  # one vector for the whole force
 WHOLE = ("sub_iterations", "max_iterations")
 SOLVERS = ("verlet", "yoshida", "momentum", "relaxation", "newton", "force_density")
