@@ -12,7 +12,9 @@ from . import canvas_link as link
 from .canvas_geometry import Unfit, listed, matched
 
 PLACES = ("lines", "points", "mesh", "particles")
-FIXED = PLACES + ("kind", "edges", "name", "curve", "closed", "target", "vertices", "faces")
+SHARED = ("control_points", "charges", "charge", "corners", "image", "path")  # rows of numbers as text
+SURFACE = ("degree_u", "degree_v", "knots_u", "knots_v", "weights")
+FIXED = PLACES + SHARED + SURFACE + ("kind", "edges", "name", "curve", "closed", "target", "vertices", "faces")
 ONCE = ("direction", "point", "normal")  # one vector for the whole force
 WHOLE = ("sub_iterations", "max_iterations")
 SOLVERS = ("verlet", "yoshida", "momentum", "relaxation", "newton", "force_density")
@@ -44,6 +46,7 @@ def force(source, kind, fields):
     lists, spread = _columns(kind, fields), None
     if "target" in fields:
         made.update(geometry.mesh(fields["target"]))
+    made.update(_shared(kind, fields))
     if "curve" in fields:
         made["curve"] = geometry.straight(listed(fields["curve"])[0])
     place = [name for name in PLACES if name in fields]
@@ -83,7 +86,7 @@ def _columns(kind, fields):
     """Values of all fields that are no places, as lists."""
     found = {}
     for name, value in fields.items():
-        if name not in PLACES + ("target", "curve"):
+        if name not in PLACES + ("target", "curve") + SHARED:
             try:
                 found[name] = [_value(item) for item in listed(value)]
             except Unfit as unfit:
@@ -91,6 +94,33 @@ def _columns(kind, fields):
             if name in ONCE or any(isinstance(one, (bool, str)) for one in found[name]):
                 found[name] = found[name][:1]
     return found
+
+
+def _shared(kind, fields):
+    """Values of a force as a whole, of which there is not one for each element: surfaces, images, points, numbers."""
+    made = {}
+    for name in [one for one in SHARED if one in fields]:
+        items = listed(fields[name])
+        try:
+            if name == "control_points":
+                made.update(geometry.surface(items[0]))
+                made[name] = made.pop("points")
+            elif name in ("corners", "charges"):
+                made[name] = geometry.points(items)
+            else:
+                rows = [item.replace(",", " ").split() if isinstance(item, geometry.TEXT) else [item] for item in items]
+                rows = [
+                    [int(geometry.number(n)) if name == "path" else geometry.number(n) for n in row] for row in rows
+                ]
+                flat = name == "charge" or all(len(row) == 1 for row in rows)
+                made[name] = [n for row in rows for n in row] if flat else rows
+        except KeyError:
+            raise Unfit(
+                "%s: trimmed faces and Breps of several are no NURBS surface; connect one untrimmed face" % kind
+            )
+        except Unfit as unfit:
+            raise Unfit("%s, %s: %s" % (kind, name, unfit))
+    return made
 
 
 def _value(item):

@@ -339,18 +339,18 @@ def test_goals_in_one_stream_are_sorted_and_show_becomes_a_parameter() -> None:
 
 def test_a_goal_without_counterpart_keeps_its_whole_system_as_it_was() -> None:
     """Half a system runs in neither engine: solver and goals stay on with their wires, and a mesh tool beside them."""
-    d = Kangaroo("stays", "Stays", "Isothermic and Refine.")
+    d = Kangaroo("stays", "Stays", "Bomb and Refine.")
     mesh = d.parameter("Mesh", "Mesh")
     refined = d.kangaroo("Refine", (("M", None), ("L", 1)), ["M"], m=mesh)
     edges = d.kangaroo("EdgeLengths", (("Mesh", None), ("LengthFactor", 1.0), ("Strength", 1.0)), ["EL"], mesh=refined)
-    d.solved(d.kangaroo("Isothermic", (("M", None), ("Strength", 1.0)), ["P"], m=refined), edges)
+    d.solved(d.kangaroo("Bomb", (("Location", None), ("Strength", 1.0)), ["B"], location=mesh), edges)
     after, report = translated(d)
     assert (report.solvers, report.whole, report.swapped, report.lost) == (1, 0, [], [])
     assert dict(report.stays) == {
         "Refine": "a tool for geometry; it stays with the system that it feeds",
-        "Isothermic": "geometry without mechanics of this kind is not here",
+        "Bomb": "impulses are not here",
         "EdgeLengths": "it stays with Solver",
-        "Solver": "it stays with all its goals, because of Isothermic",
+        "Solver": "it stays with all its goals, because of Bomb",
     }
     assert same_objects(d.archive(), after) == []
     names = [c.value("Name") for c in after.chunk("Definition").chunk("GHALibraries").chunks]  # type: ignore[union-attr]

@@ -45,6 +45,13 @@ def _values(force: Any, x: Any, field: str, corner: int) -> list[Any]:
         return [{"Mesh": {"vertices": force.vertices.tolist(), "faces": force.faces.tolist()}}]
     if field == "curve":
         return [{"Polyline": force.curve.tolist()}]
+    if field == "control_points":
+        four = np.dstack([force.control_points, force.weights]).tolist()
+        degrees = {"degree_u": force.degree_u, "degree_v": force.degree_v}
+        knots = {"knots_u": force.knots_u[1:-1].tolist(), "knots_v": force.knots_v[1:-1].tolist()}  # as Rhino has them
+        return [{"NurbsSurface": {"points": four, **degrees, **knots}}]
+    if field in ("image", "path"):
+        return [", ".join(map(str, row)) for row in getattr(force, field).tolist()]
     kind = next(f["type"] for f in ENTRIES[force.kind]["fields"] if f["name"] == field)
     value = getattr(force, field)
     if value is None or isinstance(value, str):

@@ -32,10 +32,16 @@ ORDER: dict[str, str] = {
     "pull_to_mesh": "target points",
     "collide_curve": "curve points",
     "collide_solid": "target points",
+    "pull_to_surface": "control_points points",
 }
 """Fields that come first, where the order a Kangaroo user expects is not that of the class."""
 
-VARIABLES = {"lines": "connection", "points": "point", ("unary", "vector"): "force"}
+VARIABLES = {
+    "lines": "connection",
+    "points": "point",
+    ("unary", "vector"): "force",
+    ("pull_to_surface", "control_points"): "surface",
+}
 """Inputs named otherwise than their field."""
 
 COVERED: dict[str, tuple[str, ...]] = {
@@ -44,6 +50,9 @@ COVERED: dict[str, tuple[str, ...]] = {
     "self_weight": ("mesh",),
     "pull_to_curve": ("mesh", "closed"),  # the curve knows whether it is closed
     "pull_to_mesh": ("mesh", "vertices", "faces"),  # the target is a mesh of the canvas
+    "level_set": ("mesh",),
+    # the surface has its numbers
+    "pull_to_surface": ("mesh", "knots_u", "knots_v", "degree_u", "degree_v", "weights"),
     "collide_curve": ("mesh",),
     "collide_solid": ("mesh", "vertices", "faces"),
 }
@@ -142,7 +151,7 @@ def entries(described: Mapping[str, Any]) -> Iterator[Entry]:
     fields.sort(key=lambda f: first.index(f["name"]) if f["name"] in first else len(first))  # stable
     for field in fields:
         entry = Entry(field["name"], _variable(described, field), _hint(field), _tooltip(described, field))
-        if field["type"] != "rows of points":
+        if field["type"] != "rows of points" or field["name"] == "control_points":
             yield entry
             continue
         count = described["particles_per_element"]
@@ -173,7 +182,7 @@ def _required(described: Mapping[str, Any], field: Mapping[str, Any]) -> bool:
 
 
 def _hint(field: Mapping[str, Any]) -> str:
-    if field["name"] in ("mesh", "target", "lines"):
+    if field["name"] in ("mesh", "target", "lines", "control_points", "image", "path"):
         return "none"  # the script looks at what it got
     if field["name"] == "curve":
         return "curve"
@@ -199,6 +208,7 @@ TOLD: dict[tuple[str, str], str] = {
     ("springs", "lines"): "Lines, curves that are straight, polylines or meshes (their edges); ends become particles",
     ("self_weight", "lines"): "Lines or meshes with a weight per length; or a mesh with a total",
     ("pull_to_curve", "curve"): "The curve; it stays where it is",
+    ("pull_to_surface", "control_points"): "The NURBS surface, untrimmed [length]; it stays where it is",
     ("pull_to_mesh", "target"): "The mesh to pull to; it stays where it is",
     ("collide_curve", "curve"): "The closed curve; it stays where it is",
     ("collide_solid", "target"): "The solid, a closed mesh; it stays where it is",

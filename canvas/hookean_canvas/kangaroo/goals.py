@@ -69,6 +69,18 @@ _RIGID = replace(
     usual=dict.fromkeys(("part", "plane"), None),
 )
 
+_POLYGONS = Swap(
+    (
+        Piece(
+            "Collide2d",
+            {"polylines": "connection", "curves": "connection", "strength": "strength"},
+            {"force": "c"},
+        ),
+        Piece("*plane", {"plane": "planes"}, feeds={"normal": "0.normal"}),
+    ),
+    "corners of one polyline inside another; the goals of one branch share a plane; Kangaroo's law is not published",
+)
+
 GOALS: dict[str, Swap] = {
     "length(line)": force("Springs", "s", line="connection", length="rest_length", strength="stiffness"),
     "edgelengths": force("Springs", "el", mesh="connection", lengthfactor="rest_factor", strength="stiffness"),
@@ -409,6 +421,22 @@ GOALS: dict[str, Swap] = {
         without=dict.fromkeys(("planea", "planeb"), _CARRIED),
         usual=dict.fromkeys(("planea", "planeb"), None),
     ),
+    "isothermic": Swap(
+        (
+            Piece("Isothermic", {"m": "mesh", "strength": "stiffness"}, {"force": "p"}),
+            Piece("CyclicQuad", {"m": "mesh", "strength": "strength"}, {"force": "p"}),
+        ),
+        "sides with the same products and corners on circles are two forces here; Kangaroo's law is not published",
+    ),
+    "softbodycollide": force(
+        "SoftCollide",
+        "s",
+        "meshes become one mesh of as many bodies, each closed; Kangaroo's law is not published",
+        meshes="mesh",
+        strength="strength",
+    ),
+    "collide2d": _POLYGONS,
+    "curvecollide": _POLYGONS,
     "rigidpointset": _RIGID,
     "rigidbody": _RIGID,
 }

@@ -28,20 +28,21 @@ unroller vertexneighbours warpweft counter sequence trail wave
 _SOLVERS, _TOOLS = frozenset(_SOLVER_NAMES.split()), frozenset(_TOOL_NAMES.split())
 
 _PURE = "geometry without mechanics of this kind is not here"
-_COLLIDE = "collisions of curves, meshes and boxes that move are not here"
 _SOLID = "elements of solids and membranes with a Young's modulus are not here"
 _LINE = (
     "forces between lines, or points and lines, by a power of their distance are not here; Collide Lines is a contact"
 )
 _REASONS = {
-    _PURE: "isothermic g2 gstring levelset cpmesh reciprocalstructure rheotomicsurface",
-    _COLLIDE: "collide2d curvecollide imagecircles softbodycollide boxcollide",
+    _PURE: "g2 cpmesh reciprocalstructure rheotomicsurface",
     _SOLID: "triangularelement tetrahedralelement",
     _LINE: "lineline pointline",
 }
 REASONS: dict[str, str] = {
     "soapfilm": "warp and weft are families of a mesh's edges here; connect a mesh to SoapFilm",
     "bomb": "impulses are not here",
+    "gstring": "Geodesic Strip takes a mesh and the vertices of its lines",
+    "imagecircles": "Circle Image takes an image as numbers",
+    "boxcollide": "Box Collide takes the diagonals of all boxes",
     "soft&hardsolver": "goals are not of two ranks here; anchors, locks and floors are exact",
     "livesoap": "meshes do not change their faces while they relax",
     "collidesurf": "connect a mesh to Collide Solid",

@@ -19,6 +19,7 @@ from hookean.values.fields import Field, Maybe
 # columns of the parameters, after the links of all boxes: stiffness of contacts, volume, proportions; size of the box
 # at the start along each axis, negative where the first corner is the upper one, 0: all are flat; skin
 STRENGTH, VOLUME, KEEP, SIZE, SKIN = 2, 3, 4, 5, 8
+SHORTEST = 1e-40  # size below which a box is flat: products of what is shorter would be 0
 SKIN_PART = 0.15  # of the mean size: how far apart boxes already count for the stiffness
 
 
@@ -211,10 +212,10 @@ class BoxCollide(Crowd):
         index = places.elements(self)
         size = places.x[index[:, 1]] - places.x[index[:, 0]]
         met = (index >= 0).all(axis=1)
-        largest = np.abs(size[met]).max(initial=0.0)
-        flat = ~(np.abs(size[met]).max(axis=0, initial=0.0) > 1e-9 * largest)
+        least = max(1e-9 * float(np.abs(size[met]).max(initial=0.0)), SHORTEST)
+        flat = ~(np.abs(size[met]).max(axis=0, initial=0.0) > least)
         size[:, flat] = 0.0
-        thin = np.argwhere((np.abs(size) <= 1e-9 * largest) & ~flat & met.reshape(-1, 1))
+        thin = np.argwhere((np.abs(size) <= least) & ~flat & met.reshape(-1, 1))
         if len(thin):
             at, axis = thin[0].tolist()
             said = f"box {at} is flat along {'xyz'[axis]}, others are not; give it a size there"

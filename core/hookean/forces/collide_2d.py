@@ -204,6 +204,8 @@ class Collide2d(Crowd):
         given = x, block.indices, block.parameters
         while (count := int(dispatch.compiled(contacts_2d)(*given, pair, at))) > len(pair):
             pair, at = np.empty((count, 2), np.int64), np.empty(count)
+        if not len(pair):
+            return []
         index = np.column_stack([block.indices[pair[:, 0], 0], block.indices[pair[:, 1]]])
         axes = block.parameters[pair[:, 0], PLANE : PLANE + 6].reshape(-1, 2, 3)
         share = np.column_stack([0.0 * at + 1.0, at - 1.0, -at])
@@ -211,7 +213,7 @@ class Collide2d(Crowd):
         turns = np.tile([[[0.0, 1.0, -1.0]]], (len(at), 1, 1))
         k = block.parameters[pair[:, 0], STRENGTH]
         stiffness = contact_stiffness(k, x[index], share, turns, slides, np.einsum("mai,maj->mij", axes, axes))
-        return [(groups.Whole, groups.stiff(index, stiffness))] if len(pair) else []
+        return [(groups.Whole, groups.stiff(index, stiffness))]
 
     @classmethod
     def example(cls) -> tuple[Collide2d, Floats]:

@@ -259,6 +259,8 @@ class SoftCollide(Crowd):
         given = x, block.indices, block.parameters
         while (count := int(dispatch.compiled(soft_contacts)(*given, pair, at))) > len(pair):
             pair, at = np.empty((count, 3), np.int64), np.empty((count, 3))
+        if not len(pair):
+            return []
         index = np.column_stack([block.indices[pair[:, 0], pair[:, 2]], block.indices[pair[:, 1]]])
         share = np.column_stack([np.ones(len(at)), -at])
         # along two sides within a face, along one on an edge: from the corner with the largest share
@@ -270,7 +272,7 @@ class SoftCollide(Crowd):
         slides = np.take_along_axis(at, order[:, 1:], axis=1) > 0.0
         plane = np.tile(np.eye(3), (len(at), 1, 1))
         stiffness = contact_stiffness(block.parameters[pair[:, 0], STRENGTH], x[index], share, turns, slides, plane)
-        return [(groups.Whole, groups.stiff(index, stiffness))] if len(pair) else []
+        return [(groups.Whole, groups.stiff(index, stiffness))]
 
     @classmethod
     def example(cls) -> tuple[SoftCollide, Floats]:
