@@ -19,7 +19,6 @@ force = canvas.force(
     ghenv,
     "level_set",
     points=_point,
-    mesh=_mesh,
     charges=_charges,
     charge=_charge_,
     level=_level_,

@@ -19,14 +19,8 @@ from hookean_client import canvas
 force = canvas.force(
     ghenv,
     "pull_to_surface",
+    control_points=_surface,
     points=_point,
-    mesh=_mesh,
-    control_points=_control_points_1,
-    knots_u=_knots_u,
-    knots_v=_knots_v,
-    degree_u=_degree_u_,
-    degree_v=_degree_v_,
-    weights=weights_,
     strength=_strength_,
     name=name_,
 )
