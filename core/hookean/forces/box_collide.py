@@ -211,14 +211,14 @@ class BoxCollide(Crowd):
         """Arrays for the kernel: links of all boxes, stiffnesses, sizes at the start, skin."""
         index = places.elements(self)
         size = places.x[index[:, 1]] - places.x[index[:, 0]]
-        met = (index >= 0).all(axis=1)
+        met = np.asarray((index >= 0).all(axis=1))
         least = max(1e-9 * float(np.abs(size[met]).max(initial=0.0)), SHORTEST)
-        flat = ~(np.abs(size[met]).max(axis=0, initial=0.0) > least)
+        flat = np.asarray(np.abs(size[met]).max(axis=0, initial=0.0) <= least)
         size[:, flat] = 0.0
-        thin = np.asarray((np.abs(size) <= least) & ~flat & met[:, None])
-        if thin.any():
-            at = int(np.argmax(thin.any(axis=1)))
-            said = f"box {at} is flat along {'xyz'[int(np.argmax(thin[at]))]}, others are not; give it a size there"
+        thin = np.argwhere((np.abs(size) <= least) & ~flat & met[:, None])
+        if len(thin):
+            at, axis = thin[0]
+            said = f"box {at} is flat along {'xyz'[axis]}, others are not; give it a size there"
             raise InputError("", said)
         return Block.of(
             index,
