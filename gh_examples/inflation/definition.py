@@ -42,7 +42,7 @@ def square(count, side, y):
     for i in range(wide):
         for j in range(wide):
             u, v = 2.0 * i / count - 1.0, 2.0 * j / count - 1.0
-            off = 0.1 * side * radius * (1.0 - u * u) * (1.0 - v * v)
+            off = 0.4 * side * radius * (1.0 - u * u) * (1.0 - v * v)
             mesh.Vertices.Add(radius * u + 2.6 * radius, y + radius * v, off)
             if side > 0 and (i in (0, count) or j in (0, count)):
                 held.append(mesh.Vertices.Point3dAt(wide * i + j))
@@ -113,7 +113,7 @@ def definition() -> Definition:
         air = d.component("Pressure", mesh=graft(made["films"]), pressure=pressure)
     with d.group("Engine"):
         settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-7"),
+            "Settings", solver=d.text("Solver", "newton"), residual=d.text("Residual [-]", "1e-7"),
             fast=d.toggle("Fast", True),
         )  # fmt: skip
         engine = d.component(

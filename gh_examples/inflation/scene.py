@@ -57,5 +57,5 @@ def square(divisions: int, radius: float, side: float) -> Mesh:
     """A film [m] over or under the frame, a little off its plane but at the frame, with normals outwards."""
     along = radius * np.linspace(-1.0, 1.0, divisions + 1)
     off = 1.0 - (along / radius) ** 2
-    mesh = grid(along, along, side * 0.1 * radius * np.outer(off, off))
+    mesh = grid(along, along, side * 0.4 * radius * np.outer(off, off))
     return Mesh(mesh.vertices + [ASIDE * radius, 0.0, 0.0], mesh.faces if side > 0 else mesh.faces[:, ::-1])
