@@ -15,7 +15,6 @@ PLACES = ("lines", "points", "mesh", "particles")
 SHARED = ("control_points", "charges", "charge", "corners", "image", "path")  # rows of numbers as text
 SURFACE = ("degree_u", "degree_v", "knots_u", "knots_v", "weights")
 FIXED = PLACES + SHARED + SURFACE + ("kind", "edges", "name", "curve", "closed", "target", "vertices", "faces")
-ONCE = ("direction", "point", "normal")  # one vector for the whole force
 WHOLE = ("sub_iterations", "max_iterations")
 SOLVERS = ("verlet", "yoshida", "momentum", "relaxation", "newton", "force_density")
 UNITS = ("length", "force", "time")
@@ -91,7 +90,9 @@ def _columns(kind, fields):
                 found[name] = [_value(item) for item in listed(value)]
             except Unfit as unfit:
                 raise Unfit("%s, %s: %s" % (kind, name, unfit))
-            if name in ONCE or any(isinstance(one, (bool, str)) for one in found[name]):
+            if any(isinstance(one, (bool, str)) for one in found[name]):
+                if any(one != found[name][0] for one in found[name]):
+                    raise Unfit("%s, %s: several values are connected; it takes one for all" % (kind, name))
                 found[name] = found[name][:1]
     return found
 

@@ -57,6 +57,19 @@ def test_lists_of_different_lengths_repeat_their_last_value(rhino: Any) -> None:
     assert corners["stiffness"] == 2.5
 
 
+def test_each_point_has_a_direction_of_its_own_and_no_value_is_dropped(rhino: Any) -> None:
+    """Pull to Line takes one direction or one for each point; truth values are one for all."""
+    places, ways = [point(0, 0, 0), point(1, 0, 0)], [rhino.Vector3d(0, 0, 1), rhino.Vector3d(1, 0, 0)]
+    force, _ = told("PullToLine", "pull_to_line", points=places, direction=ways)
+    assert force["direction"] == [[0, 0, 1], [1, 0, 0]]
+    assert told("PullToLine", "pull_to_line", points=places, direction=ways[:1])[0]["direction"] == [0, 0, 1]
+    same, _ = told("Springs", "springs", lines=[line((0, 0, 0), (1, 0, 0))], sections=["free", "free"])
+    assert same["sections"] == "free"
+    other, ghenv = told("Springs", "springs", lines=[line((0, 0, 0), (1, 0, 0))], sections=["free", "closed"])
+    assert other == {}
+    assert sentences(ghenv) == ["Springs, sections: several values are connected; it takes one for all."]
+
+
 def test_meshes_come_back_as_they_were(rhino: Any) -> None:
     plain = {"vertices": [[0.1, 0, 0], [1, 0, 1e6], [1, 1, 0], [0, 1, 0], [2, 0, 1 / 3]],
              "faces": [[0, 1, 2, 3], [1, 4, 2, 2]]}  # fmt: skip
