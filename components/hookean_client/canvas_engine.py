@@ -10,6 +10,7 @@ import os
 from . import canvas
 from . import canvas_draw as drawing
 from . import canvas_geometry as geometry
+from . import canvas_grab as grabbing
 from . import canvas_link as link
 from . import canvas_scene as compose
 from .canvas_geometry import listed
@@ -34,6 +35,7 @@ class Wanted(object):
     `paused`: held where it is."""
 
     def __init__(self, forces, anchors, setting, rides, reset, length, paused=False):
+        self.grab = None  # how the mouse may drag particles
         self.forces, self.anchors, self.setting, self.rides, self.reset = forces, anchors, setting, rides, reset
         self.paused = paused and not reset
         self.length, self.fast = length, bool(setting and setting.get("fast"))
@@ -51,6 +53,7 @@ def solve(ghenv, forces, anchors, settings, rides, reset, on=True):
     if wanted is None:
         return Outputs()
     player.wanted = wanted
+    grabbing.follow(ghenv, player, wanted.grab)
     first = player.shown is None
     for _ in range(3):
         player.look()
@@ -102,8 +105,9 @@ def _wanted(ghenv, player, forces, anchors, settings, rides, switches):
     if old is not None and old.signature == signature:
         return old
     read = compose.read(texts, None, "_forces")
+    grabs, read = [[one for one in read if (one["kind"] == grabbing.KIND) is so] for so in (True, False)]
     made = Wanted(read, held, setting[0] if setting else None, carried, held_at_start, length, not on)
-    made.signature, made.prints = signature, prints
+    made.signature, made.prints, made.grab = signature, prints, grabs[-1] if grabs else None
     return made
 
 

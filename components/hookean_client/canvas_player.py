@@ -34,7 +34,7 @@ class Player(object):
         self.sent = self.form = self.where = self.topology = self.state = self.frames = self.task = None
         self.anchors, self.revision, self.running = {}, -1, True
         self.shown = self.seen = self.component = None
-        self.falls = None  # why the form falls freely
+        self.falls = self.hand = None  # why the form falls freely; what the mouse holds of it
         self.ended = self._watched = False
         self._branch, self._met, self._trouble = None, False, None
         self._heard, self._read, self._cost = (-1, link.now()), 0.0, 0.0
@@ -96,6 +96,8 @@ class Player(object):
     def end(self):
         """It is not needed any more."""
         self.ended = True
+        if self.hand is not None:
+            self.hand.let(None)
         self.leave()
         drawing.clear(self.key)
 
@@ -127,7 +129,8 @@ class Player(object):
     @property
     def settled(self):
         """Whether there is nothing to wait for."""
-        return self.task is None and self.kept is self.wanted and self.rests and self.exact
+        drags = self.hand is not None and self.hand.busy
+        return not drags and self.task is None and self.kept is self.wanted and self.rests and self.exact
 
     @property
     def trouble(self):

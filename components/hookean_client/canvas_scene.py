@@ -232,6 +232,8 @@ def compose(forces, anchors, setting, carried, lengths=None):
         return name
 
     for one in forces:
+        if one["kind"] == "grab":  # nothing drags where nothing plays
+            continue
         entry = {name: value for name, value in one.items() if name != "source"}
         entry["name"] = str(one.get("name") or one["source"]["title"])
         if "mesh" in entry:

@@ -76,6 +76,7 @@ SAMPLES: dict[str, dict[str, Any]] = {
     "CombineClean": {"_meshes": [MESH, MESH]},
     "Catenary": {"_start": ROW[:1], "_end": ROW[3:], "_length": [4.0], "_count_": [5]},
     "Counter": {"_reset_": [True]},
+    "Grab": {"_range_": [2.0]},
     "Diagonalize": {"_mesh": [MESH]},
     "Diagonals": {"_mesh": [MESH], "_pattern_": ["both"]},
     "Divide": {"_curve": [CURVE], "_count_": [7]},

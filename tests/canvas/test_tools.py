@@ -28,7 +28,8 @@ from serving import Home
 OURS = ("Divide", "Shatter", "Catenary", "MeshSurface", "MeshEdges", "MeshVertices", "MeshCorners", "NakedVertices",
         "WarpWeft", "Diagonals", "RemoveDuplicateLines", "Interpolate", "Sweep", "RhinoFile", "RemoveDuplicatePoints",
         "CombineClean", "Refine", "RefineStrips", "Diagonalize", "Checkerboard", "HingePoints", "FoldAngle",
-        "VertexNeighbours", "MeshMap", "SplitAtCorners", "Remesh", "Counter", "Sequence", "Trail")  # fmt: skip
+        "VertexNeighbours", "MeshMap", "SplitAtCorners", "Remesh", "Counter", "Sequence", "Trail",
+        "Grab")  # fmt: skip
 EXAMPLES = Path(__file__).parents[2] / "gh_examples"
 BENT = [(0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (3.0, 4.0, 1.0)]
 QUADS = Mesh(

@@ -174,10 +174,9 @@ GOALS: dict[str, Swap] = {
     ),
     "show": Swap((Piece("*geometry", {"g": "in"}, {"in": "g"}),), "a parameter that hands its geometry on"),
     "grab": Swap(
-        (Piece("*nothing", {}),),
-        "an empty parameter, as it acts only while the mouse drags; drag particles in the studio (`hookean studio`)",
-        dict.fromkeys(("on", "strength", "range", "anchors"), "particles are dragged in the studio"),
-        dict.fromkeys(("on", "strength", "range"), None),
+        (Piece("Grab", {"on": "on", "strength": "strength", "range": "range"}, {"grab": "grab"}),),
+        "the left button drags particles that no anchor holds",
+        {"anchors": "the mouse makes no anchors here"},
     ),
     "vertexloads": Swap(
         (
