@@ -104,3 +104,12 @@ def test_a_box_without_a_size_among_others_is_refused() -> None:
     x, force = boxes([[0, 0, 0], [3, 0, 0]], [[1, 1, 1], [4, 0, 1]])
     with pytest.raises(InputError, match="/forces/0: box 1 is flat along y, others are not; give it a size there"):
         compile(Scene(particles=x, forces=[force]))
+
+
+def test_boxes_with_a_corner_in_common_float() -> None:
+    """Two boxes by themselves keep three sizes each, of nine coordinates: three motions meet no resistance, though
+    nothing at all is out of balance."""
+    force = {"kind": "box_collide", "particles": [[0, 1], [1, 2]]}
+    found = relax(Scene.read({"particles": [[0, 0, 0], [1, 1, 1], [3, 2.5, 2]], "forces": [force]}))
+    assert found.converged and found.residual == 0.0
+    assert (found.stability, found.soft_modes) == ("mechanism", 3)

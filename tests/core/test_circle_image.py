@@ -108,6 +108,7 @@ def test_a_circle_pressed_against_a_held_one_on_a_slope(solver: str) -> None:
         ({"image": [0.1, 0.2]}, r"/forces/0/image: shape \[2\] given; rows of numbers expected"),
         ({"image": [[0.1, 1.2]]}, "/forces/0/image: 0.1 to 1.2 given; numbers from 0 to 1 allowed"),
         ({"corners": [[0, 0, 0], [1, 0, 5]]}, "/forces/0/corners: two opposite corners of a rectangle expected"),
+        ({"corners": [[0, 0, 0], [1e-300, 1, 0]]}, "/forces/0/corners: two opposite corners of a rectangle expected"),
         ({"minimum_radius": 0.0}, "/forces/0/minimum_radius"),
     ],
 )

@@ -46,3 +46,15 @@ def test_two_rigid_bodies_share_an_axis_along_which_they_slide_and_turn() -> Non
     assert np.abs(found.particles[[8, 12], :2] - 0.5).max() < 1e-7
     assert found.force("concentric")["distance"].max() < 1e-7
     assert (found.stability, found.soft_modes) == ("mechanism", 2)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e2, 1e4, 1e6])
+@pytest.mark.parametrize("kind", ["concentric", "align_faces"])
+def test_stability_is_the_same_far_from_the_origin(kind: str, off: float) -> None:
+    """Two axes of 12 coordinates on one line, which takes 4, leave 16 motions of two pairs; two faces of 18 in one
+    plane, which takes 3, leave 15."""
+    x = np.vstack([CUBE, 0.8 * CUBE + [0.2, 0.1, 0.75]]) + off
+    particles = [[0, 1, 2, 5], [8, 9, 10, 13]] if kind == "concentric" else [[0, 1, 2, 8, 9, 10]]
+    found = relax(Scene.read({"particles": x, "forces": [{"kind": kind, "particles": particles}]}))
+    assert found.converged
+    assert (found.stability, found.soft_modes) == ("mechanism", 16 if kind == "concentric" else 15)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,14 @@ def test_of_exact_surfaces_the_distance_is_exact(surface: NurbsSurface, expected
     assert energy == pytest.approx((expected(x) ** 2).sum(), rel=1e-13)
 
 
+@pytest.mark.parametrize(("u", "v"), [(1e9, 1e-9), (1e-11, 1e11), (1e-300, 1.0), (1.0, 5e-324)])
+def test_the_scale_of_knots_does_not_count(u: float, v: float) -> None:
+    """Knots that are longer by a factor move along the same surface, only slower: |r - 2| from a sphere."""
+    x, ball = np.random.default_rng(4).normal(size=(30, 3)), sphere(2.0)
+    off, _ = pulled(x, replace(ball, knots_u=ball.knots_u * u, knots_v=ball.knots_v * v))
+    assert off == pytest.approx(off_sphere(x), abs=1e-12)
+
+
 def test_on_poles_seams_and_axes_distances_are_right() -> None:
     """Where a parameter has no direction, several points are closest, or the surface was cut to have an end."""
     along = np.array(
@@ -156,7 +165,8 @@ def test_a_weight_slides_to_the_bottom_of_a_sphere_and_pulls_it_by_its_part_of_t
     [
         ({"degree_u": 2}, "/forces/0/control_points: 2 points for degree 2 in one direction; at least 3 expected"),
         ({"knots_u": [0, 1, 2]}, "/forces/0/knots_u: 3 knots for 2 points of degree 1; 4 expected, or Rhino's 2"),
-        ({"weights": [[1, 1], [1, 0]]}, "/forces/0/weights: have the shape"),
+        ({"weights": [[1, 1], [1, 0]]}, "/forces/0/weights: contain 0; positive numbers expected"),
+        ({"weights": [[1, 1]]}, r"/forces/0/weights: have the shape \[1, 2\]; one for each point, \[2, 2\], expected"),
         ({"knots_v": [1, 1]}, "/forces/0/knots_v: do not ascend"),
     ],
 )

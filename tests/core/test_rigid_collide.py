@@ -213,6 +213,13 @@ def test_solids_of_one_collision_group_ignore_each_other() -> None:
     assert energy(bodies, strength=[3.0] * 8 + [1.0] * 8, collision_group=[0] * 16) == pytest.approx(0.005, rel=1e-9)
 
 
+@pytest.mark.parametrize("size", [0.0, 1e-300])
+def test_a_solid_without_a_size_is_refused(size: float) -> None:
+    force = {"kind": "rigid_collide", "particles": range(8)}
+    with pytest.raises(InputError, match=r"/forces/0: the 8 corners of a solid .all particles. are at one place"):
+        compile(Scene.read({"particles": CUBE * size, "forces": [force]}))
+
+
 @pytest.mark.parametrize("x", [CUBE[:3], CUBE * [1, 1, 0]])
 def test_a_flat_solid_is_refused(x: np.ndarray) -> None:
     force = {"kind": "rigid_collide", "particles": range(len(x))}

@@ -150,8 +150,11 @@ def _weights(value: Any, shape: tuple[int, ...]) -> Array:
     if value is None:
         return np.ones(shape)
     found = np.asarray(value, dtype=np.float64)
-    if found.shape != shape or not (np.isfinite(found) & (found > 0.0)).all():
-        raise InputError("weights", f"have the shape {list(found.shape)}; a positive one for each point expected")
+    if found.shape != shape:
+        said = f"have the shape {list(found.shape)}; one for each point, {list(shape)}, expected"
+        raise InputError("weights", said)
+    if (odd := found[~(np.isfinite(found) & (found > 0.0))]).size:
+        raise InputError("weights", f"contain {odd[0]:g}; positive numbers expected")
     return found
 
 

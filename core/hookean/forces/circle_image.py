@@ -20,6 +20,7 @@ from hookean.values.fields import Field, Maybe
 
 # columns of the parameters: address of the table, its numbers along x and y, its corner, size of a pixel
 IMAGE, WIDE, TALL, LEFT, PIXEL = 7, 8, 9, 10, 12
+SHORTEST = 1e-40  # side below which an image has none: squares of its slopes would overflow
 R, X, Y, XX, XY, YY = range(6)  # of a place: radius, its slopes and its second derivatives
 ROOM = 4  # column of the address of the room
 
@@ -162,7 +163,7 @@ class CircleImage(Crowd):
         if self.image.min() < 0.0 or self.image.max() > 1.0:
             said = f"{self.image.min():g} to {self.image.max():g} given; numbers from 0 to 1 allowed"
             raise fault(said, "/image")
-        if len(self.corners) != 2 or not np.ptp(self.corners[:, :2], axis=0).all():
+        if len(self.corners) != 2 or not (np.ptp(self.corners[:, :2], axis=0) > SHORTEST).all():
             raise fault("two opposite corners of a rectangle expected, apart along x and y", "/corners")
         return self
 

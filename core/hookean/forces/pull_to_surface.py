@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any, ClassVar, Literal, Self
 
@@ -355,7 +356,10 @@ class PullToSurface(Force):
 
 def tables(surface: NurbsSurface) -> tuple[Floats, Floats]:
     """Triangles (m, 3, 3) of a mesh of a surface, two for each cell; and the table (k, 1) of the surface and cells."""
-    degrees, knots = (surface.degree_u, surface.degree_v), (surface.knots_u, surface.knots_v)
+    degrees = surface.degree_u, surface.degree_v
+    # from 0 to 1: of any others speeds along u and v may differ so much that one looks like a pole
+    knots = tuple(_unit(own, degree) for own, degree in zip((surface.knots_u, surface.knots_v), degrees, strict=True))
+    surface = replace(surface, knots_u=knots[0], knots_v=knots[1])
     size = float(np.ptp(surface.points.reshape(-1, 3), axis=0).max())
     breaks = [_breaks(own, degree) for own, degree in zip(knots, degrees, strict=True)]
     ends = [_ends(own, degree, edges) for own, degree, edges in zip(knots, degrees, breaks, strict=True)]
@@ -376,6 +380,12 @@ def tables(surface: NurbsSurface) -> tuple[Floats, Floats]:
     a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
     triangles = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
     return triangles.reshape(-1, 3, 3), np.concatenate([head, *parts])[:, None]
+
+
+def _unit(knots: Floats, degree: int) -> Floats:
+    """The same knots with a domain from 0 to 1."""
+    low, high = knots[degree], knots[-degree - 1]
+    return np.asarray((knots - low) / (high - low))
 
 
 def _breaks(knots: Floats, degree: int) -> Floats:

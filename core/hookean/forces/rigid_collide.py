@@ -57,6 +57,7 @@ from hookean.values.fields import Field, Maybe
 # the start of a body is at 6
 STRENGTH, FRICTION, LABEL, REACH, HULL, LENGTH, SKIN, ROOM, QUIET = 9, 10, 11, 12, 13, 14, 15, 16, 17
 SKIN_PART = 0.15  # of the mean radius: how far beyond their reach neighbours are listed
+SHORTEST = 1e-40  # extent below which a solid is a point: products of what is shorter would be 0
 MARGIN = 0.25  # of the skin: how near solids are that count for the stiffness though they do not touch
 SINGULAR = 1e-12  # part of its size, to the third power, below which a matrix has no inverse
 CAUTION = 2.0  # times the stiffness of a contact on one particle, that its other side has as well
@@ -337,8 +338,10 @@ class RigidCollide(Crowd):
             q = x[own] - centre
             q -= q.mean(axis=0)
             size = float(np.ptp(q, axis=0).max())
+            label = "all particles" if self.group is None else f"group {self.group[own[0]]}"
+            if len(own) > 3 and not size > SHORTEST:
+                raise InputError("", f"the {len(own)} corners of a solid ({label}) are at one place; give it a size")
             if not (len(own) > 3 and np.linalg.svd(q, compute_uv=False)[2] > FLAT * size):
-                label = "all particles" if self.group is None else f"group {self.group[own[0]]}"
                 said = f"the {len(own)} corners of a solid ({label}) lie in a plane; give at least four that do not"
                 raise InputError("", said)
             solid = hull(q)

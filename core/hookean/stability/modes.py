@@ -32,6 +32,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ROUNDING = 1e-14  # part of the stiffness that an eigenvalue may be off by
+INEXACT = 1e-14  # part of a motion that may be wrong
 SEVERAL = 12  # modes that are worked out one by one
 SPARE, INVERSE = 4, 12  # more of them than are asked for, and steps of inverse iteration
 STEPS = 60  # of conjugate gradients
@@ -103,14 +104,16 @@ class Scaled:
         elements = _stiff(self.system, self.state, sparse=True)
         moved = _completed(elements, moved)
         for group, blocks in elements:
-            own = moved[:, group.block.indices]
+            whole = own = moved[:, group.block.indices]
             if group.cls.role == "internal":
                 own = own - own[:, :, :1] * (group.block.indices < len(self.state.x))[:, :, None]
             own = own.reshape(len(moved), len(blocks), -1)
             total += np.einsum("ame,mef,bmf->ab", own, blocks, own, optimize=True)
             sizes = np.abs(blocks).max(axis=(1, 2), initial=0.0)
             known = np.finfo(float).eps if group.cls.hessian is not None else group.cls.blur
-            noise += float(known * (sizes * (own**2).sum(axis=2)).sum(axis=1).max())
+            # what is left of a shared motion is rounding of the motion itself
+            size = (own**2).sum(axis=2) * known + (whole**2).sum(axis=(2, 3)) * INEXACT**2
+            noise += float((sizes * size).sum(axis=1).max())
         return total, noise
 
 
