@@ -278,7 +278,8 @@ def test_every_force_with_lines_or_faces_takes_part() -> None:
     """A cable across the middle of what each kind of force acts on, a tenth of it away at most. A force that is not
     solid, such as a power law, has nothing between its particles that it could lie on."""
     lying, solid = set(), set()
-    corners = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0], [0, 1, 0]]  # hinges and bends must meet particles
+    # hinges and bends must meet particles
+    corners = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0], [0, 1, 0], [2, 2, 1]]
     for kind, cls in KINDS.items():
         if cls.role != "internal" or issubclass(cls, Grouped):  # of groups there is nothing to lie on
             assert cls.role != "internal" or not cls.solid
