@@ -26,6 +26,11 @@ from typing import TYPE_CHECKING, Any
 from hookean.errors import InputError as InputError
 
 if TYPE_CHECKING:
+    from hookean.designing.answer import Design as Design
+    from hookean.designing.problem import Problem as Problem
+    from hookean.designing.search import design as design
+    from hookean.designing.sensitivity import Sensitivity as Sensitivity
+    from hookean.designing.sensitivity import sensitivity as sensitivity
     from hookean.files.save import open as open
     from hookean.files.save import save as save
     from hookean.forces.align_faces import AlignFaces as AlignFaces
@@ -139,6 +144,11 @@ _HOMES = {
     "Patch": "running.patch",
     "Script": "running.script",
     "Stream": "running.stream",
+    "Problem": "designing.problem",
+    "Design": "designing.answer",
+    "design": "designing.search",
+    "Sensitivity": "designing.sensitivity",
+    "sensitivity": "designing.sensitivity",
     "open": "files.save",
     "picture": "pictures.picture",
     "relax": "running.run",

@@ -1,8 +1,7 @@
 """The equilibrium of a scene as its variables change, with the tangent there in factors.
 
-At rest f(x, u) = 0 on the free axes. A change du of the unknowns and of the places of held particles, dx_h = H du, moves
-the others by K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films have unknowns across themselves
-alone.
+At rest f(x, u) = 0 on the free axes. A change du of the unknowns moves held particles by H du and the others by dx,
+K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films move across themselves alone.
 """
 
 from __future__ import annotations
@@ -140,7 +139,8 @@ def _basis(system: System, state: State) -> Any:
 
     parts = system.components(state)
     free = state.free.copy()
-    free[(parts.label >= 0) & ~parts.joined[parts.label]] = 0.0
+    loose = np.flatnonzero(parts.label >= 0)
+    free[loose[~parts.joined[parts.label[loose]]]] = 0.0
     n = len(free)
     if system.films is None:
         axes = np.flatnonzero(free.ravel() > 0.0)

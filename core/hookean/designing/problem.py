@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
 from pydantic import StrictInt, StrictStr, ValidationError, model_validator
 
-from hookean.designing.quantities import QUANTITIES, Quantity
+from hookean.designing.quantities import QUANTITIES
+from hookean.designing.quantities.base import Quantity
 from hookean.scene.scene import Scene, first_fault
 from hookean.scene.text import parse
 from hookean.values.columns import Indices, Model, Reals, Table, fault

@@ -1,98 +1,31 @@
 """The search: variables of a scene for which its equilibrium meets goals and constraints.
 
-Least squares by trust regions where all goals have targets (Branch, Coleman and Li 1999, with bounds), L-BFGS-B (Byrd and
-others 1995) where some are minimised, sequential quadratic programming (Kraft 1988) with constraints; all from SciPy,
-with exact derivatives through equilibrium.
+Where all goals have targets least squares by trust regions with bounds (Branch, Coleman and Li 1999), where some are
+minimised L-BFGS-B (Byrd and others 1995), with constraints sequential quadratic programming (Kraft 1988); all from
+SciPy, with exact derivatives through equilibrium.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.equilibrium import Equilibrium, settle
+from hookean.designing.limits import AT_BOUND, LIMIT, beyond, size
+from hookean.designing.methods import METHODS, Stopped
 from hookean.designing.problem import Goal, Problem
 from hookean.designing.sensitivity import gradients, jacobian, warnings
 from hookean.designing.unknowns import Moved, Unknowns
 from hookean.errors import InputError
-from hookean.running.result import Result, plain
-from hookean.scene.scene import Scene
 from hookean.system.system import System, compile
 
 Floats = NDArray[np.float64]
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
-
-LIMIT = 1e-6  # part of a value, and of the largest of its kind, by which a constraint may be missed
-AT_BOUND = 1e-9  # of an unknown's scale
-DENSE = 4_000_000  # entries of a matrix of derivatives
-
-
-class DesignStatus(StrEnum):
-    """How a search ended."""
-
-    CONVERGED = "converged"
-    INFEASIBLE = "infeasible"
-    MAX_ITERATIONS = "max_iterations"
-    STALLED = "stalled"
-    CANCELLED = "cancelled"
-
-
-@dataclass(repr=False)
-class Design:
-    """The best that a search found: values of `variables`, of `goals` and `constraints`, and the `result` of the scene
-    with them. The objective is the sum of weight (value - target)² over goals with a target and of weight x value over
-    the others. `gain` of a bound or constraint is by how much the objective falls for each unit that it is eased."""
-
-    status: DesignStatus
-    message: str
-    objective: float
-    iterations: int
-    method: str
-    variables: list[dict[str, Any]]
-    goals: list[dict[str, Any]]
-    constraints: list[dict[str, Any]]
-    result: Result
-    scene: Scene
-    warnings: list[str] = field(default_factory=list)
-
-    def __repr__(self) -> str:
-        lines = [f"Design: {self.status}. {self.message}"]
-        lines += [f"  {entry['name']}: {_short(entry['value'])}" for entry in self.variables]
-        lines += [f"  goal {entry['name']}: {_short(entry['value'])}, target {_short(entry['target'])}" for entry in self.goals]
-        return "\n".join(lines)
-
-    def to_dict(self) -> dict[str, Any]:
-        """As plain lists and numbers, by the names of the HTTP answer."""
-        return {
-            "status": str(self.status),
-            "message": self.message,
-            "objective": self.objective,
-            "iterations": self.iterations,
-            "method": self.method,
-            "variables": plain(self.variables),
-            "goals": plain(self.goals),
-            "constraints": plain(self.constraints),
-            "warnings": self.warnings,
-            "result": self.result.to_dict(),
-            "scene": self.scene.model_dump(mode="json"),
-        }
-
-
-def _short(value: Any) -> str:
-    """A few numbers as text."""
-    flat = np.atleast_1d(np.asarray(np.nan if value is None else value, dtype=np.float64)).ravel()
-    shown = ", ".join(f"{v:.4g}" for v in flat[:6])
-    return shown if len(flat) <= 6 else f"{shown}, ... ({len(flat)})"
-
-
-class Stopped(Exception):
-    """The caller ended the search."""
 
 
 class Search:
@@ -114,6 +47,12 @@ class Search:
         self.first = self.at(np.zeros(self.unknowns.count))
         self.targets = [self._target(i, g) for i, g in enumerate(problem.goals)]
         self.limits = [self._limits(i) for i in range(len(problem.constraints))]
+        self.sizes = [
+            size(values, *limits, self.system.size if constraint.quantity.unit == "length" else 0.0)
+            for constraint, values, limits in zip(
+                problem.constraints, self.constraint_values(self.first), self.limits, strict=True
+            )
+        ]
         self._note(np.zeros(self.unknowns.count))
 
     def at(self, y: Floats) -> Equilibrium:
@@ -153,7 +92,9 @@ class Search:
         axes = len(getattr(goal.quantity, "axes", "x"))
         if given.size == axes and len(values) % axes == 0:
             return np.tile(given.ravel(), len(values) // axes)
-        raise InputError(f"/goals/{number}/target", f"{given.size} targets for {len(values)} values; give one or one for each")
+        raise InputError(
+            f"/goals/{number}/target", f"{given.size} targets for {len(values)} values; give one or one for each"
+        )
 
     def _limits(self, number: int) -> tuple[Floats, Floats]:
         """The least and the largest values of a constraint."""
@@ -223,8 +164,8 @@ class Search:
     def missed(self, found: Equilibrium) -> float:
         """The most by which a constraint is missed, by the size of its values [-]."""
         worst = 0.0
-        for values, (lower, upper) in zip(self.constraint_values(found), self.limits, strict=True):
-            worst = max(worst, float((_beyond(values, lower, upper) / _sizes(values, lower, upper)).max(initial=0.0)))
+        for values, limits, by in zip(self.constraint_values(found), self.limits, self.sizes, strict=True):
+            worst = max(worst, float(beyond(values, *limits).max(initial=0.0)) / by)
         return worst
 
     def _note(self, y: Floats) -> None:
@@ -241,21 +182,7 @@ class Search:
             self.progress(self.evaluations, self.best[1])
 
 
-def _beyond(values: Floats, lower: Floats, upper: Floats) -> Floats:
-    """By how much values miss their limits; 0 where they do not."""
-    return np.maximum(np.maximum(lower - values, values - upper), 0.0)
-
-
-def _sizes(values: Floats, lower: Floats, upper: Floats) -> Floats:
-    """The size of each value or its limits, at least a thousandth of the largest."""
-    limits = [np.where(np.isfinite(limit), np.abs(limit), 0.0) for limit in (lower, upper)]
-    sizes = np.maximum(np.abs(values), np.maximum(*limits))
-    return np.asarray(np.maximum(sizes, 1e-3 * sizes.max(initial=0.0)) + np.finfo(float).tiny)
-
-
-def design(
-    problem: Any, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None
-) -> Design:
+def design(problem: Any, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Design:
     """Find values of a problem's variables for which its equilibrium meets the goals best and the constraints at all.
 
     `problem` is a Problem, or a dict or JSON text of one. Always returns the best shape so far; failure is the status
@@ -270,7 +197,7 @@ def design(
         ended, said = DesignStatus.STALLED, f"The start has no equilibrium. {search.first.result.message}"
     else:
         try:
-            iterations, ended, said = _METHODS[method](search)
+            iterations, ended, said = METHODS[method](search)
         except Stopped:
             ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
     return _answer(search, method, iterations or search.evaluations, ended, said)
@@ -287,92 +214,6 @@ def _chosen(problem: Problem) -> str:
     if wanted == "least_squares" and not aimed:
         raise InputError("/settings/method", "least_squares needs a target for each goal; choose l-bfgs-b or auto")
     return str(wanted)
-
-
-Ended = tuple[int, DesignStatus, str]
-
-
-def _bounds(search: Search) -> tuple[Floats, Floats]:
-    unknowns = search.unknowns
-    return (unknowns.lower - unknowns.start) / search.scale, (unknowns.upper - unknowns.start) / search.scale
-
-
-def _least_squares(search: Search) -> Ended:
-    from scipy.optimize import least_squares
-
-    settings, (lower, upper) = search.problem.settings, _bounds(search)
-    wide = lower < upper
-    if not wide.all():  # what cannot vary is left out
-        upper = np.where(wide, upper, lower + AT_BOUND)
-    start = np.clip(np.zeros(search.unknowns.count), lower, upper)
-    found = least_squares(
-        search.residuals, start, search.slopes, bounds=(lower, upper), method="trf",
-        ftol=settings.tolerance, xtol=settings.tolerance, gtol=settings.tolerance * 1e-4, max_nfev=settings.max_iterations,
-    )  # fmt: skip
-    ended = DesignStatus.MAX_ITERATIONS if found.status == 0 else DesignStatus.CONVERGED
-    return int(found.njev), ended, ""
-
-
-def _lbfgsb(search: Search) -> Ended:
-    from scipy.optimize import minimize
-
-    settings = search.problem.settings
-    found = minimize(
-        search.objective, np.zeros(search.unknowns.count), jac=search.gradient, method="L-BFGS-B",
-        bounds=list(zip(*_bounds(search), strict=True)),
-        options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12, "maxcor": 30,
-                 "maxfun": 20 * settings.max_iterations},
-    )  # fmt: skip
-    ended = DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED
-    return int(found.nit), ended, ""
-
-
-def _slsqp(search: Search) -> Ended:
-    from scipy.optimize import minimize
-
-    settings = search.problem.settings
-    size = abs(search.objective(np.zeros(search.unknowns.count))) or 1.0
-    rows = [
-        (row, limit, sign)
-        for row, (lower, upper) in enumerate(zip(*(np.concatenate(side) for side in zip(*search.limits, strict=True)), strict=True))
-        for limit, sign in ((lower, 1.0), (upper, -1.0))
-        if np.isfinite(limit) and not (lower == upper and sign < 0.0)
-    ] if search.limits else []  # fmt: skip
-    flat = np.concatenate([_sizes(v, *limits) for v, limits in zip(search.constraint_values(search.first), search.limits, strict=True)]) if search.limits else np.zeros(0)
-    both = np.concatenate([low == up for low, up in search.limits]) if search.limits else np.zeros(0, bool)
-    which = np.array([row for row, _, _ in rows], dtype=np.int64)
-    limit, sign = np.array([r[1] for r in rows]), np.array([r[2] for r in rows])
-    quantities = [(c.quantity, f"/constraints/{i}") for i, c in enumerate(search.problem.constraints)]
-
-    def margins(y: Floats) -> Floats:
-        found = search.at(y)
-        values = np.concatenate(search.constraint_values(found))
-        return np.asarray(sign * (values[which] - limit) / flat[which])
-
-    def slopes(y: Floats) -> Floats:
-        found = jacobian(search.at(y), search.unknowns, quantities) * search.scale
-        return np.nan_to_num((sign / flat[which])[:, None] * found[which])
-
-    constraints = []
-    for kind, chosen in (("eq", both[which]), ("ineq", ~both[which])) if len(rows) else ():
-        if chosen.any():
-            constraints.append(
-                {"type": kind, "fun": lambda y, c=chosen: margins(y)[c], "jac": lambda y, c=chosen: slopes(y)[c]}
-            )
-    found = minimize(
-        lambda y: search.objective(y) / size, np.zeros(search.unknowns.count), jac=lambda y: search.gradient(y) / size,
-        method="SLSQP", bounds=list(zip(*_bounds(search), strict=True)), constraints=constraints,
-        options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3},
-    )  # fmt: skip
-    ended = DesignStatus.MAX_ITERATIONS if found.status == 9 else DesignStatus.CONVERGED
-    return int(found.nit), ended, ""
-
-
-_METHODS: dict[str, Callable[[Search], Ended]] = {
-    "least_squares": _least_squares,
-    "l-bfgs-b": _lbfgsb,
-    "slsqp": _slsqp,
-}
 
 
 def _answer(search: Search, method: str, iterations: int, ended: DesignStatus, said: str) -> Design:
@@ -402,9 +243,7 @@ def _answer(search: Search, method: str, iterations: int, ended: DesignStatus, s
     )
 
 
-def _sentence(
-    search: Search, ended: DesignStatus, broken: list[dict[str, Any]], iterations: int, value: float
-) -> str:
+def _sentence(search: Search, ended: DesignStatus, broken: list[dict[str, Any]], iterations: int, value: float) -> str:
     if broken:
         names = ", ".join(entry["name"] for entry in broken)
         return f"No values within the bounds were found that meet the constraints: {names}. These are the nearest."
@@ -431,23 +270,30 @@ def _variables(search: Search, values: Floats) -> list[dict[str, Any]]:
 def _goals(search: Search, found: Equilibrium) -> list[dict[str, Any]]:
     entries = []
     for goal, values, target in zip(search.problem.goals, search.goal_values(found), search.targets, strict=True):
-        name = goal.name or str(goal.quantity.kind)  # type: ignore[attr-defined]
+        name = goal.name or str(goal.quantity.kind_name)
         entries.append(
-            {"name": name, "kind": goal.quantity.kind, "value": _single(values),  # type: ignore[attr-defined]
-             "target": None if target is None else _single(target), "weight": goal.weight}
+            {"name": name, "kind": goal.quantity.kind_name, "value": _single(values),
+             "target": None if target is None else _single(target), "weight": goal.weight, "unit": goal.quantity.unit}
         )  # fmt: skip
     return entries
 
 
 def _constraints(search: Search, found: Equilibrium) -> list[dict[str, Any]]:
     entries = []
-    for constraint, values, (lower, upper) in zip(
-        search.problem.constraints, search.constraint_values(found), search.limits, strict=True
+    found_values = search.constraint_values(found)
+    for constraint, values, limits, by in zip(
+        search.problem.constraints, found_values, search.limits, search.sizes, strict=True
     ):
-        met = _beyond(values, lower, upper) <= LIMIT * _sizes(values, lower, upper)
-        kind = constraint.quantity.kind  # type: ignore[attr-defined]
+        met = beyond(values, *limits) <= LIMIT * by
+        kind = constraint.quantity.kind_name
         entries.append(
-            {"name": constraint.name or str(kind), "kind": kind, "value": _single(values), "met": bool(met.all())}
+            {
+                "name": constraint.name or str(kind),
+                "kind": kind,
+                "value": _single(values),
+                "met": bool(met.all()),
+                "unit": constraint.quantity.unit,
+            }
         )
     return entries
 

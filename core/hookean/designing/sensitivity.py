@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.problem import Problem
-from hookean.designing.quantities import Quantity
+from hookean.designing.quantities.base import Quantity
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
 from hookean.running.result import Result
@@ -75,9 +75,7 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
     if not np.isfinite(gradient).all():
         raise InputError("/scene", f"the tangent at the equilibrium is singular; {found.result.message}")
     parts = [gradient[s].reshape(v.shape) for v, s in zip(unknowns.variables, unknowns.slices, strict=True)]
-    return Sensitivity(
-        float(total), parts, values, [v.title for v in problem.variables], warnings(found), found.result
-    )
+    return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], warnings(found), found.result)
 
 
 def gradients(
@@ -120,7 +118,5 @@ def warnings(found: Equilibrium) -> list[str]:
     if found.result.stability in (Stability.UNSTABLE, Stability.MECHANISM):
         kind = "unstable" if found.result.stability is Stability.UNSTABLE else "a mechanism"
         said.append(f"the shape is {kind} ({found.result.stability_reason}); its derivatives are those of this shape")
-    said += [
-        f"{kind} have yielded; derivatives are those of elastic behaviour from here on" for kind in found.yielded
-    ]
+    said += [f"{kind} have yielded; derivatives are those of elastic behaviour from here on" for kind in found.yielded]
     return said
