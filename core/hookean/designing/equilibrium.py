@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 
 TIGHT = 1e-11  # residual [-] to which shapes are brought
 SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
+SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the same
 POLISH = 6  # exact steps after that, while each leaves less
 
 
@@ -120,7 +121,9 @@ def _polished(system: System, state: State, result: Result) -> Equilibrium:
         if lengths(now).max(initial=0.0) >= 0.5 * size:
             state.x = before
             break
-        left, found = now, Equilibrium(system, state, result)
+        left = now
+        if lengths(step).max(initial=0.0) > SLIGHT * system.size:
+            found = Equilibrium(system, state, result)
     result.particles = state.x.copy()
     return found
 
