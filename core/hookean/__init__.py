@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from hookean.forces.level_set import LevelSet as LevelSet
     from hookean.forces.line_weight import LineWeight as LineWeight
     from hookean.forces.magnet_snap import MagnetSnap as MagnetSnap
+    from hookean.forces.membrane import Membrane as Membrane
     from hookean.forces.mirror import Mirror as Mirror
     from hookean.forces.no_fold_through import NoFoldThrough as NoFoldThrough
     from hookean.forces.planarize import Planarize as Planarize
@@ -117,6 +118,8 @@ if TYPE_CHECKING:
     from hookean.scene.scene import MeshData as MeshData
     from hookean.scene.scene import Scene as Scene
     from hookean.scene.scene import Settings as Settings
+    from hookean.values.materials import Material as Material
+    from hookean.values.sections import Section as Section
     from hookean.values.units import Units as Units
 
 __version__ = "0.1.0"
@@ -126,7 +129,9 @@ _HOMES = {
     "Anchor": "scene.scene",
     "Anchors": "scene.scene",
     "Geometry": "scene.scene",
+    "Material": "values.materials",
     "MeshData": "scene.scene",
+    "Section": "values.sections",
     "Settings": "scene.scene",
     "Units": "values.units",
     "Force": "forces",
@@ -193,6 +198,8 @@ __all__ = [
     "LevelSet",
     "LineWeight",
     "MagnetSnap",
+    "Material",
+    "Membrane",
     "MeshData",
     "Mirror",
     "Move",
@@ -214,6 +221,7 @@ __all__ = [
     "RigidCollide",
     "Scene",
     "Script",
+    "Section",
     "SelfWeight",
     "Settings",
     "Shell",
