@@ -38,7 +38,7 @@ class Welded:
         self.scene = scene
         self.report = Report()
         self.tolerance = scene.weld_tolerance
-        self.materials, self.sections = scene.materials, scene.sections  # a patch may give others
+        self.take_materials(scene)
         self._patched: dict[int, Force] = {}  # rows are found by identity, so these must live as long as they do
         self._rows: dict[int, Ints] = {}
         self._lost: set[str] = set()  # pointers of points that met no particle
@@ -177,6 +177,10 @@ class Welded:
             known = ", ".join(repr(n) for n in self.scene.meshes) or "none"
             raise InputError("/meshes", f"mesh {name!r} does not exist; the scene has {known}")
         return self.scene.meshes[name].vertices, self.scene.meshes[name].faces
+
+    def take_materials(self, scene: Scene) -> None:
+        """Have the materials and sections of a scene, as a patch has changed them."""
+        self.materials, self.sections = scene.materials, scene.sections
 
     @property
     def units(self) -> Units:

@@ -222,6 +222,8 @@ SCHEMAS["Edit"] = {
         "release": {"type": "array", "items": {"type": "integer", "minimum": 0}},
         "move": {"type": "array", "items": {"type": "object"}, "description": "Anchors and their targets"},
         "forces": {"type": "object", "description": "By a force's name or number, values of its columns"},
+        "materials": {"type": "object", "description": "By a material's name, values of its fields"},
+        "sections": {"type": "object", "description": "By a section's name, values of its fields"},
         "settings": {"type": "object"},
         "add": {
             "type": "array",
