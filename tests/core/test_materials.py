@@ -24,7 +24,10 @@ PI = np.pi
             {"shape": "tube", "diameter": 2.0, "thickness": 0.5},
             {"area": 0.75 * PI, "Iy": PI / 4 * 15 / 16, "J": PI / 2 * 15 / 16, "Wz": PI / 4 * 15 / 16},
         ),
-        ({"shape": "rectangle", "width": 2.0, "height": 3.0}, {"area": 6.0, "Iy": 4.5, "Iz": 2.0, "Wy": 3.0, "Wz": 2.0}),
+        (
+            {"shape": "rectangle", "width": 2.0, "height": 3.0},
+            {"area": 6.0, "Iy": 4.5, "Iz": 2.0, "Wy": 3.0, "Wz": 2.0},
+        ),
         (
             {"shape": "I", "width": 4.0, "height": 6.0, "flange_thickness": 1.0, "web_thickness": 0.5},
             # the flanges by Steiner's rule: 2 (b t^3 / 12 + b t 2.5^2) + 0.5 x 4^3 / 12
@@ -172,7 +175,10 @@ def test_cables_do_not_push_and_struts_do_not_pull() -> None:
     [
         ({"stiffness": 1.0, "axial_stiffness": 1.0}, "stiffness and axial_stiffness given; give exactly one of"),
         ({"axial_stiffness": 1.0, "material": "steel", "section": "tube"}, "give exactly one of stiffness"),
-        ({"material": "steel"}, "material given; give exactly one of stiffness, axial_stiffness, or material and section"),
+        (
+            {"material": "steel"},
+            "material given; give exactly one of stiffness, axial_stiffness, or material and section",
+        ),
         ({"stiffness": None}, "the stiffness is missing"),
         ({"force": 1.0, "strain": 0.1}, "force and strain given; give at most one of rest_length, force, strain"),
         ({"strain": -1.0}, "more than -1 allowed"),

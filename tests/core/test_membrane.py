@@ -48,7 +48,9 @@ def turned(vectors: np.ndarray) -> np.ndarray:
     """Out of the plane z = 0 into a slanting one."""
     angle = np.radians([20.0, 50.0])
     c, s = np.cos(angle), np.sin(angle)
-    return vectors @ (np.array([[c[0], s[0], 0], [-s[0], c[0], 0], [0, 0, 1]]) @ [[1, 0, 0], [0, c[1], s[1]], [0, -s[1], c[1]]])
+    return vectors @ (
+        np.array([[c[0], s[0], 0], [-s[0], c[0], 0], [0, 0, 1]]) @ [[1, 0, 0], [0, c[1], s[1]], [0, -s[1], c[1]]]
+    )
 
 
 @pytest.mark.parametrize(
@@ -277,7 +279,11 @@ def start_stress(**more: Any) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     "way",
-    [{"warp": [0, 3.0, 1.0]}, {"warp_lines": [[[0, 0, 0], [0, 5, 1]], [[9, 0, 0], [10, 0, 0]]]}, {"warp": [[0, 1.0, 0]]}],
+    [
+        {"warp": [0, 3.0, 1.0]},
+        {"warp_lines": [[[0, 0, 0], [0, 5, 1]], [[9, 0, 0], [10, 0, 0]]]},
+        {"warp": [[0, 1.0, 0]]},
+    ],
     ids=["vector", "lines", "one for each face"],
 )
 def test_prestress_is_that_of_the_start(way: Any) -> None:

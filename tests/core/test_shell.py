@@ -429,10 +429,10 @@ def test_patches_that_do_not_fix_a_curvature_keep_a_bounded_stiffness(name: str)
     x[:, : len(spots[0])] = spots
     _, _, _, system = at(skin(x, faces, strength=1.0), x)
     block = system.groups[0].block
-    bounds = block.parameters[:, 12:21]
+    bounds = block.parameters[:, 13:22]
     assert np.isfinite(block.parameters).all() and (bounds.max(axis=1) > 0).all()
     lengths = np.linalg.norm(x[block.indices[:, [0, 1, 2]]] - x[block.indices[:, [1, 2, 0]]], axis=2)
-    stiffest = (lengths**2 / block.parameters[:, 2:3]).max()
+    stiffest = (lengths**2 / block.parameters[:, 3:4]).max()
     assert bounds.max() <= 50.0 * stiffest
 
 

@@ -8,6 +8,7 @@ A force that may be given both has two fields of these names, and compiles with
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from hookean.errors import InputError
@@ -15,6 +16,25 @@ from hookean.forces.base import Places
 
 NAMES = {"area": "A", "Iy": "Iy", "Iz": "Iz", "J": "J"}
 """Quantities of a section and the columns they become."""
+
+
+def without(value: Any, name: str, others: tuple[str, ...]) -> Any:
+    """Given fields with the field `name` as None where one of the others is given and it is not: its default does not
+    count then."""
+    if isinstance(value, Mapping) and name not in value and any(value.get(other) is not None for other in others):
+        return {**value, name: None}
+    return value
+
+
+def plate(force: Any, places: Places) -> tuple[float, float]:
+    """D = E t^3 / (12 (1 - nu^2)) [force length] and nu [-] of a force: its `strength` and `poisson`, or those of its
+    `material` and `thickness`; InputError where they are not known."""
+    if force.strength is not None:
+        return float(force.strength), float(force.poisson or 0.0)
+    material = places.material(force.material)
+    modulus = material.modulus(force.material)
+    poisson = force.poisson if force.poisson is not None else material.contraction(force.material)
+    return modulus * force.thickness**3 / (12.0 * (1.0 - poisson**2)), poisson
 
 
 def axial_stiffness(force: Any, places: Places) -> float:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,13 +15,6 @@ if TYPE_CHECKING:
     from hookean.forces.springs import Springs
 
 OTHERS = ("axial_stiffness", "material", "section")
-
-
-def without_stiffness(value: Any) -> Any:
-    """Given fields with k as None where the stiffness is given otherwise, and k is not."""
-    if isinstance(value, Mapping) and "stiffness" not in value and any(value.get(n) is not None for n in OTHERS):
-        return {**value, "stiffness": None}
-    return value
 
 
 def one_way(springs: Springs) -> None:
@@ -67,9 +59,7 @@ def resolved(springs: Springs, places: Places, index: Ints) -> tuple[Floats, Flo
     return whole / own, rest
 
 
-def _rest(
-    springs: Springs, places: Places, start: Floats, k: Floats | None, axial: Floats | None
-) -> Floats:
+def _rest(springs: Springs, places: Places, start: Floats, k: Floats | None, axial: Floats | None) -> Floats:
     rest = start if springs.rest_length is None else np.asarray(springs.rest_length, dtype=np.float64)
     if springs.strain is not None:
         rest = start / (1.0 + np.asarray(springs.strain))

@@ -11,6 +11,7 @@ from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces import spring_inputs
 from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.elastic import without
 from hookean.values.columns import IndexRows, Lines, NonNegatives, Reals
 from hookean.values.fields import Field, Maybe
 
@@ -277,8 +278,7 @@ class Springs(Force):
     @model_validator(mode="before")
     @classmethod
     def _other_stiffness(cls, value: Any) -> Any:
-        """Without k where the stiffness is given otherwise."""
-        return spring_inputs.without_stiffness(value)
+        return without(value, "stiffness", spring_inputs.OTHERS)
 
     @model_validator(mode="after")
     def _one_way(self) -> Springs:

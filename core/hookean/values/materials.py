@@ -55,12 +55,16 @@ class Material(Model):
         if cloth and self.poisson is not None:
             weft = self.weft_stiffness or self.warp_stiffness
             if not self.poisson**2 * float(weft or 0) < float(self.warp_stiffness or 0):
-                raise fault(f"{self.poisson:g} given; its square must be below warp_stiffness / weft_stiffness", "/poisson")
+                raise fault(
+                    f"{self.poisson:g} given; its square must be below warp_stiffness / weft_stiffness", "/poisson"
+                )
         if solid and self.poisson is not None:
             if not -1.0 < self.poisson <= 0.5:
                 raise fault(f"{self.poisson:g} given; more than -1 and at most 0.5 allowed", "/poisson")
             if self.G is not None:
-                raise fault("G and poisson given; give one of them, the other follows from E = 2 G (1 + nu)", "/poisson")
+                raise fault(
+                    "G and poisson given; give one of them, the other follows from E = 2 G (1 + nu)", "/poisson"
+                )
         return self
 
     def modulus(self, name: str) -> float:

@@ -71,7 +71,9 @@ class Section(Model):
             raise fault(f"{self.thickness:g} given; at most half of the diameter allowed", "/thickness")
         if self.shape == "I":
             if 2.0 * float(self.flange_thickness or 0) >= float(self.height or 0):
-                raise fault(f"{self.flange_thickness:g} given; less than half of the height allowed", "/flange_thickness")
+                raise fault(
+                    f"{self.flange_thickness:g} given; less than half of the height allowed", "/flange_thickness"
+                )
             if float(self.web_thickness or 0) > float(self.width or 0):
                 raise fault(f"{self.web_thickness:g} given; at most the width allowed", "/web_thickness")
 
