@@ -10,7 +10,8 @@ in E, and its gradient S = C (E + A) is a stress without compression:
 
 With t = (Ew^(1/4) cos(u/2), Ef^(1/4) sin(u/2)), q = t E t = a + b cos u + d sin u and p = tt C^-1 tt = 1 + k sin^2 u,
 the greatest q^2 / p is where d cos u = ((1 + k) b + k a cos u) sin u. Sources: Reissner, "On tension field theory",
-1938; Pipkin, "Relaxed energy densities for large deformations of membranes", 1994; Steigmann, "Tension-field theory", 1990.
+1938; Pipkin, "Relaxed energy densities for large deformations of membranes", 1994; Steigmann, "Tension-field theory",
+1990.
 """
 
 from __future__ import annotations

@@ -152,6 +152,12 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         },
         reactions={**_AT, "description": "Forces of the anchors on their particles"},
         contacts={**_AT, "description": "Forces of floors on particles"},
+        loads={
+            "type": "object",
+            "description": "Columns of the loads: force (number), kind, name, resultant [force], centre [length], "
+            "moment about it [force length]",
+            "additionalProperties": {"type": "array"},
+        },
         residual={"type": ["number", "null"]},
         rounding_floor={"type": ["number", "null"]},
         out_of_balance={"type": ["number", "null"]},
