@@ -85,6 +85,7 @@ if TYPE_CHECKING:
     from hookean.forces.rigid_collide import RigidCollide as RigidCollide
     from hookean.forces.self_weight import SelfWeight as SelfWeight
     from hookean.forces.shell import Shell as Shell
+    from hookean.forces.sliding_cable import SlidingCable as SlidingCable
     from hookean.forces.smooth import Smooth as Smooth
     from hookean.forces.soapfilm import SoapFilm as SoapFilm
     from hookean.forces.soft_collide import SoftCollide as SoftCollide
@@ -226,6 +227,7 @@ __all__ = [
     "Settings",
     "Shell",
     "Simulation",
+    "SlidingCable",
     "Smooth",
     "SoapFilm",
     "SoftCollide",

@@ -259,3 +259,63 @@ def test_columns_of_a_material_and_a_section() -> None:
         section_columns(Bar("steel", "strand"), places)
     with pytest.raises(InputError, match="GL24h is not isotropic"):
         known()["GL24h"].contraction("GL24h")
+
+
+def weighed(force: dict[str, Any], **more: Any) -> np.ndarray:
+    """Weights on the particles of the scene, along -z."""
+    given = {"kind": "self_weight", **force}
+    system = compile(Scene.read({**SCENE, **more, "forces": [given]}))
+    return np.asarray(-system.evaluate(system.start())[0][:, 2])
+
+
+def test_materials_have_their_weight() -> None:
+    """density x area x 9.80665 m/s^2 x start length, half of it on each end; density x thickness, or the mass per area
+    of a cloth, on faces, a third on each corner; the same in other units."""
+    tube = 7850 * PI * 0.005 * 0.095 * 9.80665
+    along = weighed({"particles": [[0, 1], [1, 2]], "material": "steel", "section": "tube"})
+    assert along == pytest.approx(tube * np.array([1.0, 3.0, 2.0]), rel=1e-14)
+    mesh = {"m": {"vertices": SCENE["particles"], "faces": [[0, 1, 2]]}}  # of area 4
+    plate = weighed({"mesh": "m", "material": "steel", "thickness": 0.01, "gravity": 10.0}, meshes=mesh)
+    assert plate == pytest.approx(np.full(3, 7850 * 0.01 * 4 * 10 / 3), rel=1e-14)
+    cloth = weighed({"mesh": "m", "material": "PVC-polyester I"}, meshes=mesh)
+    assert cloth == pytest.approx(np.full(3, 0.75 * 4 * 9.80665 / 3), rel=1e-14)
+    in_kn = weighed({"mesh": "m", "material": "PVC-polyester I"}, meshes=mesh, units={"force": "kN"})
+    assert in_kn == pytest.approx(cloth / 1e3, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"total": 1.0, "material": "steel"}, "give exactly one of total, per_length, material"),
+        ({"total": 1.0, "gravity": 9.81}, "gravity belongs to a material"),
+        ({"material": "steel"}, "a material needs a section along lines, or a mesh"),
+        ({"mesh": "m", "material": "steel"}, "steel is a solid; give its thickness on the mesh, or a section"),
+        ({"mesh": "m", "material": "PTFE-glass", "thickness": 1.0}, "whose mass is per area; remove thickness"),
+        ({"mesh": "m", "material": "bare", "thickness": 1.0}, "bare has no density; give it"),
+        ({"mesh": "m", "material": "bare", "section": "tube", "thickness": 1.0}, "section and thickness given"),
+    ],
+)
+def test_a_weight_is_given_in_one_way(given: Any, sentence: str) -> None:
+    mesh = {"m": {"vertices": SCENE["particles"], "faces": [[0, 1, 2]]}}
+    with pytest.raises(InputError) as refused:
+        weighed(given, meshes=mesh, materials={**SCENE["materials"], "bare": {"E": 1.0}})
+    assert sentence in refused.value.sentence
+
+
+def test_a_shell_of_a_material_has_its_plate_stiffness() -> None:
+    """D = E t^3 / (12 (1 - nu^2)) and nu of steel; or a given nu."""
+    mesh = {"m": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "faces": [[0, 1, 2], [0, 2, 3]]}}
+
+    def numbers(**force: Any) -> list[float]:
+        scene = {**SCENE, "meshes": mesh, "forces": [{"kind": "shell", "mesh": "m", **force}]}
+        block = compile(Scene.read(scene)).groups[0].block
+        return [float(block.parameters[0, block.names.index(name)]) for name in ("strength", "poisson")]
+
+    nu = 210 / 162 - 1
+    made = numbers(material="steel", thickness=0.02)
+    assert made == pytest.approx([210e9 * 8e-6 / (12 * (1 - nu**2)), nu], rel=1e-13)
+    assert numbers(material="steel", thickness=0.02, poisson=0.0) == pytest.approx([140e3, 0.0], rel=1e-13)
+    assert numbers() == [500.0, 0.0] and numbers(strength=3.0, poisson=0.25) == [3.0, 0.25]
+    for given in ({"material": "steel"}, {"strength": 1.0, "thickness": 1.0}, {"strength": None}):
+        with pytest.raises(InputError, match="give either strength, or both material and thickness"):
+            numbers(**given)

@@ -14,6 +14,8 @@ from hookean.discretize import grid
 from hookean.forces.tension_field import SLACK, TAUT, WRINKLED, respond
 from hookean.system.system import compile
 
+from .film_meshes import concentric
+
 EPS = float(np.finfo(float).eps)
 CLOTH = {"warp_stiffness": 600.0, "weft_stiffness": 450.0, "shear_stiffness": 30.0, "poisson": 0.3}
 
@@ -196,26 +198,9 @@ def test_compressed_cloth_is_slack() -> None:
     assert (columns["state"] == SLACK).all() and not columns["largest"].any()
 
 
-def disc(rings: int) -> tuple[np.ndarray, list[list[int]], np.ndarray]:
-    """A unit disc of six sectors, as many rings of triangles, and its rim."""
-    x, faces, ring = [[0.0, 0.0, 0.0]], [], [np.zeros(1, int)]
-    for r in range(1, rings + 1):
-        turn = np.arange(6 * r) * np.pi / (3 * r)
-        ring.append(len(x) + np.arange(6 * r))
-        x += [[r / rings * np.cos(t), r / rings * np.sin(t), 0.0] for t in turn]
-        for s in range(6):
-            for j in range(r):
-                a, b = ring[r][s * r + j], ring[r][(s * r + j + 1) % (6 * r)]
-                c = ring[r - 1][(s * (r - 1) + j) % max(6 * (r - 1), 1)]
-                faces.append([c, a, b])
-                if j < r - 1:
-                    faces.append([c, b, ring[r - 1][(s * (r - 1) + j + 1) % (6 * (r - 1))]])
-    return np.array(x), faces, ring[-1]
-
-
 def blown(rings: int) -> tuple[float, float]:
     """Rise and stress at the middle of Hencky's film, as parts of those of his series at nu = 0.3."""
-    x, faces, rim = disc(rings)
+    x, faces, (*_, rim) = concentric(rings)
     stiff, q = 1e5, 0.1  # rise 0.0065 of the radius: what his theory leaves out is its square
     film = Membrane(mesh="m", warp_stiffness=stiff, poisson=0.3, warp=[1, 0, 0])
     scene = Scene(

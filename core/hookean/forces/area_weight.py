@@ -30,14 +30,16 @@ def counted(parameters: Any, e: Any, n: Any, double: Any) -> Any:
 
 
 def area_weight_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0  # that of the present weight in a field of gravity, by which solvers judge steps
     g, n = np.zeros((3, 3)), np.zeros(3)
     for e in range(indices.shape[0]):
         half, double = 0.5 * parameters[e, WEIGHT] * parameters[e, PART], sides(x, indices, e, g, n)
         area = counted(parameters, e, n, double)
         for c in range(3):
             n[c] = half * area * parameters[e, DOWN + c]
+            energy -= n[c] * (x[indices[e, 0], c] + x[indices[e, 1], c] + x[indices[e, 2], c]) / 3.0
         share(indices, e, n, np.abs(half) if parameters[e, PER] != START else 0.0, g, f, w)
-    return 0.0
+    return energy
 
 
 def area_weight_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
@@ -64,8 +66,10 @@ class AreaWeight(FaceLoad):
     the faces, as that of a form-found shell of constant thickness, of whose final area nothing is known yet. Per plan A
     is the area of the shadow of the face along g, as codes give snow; faces that lie above one another each carry it.
     Per start A stays that of the start, as the weight of a membrane that stretches. For a load along the normals use
-    `pressure`. A quad is the mean of its two cuts into triangles. Per true and plan area these forces have no energy:
-    moving a face up large and down small gains work. Newton steps use the symmetric part of their stiffness.
+    `pressure`. A quad is the mean of its two cuts into triangles.
+
+    Per true and plan area these forces have no energy: moving a face up large and down small gains work; what is
+    reported is -F . x of the present load F. Newton steps use the symmetric part of their stiffness.
     """
 
     kind: Literal["area_weight"] = "area_weight"

@@ -36,14 +36,17 @@ def counted(x: Any, indices: Any, parameters: Any, e: Any, d: Any) -> Any:
 
 
 def line_weight_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0  # that of the present weight in a field of gravity, by which solvers judge steps
     d = np.zeros(3)
     for e in range(indices.shape[0]):
         length = counted(x, indices, parameters, e, d)
         for i in range(2):
             w[indices[e, i]] += np.abs(parameters[e, WEIGHT]) if parameters[e, PER] != START else 0.0
             for c in range(3):
-                f[indices[e, i], c] += 0.5 * parameters[e, WEIGHT] * length * parameters[e, DOWN + c]
-    return 0.0
+                push = 0.5 * parameters[e, WEIGHT] * length * parameters[e, DOWN + c]
+                f[indices[e, i], c] += push
+                energy -= push * x[indices[e, i], c]
+    return energy
 
 
 def line_weight_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
@@ -69,8 +72,8 @@ class LineWeight(Force):
     line, as that of a cable that is paid out, or of ice; a cable that carries it has the shape of a catenary whatever
     its stiffness. Per plan l is the length of the line's shadow along g, as of snow: a cable that carries it is a
     parabola. Per start l stays that of the start, as the weight of a line that stretches. Per true and plan length
-    these forces have no energy: moving a line up long and down short gains work. Newton steps use the symmetric part of
-    their stiffness.
+    these forces have no energy: moving a line up long and down short gains work; what is reported is -F . x of the
+    present load F. Newton steps use the symmetric part of their stiffness.
     """
 
     kind: Literal["line_weight"] = "line_weight"

@@ -69,9 +69,8 @@ class SelfWeight(Force):
         if self.material is not None and self.section is None and self.mesh is None:
             raise fault("a material needs a section along lines, or a mesh whose faces it covers")
         if self._along and self.particles is None and self.lines is None and self.mesh is None:
-            raise fault(
-                f"{'per_length' if self.per_length is not None else 'section'} needs lines, pairs of particles or a mesh"
-            )
+            name = "section" if self.per_length is None else "per_length"
+            raise fault(f"{name} needs lines, pairs of particles or a mesh")
         if self.total is not None and self.lines is not None:
             raise fault("lines need per_length; give particles or points for a total", "/lines")
         if self.total is None and self.points is not None:

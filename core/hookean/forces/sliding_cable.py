@@ -98,7 +98,7 @@ class SlidingCable(groups.Grouped):
         return self
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: links of the cables, EA / L0, L0, its factor; InputError where a cable has no length."""
+        """Arrays for the kernel: links of the cables, EA / L0, L0, its factor; InputError for one without length."""
         index = places.elements(self)
         links = groups.links(index, self.group)
         axial = self.axial_stiffness
