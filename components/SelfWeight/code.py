@@ -1,11 +1,13 @@
-"""Weight as loads: `total` / number of particles on each, or half of `per_length` x start length on
-line ends.
+"""Weight as loads: `total` / number of particles on each, half of `per_length` x start length on line
+ends, or that of a material.
 
 With a total, give particles, points or a mesh (nothing: every particle of the scene): 10 N on 51
 particles is 0.196 N each, also where some of the given points met no particle (the scene is not
 `strict`) and their part of the total is left out. With a weight per length, give lines, pairs of
-particles or a mesh (its edges). The load does not change as the lines stretch: weight is conserved.
-Energy -W d . x. Source: the chapter, 9.5.
+particles or a mesh (its edges). A material with a section weighs density x area x gravity per start
+length of the same; a cloth, or a solid with a thickness, weighs that on the faces of a mesh, a
+third of each triangle's on each of its corners. The load does not change as lines and faces
+stretch: weight is conserved. Energy -W d . x. Source: the chapter, 9.5.
 
 E = -W d.x
 """
@@ -20,5 +22,9 @@ force = canvas.force(
     per_length=per_length_,
     total=total_,
     direction=_direction_,
+    material=material_,
+    section=section_,
+    thickness=thickness_,
+    gravity=gravity_,
     name=name_,
 )

@@ -1,23 +1,27 @@
 """Bending of a mesh as a thin plate or shell of bending stiffness D, from the fold angles of its
 edges.
 
-Energy per triangle A D |K|^2 / 2, A its start area and K [1/length] its change of curvature; a
-sheet of thickness t and modulus E has D = E t^3 / 12 (Poisson's ratio 0), so bending to the
-curvature k costs D k^2 / 2 per area in every direction. K = sum over the three edges of (2 / h) phi
-n n^T, h the height on the edge, n its normal in the plane of the triangle, phi the part of the
-edge's change of fold angle theta - theta0 that lies on this side of the edge (the other triangle
-has the rest; Morley's plate element). phi is h / (h + h') (theta - theta0), corrected by the folds
-of the neighbouring edges as constant curvature of the start mesh requires. So constant curvature
-has its exact energy and its moments balance on any mesh, sheared or irregular. Naked edges turn
-freely (K has the least energy). theta0 = angle factor x start angle. Quads are split along their
-shorter diagonal (a draw: first to third corner), which folds as any edge. Forces and moments of
-every triangle sum to zero, whatever its size.
+Energy per triangle A D ((1 - nu) |K|^2 + nu (tr K)^2) / 2, A its start area and K [1/length] its
+change of curvature, nu Poisson's ratio; a sheet of thickness t and modulus E has D = E t^3 / (12 (1
+- nu^2)), so bending to the curvature k in one direction costs D k^2 / 2 per area. Give D, or a
+material and a thickness; with `membrane` on the same mesh it is a whole shell.
+
+K = sum over the three edges of (2 / h) phi n n^T, h the height on the edge, n its normal in the
+plane of the triangle, phi the part of the edge's change of fold angle theta - theta0 that lies on
+this side of the edge (the other triangle has the rest; Morley's plate element). phi is h / (h + h')
+(theta - theta0), corrected by the folds of the neighbouring edges as constant curvature of the
+start mesh requires. So constant curvature has its exact energy and its moments balance on any mesh,
+sheared or irregular. Naked edges turn freely (K has the least energy), so an edge that is held is
+simply supported; to clamp it, hold a second row of vertices as well, half a mesh width inside and
+half outside of the clamp. theta0 = angle factor x start angle. Quads are split along their shorter
+diagonal (a draw: first to third corner), which folds as any edge. Forces and moments of every
+triangle sum to zero, whatever its size.
 
 The mesh may not have three faces at one edge; faces without area are left out. Sources: Morley,
 "The constant- moment plate-bending element", 1971; Grinspun et al., "Discrete shells", 2003;
 Grinspun et al., "Computing discrete shape operators on general meshes", 2006.
 
-E = A D |K - K0|^2/2
+E = A D ((1 - nu) |K - K0|^2 + nu tr^2(K - K0))/2
 """
 
 from hookean_client import canvas
@@ -27,6 +31,9 @@ force = canvas.force(
     "shell",
     mesh=_mesh,
     strength=_strength_,
+    poisson=poisson_,
+    material=material_,
+    thickness=thickness_,
     angle_factor=_angle_factor_,
     name=name_,
 )

@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from hookean.forces.level_set import LevelSet as LevelSet
     from hookean.forces.line_weight import LineWeight as LineWeight
     from hookean.forces.magnet_snap import MagnetSnap as MagnetSnap
+    from hookean.forces.membrane import Membrane as Membrane
     from hookean.forces.mirror import Mirror as Mirror
     from hookean.forces.no_fold_through import NoFoldThrough as NoFoldThrough
     from hookean.forces.planarize import Planarize as Planarize
@@ -89,6 +90,7 @@ if TYPE_CHECKING:
     from hookean.forces.rigid_collide import RigidCollide as RigidCollide
     from hookean.forces.self_weight import SelfWeight as SelfWeight
     from hookean.forces.shell import Shell as Shell
+    from hookean.forces.sliding_cable import SlidingCable as SlidingCable
     from hookean.forces.smooth import Smooth as Smooth
     from hookean.forces.soapfilm import SoapFilm as SoapFilm
     from hookean.forces.soft_collide import SoftCollide as SoftCollide
@@ -122,6 +124,8 @@ if TYPE_CHECKING:
     from hookean.scene.scene import MeshData as MeshData
     from hookean.scene.scene import Scene as Scene
     from hookean.scene.scene import Settings as Settings
+    from hookean.values.materials import Material as Material
+    from hookean.values.sections import Section as Section
     from hookean.values.units import Units as Units
 
 __version__ = "0.1.0"
@@ -131,7 +135,9 @@ _HOMES = {
     "Anchor": "scene.scene",
     "Anchors": "scene.scene",
     "Geometry": "scene.scene",
+    "Material": "values.materials",
     "MeshData": "scene.scene",
+    "Section": "values.sections",
     "Settings": "scene.scene",
     "Units": "values.units",
     "Force": "forces",
@@ -203,6 +209,8 @@ __all__ = [
     "LevelSet",
     "LineWeight",
     "MagnetSnap",
+    "Material",
+    "Membrane",
     "MeshData",
     "Mirror",
     "Move",
@@ -224,10 +232,12 @@ __all__ = [
     "RigidCollide",
     "Scene",
     "Script",
+    "Section",
     "SelfWeight",
     "Settings",
     "Shell",
     "Simulation",
+    "SlidingCable",
     "Smooth",
     "SoapFilm",
     "SoftCollide",

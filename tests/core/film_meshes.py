@@ -110,3 +110,20 @@ def slopes(errors: Any) -> np.ndarray:
     """Orders of convergence of errors at h, h/2, h/4."""
     size = np.abs(np.asarray(errors))
     return np.log2(size[:-1] / size[1:])
+
+
+def concentric(rings: int) -> tuple[np.ndarray, list[list[int]], list[np.ndarray]]:
+    """A unit disc of six sectors, as many rings of triangles, and the vertices of each ring."""
+    x, faces, ring = [[0.0, 0.0, 0.0]], [], [np.zeros(1, int)]
+    for r in range(1, rings + 1):
+        turn = np.arange(6 * r) * np.pi / (3 * r)
+        ring.append(len(x) + np.arange(6 * r))
+        x += [[r / rings * np.cos(t), r / rings * np.sin(t), 0.0] for t in turn]
+        for s in range(6):
+            for j in range(r):
+                a, b = ring[r][s * r + j], ring[r][(s * r + j + 1) % (6 * r)]
+                c = ring[r - 1][(s * (r - 1) + j) % max(6 * (r - 1), 1)]
+                faces.append([c, a, b])
+                if j < r - 1:
+                    faces.append([c, b, ring[r - 1][(s * (r - 1) + j + 1) % (6 * (r - 1))]])
+    return np.array(x), faces, ring

@@ -141,3 +141,21 @@ def test_water_carries_a_box_that_nothing_else_holds(solver: str) -> None:
     assert found.converged, found.message
     # as if rigid, but for stresses of some 20 kN by the stiffness, 1e4
     assert found.particles[:4, 2] == pytest.approx(np.full(4, -20.0 / (6.0 * GAMMA)), abs=20.0 / 1e4)
+
+
+def test_water_ponds_on_a_roof_that_sags() -> None:
+    """A flat roof of area A on springs k in all, under water up to a level h above it: it sinks by w until k w =
+    gamma A (h + w), w = gamma A h / (k - gamma A): more than the water that stood there first would press it."""
+    x = np.array([[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0.0]])
+    level, stiffness, area = 0.1, 100.0, 6.0
+    water = {"kind": "hydrostatic", "mesh": "m", "weight": -GAMMA, "level": level}
+    springs = {"kind": "anchor_spring", "particles": range(4), "strength": stiffness / 4}
+    guides = [{"particles": range(4), "axes": "xy"}]
+    mesh = {"m": {"vertices": x, "faces": [[0, 1, 2, 3]]}}
+    scene = Scene(particles=x, meshes=mesh, forces=[water, springs], anchors=guides, settings={"tolerance": 1e-11})
+    found = relax(scene)
+    assert found.converged and found.stability == "stable"
+    assert found.particles[:, 2] == pytest.approx([-GAMMA * area * level / (stiffness - GAMMA * area)] * 4, rel=1e-9)
+    assert found.loads["resultant"][0] == pytest.approx(
+        [0, 0, -GAMMA * area * (level - found.particles[0, 2])], rel=1e-9, abs=1e-9
+    )

@@ -65,3 +65,16 @@ def test_gravity_without_a_direction_is_refused() -> None:
         InputError, match="/forces/1/direction: a vector of zero length given; give one that is not 0, 0, 0"
     ):
         cable(4, {"kind": "line_weight", "direction": [0, 0, 0]})
+
+
+def test_per_plan_length_the_cable_is_a_parabola() -> None:
+    """Snow q per plan length on a cable with horizontal force H: its particles, wherever they are, lie on the polygon
+    z'' = q / H between supports at equal height, so H = q x (L - x) / (2 z) with the same H at each, and the vertical
+    reactions are q L / 2."""
+    found = cable(16, {"kind": "line_weight", "weight": WEIGHT, "per": "plan"})
+    x, z = found.particles[1:-1, 0], found.particles[1:-1, 2]
+    pull = abs(found.reactions["force"][0, 0])
+    assert found.converged
+    assert WEIGHT * x * (SPAN - x) / (-2.0 * z) == pytest.approx(np.full(len(x), pull), rel=1e-6)
+    # half of the load of the last pieces lies at the supports
+    assert found.reactions["force"][:, 2] == pytest.approx([WEIGHT * SPAN / 2] * 2, rel=1e-8)

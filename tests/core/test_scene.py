@@ -287,7 +287,7 @@ def test_a_scene_made_by_name_tells_faults_as_one_that_is_read(bad: dict[str, ob
 MODELS = {
     Springs: ({"particles": [[0, 1]]}, {"stiffness": -1}, "/stiffness", "-1 given; at least 0 allowed"),
     Unary: ({"particles": [0], "vector": [0, 0, 1]}, {"vector": [0, 0]}, "/vector", "shape [2] given"),
-    SelfWeight: ({"total": 1}, {"per_length": 1}, "/", "give either total or per_length"),
+    SelfWeight: ({"total": 1}, {"per_length": 1}, "/", "give exactly one of total, per_length, material"),
     Floor: ({}, {"restitution": 2}, "/restitution", "2 given; at most 1 allowed"),
     Anchor: ({"particles": [0]}, {"axes": "zx"}, "/axes", '"zx" given'),
     Settings: ({}, {"tolerance": "small"}, "/tolerance", "a number expected"),

@@ -127,7 +127,13 @@ def _variants() -> list[Case]:
     yielding = Springs(particles=pairs, stiffness=[1.0, 10.0, 100.0, 300.0, 7.0, 50.0], plasticity=[0.05] * 5 + [0.0])
     far = Springs(particles=pairs, plasticity=0.03, rest_factor=0.7, upper_cutoff=start * 0.35, damping=3.0)
     linear = Springs(particles=pairs, rest_length=0.0, damping=0.0)
-    named = {"cut off": off, "yielding": yielding, "cut off and yielded": far, "rest length 0": linear}
+    half = [0.4, 1.8, 0.4, 1.8, 0.4, 1.8]  # taut, and slack
+    tie = Springs(particles=pairs, axial_stiffness=50.0, rest_factor=half, tension_only=True, plasticity=0.05)
+    strut = Springs(particles=pairs, axial_stiffness=50.0, rest_factor=half, compression_only=True)
+    named = {
+        "cut off": off, "yielding": yielding, "cut off and yielded": far, "rest length 0": linear,
+        "tension only": tie, "compression only": strut,
+    }  # fmt: skip
     return [case_of(f"springs, {name}", force, x) for name, force in named.items()]
 
 

@@ -12,6 +12,9 @@ from pydantic import model_validator
 
 from hookean.values.columns import Model, fault
 from hookean.values.fields import Field
+from hookean.values.materials import Material
+from hookean.values.sections import Section
+from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -92,6 +95,19 @@ class Places(Protocol):
     def geometry(self, name: str) -> tuple[Floats, Ints]:
         """Vertices (n, 3) and faces (m, 4) of the scene's mesh `name`, as drawn; raises InputError if it does not
         exist."""
+        ...
+
+    def material(self, name: str) -> Material:
+        """The scene's material of this name, or a known one; raises InputError if it does not exist."""
+        ...
+
+    def section(self, name: str) -> Section:
+        """The scene's section of this name; raises InputError if it does not exist."""
+        ...
+
+    @property
+    def units(self) -> Units:
+        """Units of the scene."""
         ...
 
 

@@ -93,6 +93,68 @@ def slopes(x: Any, a: Any, b: Any, c: Any, d: Any, g: Any) -> Any:
 
 
 @device
+def bends(x: Any, a: Any, b: Any, c: Any, d: Any, g: Any, h: Any) -> None:
+    """Write the second derivatives `h` (12, 12) of the fold angle by a, b, c, d, with `g` as in `slopes`.
+
+    The gradient at a tip is L N / |N|^2, of which N and L change as c, d and the edge move; that at b is minus the sum
+    of both, each by its foot s on the edge; and a translation changes nothing.
+    """
+    ex, ey, ez = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+    px, py, pz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
+    qx, qy, qz = x[d, 0] - x[a, 0], x[d, 1] - x[a, 1], x[d, 2] - x[a, 2]
+    ee = ex * ex + ey * ey + ez * ez
+    foot_c, foot_d = (px * ex + py * ey + pz * ez) / ee, (qx * ex + qy * ey + qz * ez) / ee
+    tip(h, 2, g, 1.0, ex, ey, ez, px, py, pz)
+    tip(h, 3, g, -1.0, ex, ey, ez, qx, qy, qz)
+    for i in range(3):
+        for j in range(3):
+            ej, pj, qj = component(ex, ey, ez, j), component(px, py, pz, j), component(qx, qy, qz, j)
+            h[6 + i, 9 + j] = 0.0
+            h[9 + i, 6 + j] = 0.0
+            h[3 + i, 3 + j] = -g[2, i] * (pj - 2.0 * foot_c * ej) / ee - g[3, i] * (qj - 2.0 * foot_d * ej) / ee
+            h[3 + i, 3 + j] -= foot_c * h[6 + i, 3 + j] + foot_d * h[9 + i, 3 + j]
+    for i in range(3):
+        for j in range(3):
+            h[3 + j, 6 + i] = h[6 + i, 3 + j]
+            h[3 + j, 9 + i] = h[9 + i, 3 + j]
+    for i in range(3, 12):
+        for j in range(3):
+            h[i, j] = -h[i, 3 + j] - h[i, 6 + j] - h[i, 9 + j]
+            h[j, i] = h[i, j]
+    for i in range(3):
+        for j in range(3):
+            h[i, j] = -h[i, 3 + j] - h[i, 6 + j] - h[i, 9 + j]
+
+
+@device
+def tip(h: Any, at: Any, g: Any, sign: Any, ex: Any, ey: Any, ez: Any, px: Any, py: Any, pz: Any) -> None:
+    """Write how the gradient at a tip p from a changes with the tip and with b; `sign`: N = e x p, or p x e."""
+    length = np.sqrt(ex * ex + ey * ey + ez * ez)
+    gx, gy, gz = g[at, 0], g[at, 1], g[at, 2]
+    gg = gx * gx + gy * gy + gz * gz  # L^2 / |N|^2
+    # with J = (1 - 2 n n) / |N|^2: L J [e] by the tip, -L J [p] + N / |N|^2 e / L by b
+    scale = gg / length
+    for i in range(3):
+        gi = component(gx, gy, gz, i)
+        for j in range(3):
+            k, m = (j + 1) % 3, (j + 2) % 3
+            # row i of J times column j of a cross product [v]: (J [v])_ij = J_ik v_m - J_im v_k
+            gk, gm = component(gx, gy, gz, k), component(gx, gy, gz, m)
+            jk = scale * ((1.0 if i == k else 0.0) - 2.0 * gi * gk / gg)
+            jm = scale * ((1.0 if i == m else 0.0) - 2.0 * gi * gm / gg)
+            ek, em, ej = component(ex, ey, ez, k), component(ex, ey, ez, m), component(ex, ey, ez, j)
+            pk, pm = component(px, py, pz, k), component(px, py, pz, m)
+            h[3 * at + i, 3 * at + j] = sign * (jk * em - jm * ek)
+            h[3 * at + i, 3 + j] = -sign * (jk * pm - jm * pk) + gi / length * ej / length
+
+
+@device
+def component(x: Any, y: Any, z: Any, i: Any) -> Any:
+    """Component i of x, y, z."""
+    return x if i == 0 else y if i == 1 else z
+
+
+@device
 def turn(indices: Any, e: Any, stiffness: Any, moment: Any, g: Any, f: Any, w: Any) -> None:
     """Turn both triangles by a moment against their fold, with `g` as in `slopes`; `stiffness` is that per radian."""
     for i in range(4):

@@ -8,7 +8,7 @@ import numpy as np
 
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.dihedral import fold, fold_angles, turn, wrapped
+from hookean.forces.dihedral import bends, fold, fold_angles, turn, wrapped
 from hookean.values.columns import IndexRows, NonNegatives, PointRows, Reals
 from hookean.values.fields import Field, Maybe
 
@@ -35,6 +35,22 @@ def hinge_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-un
         energy += moment * (off - 0.5 * elastic)
         turn(indices, e, parameters[e, 0], moment, g, f, w)
     return energy
+
+
+def hinge_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    g, h = np.zeros((4, 5)), np.zeros((12, 12))
+    for e in range(indices.shape[0]):
+        a, b, c, d = indices[e, 0], indices[e, 1], indices[e, 2], indices[e, 3]
+        angle = fold(x, a, b, c, d, g)
+        if np.isnan(angle):
+            blocks[e] = 0.0
+            continue
+        off, elastic = bent(parameters, memory, e, angle)
+        stiff = parameters[e, 0] if off == elastic else 0.0
+        bends(x, a, b, c, d, g, h)
+        for i in range(12):
+            for j in range(12):
+                blocks[e, i, j] = stiff * g[i // 3, i % 3] * g[j // 3, j % 3] + parameters[e, 0] * elastic * h[i, j]
 
 
 def hinge_yield(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
@@ -76,6 +92,7 @@ class Hinge(Force):
     arity: ClassVar[int] = 4
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     kernel: ClassVar[Any] = staticmethod(hinge_kernel)
+    hessian: ClassVar[Any] = staticmethod(hinge_hessian)
     end_of_step: ClassVar[Any] = staticmethod(hinge_yield)
 
     def compile(self, places: Places) -> Block:

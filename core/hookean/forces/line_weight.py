@@ -1,4 +1,4 @@
-"""Line weight: a weight per length of lines as long as they are now."""
+"""Line weight: a load in one direction per length of lines: true, plan or that of the start."""
 
 from __future__ import annotations
 
@@ -6,32 +6,59 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places, units
+from hookean.compiled.marks import device
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places, lengths, units
 from hookean.forces.line_lengths import line
 from hookean.values.columns import Directions, IndexRows, Lines, Reals
 from hookean.values.fields import Field, Maybe
 
+Per = Literal["true", "plan", "start"]
+
+WEIGHT, DOWN, PER, LENGTH = 0, 1, 4, 5  # columns of the parameters
+TRUE, PLAN, START = 0.0, 1.0, 2.0
+
+
+@device
+def counted(x: Any, indices: Any, parameters: Any, e: Any, d: Any) -> Any:
+    """The length that counts; writes its derivative by the line into `d`."""
+    length, d[0], d[1], d[2] = line(x, indices, e)
+    if parameters[e, PER] == START:
+        d[0], d[1], d[2] = 0.0, 0.0, 0.0
+        return parameters[e, LENGTH]
+    if parameters[e, PER] == PLAN:
+        along = d[0] * parameters[e, DOWN] + d[1] * parameters[e, DOWN + 1] + d[2] * parameters[e, DOWN + 2]
+        for c in range(3):
+            d[c] -= along * parameters[e, DOWN + c]
+        length = np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+    for c in range(3):
+        d[c] = d[c] / length if length > 0.0 else 0.0
+    return length
+
 
 def line_weight_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0  # that of the present weight in a field of gravity, by which solvers judge steps
+    d = np.zeros(3)
     for e in range(indices.shape[0]):
-        length, _, _, _ = line(x, indices, e)
+        length = counted(x, indices, parameters, e, d)
         for i in range(2):
-            w[indices[e, i]] += np.abs(parameters[e, 0])
+            w[indices[e, i]] += np.abs(parameters[e, WEIGHT]) if parameters[e, PER] != START else 0.0
             for c in range(3):
-                f[indices[e, i], c] += 0.5 * parameters[e, 0] * length * parameters[e, 1 + c]
-    return 0.0
+                push = 0.5 * parameters[e, WEIGHT] * length * parameters[e, DOWN + c]
+                f[indices[e, i], c] += push
+                energy -= push * x[indices[e, i], c]
+    return energy
 
 
 def line_weight_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
-    # df = q / 2 g (u . dx) on both ends, u along the line; the symmetric part
+    # df = q / 2 g (u . dx) on both ends, u along the line, or its shadow; the symmetric part
     d = np.zeros(3)
     for e in range(indices.shape[0]):
-        length, d[0], d[1], d[2] = line(x, indices, e)
-        half = 0.5 * parameters[e, 0] / length if length > 0.0 else 0.0
+        counted(x, indices, parameters, e, d)
+        half = 0.5 * parameters[e, WEIGHT]
         for i in range(3):
             for j in range(3):
-                one = half * parameters[e, 1 + i] * d[j]
-                other = half * parameters[e, 1 + j] * d[i]
+                one = half * parameters[e, DOWN + i] * d[j]
+                other = half * parameters[e, DOWN + j] * d[i]
                 blocks[e, i, j] = 0.5 * (one + other)
                 blocks[e, 3 + i, 3 + j] = -0.5 * (one + other)
                 blocks[e, i, 3 + j] = 0.5 * (other - one)
@@ -39,18 +66,21 @@ def line_weight_hessian(x, indices, parameters, memory, blocks):  # type: ignore
 
 
 class LineWeight(Force):
-    """A weight q per length of lines as long as they are now, half of it on each end: f = q l g / 2.
+    """A load q per length of lines, in one direction, half of it on each end: f = q l g / 2.
 
-    g is the direction of gravity. The load grows with the line, as that of a cable that is paid out, of ice or of snow
-    on a line; a cable that carries it has the shape of a catenary whatever its stiffness. The weight of a line that
-    stretches is conserved by `self_weight`, with its start length. These forces have no energy: moving a line up long
-    and down short gains work. Newton steps use the symmetric part of their stiffness.
+    g is the direction of the load, gravity unless given. l is the true length as it is now: the load grows with the
+    line, as that of a cable that is paid out, or of ice; a cable that carries it has the shape of a catenary whatever
+    its stiffness. Per plan l is the length of the line's shadow along g, as of snow: a cable that carries it is a
+    parabola. Per start l stays that of the start, as the weight of a line that stretches. Per true and plan length
+    these forces have no energy: moving a line up long and down short gains work; what is reported is -F . x of the
+    present load F. Newton steps use the symmetric part of their stiffness.
     """
 
     kind: Literal["line_weight"] = "line_weight"
     particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends must meet particles")
     weight: Reals = Field(default=1.0, description="q [force/length]")
+    per: Per = Field(default="true", description="Length that counts: as it is, its plan along g, or at the start")
     direction: Directions = Field(
         default=np.array([0.0, 0.0, -1.0]), description="g, direction of gravity; its length is ignored"
     )
@@ -66,10 +96,12 @@ class LineWeight(Force):
     hessian: ClassVar[Any] = staticmethod(line_weight_hessian)
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: q, the unit vector along g."""
+        """Arrays for the kernel: q, the unit vector along g, which length counts, that of the start."""
         index = places.elements(self)
         down = units(self.direction)
-        return Block.of(index, weight=self.weight, direction=down)
+        length = lengths(places.x[index[:, 1]] - places.x[index[:, 0]])
+        per = {"true": TRUE, "plan": PLAN, "start": START}[self.per]
+        return Block.of(index, weight=self.weight, direction=down, per=per, length=length)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length [length] and weight of each line [force]."""

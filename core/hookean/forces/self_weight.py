@@ -1,4 +1,4 @@
-"""Self-weight: a total shared by particles, or a weight per length of lines."""
+"""Self-weight: a total shared by particles, a weight per length of lines, or that of a material."""
 
 from __future__ import annotations
 
@@ -7,19 +7,26 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import model_validator
 
+from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Force, OnFilm, Places
+from hookean.forces.elastic import area
+from hookean.forces.soapfilm import halves
 from hookean.forces.unary import unary_kernel
 from hookean.values.columns import IndexRows, Lines, Points, Reals, Vector, fault
 from hookean.values.fields import Field, Maybe
+from hookean.values.materials import gravity
 
 
 class SelfWeight(Force):
-    """Weight as loads: `total` / number of particles on each, or half of `per_length` x start length on line ends.
+    """Weight as loads: `total` / number of particles on each, half of `per_length` x start length on line ends, or that
+    of a material.
 
     With a total, give particles, points or a mesh (nothing: every particle of the scene): 10 N on 51 particles is
     0.196 N each, also where some of the given points met no particle (the scene is not `strict`) and their part of the
-    total is left out. With a weight per length, give lines, pairs of particles or a mesh (its edges). The load does not
-    change as the lines stretch: weight is conserved. Energy -W d . x. Source: the chapter, 9.5.
+    total is left out. With a weight per length, give lines, pairs of particles or a mesh (its edges). A material with a
+    section weighs density x area x gravity per start length of the same; a cloth, or a solid with a thickness, weighs
+    that on the faces of a mesh, a third of each triangle's on each of its corners. The load does not change as lines
+    and faces stretch: weight is conserved. Energy -W d . x. Source: the chapter, 9.5.
     """
 
     kind: Literal["self_weight"] = "self_weight"
@@ -29,6 +36,12 @@ class SelfWeight(Force):
     mesh: str | None = Field(default=None, description="Name of a mesh: its vertices, or its edges")
     total: float | None = Field(default=None, description="Total weight [force], shared equally")
     per_length: Maybe[Reals] = Field(default=None, description="Weight per length [force/length]")
+    material: str | None = Field(default=None, description="Name of a material that has the weight")
+    section: str | None = Field(default=None, description="Name of a section, of a material along lines")
+    thickness: float | None = Field(default=None, gt=0, le=1e12, description="Of a solid on a mesh [length]")
+    gravity: float | None = Field(
+        default=None, ge=0, le=1e12, description="Of a material [length/time^2]; default: 9.80665 m/s^2"
+    )
     direction: Vector = Field(
         default=np.array([0.0, 0.0, -1.0]), description="Direction of gravity; its length is ignored"
     )
@@ -44,36 +57,80 @@ class SelfWeight(Force):
 
     @model_validator(mode="after")
     def _one_way(self) -> SelfWeight:
-        if (self.total is None) == (self.per_length is None):
-            raise fault("give either total or per_length")
+        if [self.total, self.per_length, self.material].count(None) != 2:
+            raise fault("give exactly one of total, per_length, material")
         if not np.linalg.norm(self.direction) > 0:
             raise fault("the direction of gravity must not be zero", "/direction")
-        if self.per_length is not None and self.particles is None and self.lines is None and self.mesh is None:
-            raise fault("per_length needs lines, pairs of particles or a mesh")
+        made = [name for name in ("section", "thickness", "gravity") if getattr(self, name) is not None]
+        if self.material is None and made:
+            raise fault(f"{made[0]} belongs to a material; give material, or leave {made[0]} out", f"/{made[0]}")
+        if self.section is not None and self.thickness is not None:
+            raise fault("section and thickness given; a material has a section along lines, a thickness on faces")
+        if self.material is not None and self.section is None and self.mesh is None:
+            raise fault("a material needs a section along lines, or a mesh whose faces it covers")
+        if self._along and self.particles is None and self.lines is None and self.mesh is None:
+            name = "section" if self.per_length is None else "per_length"
+            raise fault(f"{name} needs lines, pairs of particles or a mesh")
         if self.total is not None and self.lines is not None:
             raise fault("lines need per_length; give particles or points for a total", "/lines")
-        if self.per_length is not None and self.points is not None:
+        if self.total is None and self.points is not None:
             raise fault("points need a total; give lines for a weight per length", "/points")
         return self
 
     @property
+    def _along(self) -> bool:
+        """Whether lines have the weight."""
+        return self.per_length is not None or self.section is not None
+
+    @property
     def element_arity(self) -> int:
         """Particles share a total; lines have a weight per length."""
-        return 1 if self.per_length is None else 2
+        return 2 if self._along else 1
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: one load for each particle that carries weight."""
-        index = places.elements(self)
         down = np.asarray(self.direction) / np.linalg.norm(self.direction)
-        if self.per_length is None:
-            share = float(self.total or 0.0) / max(len(index), 1)  # of all points, also of those that met no particle
+        if self.total is not None:
+            index = places.elements(self)
+            share = self.total / max(len(index), 1)  # of all points, also of those that met no particle
             return Block.of(index, vector=np.broadcast_to(share * down, (len(index), 3)))
-        index = index[(index >= 0).all(axis=1)]
-        length = np.linalg.norm(places.x[index[:, 1]] - places.x[index[:, 0]], axis=1)
-        half = 0.5 * np.broadcast_to(self.per_length, length.shape) * length
-        weight = np.bincount(index.ravel(), np.repeat(half, 2), len(places.x))
+        if self._along:
+            index = places.elements(self)
+            index = index[(index >= 0).all(axis=1)]
+            length = np.linalg.norm(places.x[index[:, 1]] - places.x[index[:, 0]], axis=1)
+            each = 0.5 * np.broadcast_to(self._per_length(places), length.shape) * length
+        else:
+            faces = places.faces(str(self.mesh))
+            index, part, _ = halves(faces[(faces >= 0).all(axis=1)])
+            a, b, c = (places.x[index[:, i]] for i in range(3))
+            each = self._per_area(places) * part * np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
+        weight = np.bincount(index.ravel(), np.repeat(each, index.shape[1]), len(places.x))
         particles = np.unique(index)
         return Block.of(particles[:, None], vector=weight[particles, None] * down)
+
+    def _gravity(self, places: Places) -> float:
+        return gravity(places.units) if self.gravity is None else self.gravity
+
+    def _per_length(self, places: Places) -> Any:
+        """Weight per length of lines [force/length]."""
+        if self.per_length is not None:
+            return self.per_length
+        name = str(self.material)
+        return places.material(name).mass_density(name) * area(self, places) * self._gravity(places)
+
+    def _per_area(self, places: Places) -> float:
+        """Weight per area of faces [force/length^2]; InputError where it is not known."""
+        name = str(self.material)
+        material = places.material(name)
+        if material.warp_stiffness is not None:
+            if self.thickness is not None:
+                raise InputError("", f"{name} is a cloth, whose mass is per area; remove thickness")
+            if material.area_density is None:
+                raise InputError("", f"{name} has no area_density; give it")
+            return material.area_density * self._gravity(places)
+        if self.thickness is None:
+            raise InputError("", f"{name} is a solid; give its thickness on the mesh, or a section along its edges")
+        return material.mass_density(name) * self.thickness * self._gravity(places)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """The weight on each particle [force]."""

@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from pydantic import model_validator
 
-from hookean.errors import InputError
+from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places
-from hookean.forces.dihedral import SLIVER, fold, fold_angles, wrapped
+from hookean.forces.dihedral import bends, fold, fold_angles, wrapped
+from hookean.forces.elastic import plate, without
 from hookean.forces.shell_edges import Plan, bend, places
+from hookean.forces.shell_geometry import (
+    FIVE,
+    curvature,
+    elements,
+    neighbours,
+    renumbered,
+    root_of_stiffness,
+    rows,
+    triangles,
+)
+from hookean.values.columns import fault
 from hookean.values.fields import Field
-
-Complex = NDArray[np.complex128]
 
 # An element is a triangle 0 1 2 with edges (0 1), (1 2), (2 0), the tips 3 4 5 of the triangles across these edges, and
 # the tips 6 7, 8 9, 10 11 of the next triangles beyond. HINGES: edge start, edge end, near tip, far tip; first the
@@ -23,10 +32,65 @@ HINGES = np.array(
     [[0, 1, 2, 3], [1, 2, 0, 4], [2, 0, 1, 5]]
     + [[[i, 3 + i, (i + 1) % 3, 6 + 2 * i], [3 + i, (i + 1) % 3, i, 7 + 2 * i]][j] for i in range(3) for j in range(2)]
 )
-# Each edge with the other edges of its two triangles, as the triangle sees them: what a part of its fold comes from.
-FIVE = np.array([[i, (i + 1) % 3, (i + 2) % 3, 3 + 2 * i, 4 + 2 * i] for i in range(3)])
 # columns of the parameters
-STRENGTH, FACTOR, AREA, REST, BOUND, AXES, PARTS, ACROSS, END = 0, 1, 2, 3, 12, 21, 30, 45, 48
+STRENGTH, FACTOR, POISSON, AREA, REST, BOUND, AXES, PARTS, ACROSS, END = 0, 1, 2, 3, 4, 13, 22, 31, 46, 49
+
+
+@device
+def curve(x: Any, indices: Any, parameters: Any, e: Any, g: Any, turn: Any, bent: Any) -> None:
+    """Write the turns of the nine edges, nan where there is none, with `g` as in `slopes`, and sqrt(A) K."""
+    for h in range(9):
+        a, b, c, d = (
+            indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]], indices[e, HINGES[h, 3]]
+        )  # fmt: skip
+        turn[h] = np.nan
+        if parameters[e, BOUND + h] != 0.0:
+            angle = fold(x, a, b, c, d, g[h])
+            turn[h] = wrapped(angle - parameters[e, FACTOR] * parameters[e, REST + h])
+    bent[:] = 0.0
+    for i in range(3):
+        part = 0.0
+        for j in range(5):
+            if not np.isnan(turn[FIVE[i, j]]):
+                part += parameters[e, PARTS + 5 * i + j] * turn[FIVE[i, j]]
+        for k in range(3):
+            bent[k] += parameters[e, AXES + 3 * k + i] * part
+
+
+def shell_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    g, second = np.zeros((9, 4, 5)), np.zeros((12, 12))
+    turn, bent, row, slope = np.zeros(9), np.zeros(3), np.zeros((9, 3)), np.zeros((3, 36))
+    for e in range(indices.shape[0]):
+        block = blocks[e]
+        block[:] = 0.0
+        slope[:] = 0.0
+        row[:] = 0.0
+        curve(x, indices, parameters, e, g, turn, bent)
+        for i in range(3):
+            for j in range(5):
+                for k in range(3):
+                    part = parameters[e, AXES + 3 * k + i] * parameters[e, PARTS + 5 * i + j]
+                    row[FIVE[i, j], k] += part
+        for h in range(9):
+            if np.isnan(turn[h]):
+                continue
+            moment = 0.0
+            for k in range(3):
+                moment += parameters[e, STRENGTH] * row[h, k] * bent[k]
+                for i in range(12):
+                    slope[k, 3 * HINGES[h, i // 3] + i % 3] += row[h, k] * g[h, i // 3, i % 3]
+            a, b, c, d = (
+                indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]], indices[e, HINGES[h, 3]]
+            )  # fmt: skip
+            bends(x, a, b, c, d, g[h], second)
+            for i in range(12):
+                for j in range(12):
+                    p, q = 3 * HINGES[h, i // 3] + i % 3, 3 * HINGES[h, j // 3] + j % 3
+                    block[p, q] += moment * second[i, j]
+        for p in range(36):
+            for q in range(36):
+                for k in range(3):
+                    block[p, q] += parameters[e, STRENGTH] * slope[k, p] * slope[k, q]
 
 
 def shell_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -36,22 +100,7 @@ def shell_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-un
     g = np.zeros((9, 4, 5))
     turn, bent, on_part = np.zeros(9), np.zeros(3), np.zeros(3)
     for e in range(indices.shape[0]):
-        for h in range(9):
-            a, b, c, d = (
-                indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]], indices[e, HINGES[h, 3]]
-            )  # fmt: skip
-            turn[h] = np.nan
-            if parameters[e, BOUND + h] != 0.0:
-                angle = fold(x, a, b, c, d, g[h])
-                turn[h] = wrapped(angle - parameters[e, FACTOR] * parameters[e, REST + h])
-        bent[:] = 0.0
-        for i in range(3):
-            part = 0.0
-            for j in range(5):
-                if not np.isnan(turn[FIVE[i, j]]):
-                    part += parameters[e, PARTS + 5 * i + j] * turn[FIVE[i, j]]
-            for k in range(3):
-                bent[k] += parameters[e, AXES + 3 * k + i] * part
+        curve(x, indices, parameters, e, g, turn, bent)
         strength = parameters[e, STRENGTH]
         energy += 0.5 * strength * (bent[0] * bent[0] + bent[1] * bent[1] + bent[2] * bent[2])
         for i in range(3):
@@ -77,15 +126,20 @@ def shell_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-un
 class Shell(Force):
     """Bending of a mesh as a thin plate or shell of bending stiffness D, from the fold angles of its edges.
 
-    Energy per triangle A D |K|^2 / 2, A its start area and K [1/length] its change of curvature; a sheet of thickness
-    t and modulus E has D = E t^3 / 12 (Poisson's ratio 0), so bending to the curvature k costs D k^2 / 2 per area in
-    every direction. K = sum over the three edges of (2 / h) phi n n^T, h the height on the edge, n its normal in the
-    plane of the triangle, phi the part of the edge's change of fold angle theta - theta0 that lies on this side of the
-    edge (the other triangle has the rest; Morley's plate element). phi is h / (h + h') (theta - theta0), corrected by
-    the folds of the neighbouring edges as constant curvature of the start mesh requires. So constant curvature has
-    its exact energy and its moments balance on any mesh, sheared or irregular. Naked edges turn freely (K has the
-    least energy). theta0 = angle factor x start angle. Quads are split along their shorter diagonal (a draw: first to
-    third corner), which folds as any edge. Forces and moments of every triangle sum to zero, whatever its size.
+    Energy per triangle A D ((1 - nu) |K|^2 + nu (tr K)^2) / 2, A its start area and K [1/length] its change of
+    curvature, nu Poisson's ratio; a sheet of thickness t and modulus E has D = E t^3 / (12 (1 - nu^2)), so bending to
+    the curvature k in one direction costs D k^2 / 2 per area. Give D, or a material and a thickness; with `membrane`
+    on the same mesh it is a whole shell.
+
+    K = sum over the three edges of (2 / h) phi n n^T, h the height on the edge, n its normal in the plane of the
+    triangle, phi the part of the edge's change of fold angle theta - theta0 that lies on this side of the edge (the
+    other triangle has the rest; Morley's plate element). phi is h / (h + h') (theta - theta0), corrected by the folds
+    of the neighbouring edges as constant curvature of the start mesh requires. So constant curvature has its exact
+    energy and its moments balance on any mesh, sheared or irregular. Naked edges turn freely (K has the least energy),
+    so an edge that is held is simply supported; to clamp it, hold a second row of vertices as well, half a mesh width
+    inside and half outside of the clamp. theta0 = angle factor x start angle. Quads are split along their shorter
+    diagonal (a draw: first to third corner), which folds as any edge. Forces and moments of every triangle sum to zero,
+    whatever its size.
 
     The mesh may not have three faces at one edge; faces without area are left out. Sources: Morley, "The constant-
     moment plate-bending element", 1971; Grinspun et al., "Discrete shells", 2003; Grinspun et al., "Computing discrete
@@ -94,32 +148,55 @@ class Shell(Force):
 
     kind: Literal["shell"] = "shell"
     mesh: str = Field(description="Name of the mesh that bends")
-    strength: float = Field(default=500.0, ge=0, le=1e12, description="D, plate bending stiffness [force length]")
+    strength: float | None = Field(
+        default=500.0, ge=0, le=1e12, description="D, plate bending stiffness [force length]"
+    )
+    poisson: float | None = Field(
+        default=None, gt=-1, lt=1, description="nu, Poisson's ratio [-]; default: 0, or that of the material"
+    )
+    material: str | None = Field(default=None, description="Name of a solid, with a thickness in the place of D")
+    thickness: float | None = Field(default=None, gt=0, le=1e12, description="t, of a material [length]")
     angle_factor: float = Field(
         default=1.0, ge=-1e12, le=1e12, description="Factor on the start angles [-]; 0: flat, 1: as drawn"
     )
 
-    formula: ClassVar[str] = "E = A D |K - K0|²/2"
+    formula: ClassVar[str] = "E = A D ((1 - ν) |K - K0|² + ν tr²(K - K0))/2"
     arity: ClassVar[int] = 12
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "force"}
     kernel: ClassVar[Any] = staticmethod(shell_kernel)
+    hessian: ClassVar[Any] = staticmethod(shell_hessian)
     example_faces: ClassVar[list[list[int]]] = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]
 
+    @model_validator(mode="before")
+    @classmethod
+    def _other_stiffness(cls, value: Any) -> Any:
+        return without(value, "strength", ("material", "thickness"))
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Shell:
+        made = [name for name in ("material", "thickness") if getattr(self, name) is not None]
+        if len(made) == 1 or (self.strength is None) == (not made):
+            said = " and ".join([*(["strength"] if self.strength is not None else []), *made]) or "nothing"
+            raise fault(f"{said} given; give either strength, or both material and thickness")
+        return self
+
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: D, factor, area, start angles, bounds, and sqrt(A) K by the nine fold angles."""
+        """Arrays for the kernel: D, factor, nu, area, start angles, bounds, and sqrt(A) K by the nine fold angles."""
+        strength, poisson = plate(self, places)
         corners = triangles(places.x, places.faces(self.mesh))
-        across = _neighbours(corners, f"/meshes/{self.mesh}/faces")
+        across = neighbours(corners, f"/meshes/{self.mesh}/faces")
         bends = np.asarray((across >= 0).any(axis=1))
-        corners, across = corners[bends], _renumbered(across, bends)
-        index, there = _elements(corners, across)
-        axes, parts, area = _curvature(places.x, index, there, across)
+        corners, across = corners[bends], renumbered(across, bends)
+        index, there = elements(corners, across)
+        axes, parts, area = curvature(places.x, index, there, across, poisson)
         angles = fold_angles(places.x, index[:, HINGES])
-        rows = _rows(axes, parts)
-        bound = np.abs(np.einsum("mkh,mkl->mhl", rows, rows)).sum(axis=2)
+        each = rows(axes, parts)
+        bound = np.abs(np.einsum("mkh,mkl->mhl", each, each)).sum(axis=2)
         return Block.of(
             index,
-            strength=self.strength,
+            strength=strength,
             angle_factor=self.angle_factor,
+            poisson=poisson,
             area=area,
             start_angles=np.where(bound > 0, angles, 0.0),
             bounds=bound,
@@ -144,7 +221,7 @@ class Shell(Force):
     @staticmethod
     def _planned(block: Block) -> tuple[Plan | None, Floats, Floats]:
         """Plan, numbers and room of a block; no plan where it lacks triangles that others of it bend with."""
-        p, given = block.parameters, block.parameters[:, : FACTOR + 1]
+        p, given = block.parameters, block.parameters[:, : POISSON + 1]
         if not block.plan:
             across = places(block.indices, p[:, ACROSS:END].astype(np.int64), p[:, FACTOR])
             made = Plan.of(block.indices[:, :3], across) if across is not None else None
@@ -163,8 +240,10 @@ class Shell(Force):
         rest = parameters[:, FACTOR, None] * parameters[:, REST:BOUND]
         turn = wrapped(fold_angles(x, block.indices[:, HINGES]) - rest)
         turn = np.where(parameters[:, BOUND:AXES] > 0, turn, 0.0)
-        rows = _rows(parameters[:, AXES:PARTS].reshape(-1, 3, 3), parameters[:, PARTS:ACROSS].reshape(-1, 3, 5))
-        bent = np.einsum("mkh,mh->mk", rows, turn)
+        each = rows(parameters[:, AXES:PARTS].reshape(-1, 3, 3), parameters[:, PARTS:ACROSS].reshape(-1, 3, 5))
+        bent = np.einsum("mkh,mh->mk", each, turn)
+        poisson = float(parameters[0, POISSON]) if len(parameters) else 0.0
+        bent = bent @ root_of_stiffness(poisson)  # moments are D times what has the energy |bent|^2, times this again
         moment = parameters[:, STRENGTH] * np.linalg.norm(bent, axis=1) / np.sqrt(parameters[:, AREA])
         return {"angle": np.abs(turn[:, :3]).max(axis=1, initial=0.0), "moment": moment}
 
@@ -174,191 +253,3 @@ class Shell(Force):
         x = [[0.0, 0.1, 0.0], [1.1, 0.0, 0.3], [2.0, -0.1, 0.1], [0.1, 1.0, 0.35], [0.9, 1.1, 0.7], [2.1, 0.9, 0.3]]
         x += [[-0.1, 2.0, 0.05], [1.0, 2.2, 0.4], [1.9, 2.1, -0.1]]
         return cls(mesh="skin", strength=20.0, angle_factor=0.5), np.array(x)
-
-
-def triangles(x: Floats, faces: Ints) -> Ints:
-    """Triangles (m, 3) of faces (k, 4): quads cut along the shorter diagonal; those without area left out.
-
-    A quad whose shorter diagonal lies outside it is cut along the other one.
-    """
-    a, b, c, d = (x[faces[:, i]] for i in range(4))
-    first, second = np.linalg.norm(c - a, axis=1), np.linalg.norm(d - b, axis=1)
-
-    def inside(p: Floats, q: Floats, r: Floats, s: Floats) -> NDArray[np.bool_]:
-        one, other = np.cross(q - p, r - p), np.cross(r - p, s - p)
-        return np.asarray((one * other).sum(axis=1) > 0)
-
-    fits, other_fits = inside(a, b, c, d), inside(b, c, d, a)
-    # equal but for rounding is a draw, so that a regular grid is cut in a regular way; Rhino's meshes have single
-    # precision, 6e-8 of coordinates that may be a hundred times the diagonals
-    along_first = np.where(fits == other_fits, first <= second * (1.0 + 1e-5), fits)
-    quad = faces[:, 2] != faces[:, 3]
-    one = np.where((along_first | ~quad)[:, None], faces[:, [0, 1, 2]], faces[:, [0, 1, 3]])
-    two = np.where(along_first[:, None], faces[:, [0, 2, 3]], faces[:, [1, 2, 3]])
-    both = np.stack([one, two], axis=1).reshape(-1, 3)[np.stack([np.ones_like(quad), quad], axis=1).ravel()]
-    p, q, r = (x[both[:, i]] for i in range(3))
-    height = np.linalg.norm(np.cross(q - p, r - p), axis=1)
-    size = ((q - p) ** 2).sum(axis=1) + ((r - p) ** 2).sum(axis=1)
-    return np.ascontiguousarray(both[height > 10.0 * SLIVER * size])
-
-
-def _neighbours(corners: Ints, pointer: str) -> Ints:
-    """For each edge (i, i + 1) of each triangle the same edge of its neighbour, as 3 t + i; -1 at naked edges."""
-    pairs = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    order = np.lexsort((pairs[:, 1], pairs[:, 0]))
-    same = (pairs[order[1:]] == pairs[order[:-1]]).all(axis=1)
-    crowded = np.flatnonzero(same[1:] & same[:-1])
-    if len(crowded):
-        a, b = pairs[order[crowded[0]]]
-        raise InputError(
-            pointer,
-            f"three faces meet at the edge from particle {a} to {b}; a shell bends across edges of one or two faces. "
-            "Split the mesh there, or remove doubled faces",
-        )
-    across = np.full(len(pairs), -1)
-    first, second = order[:-1][same], order[1:][same]
-    across[first], across[second] = second, first
-    return across.reshape(-1, 3)
-
-
-def _renumbered(across: Ints, kept: NDArray[np.bool_]) -> Ints:
-    """Places across edges when only some triangles are kept."""
-    number = np.cumsum(kept) - 1
-    across = across[kept]
-    return np.where(across >= 0, 3 * number[across // 3] + across % 3, -1)
-
-
-def _elements(corners: Ints, across: Ints) -> tuple[Ints, NDArray[np.bool_]]:
-    """Particles (m, 12) of each triangle's element, and which are there; the others repeat the first corner."""
-    index = np.repeat(corners[:, :1], 12, axis=1)
-    there = np.zeros(index.shape, dtype=bool)
-    index[:, :3], there[:, :3] = corners, True
-    tips = np.roll(corners, -2, axis=1).ravel()
-    for i in range(3):
-        met = across[:, i] >= 0
-        other, edge = across[met, i] // 3, across[met, i] % 3
-        index[met, 3 + i], there[met, 3 + i] = tips[across[met, i]], True
-        # the neighbour runs along the common edge the other way, unless its orientation is opposite
-        turned = corners[other, edge] == corners[met, i]
-        for j in range(2):
-            beyond = across[other, (edge + 1 + np.where(turned, 1 - j, j)) % 3]
-            index[met, 6 + 2 * i + j] = np.where(beyond >= 0, tips[beyond], index[met, 0])
-            there[met, 6 + 2 * i + j] = beyond >= 0
-    return index, there
-
-
-def _place(x: Floats, corners: Sequence[Ints] | Ints, za: Complex, zb: Complex, side: float) -> Complex:
-    """Where corner c comes to lie when triangle a b c is laid into the plane with a at za and b at zb."""
-    a, b, c = (x[corner] for corner in corners)
-    e, p = b - a, c - a
-    ee = (e * e).sum(axis=1)
-    safe = np.where(ee > 0, ee, 1.0)
-    foot, height = (p * e).sum(axis=1) / safe, np.linalg.norm(np.cross(e, p), axis=1) / safe
-    return np.asarray(za + (zb - za) * (foot + side * 1j * height))
-
-
-def _tensor(z: Complex) -> Floats:
-    """z z^T / 2 as (xx, yy, sqrt 2 xy): the height at z of a sheet, for each of three unit curvatures."""
-    return 0.5 * np.stack([z.real**2, z.imag**2, np.sqrt(2.0) * z.real * z.imag], axis=-1)
-
-
-def _fold_of_curvature(a: Complex, b: Complex, c: Complex, d: Complex, there: NDArray[np.bool_]) -> Floats:
-    """Fold angle of edge a-b with tips c, d in a sheet of constant curvature, by curvature (m, 3); 0 if not there."""
-    total = np.zeros((len(a), 3))
-    for tip in (c, d):
-        local = np.where(there, (tip - a) / np.where(there, b - a, 1.0), 1j)
-        foot, height = local.real, np.abs(local.imag * (b - a))
-        rise = _tensor(tip - a) - foot[:, None] * _tensor(b - a)
-        total += rise / np.where(there, height, 1.0)[:, None]
-    return np.where(there[:, None], total, 0.0)
-
-
-def _own_part(a: Complex, b: Complex, c: Complex) -> Floats:
-    """The part of that fold on the side of c: slope across the middle of the edge over the slope of the triangle."""
-    e, middle = b - a, 0.5 * (b - a)
-    outward = -1j * e / np.abs(e)
-    local = (c - a) / e
-    rise = _tensor(c - a) - local.real[:, None] * _tensor(e)
-    mixed = np.sqrt(0.5) * (middle.real * outward.imag + middle.imag * outward.real)
-    slope = np.stack([middle.real * outward.real, middle.imag * outward.imag, mixed], axis=-1)
-    return slope + rise / (local.imag * np.abs(e))[:, None]
-
-
-def _split(x: Floats, index: Ints, there: NDArray[np.bool_], i: int) -> Floats:
-    """The angle at edge i on the side of the triangle, by the five fold angles (m, 5) of `FIVE`."""
-    j, k = (i + 1) % 3, (i + 2) % 3
-    node = [index[:, n] for n in (i, j, k, 3 + i, 3 + j, 3 + k, 6 + 2 * i, 7 + 2 * i)]
-    has = [there[:, n] for n in (3 + i, 3 + j, 3 + k, 6 + 2 * i, 7 + 2 * i)]
-    za = np.zeros(len(index), complex)
-    zb = za + np.linalg.norm(x[node[1]] - x[node[0]], axis=1)
-    zc, zd = _place(x, node[:3], za, zb, 1.0), _place(x, (node[0], node[1], node[3]), za, zb, -1.0)
-    folds = np.stack(
-        [
-            _fold_of_curvature(za, zb, zc, zd, has[0]),
-            _fold_of_curvature(zb, zc, za, _place(x, (node[1], node[2], node[4]), zb, zc, -1.0), has[1]),
-            _fold_of_curvature(zc, za, zb, _place(x, (node[2], node[0], node[5]), zc, za, -1.0), has[2]),
-            _fold_of_curvature(za, zd, zb, _place(x, (node[0], node[3], node[6]), za, zd, -1.0), has[3]),
-            _fold_of_curvature(zd, zb, za, _place(x, (node[3], node[1], node[7]), zd, zb, -1.0), has[4]),
-        ],
-        axis=1,
-    )
-    share = zc.imag / (zc.imag - zd.imag)
-    missing = np.where(has[0][:, None], _own_part(za, zb, zc) - share[:, None] * folds[:, 0], 0.0)
-    part = _least(folds, missing)
-    part[:, 0] += np.where(has[0], share, 0.0)
-    return part
-
-
-def _least(folds: Floats, wanted: Floats) -> Floats:
-    """The smallest r (m, 5) with folds^T r = wanted; directions that the folds hardly tell apart are left out."""
-    found = np.zeros(folds.shape[:2])
-    todo = np.abs(wanted).max(axis=1, initial=0.0) > 1e-9 * np.abs(folds[:, 0]).max(axis=1, initial=0.0)
-    folds, wanted = folds[todo], wanted[todo]
-    size, axes = np.linalg.eigh(np.einsum("mhk,mhl->mkl", folds, folds))
-    keep = size > 0.01 * size[:, -1:]
-    inverse = np.where(keep, 1.0 / np.where(keep, size, 1.0), 0.0)
-    found[todo] = np.einsum("mhk,mkl,ml,mnl,mn->mh", folds, axes, inverse, axes, wanted, optimize=True)
-    return found
-
-
-def _curvature(x: Floats, index: Ints, there: NDArray[np.bool_], across: Ints) -> tuple[Floats, Floats, Floats]:
-    """sqrt(A) K as (xx, yy, sqrt 2 xy) in the triangle's plane by the parts of folds (m, 3, 3), these parts by five
-    folds each (m, 3, 5), and the areas (m,)."""
-    za = np.zeros(len(index), complex)
-    zb = za + np.linalg.norm(x[index[:, 1]] - x[index[:, 0]], axis=1)
-    z = np.stack([za, zb, _place(x, index.T[:3], za, zb, 1.0)], axis=1)
-    edges = np.roll(z, -1, axis=1) - z
-    area = 0.5 * zb.real * z[:, 2].imag
-    outward = -1j * edges / np.abs(edges)
-    # (2 / h) n n^T = l / A n n^T for each edge
-    axes = 2.0 * _tensor(outward) * (np.abs(edges) / area[:, None])[:, :, None]
-    parts = np.stack([_split(x, index, there, i) for i in range(3)], axis=1)
-    _balance(parts, index[:, :3].ravel(), across.ravel())
-    naked = np.where(there[:, 3:6, None], 0.0, axes)
-    some = ~there[:, 3:6].all(axis=1)
-    # the curvature that turning naked edges cannot take away
-    left = np.eye(3) - np.linalg.pinv(naked[some], rcond=1e-6) @ naked[some]
-    axes = axes.transpose(0, 2, 1)
-    axes[some] = left @ axes[some]
-    axes = np.where(there[:, None, 3:6], axes, 0.0)
-    return np.sqrt(area)[:, None, None] * axes, parts, area
-
-
-def _balance(parts: Floats, start: Ints, across: Ints) -> None:
-    """Give the second triangle of every edge what the first leaves of the fold: exactly, not but for rounding."""
-    first = np.flatnonzero(across > np.arange(len(across)))
-    second = across[first]
-    turned = start[first] == start[second]  # see `_elements`
-    seen = np.where(turned[:, None], [0, 4, 3, 2, 1], [0, 3, 4, 1, 2])
-    flat = parts.reshape(-1, 5)
-    flat[second] = -np.take_along_axis(flat[first], seen, axis=1)
-    flat[second, 0] += 1.0
-
-
-def _rows(axes: Floats, parts: Floats) -> Floats:
-    """sqrt(A) K (m, 3, 9) by the nine fold angles."""
-    rows = np.zeros((len(axes), 3, 9))
-    for i in range(3):
-        for j in range(5):
-            rows[:, :, FIVE[i, j]] += axes[:, :, i] * parts[:, i, j, None]
-    return rows

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from pydantic import model_validator
 
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
-from hookean.values.columns import IndexRows, Lines, NonNegatives
+from hookean.forces import spring_inputs
+from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.elastic import without
+from hookean.values.columns import IndexRows, Lines, NonNegatives, Reals
 from hookean.values.fields import Field, Maybe
 
 Edges = Literal["all", "warp", "weft", "naked", "diagonals", "diagonals_one", "diagonals_other"]
@@ -83,6 +86,17 @@ def ends(pair: Any) -> Any:
     return np.uint64(pair) & np.uint64(0xFFFFFFFF), np.uint64(pair) >> np.uint64(32)
 
 
+@device
+def cutoffs(parameters: Any, e: Any, rest: Any) -> Any:
+    """Upper and lower cutoff of a spring; negative: none. Columns below 0 are cutoffs that follow the rest length."""
+    high, low = parameters[e, 4], parameters[e, 5]
+    if high < 0.0:
+        high = max(rest, 0.0)
+    elif high == 0.0:
+        high = -1.0
+    return high, rest if low < 0.0 else low
+
+
 def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
     if indices.shape[1] == 1:
@@ -100,12 +114,13 @@ def springs_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-
         first = parameters[e, 2] * parameters[e, 3]
         rest = first + memory[e, 0]
         length = np.sqrt(dx * dx + dy * dy + dz * dz)
-        if parameters[e, 4] > 0.0 or parameters[e, 5] > 0.0 or parameters[e, 6] > 0.0:
+        if parameters[e, 4] != 0.0 or parameters[e, 5] != 0.0 or parameters[e, 6] > 0.0:
             reach = length
-            if parameters[e, 4] > 0.0 and reach > parameters[e, 4]:
-                reach = parameters[e, 4]
-            if parameters[e, 5] > 0.0 and reach < parameters[e, 5]:
-                reach = parameters[e, 5]
+            high, low = cutoffs(parameters, e, rest)
+            if high >= 0.0 and reach > high:
+                reach = high
+            if reach < low:
+                reach = low
             stretch = reach - rest
             limit = parameters[e, 6]
             tension = k * stretch
@@ -147,7 +162,8 @@ def stiffness_of(x: Any, indices: Any, parameters: Any, memory: Any, e: Any) -> 
     first = parameters[e, 2] * parameters[e, 3]
     stretch = length - first - memory[e, 0]
     limit = parameters[e, 6]
-    off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
+    high, low = cutoffs(parameters, e, first + memory[e, 0])
+    off = high >= 0.0 and length > high or length < low
     along = 0.0 if off else parameters[e, 0]
     across = along
     inverse = 1.0 / length if length > 0.0 else 0.0  # one division serves all; that of a square might overflow
@@ -189,7 +205,8 @@ def springs_yield(x, indices, parameters, memory):  # type: ignore[no-untyped-de
             first = parameters[e, 2] * parameters[e, 3]
             stretch = length - first - memory[e, 0]
             limit = parameters[e, 6]
-            off = parameters[e, 4] > 0.0 and length > parameters[e, 4] or length < parameters[e, 5]
+            high, low = cutoffs(parameters, e, first + memory[e, 0])
+            off = high >= 0.0 and length > high or length < low
             if limit > 0.0 and np.abs(stretch) > limit and not off:
                 memory[e, 0] += stretch - np.copysign(limit, stretch)
 
@@ -215,6 +232,12 @@ class Springs(Force):
     deformation as a part of the rest length, yield extension the same as a length: beyond it the tension stays, and the
     rest length follows at the end of the step. A rest length of 0 makes a force-density spring. Source: the chapter,
     9.4, figures 9.11 to 9.13.
+
+    Cables and bars: give the stiffness in one way, as k, as EA (k = EA / L0 of each element), or as a material and a
+    section (EA = E x area). With `tension_only` a spring is slack below its rest length, as a cable; with
+    `compression_only` it has no force above it, as a strut. Give the prestress in one way, too: as the `force` that the
+    spring has at its start length, the `strain` (l - L0) / L0 there, or the rest length. A temperature, of a material
+    with thermal expansion, lengthens the rest length by 1 + expansion x temperature, on top of the prestress.
     """
 
     kind: Literal["springs"] = "springs"
@@ -222,10 +245,18 @@ class Springs(Force):
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
     mesh: str | None = Field(default=None, description="Name of a mesh whose edges become springs")
     edges: Edges = Field(default="all", description="Which edges of the mesh; diagonals of quads both, or one a face")
-    stiffness: NonNegatives = Field(default=1000.0, description="k [force/length]")
+    stiffness: Maybe[NonNegatives] = Field(default=1000.0, description="k [force/length]")
+    axial_stiffness: Maybe[NonNegatives] = Field(default=None, description="EA, in the place of k [force]")
+    material: str | None = Field(default=None, description="Name of a material, with a section in the place of k")
+    section: str | None = Field(default=None, description="Name of a section, with a material in the place of k")
     damping: NonNegatives = Field(default=10.0, description="c along the spring [force time/length]")
     rest_length: Maybe[NonNegatives] = Field(default=None, description="L0 [length]; default: the start length")
+    force: Maybe[Reals] = Field(default=None, description="Prestress: force at the start length [force; tension +]")
+    strain: Maybe[Reals] = Field(default=None, description="Prestress: strain at the start length [-]")
+    temperature: Maybe[Reals] = Field(default=None, description="Change of temperature, of a material [K]")
     rest_factor: NonNegatives = Field(default=1.0, description="Factor on the rest length [-]")
+    tension_only: bool = Field(default=False, description="Whether springs are slack below their rest length")
+    compression_only: bool = Field(default=False, description="Whether springs have no force above their rest length")
     upper_cutoff: NonNegatives = Field(default=0.0, description="Works only up to this length [length]; 0: always")
     lower_cutoff: NonNegatives = Field(default=0.0, description="Works only from this length on [length]; 0: always")
     plasticity: NonNegatives = Field(default=0.0, description="Elastic limit as a part of the rest length [-]; 0: none")
@@ -244,24 +275,32 @@ class Springs(Force):
     central: ClassVar[Any] = staticmethod(springs_central)
     end_of_step: ClassVar[Any] = staticmethod(springs_yield)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _other_stiffness(cls, value: Any) -> Any:
+        return without(value, "stiffness", spring_inputs.OTHERS)
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Springs:
+        spring_inputs.one_way(self)
+        return self
+
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: k, c, rest length, factor, upper and lower cutoff, plasticity as a length."""
         index = places.elements(self)
-        rest = self.rest_length
-        if rest is None:
-            rest = lengths(places.x.take(index[:, 1], axis=0) - places.x.take(index[:, 0], axis=0))
+        stiffness, rest = spring_inputs.resolved(self, places, index)
         limit = np.where(
             np.greater(self.yield_extension, 0.0), self.yield_extension, self.plasticity * (rest * self.rest_factor)
         )
         return Block.of(
             index,
             memory=1,
-            stiffness=self.stiffness,
+            stiffness=stiffness,
             damping=self.damping,
             rest_length=rest,
             rest_factor=self.rest_factor,
-            upper_cutoff=self.upper_cutoff,
-            lower_cutoff=self.lower_cutoff,
+            upper_cutoff=-1.0 if self.compression_only else self.upper_cutoff,
+            lower_cutoff=-1.0 if self.tension_only else self.lower_cutoff,
             plasticity=limit,
         )
 

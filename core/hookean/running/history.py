@@ -57,6 +57,7 @@ class Before:
                 part.force = force
         scene = self.setup.scene
         system.scene, system.drag, system.held = scene, scene.settings.drag, list(self.setup.held)
+        system.places.take_materials(scene)
         system.brace()
         return self._state
 

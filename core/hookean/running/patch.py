@@ -41,7 +41,8 @@ class Patch(Model):
 
     `pin` holds particles, where they are or at targets (one that an anchor holds on the same axes stays with it, unless
     the pin has a name); `release` frees them; `move` retargets anchors; `forces` maps a force's name or number to new
-    values of its columns; `settings` to new settings. `remove` takes forces away and `add` puts others behind the last
+    values of its columns; `materials` and `sections` map names to new values, which all forces of that name get;
+    `settings` to new settings. `remove` takes forces away and `add` puts others behind the last
     one, on particles that are there already; names and numbers of forces are those before the patch.
     """
 
@@ -49,6 +50,8 @@ class Patch(Model):
     release: Indices = Field(default=np.zeros(0, np.int64), description="Particles to release")
     move: Parts[Move] = Field(default=(), description="Anchors to move")
     forces: dict[str, dict[str, Any]] = Field(default={}, description="New values by force and column")
+    materials: dict[str, dict[str, Any]] = Field(default={}, description="New values by material")
+    sections: dict[str, dict[str, Any]] = Field(default={}, description="New values by section")
     settings: dict[str, Any] = Field(default={}, description="New values of settings")
     add: Parts[AnyForce] = Field(default=(), description="Forces to add, on existing particles")
     remove: tuple[StrictStr | StrictInt, ...] = Field(default=(), description="Names or numbers of forces to remove")
@@ -73,7 +76,9 @@ def apply(system: System, state: State, patch: Patch) -> None:
     """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Before`)."""
     held = _held(system, state, patch)
     forces = changed_forces(system.scene, patch.forces)
-    scene = _with(system.scene, forces).replaced(settings=_settings(system, patch))
+    made = changed_materials(system.scene, patch)
+    forces.update(_made_of(system.scene, forces, patch))
+    scene = _with(system.scene, forces).replaced(settings=_settings(system, patch), **made)
     if patch.rewires:
         removed = [_numbered(system.scene, wanted, f"/remove/{i}") for i, wanted in enumerate(patch.remove)]
         scene = with_forces(system, scene, patch.add, removed)
@@ -105,6 +110,7 @@ def _with(scene: Scene, forces: Mapping[int, Any]) -> Scene:
 
 
 def _put_forces(system: System, scene: Scene) -> None:
+    system.places.take_materials(scene)
     for group in system.groups + system.contacts:
         for part in group.parts:
             if part.number >= 0 and scene.forces[part.number] is not part.force:
@@ -229,6 +235,37 @@ def changed_forces(scene: Scene, given_values: Mapping[str, Mapping[str, Any]]) 
             fault = first_fault(error)
             raise InputError(f"/forces/{key}{fault.pointer}", fault.sentence) from None
     return changed
+
+
+def changed_materials(scene: Scene, patch: Patch) -> dict[str, dict[str, Any]]:
+    """The scene's materials and sections with the new values of a patch; InputError for what it does not have."""
+    found: dict[str, dict[str, Any]] = {}
+    for group in ("materials", "sections"):
+        given = getattr(patch, group)
+        if not given:
+            continue
+        found[group] = dict(getattr(scene, group))
+        for name, values in given.items():
+            old = found[group].get(name)
+            if old is None:
+                known = ", ".join(repr(n) for n in found[group]) or "none"
+                said = f"the scene has no {group[:-1]} of its own with this name; there are {known}"
+                raise InputError(f"/{group}/{name}", said)
+            try:
+                found[group][name] = old.model_copy(update=values)
+            except InputError as error:
+                raise InputError(f"/{group}/{name}{error.pointer}", error.sentence) from None
+    return found
+
+
+def _made_of(scene: Scene, forces: Mapping[int, Any], patch: Patch) -> dict[int, Any]:
+    """The forces that are made of a changed material or section, as others, so that they are compiled again."""
+    found = {}
+    for number, force in enumerate(scene.forces):
+        force = forces.get(number, force)
+        if vars(force).get("material") in patch.materials or vars(force).get("section") in patch.sections:
+            found[number] = force.replaced()
+    return found
 
 
 def _numbered(scene: Scene, wanted: str | int, pointer: str) -> int:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hookean.errors import InputError
 from hookean.forces import KINDS
+from hookean.running.loads import applied
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.stability.equilibrium import Equilibrium, Stability, unknown
@@ -47,7 +48,9 @@ class Result:
 
     `particles` (n, 3) [length]; `forces` one dict of columns for each force of the scene (springs: length, force,
     strain), `reactions` the particles of anchors and the force (k, 3) [force] the anchors put on them; `contacts` the
-    same for floors. Reactions + contacts + loads = 0. `energy` by kind and in total [force length].
+    same for floors. Reactions + contacts + loads = 0. `loads` has for each load of the scene its `name`, `kind` and
+    number (`force`), the `resultant` (k, 3) [force], the `centre` (k, 3) [length], through which the resultant of
+    parallel forces goes, and the `moment` (k, 3) about it [force length]. `energy` by kind and in total [force length].
     """
 
     status: Status
@@ -57,6 +60,7 @@ class Result:
     forces: list[dict[str, Any]]
     reactions: dict[str, Any]
     contacts: dict[str, Any]
+    loads: dict[str, Any]
     components: dict[str, Any]
     residual: float
     rounding_floor: float
@@ -181,6 +185,7 @@ class Result:
             "forces": plain(self.forces),
             "reactions": plain(self.reactions),
             "contacts": plain(self.contacts),
+            "loads": plain(self.loads),
             "components": {**plain(self.components), "position_error": _known(self.components["position_error"])},
             "residual": self.residual,
             "rounding_floor": self.rounding_floor,
@@ -249,6 +254,7 @@ def gather(
         forces=_measures(system, state),
         reactions=_reactions(system, state, found),
         contacts=_contacts(found),
+        loads=applied(system, state),
         components=_components(found, rest),
         residual=found.residual,
         rounding_floor=found.floor,

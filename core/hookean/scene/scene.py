@@ -16,6 +16,7 @@ from pydantic import ValidationError, field_validator, model_validator
 from hookean.errors import InputError, several
 from hookean.forces import KINDS, Force
 from hookean.forces.floor import Floor
+from hookean.scene.references import materials_exist, particles_exist
 from hookean.scene.solver_names import SOLVERS
 from hookean.scene.text import parse
 from hookean.values import html
@@ -30,6 +31,8 @@ from hookean.values.columns import (
     fault,
 )
 from hookean.values.fields import Field, Maybe, Named, Part, Parts, Switch
+from hookean.values.materials import Material
+from hookean.values.sections import Section
 from hookean.values.units import Units
 
 if TYPE_CHECKING:
@@ -184,6 +187,8 @@ class Scene(Model):
     )
     velocities: Maybe[Points] = Field(default=None, description="Start velocities [length/time], one for each particle")
     meshes: Named[MeshData] = Field(default={}, description="Meshes by name")
+    materials: Named[Material] = Field(default={}, description="Materials by name, for forces that name them")
+    sections: Named[Section] = Field(default={}, description="Cross-sections by name, for forces that name them")
     forces: Parts[AnyForce] = Field(default=(), description="Forces on the particles")
     anchors: Parts[Anchor] = Field(default=(), description="Particles that are held")
     geometry: Parts[Geometry] = Field(default=(), description="Geometry that moves with the particles")
@@ -235,27 +240,18 @@ class Scene(Model):
         count = len(self.particles)
         for group, items in (("forces", self.forces), ("anchors", self.anchors), ("geometry", self.geometry)):
             for i, item in enumerate(items):
-                _particles_exist(getattr(item, "particles", None), count, f"/{group}/{i}/particles")
+                particles_exist(getattr(item, "particles", None), count, f"/{group}/{i}/particles")
                 mesh = getattr(item, "mesh", None)
                 if mesh is not None and mesh not in self.meshes:
-                    known = ", ".join(repr(name) for name in self.meshes) or "none"
-                    raise fault(f"mesh {mesh!r} does not exist; the scene has {known}", f"/{group}/{i}/mesh")
+                    names = ", ".join(repr(name) for name in self.meshes) or "none"
+                    raise fault(f"mesh {mesh!r} does not exist; the scene has {names}", f"/{group}/{i}/mesh")
+        for i, force in enumerate(self.forces):
+            materials_exist(force, self.materials, self.sections, f"/forces/{i}")
         if self.velocities is not None and len(self.velocities) != count:
             raise fault(f"{len(self.velocities)} velocities for {count} particles; give one for each", "/velocities")
         if isinstance(self.masses, np.ndarray) and len(self.masses) != count:
             raise fault(f"{len(self.masses)} masses for {count} particles; give one value or one for each", "/masses")
         return self
-
-
-def _particles_exist(indices: Any, count: int, pointer: str) -> None:
-    if indices is None or not (indices >= count).any():
-        return
-    spot = np.argwhere(indices >= count)[0]
-    given = int(indices[tuple(spot)])
-    raise fault(
-        f"particle {given} does not exist; the scene gives {count}, counted from 0",
-        pointer + "".join(f"/{i}" for i in spot),
-    )
 
 
 def faults(error: ValidationError) -> list[InputError]:
@@ -404,8 +400,10 @@ __all__ = [
     "Anchors",
     "Force",
     "Geometry",
+    "Material",
     "MeshData",
     "Scene",
+    "Section",
     "Settings",
     "Units",
     "faults",

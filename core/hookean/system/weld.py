@@ -15,9 +15,12 @@ from hookean.forces import Block, Force
 from hookean.forces.base import PLACES
 from hookean.scene.report import Missed, Report, Unmatched
 from hookean.scene.scene import Scene
-from hookean.values import near
+from hookean.values import materials, near
 from hookean.values.columns import Vector, Vectors
+from hookean.values.materials import Material
 from hookean.values.mesh import Mesh
+from hookean.values.sections import Section
+from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,6 +38,7 @@ class Welded:
         self.scene = scene
         self.report = Report()
         self.tolerance = scene.weld_tolerance
+        self.take_materials(scene)
         self._patched: dict[int, Force] = {}  # rows are found by identity, so these must live as long as they do
         self._rows: dict[int, Ints] = {}
         self._lost: set[str] = set()  # pointers of points that met no particle
@@ -173,6 +177,26 @@ class Welded:
             known = ", ".join(repr(n) for n in self.scene.meshes) or "none"
             raise InputError("/meshes", f"mesh {name!r} does not exist; the scene has {known}")
         return self.scene.meshes[name].vertices, self.scene.meshes[name].faces
+
+    def take_materials(self, scene: Scene) -> None:
+        """Have the materials and sections of a scene, as a patch has changed them."""
+        self.materials, self.sections = scene.materials, scene.sections
+
+    @property
+    def units(self) -> Units:
+        """Units of the scene."""
+        return self.scene.units
+
+    def material(self, name: str) -> Material:
+        """The scene's material of this name, or a known one in its units; InputError if there is none."""
+        return materials.find(name, self.materials, self.units)
+
+    def section(self, name: str) -> Section:
+        """The scene's section of this name; InputError if there is none."""
+        if name not in self.sections:
+            known = ", ".join(repr(n) for n in self.sections) or "none"
+            raise InputError("/sections", f"section {name!r} does not exist; the scene has {known}")
+        return self.sections[name]
 
     def meet(self, points: Floats) -> Ints:
         """The particle of each point: the first within the tolerance, as welding has it; -1 where there is none."""

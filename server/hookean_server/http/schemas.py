@@ -152,6 +152,12 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         },
         reactions={**_AT, "description": "Forces of the anchors on their particles"},
         contacts={**_AT, "description": "Forces of floors on particles"},
+        loads={
+            "type": "object",
+            "description": "Columns of the loads: force (number), kind, name, resultant [force], centre [length], "
+            "moment about it [force length]",
+            "additionalProperties": {"type": "array"},
+        },
         residual={"type": ["number", "null"]},
         rounding_floor={"type": ["number", "null"]},
         out_of_balance={"type": ["number", "null"]},
@@ -222,6 +228,8 @@ SCHEMAS["Edit"] = {
         "release": {"type": "array", "items": {"type": "integer", "minimum": 0}},
         "move": {"type": "array", "items": {"type": "object"}, "description": "Anchors and their targets"},
         "forces": {"type": "object", "description": "By a force's name or number, values of its columns"},
+        "materials": {"type": "object", "description": "By a material's name, values of its fields"},
+        "sections": {"type": "object", "description": "By a section's name, values of its fields"},
         "settings": {"type": "object"},
         "add": {
             "type": "array",

@@ -151,7 +151,8 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
 def _sets(value: dict[str, Any], patch: Patch, gesture: str) -> str:
     if len(patch.release) or patch.rewires:
         return ""
-    columns = sorted(f"{force}.{column}" for force, given in patch.forces.items() for column in given)
+    groups = {"forces": patch.forces, "materials": patch.materials, "sections": patch.sections}
+    columns = sorted(f"{g}.{name}.{c}" for g, named in groups.items() for name, given in named.items() for c in given)
     pins = [[np.asarray(pin.particles).tolist(), pin.axes, pin.name] for pin in patch.pin]
     return json.dumps([gesture, sorted(str(m.anchor) for m in patch.move), columns, sorted(patch.settings), pins])
 

@@ -160,7 +160,7 @@ class _Builder:
         plain = {k: v for k, v in table.items() if k not in SPLIT_FIELDS}
         if used is None and isinstance(table.get("points"), np.ndarray):
             self.notes.append(f"{group}[{number}] {said}: {count(len(table['points']), 'point')}")
-        return (shapes.pulling_only(plain, pointer) if "tension_only" in plain else plain), used
+        return plain, used
 
     def _on(self, shape: Shape, name: str, table: dict[str, Any], pointer: str, said: str) -> Shape:
         """Of selected points those on the curves that the table asks them to lie on."""

@@ -36,7 +36,7 @@ stands for anything inside a name. Several are joined by commas or in a list.
   `curve_divide = N`; of several each pulls the points nearest to it.
 * `[[geometry]]` rides along: kind `points`, `lines`, `mesh`, or `polyline` and `curve` with points = a curve.
 
-`tension_only = true` on springs along lines makes them slack below their rest length. `hidden = true` takes hidden
+`tension_only = true` on springs makes them slack below their rest length. `hidden = true` takes hidden
 objects too. Where a file is read without a recipe, or with one that has no forces, anchors or geometry, see
 `hookean.files.recipe.convention`.
 """

@@ -180,22 +180,6 @@ def controls_of(item: Item) -> tuple[Floats, dict[str, Any]]:
     return raw[:, :3] / raw[:, 3:], {"degree": int(curve.Degree), "knots": knots, "weights": raw[:, 3]}
 
 
-def pulling_only(table: dict[str, Any], pointer: str) -> dict[str, Any]:
-    """A springs table with `tension_only`: its rest lengths, and cutoffs that make them slack below."""
-    if not table.pop("tension_only"):
-        return table
-    lines = table.get("lines")
-    if not isinstance(lines, np.ndarray) or table.get("kind") != "springs" or "lower_cutoff" in table:
-        raise InputError(pointer, "tension_only is allowed for springs on selected lines only, without lower_cutoff")
-    length = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
-    try:
-        rest = np.broadcast_to(np.asarray(table.get("rest_length", length), dtype=np.float64), length.shape)
-        factor = np.broadcast_to(np.asarray(table.get("rest_factor", 1.0), dtype=np.float64), length.shape)
-    except (ValueError, TypeError):
-        raise InputError(pointer, f"give one rest length and factor, or one for each of {len(lines)} lines") from None
-    return {**table, "rest_length": rest.copy(), "lower_cutoff": rest * factor}
-
-
 def counted(items: Sequence[Item]) -> str:
     """How many objects of each kind."""
     kinds: dict[str, int] = {}

@@ -1,0 +1,224 @@
+"""Sliding cable: a cable that runs over saddles without friction, with one force all along it."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from hookean.compiled.marks import device
+from hookean.errors import InputError
+from hookean.forces import elastic, groups
+from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
+from hookean.forces.groups import begins, following
+from hookean.forces.line_lengths import length_and_force, line, pull
+from hookean.values.columns import IndexRows, Labels, Lines, fault
+from hookean.values.fields import Field, Maybe
+
+K, REST, FACTOR = groups.COLUMNS, groups.COLUMNS + 1, groups.COLUMNS + 2  # columns of the parameters
+
+
+@device
+def stretch(x: Any, indices: Any, parameters: Any, first: Any) -> Any:
+    """By how much a cable is longer than at rest, and of how many lines it is."""
+    total, count = -parameters[first, REST] * parameters[first, FACTOR], 0
+    e = first
+    while e >= 0:
+        total += line(x, indices, e)[0]
+        count += 1
+        e = following(parameters, e)
+    return total, count
+
+
+def sliding_cable_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    for first in range(indices.shape[0]):
+        if not begins(parameters, first):
+            continue
+        longer, count = stretch(x, indices, parameters, first)
+        k = parameters[first, K]
+        tension = k * max(longer, 0.0)
+        energy += 0.5 * tension * max(longer, 0.0)
+        e = first
+        while e >= 0:
+            length, dx, dy, dz = line(x, indices, e)
+            density = tension / length if length > 0.0 else 0.0
+            pull(indices, e, density, dx, dy, dz, f)
+            for i in range(2):
+                w[indices[e, i]] += 2.0 * (count * k + density)
+            e = following(parameters, e)
+    return energy
+
+
+class SlidingCable(groups.Grouped):
+    """A cable that slides over saddles without friction: E = EA (L - L0)^2 / (2 L0), L the length of all its lines.
+
+    The tension T = EA (L - L0) / L0 is the same in each line, whatever their lengths, so at a free pulley both lines
+    make the same angle with what the pulley carries. Below L0 the cable is slack. Lines with the same number are one
+    cable; without numbers all are. Give the stiffness as EA, or as a material and a section, and the prestress, if any,
+    as the force at the start or as the rest length of a whole cable. A line of zero length has no direction and no
+    force. For a tension that does not depend on the length, use `constant_tension`. Source: Aufaure, "A finite element
+    of cable passing through a pulley", 1993.
+    """
+
+    kind: Literal["sliding_cable"] = "sliding_cable"
+    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
+    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
+    group: Maybe[Labels] = Field(default=None, description="Number of the cable of each line; default: all are one")
+    axial_stiffness: float | None = Field(default=1000.0, ge=0, le=1e12, description="EA [force]")
+    material: str | None = Field(default=None, description="Name of a material, with a section in the place of EA")
+    section: str | None = Field(default=None, description="Name of a section, with a material in the place of EA")
+    rest_length: float | None = Field(
+        default=None, gt=0, le=1e12, description="L0 of a whole cable [length]; default: the start length"
+    )
+    force: float | None = Field(default=None, ge=0, le=1e12, description="Prestress: tension at the start [force]")
+    rest_factor: float = Field(default=1.0, gt=0, le=1e12, description="Factor on the rest length [-]")
+
+    formula: ClassVar[str] = "E = EA (L - L0)²/(2 L0)"
+    arity: ClassVar[int] = 2
+    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
+    kernel: ClassVar[Any] = staticmethod(sliding_cable_kernel)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _other_stiffness(cls, value: Any) -> Any:
+        return elastic.without(value, "axial_stiffness", ("material", "section"))
+
+    @model_validator(mode="after")
+    def _one_way(self) -> SlidingCable:
+        made = [name for name in ("material", "section") if getattr(self, name) is not None]
+        if len(made) == 1 or (self.axial_stiffness is None) == (not made):
+            said = (
+                " and ".join([*(["axial_stiffness"] if self.axial_stiffness is not None else []), *made]) or "nothing"
+            )
+            raise fault(f"{said} given; give either axial_stiffness, or both material and section")
+        if self.rest_length is not None and self.force is not None:
+            raise fault("rest_length and force given; give at most one of them")
+        return self
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel: links of the cables, EA / L0, L0, its factor; InputError for one without length."""
+        index = places.elements(self)
+        links = groups.links(index, self.group)
+        axial = self.axial_stiffness
+        if axial is None:
+            axial = elastic.axial_stiffness(self, places)
+        head = np.arange(len(index)) - links[:, groups.FIRST].astype(np.int64)
+        own = lengths(places.x[index[:, 1]] - places.x[index[:, 0]])
+        rest = np.bincount(head, own, len(index))[head] if len(index) else own
+        if self.rest_length is not None:
+            rest = np.full(len(index), self.rest_length)
+        elif self.force is not None:
+            if not axial > 0.0:
+                raise InputError("", "a cable without stiffness cannot have a force; give an axial_stiffness above 0")
+            rest = rest * axial / (axial + self.force)
+        if not (rest > 0.0).all():
+            raise InputError("", "a cable of a sliding_cable has no length at the start; give a rest_length")
+        return Block.of(
+            index, links=links, stiffness=axial / (rest * self.rest_factor), rest=rest, rest_factor=self.rest_factor
+        )
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Length of each line [length], and the force of its cable [force]."""
+        length = length_and_force(block, x, element_forces)["length"]
+        return {"length": length, "force": block.parameters[:, K] * longer(block, x)}
+
+    @classmethod
+    def second(cls, block: Block, memory: Floats, x: Floats) -> Floats:
+        """Of each line, if it were a spring on its own, m times as stiff as its cable of m lines, by both ends and by
+        how much of the cable is in it: the least over these is the energy of the cable."""
+        apart = x[block.indices[:, 1]] - x[block.indices[:, 0]]
+        length, more = lengths(apart), longer(block, x)
+        long = length > 0.0
+        u = apart / np.where(long, length, 1.0)[:, None]
+        head = groups.heads(block)
+        k = np.where(more > 0.0, block.parameters[:, K], 0.0) * np.bincount(head, minlength=len(head))[head]
+        slope = np.column_stack([-u, u, -np.ones(len(u))])
+        density = np.where(long, block.parameters[:, K] * more / np.where(long, length, 1.0), 0.0)
+        across = density[:, None, None] * (np.eye(3) - u[:, :, None] * u[:, None])
+        found: Floats = k[:, None, None] * slope[:, :, None] * slope[:, None]
+        found[:, :6, :6] += np.block([[across, -across], [-across, across]])
+        return found
+
+    @classmethod
+    def gathered(
+        cls, block: Block, memory: Floats, x: Floats, node: int | None
+    ) -> list[tuple[type[Force], Block]] | None:
+        """Lines with the places along the cable where they meet as nodes, or whole cables without them; of large ones
+        each line as if it could not slide, a bound from above."""
+        if not len(block.indices):
+            return []
+        second = cls.second(block, memory, x)
+        if node is not None:
+            return _chained(block, second, node)
+        found: list[tuple[type[Force], Block]] = []
+        for rows in groups.by_size(block):
+            members = rows.shape[1]
+            if members > groups.LARGEST:
+                found.append((groups.Whole, groups.stiff(block.indices[rows.ravel()], second[rows.ravel(), :6, :6])))
+                continue
+            whole = np.zeros((len(rows), members, 6, members, 6))
+            slope = second[rows][:, :, :6, 6]  # -m k g of each line
+            each = second[rows][:, :, :6, :6].copy()
+            stiff = np.maximum(second[rows][:, :, 6, 6], 1e-300)
+            each -= slope[..., :, None] * slope[..., None, :] / stiff[..., None, None]
+            whole[:, range(members), :, range(members)] = each.transpose(1, 0, 2, 3)
+            flat = whole.reshape(len(rows), 6 * members, 6 * members)
+            total = slope.reshape(len(rows), -1)
+            flat += total[:, :, None] * total[:, None] / (members * stiff[:, :1, None])
+            found.append((groups.Whole, groups.stiff(block.indices[rows].reshape(len(rows), -1), flat)))
+        return found
+
+    @classmethod
+    def example(cls) -> tuple[SlidingCable, Floats]:
+        """Two cables of three and two lines, apart from each other, that take turns; both taut."""
+        x = [[0.0, 0.1, 0.0], [1.0, 0.0, 0.2], [0.3, 1.7, -0.1], [0.2, 0.4, 0.9]]
+        x += [[4.0, 0.0, 0.3], [5.1, 0.2, 0.0], [5.0, 2.4, 0.4]]
+        pairs = [[0, 1], [4, 5], [1, 2], [5, 6], [2, 3]]
+        return cls(particles=pairs, group=[0, 7, 0, 7, 0], axial_stiffness=60.0, rest_factor=0.6), np.array(x)
+
+
+def longer(block: Block, x: Floats) -> Floats:
+    """By how much (m,) the cable of each line is longer than at rest; 0 where it is slack."""
+    head: Ints = groups.heads(block)
+    length = lengths(x[block.indices[:, 1]] - x[block.indices[:, 0]])
+    total = np.bincount(head, length, len(head))[head] if len(head) else length
+    return np.maximum(total - block.parameters[:, REST] * block.parameters[:, FACTOR], 0.0)
+
+
+def _chained(block: Block, second: Floats, node: int) -> list[tuple[type[Force], Block]]:
+    """Elements of a line's ends and of the nodes between it and the lines before and after it: what is in a line is
+    the difference of the two, and the ends of a cable do not move. Slack nodes have a little stiffness."""
+    head = groups.heads(block)
+    order = np.argsort(head, kind="stable")
+    starts = block.parameters[order, groups.FIRST] == 0.0
+    ends = np.append(starts[1:], True)
+    after = np.full(len(order), -1)
+    after[~ends] = node + np.arange(np.count_nonzero(~ends))
+    before = np.full(len(order), -1)
+    before[~starts] = after[~ends]
+    size = second[order, 6, 6]
+    size = np.where(size > 0.0, size, 1.0)
+    found: list[tuple[type[Force], Block]] = []
+    for first in (False, True):
+        for last in (False, True):
+            rows = np.flatnonzero((starts == first) & (ends == last))
+            if not len(rows):
+                continue
+            own = second[order[rows]]
+            # the unknown is what is in the line: that after it less that before it
+            spread = np.zeros((8 - first - last, 7))
+            spread[range(6), range(6)] = 1.0
+            if not first:
+                spread[6, 6] = -1.0
+            if not last:
+                spread[7 - first, 6] = 1.0
+            table = spread @ own @ spread.T
+            nodes = range(6, len(spread))
+            table[:, nodes, nodes] += groups.LEAST * size[rows, None]
+            columns = [c[rows, None] for c, there in ((before, not first), (after, not last)) if there]
+            index = np.hstack([block.indices[order[rows]], *columns]).astype(np.int64)
+            member = Block(np.ascontiguousarray(index), table.reshape(len(rows), -1), np.zeros((len(rows), 0)))
+            found.append((groups.Member, member))
+    return found

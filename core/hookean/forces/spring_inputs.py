@@ -1,0 +1,91 @@
+"""Stiffness and rest length of springs by what they are given."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hookean.errors import InputError
+from hookean.forces import elastic
+from hookean.forces.base import Floats, Ints, Places, lengths
+from hookean.values.columns import fault
+
+if TYPE_CHECKING:
+    from hookean.forces.springs import Springs
+
+OTHERS = ("axial_stiffness", "material", "section")
+
+
+def one_way(springs: Springs) -> None:
+    """A fault unless stiffness and prestress are each given in one way."""
+    ways = [name for name in ("stiffness", "axial_stiffness") if getattr(springs, name) is not None]
+    parts = [name for name in ("material", "section") if getattr(springs, name) is not None]
+    ways += [" and ".join(parts)] if parts else []
+    if len(ways) > 1 or len(parts) == 1 or not ways:
+        said = f"{' and '.join(ways)} given" if ways else "the stiffness is missing"
+        raise fault(f"{said}; give exactly one of stiffness, axial_stiffness, or material and section")
+    starts = [name for name in ("rest_length", "force", "strain") if getattr(springs, name) is not None]
+    if len(starts) > 1:
+        raise fault(f"{' and '.join(starts)} given; give at most one of rest_length, force, strain")
+    if springs.strain is not None and not (np.asarray(springs.strain) > -1.0).all():
+        raise fault(f"{float(np.min(springs.strain)):g} given; more than -1 allowed", "/strain")
+    if springs.temperature is not None and springs.material is None:
+        raise fault("temperature needs a material with expansion, and a section", "/temperature")
+    if springs.tension_only and springs.compression_only:
+        raise fault("tension_only and compression_only given; a spring with both has no force: give one of them")
+    for only, cutoff in (("tension_only", "lower_cutoff"), ("compression_only", "upper_cutoff")):
+        if getattr(springs, only) and np.any(getattr(springs, cutoff)):
+            raise fault(f"{only} and {cutoff} given; give one of them")
+
+
+def resolved(springs: Springs, places: Places, index: Ints) -> tuple[Floats, Floats]:
+    """k [force/length] and the rest length [length], before the rest factor, of elements (m, 2); InputError where
+    there is none."""
+    start = lengths(places.x.take(index[:, 1], axis=0) - places.x.take(index[:, 0], axis=0))
+    if springs.stiffness is not None:
+        k = np.broadcast_to(np.asarray(springs.stiffness, dtype=np.float64), start.shape)
+        return k, _rest(springs, places, start, k, None)
+    axial = springs.axial_stiffness
+    if axial is None:
+        axial = elastic.axial_stiffness(springs, places)
+    whole = np.broadcast_to(np.asarray(axial, dtype=np.float64), start.shape)
+    rest = _rest(springs, places, start, None, whole)
+    own = rest * springs.rest_factor
+    none = np.flatnonzero(~(own > 0.0))
+    if len(none):
+        said = f"element {none[0]} has no rest length, so that k = EA / rest length has no value"
+        raise InputError("", f"{said}; give stiffness, or a rest length and factor above 0")
+    return whole / own, rest
+
+
+def _rest(springs: Springs, places: Places, start: Floats, k: Floats | None, axial: Floats | None) -> Floats:
+    rest = start if springs.rest_length is None else np.asarray(springs.rest_length, dtype=np.float64)
+    if springs.strain is not None:
+        rest = start / (1.0 + np.asarray(springs.strain))
+    if springs.force is not None:
+        rest = _of_force(np.broadcast_to(springs.force, start.shape), start, k, axial)
+    if springs.temperature is not None:
+        expansion = places.material(str(springs.material)).expansion
+        if expansion is None:
+            raise InputError("", f"{springs.material} has no thermal expansion; give its expansion")
+        rest = rest * (1.0 + expansion * np.asarray(springs.temperature))
+    return np.asarray(np.broadcast_to(rest, start.shape))
+
+
+def _of_force(force: Floats, start: Floats, k: Floats | None, axial: Floats | None) -> Floats:
+    """Rest lengths by which springs of these start lengths have a force: k (l - L0), or EA (l - L0) / L0."""
+    if axial is not None:
+        whole = axial + force
+        low = np.flatnonzero(~(whole > 0.0))
+        if len(low):
+            said = f"element {low[0]} with EA = {axial[low[0]]:g} cannot have a force of {force[low[0]]:g}"
+            raise InputError("", f"{said}; more than -EA is possible")
+        return start * axial / whole
+    assert k is not None
+    rest = start - np.divide(force, k, out=np.full(start.shape, np.inf), where=k > 0.0)
+    low = np.flatnonzero(~((rest >= 0.0) & np.isfinite(rest)))
+    if len(low):
+        said = f"element {low[0]} with k = {k[low[0]]:g} and length {start[low[0]]:g} cannot have a force of"
+        raise InputError("", f"{said} {force[low[0]]:g}; at most k x length is possible")
+    return rest
