@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from hookean.forces.geodesic_strip import GeodesicStrip as GeodesicStrip
     from hookean.forces.hinge import Hinge as Hinge
     from hookean.forces.hydrostatic import Hydrostatic as Hydrostatic
+    from hookean.forces.impulse import Impulse as Impulse
     from hookean.forces.isothermic import Isothermic as Isothermic
     from hookean.forces.length_ratio import LengthRatio as LengthRatio
     from hookean.forces.length_snap import LengthSnap as LengthSnap
@@ -186,6 +187,7 @@ __all__ = [
     "Geometry",
     "Hinge",
     "Hydrostatic",
+    "Impulse",
     "InputError",
     "Isothermic",
     "LengthRatio",

@@ -67,6 +67,15 @@ def wanted() -> dict[str, dict[str, Any]]:
         "VertexNeighbours": {"points": V[[1, 4]], "normals": hd.vertex_neighbours(MESH, [1, 4])[1]},
         "MeshMap": {"points": hd.mesh_map(row, MESH, moved)},
         "SplitAtCorners": {"corners": [[2, 0, 0]]},
+        "InterconnectPoints": {"lines": hd.interconnect_points(row)},
+        "Bipartite": {"first": [[0, 0, 0], [2, 0, 1]], "second": [[1, 0, 0]]},
+        "MoebiusTransformation": {"points": hd.moebius_transformation(row, 0.4)},
+        "Pipes": {"mesh": [hd.pipes([[[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 1, 0.3]]], 0.1, 4, 0.01)]},
+        "AlignQuads": {"mesh": [hd.align_quads(MESH)]},
+        "TurnQuads": {"mesh": [hd.turn_quads(MESH, 3)]},
+        "Strips": {"strips": hd.strips(MESH)},
+        "UnrollStrips": {"mesh": [hd.unroll_strips(MESH, "weft", 0.25)]},
+        "ReciprocalDiagram": {"densities": [1.0]},
     }
 
 

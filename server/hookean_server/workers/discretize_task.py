@@ -28,7 +28,7 @@ class Operation:
     `mesh`, `meshes`, `lines` or `points`. `options`: name -> `count`, `whole`, `level`, `number`, `numbers`, `vectors`,
     `indices`, `flag`, one of the kinds that `takes` names, or the words to choose from; those with None as default must
     be given. `gives`: names of the function's results; their places are added to edges and vertices of a mesh, see
-    `PLACES`. `made`: `module:function` that counts the faces of the result beforehand, from the same arguments.
+    `PLACES`. `made`: `module:function` that counts the faces or lines of the result before, from the same arguments.
     """
 
     at: str
@@ -64,6 +64,9 @@ _LEVEL = {"level": ("level", 1)}
 _REMESH = {"length": ("number", None), "feature_angle": ("number", np.pi / 6), "iterations": ("whole", 15)}
 _HANGING = {"length": ("numbers", None), "count": ("count", 50), "gravity": ("vectors", (0.0, 0.0, -1.0))}
 _SMOOTH = {"count": ("count", None), "degree": ("whole", 3)}
+_FAMILY = {"direction": ("warp weft", "warp")}
+_TURN = {"angle": ("number", None), "axis": ("vectors", (0.0, 0.0, 1.0)), "centre": ("vectors", (0.0, 0.0, 0.0)),
+         "radius": ("number", 1.0)}  # fmt: skip
 PLACES = {"edges": "lines", "indices": "points", "naked": "naked_points", "clothed": "clothed_points",
           "warp": "warp_lines", "weft": "weft_lines", "start": "start_points", "end": "end_points",
           "tip_1": "tip_1_points", "tip_2": "tip_2_points"}  # fmt: skip
@@ -125,6 +128,18 @@ OPERATIONS: dict[str, Operation] = {
     "split_at_corners": Operation(
         "polylines:split_at_corners", "curve", {"turning_angle": ("number", 1.0)}, ("points", "polylines")
     ),
+    "interconnect_points": Operation("graphs:interconnect_points", "points", {}, ("lines",), "graphs:expected_lines"),
+    "bipartite": Operation("graphs:bipartite", "lines", _NEAR, ("first_points", "second_points")),
+    "moebius_transformation": Operation("moebius:moebius_transformation", "points", _TURN),
+    "pipes": Operation(
+        *("pipe_meshes:pipes", "lines", {"radius": ("number", None), "sides": ("whole", 6), **_NEAR}, ("mesh",)),
+        "pipe_meshes:expected_faces",
+    ),
+    "align_quads": Operation("ladders:align_quads", "mesh", {"strict": ("flag", True)}, ("mesh",)),
+    "turn_quads": Operation("ladders:turn_quads", "mesh", {"turns": ("whole", 1)}, ("mesh",)),
+    "strips": Operation("ladders:strips", "mesh", _FAMILY, ("strips",)),
+    "unroll_strips": Operation("ladders:unroll_strips", "mesh", {**_FAMILY, "gap": ("number", 0.0)}, ("mesh",)),
+    "reciprocal_diagram": Operation("reciprocal:reciprocal_diagram", "mesh", gives=("lines", "densities")),
     "remove_duplicate_points": Operation("duplicates:remove_duplicate_points", "points", _NEAR),
     "remove_duplicate_lines": Operation("duplicates:remove_duplicate_lines", "lines", _NEAR, ("lines",)),
 }
