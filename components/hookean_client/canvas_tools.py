@@ -402,6 +402,18 @@ def reciprocal_diagram(ghenv, meshes):
     return each(ghenv, "reciprocal_diagram", meshes, ["lines", "densities"])
 
 
+def live_film(ghenv, meshes, lengths, volumes):
+    """The soap film on each mesh, made again while it relaxes."""
+
+    def work():
+        if not listed(lengths):
+            raise canvas.scene.missing("length is missing; connect it")
+        many = {"length": listed(lengths), "volume_factor": default(volumes, 0.0)}
+        return each(ghenv, "live_film", meshes, ["mesh"], **many)
+
+    return (canvas._told(ghenv, work) or [None])[0]
+
+
 def split_at_corners(ghenv, curves, angles):
     """Points where each polyline turns by more than a number [rad], and its parts between them."""
     return each(ghenv, "split_at_corners", curves, ["points", "polylines"], turning_angle=default(angles, 1.0))

@@ -101,6 +101,7 @@ if TYPE_CHECKING:
     from hookean.forces.wind import Wind as Wind
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
+    from hookean.running.live import relax_live as relax_live
     from hookean.running.patch import Move as Move
     from hookean.running.patch import Patch as Patch
     from hookean.running.result import Result as Result
@@ -143,6 +144,7 @@ _HOMES = {
     "open": "files.save",
     "picture": "pictures.picture",
     "relax": "running.run",
+    "relax_live": "running.live",
     "render": "pictures.picture",
     "save": "files.save",
     "simulate": "running.simulation",
@@ -240,6 +242,7 @@ __all__ = [
     "open",
     "picture",
     "relax",
+    "relax_live",
     "render",
     "save",
     "simulate",

@@ -87,6 +87,7 @@ SAMPLES: dict[str, dict[str, Any]] = {
     "HingePoints": {"_mesh": [MESH]},
     "InterconnectPoints": {"_points": ROW},
     "Interpolate": {"_points": ROW, "_count_": [6]},
+    "LiveFilm": {"_mesh": [MESH], "_length": [0.4]},
     "MeshCorners": {"_mesh": [MESH]},
     "MeshEdges": {"_mesh": [MESH]},
     "MeshMap": {"_point": ROW, "_source": [MESH], "_target": [MOVED]},

@@ -14,6 +14,7 @@ from canvas.test_isolated import CURVE, MOVED, PYTHONS, QUADS, SAMPLES, SURFACE,
 from hookean.discretize import divide, interpolate, mesh_surface, meshes, nurbs_curve, nurbs_surface, shatter, threads
 from hookean.discretize.catenary import catenary
 from hookean.files.rhino import threedm
+from hookean.running.live import live_film
 from hookean.values.mesh import Mesh
 from serving import Home
 
@@ -60,6 +61,7 @@ def wanted() -> dict[str, dict[str, Any]]:
         "Refine": {"mesh": [hd.refine(MESH, smooth=True)]},
         "RefineStrips": {"mesh": [hd.refine_strips(MESH, 2)]},
         "Remesh": {"mesh": [hd.remesh(MESH, 0.4)]},
+        "LiveFilm": {"mesh": [live_film(MESH, 0.4)]},
         "Diagonalize": {"mesh": [hd.diagonalize(MESH)]},
         "Checkerboard": {"pattern": pattern, "first": first, "second": second},
         "HingePoints": hinges,

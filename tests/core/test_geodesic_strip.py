@@ -85,11 +85,11 @@ def test_the_edges_of_a_strip_stay_parallel() -> None:
     moved[rows[:, 1:-1].ravel(), 2] += 0.03 * np.sin(np.arange(21) * 2.1)
     moved /= np.linalg.norm(moved, axis=1)[:, None]
     across = np.concatenate([np.stack([rows[0], rows[1]], axis=1), np.stack([rows[1], rows[2]], axis=1)])
-    even = {"kind": "equal_length", "particles": across, "group": np.repeat([0, 1], 9), "strength": 50.0}
+    even = {"kind": "equal_length", "particles": across, "group": np.repeat([0, 1], 9), "stiffness": 50.0}
     inner = rows[:, 1:-1].ravel()
     pull = PullToSurface.on(sphere(1.0), particles=inner, strength=100.0)
     slide = {"kind": "equal_length", "particles": np.stack([rows[:, :-1], rows[:, 1:]], axis=2).reshape(-1, 2),
-             "group": np.repeat([0, 1, 2], 8), "strength": 20.0}  # fmt: skip
+             "group": np.repeat([0, 1, 2], 8), "stiffness": 20.0}  # fmt: skip
     held = [*rows[:, 0], *rows[:, -1]]
     found = relax(scene(moved, faces, rows[1], pull, even, slide, anchors=[{"particles": held}]))
     assert found.converged

@@ -127,6 +127,7 @@ FOLD = ([(1.0, 0.0, 0.0)] * 4, [(0.0, 0.0, 9.0)] * 4, [(0.5, -7.0, 2.0)] * 4)
 MORE: dict[str, Any] = {
     "fold_angle": dict(zip(("Fold end", "Tip 1", "Tip 2"), FOLD, strict=True)),
     "remesh": {"Length": 1.0},
+    "live_film": {"Length": 0.8},
     "moebius_transformation": {"Angle": 0.4},
     "pipes": {"Radius": 0.1},
     "mesh_map": {"Source": quads, "Target": quads},

@@ -169,6 +169,18 @@ def reciprocal_diagram(pen: Pen) -> None:
     pen.line((12.0, 3.5), (18.5, 15.5), (5.5, 15.5), closed=True, colour=ORANGE, width=1.6)
 
 
+def live_film(pen: Pen) -> None:
+    for y in (4.0, 20.0):
+        pen.line(*[(12.0 + 9.5 * math.cos(k * 0.2618), y + 2.4 * math.sin(k * 0.2618)) for k in range(24)], closed=True,
+                 width=1.5)  # fmt: skip
+    for side in (-1.0, 1.0):
+        neck = [(12.0 + side * (5.0 + 4.5 * (k / 4.0) ** 2), 12.0 + 2.0 * k) for k in range(-4, 5)]
+        pen.line(*neck, colour=BLUE, width=1.8)
+    for k in range(-2, 3):
+        pen.line((12.0 - 4.6, 12.0 + 3.0 * k), (12.0 + 4.6, 12.0 + 3.0 * (k + (1 if k % 2 else -1) * 0.5)), colour=PALE,
+                 width=1.0)  # fmt: skip
+
+
 def counter(pen: Pen) -> None:
     for k in range(4):
         pen.line((4.0 + 4.2 * k, 4.5), (4.0 + 4.2 * k, 19.5), width=2.0)
@@ -195,7 +207,7 @@ DRAWINGS: dict[str, Callable[[Pen], None]] = {
         *(remove_duplicate_points, combine_clean, refine, refine_strips, diagonalize, checkerboard, hinge_points),
         *(fold_angle, vertex_neighbours, mesh_map, split_at_corners, remesh, counter, sequence, trail),
         *(interconnect_points, bipartite, moebius_transformation, pipes, align_quads, turn_quads, strips),
-        *(unroll_strips, reciprocal_diagram),
+        *(unroll_strips, reciprocal_diagram, live_film),
     )
 }
 """Drawings by the name of the bundle, in small letters without blanks."""

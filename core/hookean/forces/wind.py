@@ -12,7 +12,7 @@ from hookean.forces.base import Block, Floats, Force, Places, lengths, units
 from hookean.forces.face_loads import FaceLoad, dome, fill, length, share, sides
 from hookean.forces.hydrostatic import wet
 from hookean.values.columns import Direction, fault
-from hookean.values.fields import Field, Maybe
+from hookean.values.fields import Field
 
 # columns of the parameters; the last two where the wind ends at a water surface: its level, and 1 if it blows below it
 Q, PART, ALONG, SPEED, DAMPING, LEVEL, BELOW = 0, 1, 2, 5, 6, 7, 8
@@ -112,7 +112,7 @@ class Wind(FaceLoad):
         le=1e12,
         description="W, speed of the wind [length/time], for faces that move; 0: what moves feels what is at rest",
     )
-    waterline: Maybe[float] = Field(
+    waterline: float | None = Field(
         default=None, ge=-1e12, le=1e12, description="Level of a water surface, z [length]; default: there is none"
     )
     below: bool = Field(default=False, description="Whether it acts below the waterline, not above")
@@ -140,7 +140,9 @@ class Wind(FaceLoad):
         x = places.x[corners]
         area = 0.5 * lengths(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]))
         rate = self.pressure / self.speed if self.speed > 0.0 else 0.0
-        water = {} if self.waterline is None else {"waterline": self.waterline, "below": float(self.below)}
+        water: dict[str, float] = {}
+        if self.waterline is not None:
+            water = {"waterline": self.waterline, "below": float(self.below)}
         return Block.of(
             corners, pressure=self.pressure, share=part, direction=along, speed=self.speed,
             damping=rate * part * area / 3.0, **water,

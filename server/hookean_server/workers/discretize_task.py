@@ -24,11 +24,12 @@ from hookean_server.workers.task import Cancelled, Clock, Done
 class Operation:
     """One operation: where its function is, what geometry it takes, its options and what it gives.
 
-    `at`: `module:function`, of `hookean.discretize`. `takes`: `curve`, `surface`,
-    `mesh`, `meshes`, `lines` or `points`. `options`: name -> `count`, `whole`, `level`, `number`, `numbers`, `vectors`,
-    `indices`, `flag`, one of the kinds that `takes` names, or the words to choose from; those with None as default must
-    be given. `gives`: names of the function's results; their places are added to edges and vertices of a mesh, see
-    `PLACES`. `made`: `module:function` that counts the faces or lines of the result before, from the same arguments.
+    `at`: `module:function`, of `hookean.discretize`, or of another room by `room.module:function`. `takes`:
+    `curve`, `surface`, `mesh`, `meshes`, `lines` or `points`. `options`: name -> `count`, `whole`, `level`,
+    `number`, `numbers`, `vectors`, `indices`, `flag`, one of the kinds that `takes` names, or the words to choose
+    from; those with None as default must be given. `gives`: names of the function's results; their places are added
+    to edges and vertices of a mesh, see `PLACES`. `made`: `module:function` that counts the faces or lines of the
+    result before, from the same arguments.
     """
 
     at: str
@@ -54,7 +55,8 @@ class Operation:
 
 def _imported(at: str) -> Callable[..., Any]:
     module, name = at.split(":")
-    found: Callable[..., Any] = getattr(importlib.import_module(f"hookean.discretize.{module}"), name)
+    room = "" if "." in module else "discretize."
+    found: Callable[..., Any] = getattr(importlib.import_module(f"hookean.{room}{module}"), name)
     return found
 
 
@@ -122,6 +124,10 @@ OPERATIONS: dict[str, Operation] = {
         "adjacency:vertex_neighbours", "mesh", {"vertices": ("indices", ())}, ("neighbours", "normals")
     ),
     "remesh": Operation("remeshing:remesh", "mesh", _REMESH, ("mesh",), "remeshing:expected_faces"),
+    "live_film": Operation(
+        *("running.live:live_film", "mesh", {"length": ("number", None), "volume_factor": ("number", 0.0)}, ("mesh",)),
+        "running.live:expected_faces",
+    ),
     "mesh_map": Operation(
         "mapping:mesh_map", "points", {"source": ("mesh", None), "target": ("mesh", None), "distance": ("number", 1.0)}
     ),
