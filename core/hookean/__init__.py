@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from hookean.forces.geodesic_strip import GeodesicStrip as GeodesicStrip
     from hookean.forces.hinge import Hinge as Hinge
     from hookean.forces.hydrostatic import Hydrostatic as Hydrostatic
+    from hookean.forces.impulse import Impulse as Impulse
     from hookean.forces.isothermic import Isothermic as Isothermic
     from hookean.forces.length_ratio import LengthRatio as LengthRatio
     from hookean.forces.length_snap import LengthSnap as LengthSnap
@@ -107,6 +108,7 @@ if TYPE_CHECKING:
     from hookean.forces.wind import Wind as Wind
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
+    from hookean.running.live import relax_live as relax_live
     from hookean.running.patch import Move as Move
     from hookean.running.patch import Patch as Patch
     from hookean.running.result import Result as Result
@@ -158,6 +160,7 @@ _HOMES = {
     "open": "files.save",
     "picture": "pictures.picture",
     "relax": "running.run",
+    "relax_live": "running.live",
     "render": "pictures.picture",
     "save": "files.save",
     "simulate": "running.simulation",
@@ -202,6 +205,7 @@ __all__ = [
     "Geometry",
     "Hinge",
     "Hydrostatic",
+    "Impulse",
     "InputError",
     "Isothermic",
     "LengthRatio",
@@ -258,6 +262,7 @@ __all__ = [
     "open",
     "picture",
     "relax",
+    "relax_live",
     "render",
     "save",
     "simulate",
