@@ -26,6 +26,14 @@ from typing import TYPE_CHECKING, Any
 from hookean.errors import InputError as InputError
 
 if TYPE_CHECKING:
+    from hookean.analysis.buckling import Buckling as Buckling
+    from hookean.analysis.buckling import buckling as buckling
+    from hookean.analysis.frequencies import Frequencies as Frequencies
+    from hookean.analysis.frequencies import frequencies as frequencies
+    from hookean.analysis.load_path import LoadPath as LoadPath
+    from hookean.analysis.load_path import load_path as load_path
+    from hookean.analysis.mechanisms import Mechanisms as Mechanisms
+    from hookean.analysis.mechanisms import mechanisms as mechanisms
     from hookean.files.save import open as open
     from hookean.files.save import save as save
     from hookean.forces.align_faces import AlignFaces as AlignFaces
@@ -139,6 +147,14 @@ _HOMES = {
     "Patch": "running.patch",
     "Script": "running.script",
     "Stream": "running.stream",
+    "Buckling": "analysis.buckling",
+    "buckling": "analysis.buckling",
+    "Frequencies": "analysis.frequencies",
+    "frequencies": "analysis.frequencies",
+    "LoadPath": "analysis.load_path",
+    "load_path": "analysis.load_path",
+    "Mechanisms": "analysis.mechanisms",
+    "mechanisms": "analysis.mechanisms",
     "open": "files.save",
     "picture": "pictures.picture",
     "relax": "running.run",
@@ -157,6 +173,7 @@ __all__ = [
     "AreaWeight",
     "Bend",
     "BoxCollide",
+    "Buckling",
     "CircleImage",
     "ClampAngle",
     "ClampLength",
@@ -181,6 +198,7 @@ __all__ = [
     "Floor",
     "Force",
     "Frame",
+    "Frequencies",
     "Gas",
     "GeodesicStrip",
     "Geometry",
@@ -192,7 +210,9 @@ __all__ = [
     "LengthSnap",
     "LevelSet",
     "LineWeight",
+    "LoadPath",
     "MagnetSnap",
+    "Mechanisms",
     "MeshData",
     "Mirror",
     "Move",
@@ -235,6 +255,10 @@ __all__ = [
     "Volume",
     "Vortex",
     "Wind",
+    "buckling",
+    "frequencies",
+    "load_path",
+    "mechanisms",
     "open",
     "picture",
     "relax",
