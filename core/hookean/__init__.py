@@ -28,8 +28,12 @@ from hookean.errors import InputError as InputError
 if TYPE_CHECKING:
     from hookean.analysis.buckling import Buckling as Buckling
     from hookean.analysis.buckling import buckling as buckling
+    from hookean.analysis.freezing import Frozen as Frozen
+    from hookean.analysis.freezing import freeze as freeze
     from hookean.analysis.frequencies import Frequencies as Frequencies
     from hookean.analysis.frequencies import frequencies as frequencies
+    from hookean.analysis.load_cases import LoadCases as LoadCases
+    from hookean.analysis.load_cases import load_cases as load_cases
     from hookean.analysis.load_path import LoadPath as LoadPath
     from hookean.analysis.load_path import load_path as load_path
     from hookean.analysis.mechanisms import Mechanisms as Mechanisms
@@ -118,6 +122,9 @@ if TYPE_CHECKING:
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
+    from hookean.scene.load_cases import ElasticLine as ElasticLine
+    from hookean.scene.load_cases import LoadCase as LoadCase
+    from hookean.scene.load_cases import Stages as Stages
     from hookean.scene.report import Report as Report
     from hookean.scene.scene import Anchor as Anchor
     from hookean.scene.scene import Anchors as Anchors
@@ -147,6 +154,13 @@ _HOMES = {
     "Patch": "running.patch",
     "Script": "running.script",
     "Stream": "running.stream",
+    "ElasticLine": "scene.load_cases",
+    "Frozen": "analysis.freezing",
+    "freeze": "analysis.freezing",
+    "LoadCase": "scene.load_cases",
+    "LoadCases": "analysis.load_cases",
+    "load_cases": "analysis.load_cases",
+    "Stages": "scene.load_cases",
     "Buckling": "analysis.buckling",
     "buckling": "analysis.buckling",
     "Frequencies": "analysis.frequencies",
@@ -193,12 +207,14 @@ __all__ = [
     "CyclicQuad",
     "Developable",
     "Direction",
+    "ElasticLine",
     "EqualAngle",
     "EqualLength",
     "Floor",
     "Force",
     "Frame",
     "Frequencies",
+    "Frozen",
     "Gas",
     "GeodesicStrip",
     "Geometry",
@@ -210,6 +226,8 @@ __all__ = [
     "LengthSnap",
     "LevelSet",
     "LineWeight",
+    "LoadCase",
+    "LoadCases",
     "LoadPath",
     "MagnetSnap",
     "Mechanisms",
@@ -243,6 +261,7 @@ __all__ = [
     "SoftCollide",
     "SolidPlaneCollide",
     "Springs",
+    "Stages",
     "Status",
     "Stream",
     "TangentIncircles",
@@ -256,7 +275,9 @@ __all__ = [
     "Vortex",
     "Wind",
     "buckling",
+    "freeze",
     "frequencies",
+    "load_cases",
     "load_path",
     "mechanisms",
     "open",
