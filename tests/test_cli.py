@@ -357,6 +357,32 @@ def test_relax_solves_a_load_case_and_checks_it(folder: Path) -> None:
     assert run("relax", "cable.json", "--case", "rain").exit_code == 2
 
 
+def test_patterns_writes_sheets_and_tables(folder: Path) -> None:
+    mesh = grid(np.arange(5.0), np.arange(5.0))
+    points = mesh.vertices + np.column_stack(
+        [np.zeros((len(mesh.vertices), 2)), 0.2 * np.prod(mesh.vertices[:, :2], axis=1)]
+    )
+    middle = points[:, :2].mean(axis=0)
+    rim = [p for p in points.tolist() if max(abs(p[0] - middle[0]), abs(p[1] - middle[1])) > 1.9]
+    scene = {
+        "meshes": {"roof": {"vertices": points.tolist(), "faces": mesh.faces.tolist()}},
+        "forces": [{"kind": "springs", "name": "cloth", "mesh": "roof", "stiffness": 100, "rest_factor": 0.9}],
+        "anchors": [{"points": rim}],
+    }
+    (folder / "roof.json").write_text(json.dumps(scene))
+    asked = ("--rows", "2", "--compensation", "0.01", "0.02", "--allowance", "0.05", "--stretch", "0.001")
+    files = ("-o", "out/roof.dxf", "--table", "out/", "--cables", "out/")
+    found = run("patterns", "roof.json", *asked, *files)
+    assert found.exit_code == 0, found.output
+    assert "2 strips" in found.output and "cables" in found.output
+    assert names(folder / "out") == ["roof.cables.csv", "roof.dxf", "roof.strips.csv"]
+    lines = (folder / "out" / "roof.strips.csv").read_text().splitlines()
+    assert lines[0].startswith("strip,length [m],width [m]") and len(lines) == 3
+    assert "cut length [m]" in (folder / "out" / "roof.cables.csv").read_text()
+    for wrong in (("--along", "bias"), ("--mesh", "wall"), ("-o", "roof.pdf"), ("--rows", "0")):
+        assert run("patterns", "roof.json", *wrong).exit_code == 2
+
+
 def test_version_forces_and_help() -> None:
     assert run("--version").stdout == f"hookean {hookean.__version__}\n"
     listed = run("forces")

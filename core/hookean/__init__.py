@@ -133,6 +133,10 @@ if TYPE_CHECKING:
     from hookean.scene.scene import Scene as Scene
     from hookean.scene.scene import Settings as Settings
     from hookean.values.units import Units as Units
+    from hookean.workshop.cables import Cables as Cables
+    from hookean.workshop.cables import cables as cables
+    from hookean.workshop.patterns import Patterns as Patterns
+    from hookean.workshop.patterns import cutting_patterns as cutting_patterns
 
 __version__ = "0.1.0"
 
@@ -154,6 +158,10 @@ _HOMES = {
     "Patch": "running.patch",
     "Script": "running.script",
     "Stream": "running.stream",
+    "Cables": "workshop.cables",
+    "cables": "workshop.cables",
+    "Patterns": "workshop.patterns",
+    "cutting_patterns": "workshop.patterns",
     "ElasticLine": "scene.load_cases",
     "Frozen": "analysis.freezing",
     "freeze": "analysis.freezing",
@@ -188,6 +196,7 @@ __all__ = [
     "Bend",
     "BoxCollide",
     "Buckling",
+    "Cables",
     "CircleImage",
     "ClampAngle",
     "ClampLength",
@@ -236,6 +245,7 @@ __all__ = [
     "Move",
     "NoFoldThrough",
     "Patch",
+    "Patterns",
     "Planarize",
     "PolygonArea",
     "PowerLaw",
@@ -275,6 +285,8 @@ __all__ = [
     "Vortex",
     "Wind",
     "buckling",
+    "cables",
+    "cutting_patterns",
     "freeze",
     "frequencies",
     "load_cases",

@@ -51,7 +51,7 @@ def run(options: Options) -> int:
     try:
         target = outputs.place(options.report, options.source, ".analysis.json")
         outputs.check([target], (options.source, options.recipe))
-        scene = _scene(options)
+        scene = scene_of(options.source, options.recipe)
         found = {name: analyse(scene) for name, analyse in _chosen(options).items()}
         if target is not None:
             from hookean.atomic_write import put
@@ -71,14 +71,15 @@ def run(options: Options) -> int:
     return DONE
 
 
-def _scene(options: Options) -> Scene:
+def scene_of(source: Path, recipe: Path | None) -> Scene:
+    """The scene in a file; prints notes on how it was read. InputError where it cannot be relaxed as it is."""
     from hookean.files.readers import read_path
 
-    recipe = None if options.recipe is None else (relax.text_of(options.recipe), str(options.recipe))
-    read = read_path(options.source, recipe)
-    relax.print_notes(options.source, [*read.warnings, *relax.forgotten(options.source, options.recipe)])
+    given = None if recipe is None else (relax.text_of(recipe), str(recipe))
+    read = read_path(source, given)
+    relax.print_notes(source, [*read.warnings, *relax.forgotten(source, recipe)])
     if read.nothing or read.unheld:
-        raise InputError(options.source.name, read.nothing or read.unheld)
+        raise InputError(source.name, read.nothing or read.unheld)
     return read.scene
 
 
