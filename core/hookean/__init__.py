@@ -26,6 +26,18 @@ from typing import TYPE_CHECKING, Any
 from hookean.errors import InputError as InputError
 
 if TYPE_CHECKING:
+    from hookean.analysis.buckling import Buckling as Buckling
+    from hookean.analysis.buckling import buckling as buckling
+    from hookean.analysis.freezing import Frozen as Frozen
+    from hookean.analysis.freezing import freeze as freeze
+    from hookean.analysis.frequencies import Frequencies as Frequencies
+    from hookean.analysis.frequencies import frequencies as frequencies
+    from hookean.analysis.load_cases import LoadCases as LoadCases
+    from hookean.analysis.load_cases import load_cases as load_cases
+    from hookean.analysis.load_path import LoadPath as LoadPath
+    from hookean.analysis.load_path import load_path as load_path
+    from hookean.analysis.mechanisms import Mechanisms as Mechanisms
+    from hookean.analysis.mechanisms import mechanisms as mechanisms
     from hookean.designing.answer import Design as Design
     from hookean.designing.problem import Problem as Problem
     from hookean.designing.search import design as design
@@ -119,6 +131,9 @@ if TYPE_CHECKING:
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
+    from hookean.scene.load_cases import ElasticLine as ElasticLine
+    from hookean.scene.load_cases import LoadCase as LoadCase
+    from hookean.scene.load_cases import Stages as Stages
     from hookean.scene.report import Report as Report
     from hookean.scene.scene import Anchor as Anchor
     from hookean.scene.scene import Anchors as Anchors
@@ -129,6 +144,10 @@ if TYPE_CHECKING:
     from hookean.values.materials import Material as Material
     from hookean.values.sections import Section as Section
     from hookean.values.units import Units as Units
+    from hookean.workshop.cables import Cables as Cables
+    from hookean.workshop.cables import cables as cables
+    from hookean.workshop.patterns import Patterns as Patterns
+    from hookean.workshop.patterns import cutting_patterns as cutting_patterns
 
 __version__ = "0.1.0"
 
@@ -157,6 +176,25 @@ _HOMES = {
     "design": "designing.search",
     "Sensitivity": "designing.sensitivity",
     "sensitivity": "designing.sensitivity",
+    "Cables": "workshop.cables",
+    "cables": "workshop.cables",
+    "Patterns": "workshop.patterns",
+    "cutting_patterns": "workshop.patterns",
+    "ElasticLine": "scene.load_cases",
+    "Frozen": "analysis.freezing",
+    "freeze": "analysis.freezing",
+    "LoadCase": "scene.load_cases",
+    "LoadCases": "analysis.load_cases",
+    "load_cases": "analysis.load_cases",
+    "Stages": "scene.load_cases",
+    "Buckling": "analysis.buckling",
+    "buckling": "analysis.buckling",
+    "Frequencies": "analysis.frequencies",
+    "frequencies": "analysis.frequencies",
+    "LoadPath": "analysis.load_path",
+    "load_path": "analysis.load_path",
+    "Mechanisms": "analysis.mechanisms",
+    "mechanisms": "analysis.mechanisms",
     "open": "files.save",
     "picture": "pictures.picture",
     "relax": "running.run",
@@ -176,6 +214,8 @@ __all__ = [
     "AreaWeight",
     "Bend",
     "BoxCollide",
+    "Buckling",
+    "Cables",
     "CircleImage",
     "ClampAngle",
     "ClampLength",
@@ -195,11 +235,14 @@ __all__ = [
     "CyclicQuad",
     "Developable",
     "Direction",
+    "ElasticLine",
     "EqualAngle",
     "EqualLength",
     "Floor",
     "Force",
     "Frame",
+    "Frequencies",
+    "Frozen",
     "Gas",
     "GeodesicStrip",
     "Geometry",
@@ -212,14 +255,19 @@ __all__ = [
     "LengthSnap",
     "LevelSet",
     "LineWeight",
+    "LoadCase",
+    "LoadCases",
+    "LoadPath",
     "MagnetSnap",
     "Material",
+    "Mechanisms",
     "Membrane",
     "MeshData",
     "Mirror",
     "Move",
     "NoFoldThrough",
     "Patch",
+    "Patterns",
     "Planarize",
     "PolygonArea",
     "PowerLaw",
@@ -247,6 +295,7 @@ __all__ = [
     "SoftCollide",
     "SolidPlaneCollide",
     "Springs",
+    "Stages",
     "Status",
     "Stream",
     "TangentIncircles",
@@ -259,6 +308,14 @@ __all__ = [
     "Volume",
     "Vortex",
     "Wind",
+    "buckling",
+    "cables",
+    "cutting_patterns",
+    "freeze",
+    "frequencies",
+    "load_cases",
+    "load_path",
+    "mechanisms",
     "open",
     "picture",
     "relax",

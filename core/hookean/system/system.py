@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hookean.compiled import dispatch
 from hookean.errors import InputError
 from hookean.forces import Block, Force
+from hookean.scene.load_cases import case_loads
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.system import components
@@ -297,7 +298,8 @@ def compile(scene: Scene) -> System:
     x = welded.x
     if not len(x):
         raise InputError("/particles", "the scene has no particles; give particles, or a force with lines or a mesh")
-    given = list(enumerate(scene.forces))
+    later = case_loads(scene)
+    given = [(i, force) for i, force in enumerate(scene.forces) if i not in later]
     if scene.settings.floor is not None:
         given.append((-1, scene.settings.floor))
     groups, contacts, impulses = _groups(given, welded)
