@@ -11,7 +11,8 @@ from hookean.linear.sparse_factors import Factors
 
 if TYPE_CHECKING:
     from hookean.system.state import State
-    from hookean.system.system import Group, System
+    from hookean.system.group import Group
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.system.state import State
-from hookean.system.system import Group, System
+from hookean.system.group import Group
+from hookean.system.system import System
 
 if TYPE_CHECKING:
     from hookean.linear.tangent_blocks import Ints
