@@ -10,8 +10,8 @@ from hookean.films import EDGE
 from hookean.forces.soapfilm import SHARE, TENSION, SoapFilm, shapes
 
 if TYPE_CHECKING:
-    from hookean.system.state import State
     from hookean.system.group import Group
+    from hookean.system.state import State
     from hookean.system.system import System
 
 THINNEST, LARGEST = 0.02, 2.0  # of what triangles and the area were at first: a good shape

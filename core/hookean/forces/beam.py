@@ -9,10 +9,9 @@ import numpy as np
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.errors import InputError
-from hookean.forces.base import Block, Floats, Force, Places, units
+from hookean.forces.base import Block, Floats, Force, Places
 from hookean.forces.beam_element import (
     CHORD,
-    LENGTH,
     MOMENTS,
     NORMAL,
     ROOM,
@@ -94,7 +93,7 @@ class Beam(Force):
     ends to the chord, phi the twist [rad]. Bending about each axis has the energy EI/(2L) (4 a^2 + 4 a b + 4 b^2), the
     cubic of Euler and Bernoulli; with shear areas, that of Timoshenko. What a section feels: N (tension +) and Mt,
     which are even along a beam, My and Mz at its start (0) and end (1), and the shear forces Vz = (My1 - My0) / l,
-    Vy = (Mz0 - Mz1) / l, all on the side that faces the start of what lies behind it, about the section's axes.
+    Vy = (Mz0 - Mz1) / l, as what lies behind a section acts on what lies before it, in the section's axes.
 
     The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. In motion a
     particle has an isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
@@ -199,6 +198,6 @@ class Beam(Force):
         """Two beams that meet at an angle, and differ."""
         x = np.array([[0.2, 0.1, 0.3], [1.3, 0.4, 0.2], [1.9, 1.3, 0.8]])
         return cls(
-            particles=[[0, 1], [1, 2]], E=[200.0, 150.0], G=80.0, A=[1.0, 0.7], Iy=[0.08, 0.1], Iz=[0.05, 0.2], J=0.14,
-            shear_y=[0.0, 0.6], normal=[0.1, 0.0, 1.0], offset_end=[0.0, 0.1, 0.05],
+            particles=[[0, 1], [1, 2]], E=200.0, G=80.0, A=1.0, Iy=0.08, Iz=0.05, J=0.14,
+            shear_y=[0.0, 0.6], normal=[0.1, 0.0, 1.0], offset_end=[[0.0, 0.1, 0.05], [0.0, 0.0, 0.0]],
         ), x  # fmt: skip

@@ -26,14 +26,25 @@ def moment_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-u
 
 
 def moment_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
-    pass
+    step, p, found = 1e-40, np.zeros((1, 3), np.complex128), np.zeros((3, 3))
+    for e in range(indices.shape[0]):
+        length = parameters[e, 0]
+        for k in range(3):
+            for c in range(3):
+                p[0, c] = x[indices[e, 1], c]
+            p[0, k] += step * 1j
+            a, b, c = mapped(p, 0, length, -1.0, parameters[e, 1], parameters[e, 2], parameters[e, 3])
+            found[0, k], found[1, k], found[2, k] = a.imag, b.imag, c.imag
+        for k in range(3):
+            for j in range(3):
+                blocks[e, 3 + j, 3 + k] = -0.5 * (found[j, k] + found[k, j]) / (step * length)
 
 
 class Moments(Rider):
     """Moments M that keep their direction in space. Such a load has no energy: the work it does depends on the path.
 
-    The kernel returns -M . theta, what it has done since the last reference but for terms of second order. The symmetric
-    part of its tangent is zero there, and the other part, M x / 2, is left out.
+    The kernel returns -M . theta, what it has done since the last reference but for terms of second order. The
+    symmetric part of its tangent is zero there, and the other part, M x / 2, is left out.
     """
 
     kind_name: ClassVar[str] = "unary"

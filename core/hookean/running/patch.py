@@ -14,8 +14,8 @@ from pydantic import StrictInt, StrictStr, ValidationError, model_validator
 from hookean.errors import InputError
 from hookean.forces.base import PLACES, Rider
 from hookean.scene.scene import Anchor, AnyForce, Scene, Settings, first_fault
-from hookean.system.state import State
 from hookean.system.group import Group, Part, fitted, ride
+from hookean.system.state import State
 from hookean.system.system import Floats, Held, System, axes_free
 from hookean.system.wiring import rewire, with_forces
 from hookean.values.columns import Indices, Model, Points, Vector, fault
@@ -118,7 +118,7 @@ def _put_forces(system: System, scene: Scene) -> None:
 def _rows(system: System, group: Group, part: Part) -> Floats:
     """Parameters of a changed force for the elements it had; InputError if it has others now."""
     fresh = system.places.recompile(part.number, part.force)
-    made = part.number, part.force, fresh.some((fresh.indices >= 0).all(axis=1)), part.inputs
+    made = part.number, part.force, fresh.some(np.flatnonzero((fresh.indices >= 0).all(axis=1))), part.inputs
     if issubclass(group.cls, Rider):
         made = ride(system.slots, group.cls, (*made[:3], np.arange(len(made[2].indices))))
     else:

@@ -238,7 +238,8 @@ class Watch:
             where = f" after {spent} iterations at {self.fault}" if self.fault else ""  # a state taken up knows no more
             return f"Diverged{where}; the last good shape is returned. {self._advice(system)}."
         if status is Status.STALLED:
-            return f"Stalled after {spent} iterations at particle {system.slots.owner(found.worst)}: {left}. {self._obstacle(system)}."
+            worst = system.slots.owner(found.worst)
+            return f"Stalled after {spent} iterations at particle {worst}: {left}. {self._obstacle(system)}."
         if status is Status.CANCELLED:
             return f"Cancelled after {spent} iterations: {left}."
         if status is Status.TIME_LIMIT:

@@ -25,8 +25,8 @@ from hookean.system.balance import Balance, extents
 
 if TYPE_CHECKING:
     from hookean.linear.tangent import Tangent
-    from hookean.system.state import State
     from hookean.system.group import Group
+    from hookean.system.state import State
     from hookean.system.system import System
 
 Floats = NDArray[np.float64]

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.stability.limit import Limit
-from hookean.system.state import State
 from hookean.system.group import Group, Part
+from hookean.system.state import State
 from hookean.system.system import System
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces.base import lengths
 from hookean.system.components import Components
-from hookean.system.state import State
 from hookean.system.group import Group
+from hookean.system.state import State
 from hookean.system.system import System
 
 Floats = NDArray[np.float64]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.errors import InputError
-from hookean.forces import Block, Force
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.system import components
@@ -293,9 +292,7 @@ def compile(scene: Scene) -> System:
     held = _anchors(welded)
     welded.report.settle(strict=scene.strict, held=any(len(anchor.particles) for anchor in held))
     carried = [_carried(welded, i) for i in range(len(scene.geometry))]
-    system = System(
-        scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded, load_count, slots
-    )
+    system = System(scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded, load_count, slots)
     system.drag = scene.settings.drag
     system.brace()
     from hookean.system.cautions import cautions

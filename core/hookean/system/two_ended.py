@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.system.state import State
 from hookean.system.group import Group
+from hookean.system.state import State
 from hookean.system.system import System
 
 

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from hookean.errors import InputError
 from hookean.forces import Force
 from hookean.system.addressed import addressed
+from hookean.system.group import Group
 from hookean.system.slots import Slots
 from hookean.system.state import State
-from hookean.system.group import Group
 from hookean.system.system import System, compile
 
 if TYPE_CHECKING:
