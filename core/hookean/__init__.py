@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from hookean.forces.angle_snap import AngleSnap as AngleSnap
     from hookean.forces.area_weight import AreaWeight as AreaWeight
     from hookean.forces.base import Force as Force
+    from hookean.forces.beam import Beam as Beam
     from hookean.forces.bend import Bend as Bend
     from hookean.forces.box_collide import BoxCollide as BoxCollide
     from hookean.forces.circle_image import CircleImage as CircleImage
@@ -89,6 +90,7 @@ if TYPE_CHECKING:
     from hookean.forces.soft_collide import SoftCollide as SoftCollide
     from hookean.forces.solid_plane_collide import SolidPlaneCollide as SolidPlaneCollide
     from hookean.forces.springs import Springs as Springs
+    from hookean.forces.support import Support as Support
     from hookean.forces.tangent_incircles import TangentIncircles as TangentIncircles
     from hookean.forces.tangential_smooth import TangentialSmooth as TangentialSmooth
     from hookean.forces.thrust import Thrust as Thrust
@@ -155,6 +157,7 @@ __all__ = [
     "Angle",
     "AngleSnap",
     "AreaWeight",
+    "Beam",
     "Bend",
     "BoxCollide",
     "CircleImage",
@@ -225,6 +228,7 @@ __all__ = [
     "Springs",
     "Status",
     "Stream",
+    "Support",
     "TangentIncircles",
     "TangentialSmooth",
     "Thrust",

@@ -182,27 +182,30 @@ def pull(r: Any, g: Any) -> None:
 
 @device
 def bound(c: Any, row: Any, r: Any, w: Any, indices: Any) -> None:
-    """Add the lumped stiffness of an element: for strains with gradients b_i in its four nodes, |b_i| sum |b| of each,
-    the largest of those that act on different axes, and what its forces stiffen."""
-    chord = r[CHORD].real
-    end, most = 1.0 / chord, 0.0
-    one, two = 1.0 / c[row, ARM], 1.0 / c[row, ARM + 1]
-    first, last, middle = c[row, TORSION] * one * (one + two), c[row, TORSION] * two * (one + two), 0.0
+    """Add the lumped stiffness of an element: k |b_i| sum |b| for each strain of stiffness k with the gradient b_i to
+    node i, the larger one of those along and across the chord, and what the element's forces stiffen."""
+    end, one, two = 1.0 / r[CHORD].real, 1.0 / c[row, ARM], 1.0 / c[row, ARM + 1]
+    first, last, middle, forces = 0.0, 0.0, 0.0, 0.5 * np.abs(r[NORMAL]) / end + 2.0 * np.abs(r[TORQUE])
+    bow_a, bow_b = 0.0, 0.0  # how much the angles shorten the chord
     for axis in range(2):
-        stiff = BEND_Y + 3 * axis
-        a = np.abs(c[row, stiff]) + np.abs(c[row, stiff + 1])
-        b = np.abs(c[row, stiff + 2]) + np.abs(c[row, stiff + 1])
+        stiff, bow = BEND_Y + 3 * axis, BOW_Y + 3 * axis
+        mixed = np.abs(c[row, stiff + 1])
+        a, b = (c[row, stiff] + mixed), (c[row, stiff + 2] + mixed)
         middle = max(middle, a * end * (2.0 * end + one) + b * end * (2.0 * end + two))
         first = max(first, a * one * (2.0 * end + one))
         last = max(last, b * two * (2.0 * end + two))
-        most += np.abs(r[MOMENTS + axis]) + np.abs(r[MOMENTS + 2 + axis])
-    most = 2.0 * (most + np.abs(r[TORQUE])) + 0.5 * chord * np.abs(r[NORMAL])
+        forces += 2.0 * (np.abs(r[MOMENTS + axis]) + np.abs(r[MOMENTS + 2 + axis]))
+        bow_a += np.abs(c[row, bow] * r[ANGLES + axis] + c[row, bow + 1] * r[ANGLES + 2 + axis])
+        bow_b += np.abs(c[row, bow + 1] * r[ANGLES + axis] + c[row, bow + 2] * r[ANGLES + 2 + axis])
+    twist_on = c[row, TORSION] * (one + two)
+    bow = (bow_a + bow_b) * end
+    along = c[row, AXIAL] * (2.0 + 2.0 * bow + bow_a * one + bow_b * two)
+    pushed = forces * (2.0 * end + one + two)
+    middle = max(along, middle) + along * bow + pushed * end
+    first = max(first, twist_on * one) + along * bow_a * one + pushed * one
+    last = max(last, twist_on * two) + along * bow_b * two + pushed * two
     for i in range(2):
-        o = OFFSET + 3 * i
-        reach = np.sqrt(c[row, o] ** 2 + c[row, o + 1] ** 2 + c[row, o + 2] ** 2)
-        arm = one if i == 0 else two
-        pull_on = max(2.0 * c[row, AXIAL], middle) + most * end * (2.0 * end + one + two)
-        push = pull_on * (1.0 + reach * arm)
-        turned = (first if i == 0 else last) + most * arm * (2.0 * end + one + two)
-        w[indices[row, i]] += push if reach > 0.0 else pull_on
-        w[indices[row, 2 + i]] += turned + (push * reach * arm if reach > 0.0 else 0.0)
+        o, arm = OFFSET + 3 * i, one if i == 0 else two
+        reach = np.sqrt(c[row, o] ** 2 + c[row, o + 1] ** 2 + c[row, o + 2] ** 2) * arm
+        w[indices[row, i]] += middle * (1.0 + reach)
+        w[indices[row, 2 + i]] += (first if i == 0 else last) + middle * (1.0 + reach) * reach

@@ -108,7 +108,7 @@ class Slots:
         if not len(self):
             return np.zeros((0, 3))
         own = self.rows(particles)
-        arms = np.where(own >= 0, self.lengths[own - self.count], 0.0)
+        arms = np.where(own >= 0, self.lengths[np.maximum(own - self.count, 0)], 0.0)
         return np.asarray(rows[own] * arms[:, None])
 
     def take_over(self, state: State, mine: Ints, other: Slots, before: State, theirs: Ints) -> None:
