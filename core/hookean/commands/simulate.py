@@ -186,7 +186,7 @@ def _heading(result: Result) -> list[Any]:
 def _row(result: Result, running: Simulation) -> list[Any]:
     import numpy as np
 
-    moved = np.linalg.norm(result.particles - running.system.x, axis=1).max(initial=0.0)
+    moved = np.linalg.norm(result.particles - running.system.points, axis=1).max(initial=0.0)
     reactions = np.asarray(result.reactions["force"]).reshape(-1, 3)
     numbers = [
         result.energy["kinetic"], *(value for _, _, value in _forces(result)),

@@ -213,7 +213,7 @@ def conclude(
     )
     found.warnings = [*read.warnings, *result.report.left_out(), *result.report.warnings]
     found.warnings += [*_doubled(parts), *_overstretched(parts, read.built), *_idle(parts, system)]
-    found.moved = float(np.linalg.norm(result.particles - system.x, axis=1).max(initial=0.0))
+    found.moved = float(np.linalg.norm(result.particles - system.points, axis=1).max(initial=0.0))
     fault: InputError | None = None
     if limits is not None:
         try:
@@ -315,7 +315,7 @@ def _answer(found: FileResult, read: Source, system: System) -> Any:
 
     if read.stored:
         state = system.start()
-        state.x = found.result.particles
+        state.x[: system.slots.count] = found.result.particles
         return compas_write.document(system, state, read.scene)
     if document.kind == "mesh":
         return compas_json.mesh(found.result.particles, document.faces, document.keys)

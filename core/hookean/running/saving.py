@@ -35,7 +35,7 @@ def arrays_of(held: list[Held]) -> dict[str, NDArray[Any]]:
     arrays: dict[str, NDArray[Any]] = {}
     for i, anchor in enumerate(held):
         arrays[f"held_{i}"] = np.column_stack([anchor.particles, anchor.targets])
-        arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free])
+        arrays[f"axes_{i}"] = np.array([float(anchor.number), *anchor.free, *anchor.turning])
         arrays[f"name_{i}"] = np.array(anchor.name)
     return arrays
 
@@ -48,9 +48,12 @@ def anchors_of(arrays: dict[str, NDArray[Any]], system: System) -> list[Held]:
 
 def _anchor(arrays: dict[str, NDArray[np.generic]], i: int, system: System) -> Held:
     rows = np.asarray(arrays.pop(f"held_{i}"), np.float64).reshape(-1, 4)
-    axes = np.asarray(arrays.pop(f"axes_{i}"), np.float64).reshape(4)
+    axes = np.asarray(arrays.pop(f"axes_{i}"), np.float64).ravel()
+    if len(axes) == 4:  # written before anchors held rotations
+        axes = np.append(axes, np.ones(3))
+    axes = axes.reshape(7)
     particles = rows[:, 0].astype(np.int64)
-    if len(rows) and not (particles.min() >= 0 and particles.max() < len(system.x) and np.isfinite(rows).all()):
+    if len(rows) and not (particles.min() >= 0 and particles.max() < system.slots.count and np.isfinite(rows).all()):
         raise ValueError
     name = str(arrays.pop(f"name_{i}"))
-    return Held(int(axes[0]), particles, np.ascontiguousarray(rows[:, 1:]), axes[1:].copy(), name)
+    return Held(int(axes[0]), particles, np.ascontiguousarray(rows[:, 1:]), axes[1:4].copy(), name, axes[4:].copy())

@@ -25,7 +25,7 @@ from hookean.stability import time_steps
 from hookean.system.addressed import edited_scene
 from hookean.system.balance import Balance, balance
 from hookean.system.state import State
-from hookean.system.system import compile, hold
+from hookean.system.system import compile
 
 OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
 
@@ -245,7 +245,7 @@ class Simulation:
     @property
     def energy(self) -> float | None:
         """Of all forces and of motion now [force length]; None where a force, such as pressure, has none."""
-        if not all(group.cls.conservative for group in self.system.groups):
+        if not all(group.conservative for group in self.system.groups):
             return None
         moving = kinetic(self.system, self.state) if self.solver.physical else 0.0
         return float(self.balance.energies.sum()) + moving
@@ -262,7 +262,7 @@ class Simulation:
     def frame(self) -> Frame:
         """The state as a client sees it."""
         return Frame(
-            self.state.x.copy(),
+            self.state.x[: self.system.slots.count].copy(),
             carried(self.system, self.state),
             self.state.time,
             self.state.iteration,
@@ -358,11 +358,11 @@ class Simulation:
         from scipy.spatial import cKDTree
 
         new = Simulation(scene)
-        apart, same = cKDTree(self.system.x).query(new.system.x)
-        known = apart <= scene.weld_tolerance
+        apart, same = cKDTree(self.system.points).query(new.system.points)
+        known = np.flatnonzero(apart <= scene.weld_tolerance)
         new.state.x[known], new.state.v[known] = self.state.x[same[known]], self.state.v[same[known]]
-        for anchor in new.system.held:
-            hold(new.state, anchor)
+        new.system.slots.take_over(new.state, known, self.system.slots, self.state, same[known])
+        new.system.hold(new.state)
         new.system.put_outside(new.state)
         new.state.revision = self.state.revision + 1
         new._begin(start=True)

@@ -152,7 +152,7 @@ def figures(result: Result, system: System) -> dict[str, Any]:
     """How a run ended and its largest numbers, in the scene's units: status, message, iterations, residual [-], energy
     [force length], largest displacement [length], largest reaction [force], and under `forces` by name (or kind) the
     smallest and the largest force of each force that has one (moment of hinges and the like), tension +."""
-    moved = np.linalg.norm(result.particles - system.x, axis=1).max(initial=0.0)
+    moved = np.linalg.norm(result.particles - system.points, axis=1).max(initial=0.0)
     reactions = np.asarray(result.reactions["force"], dtype=float).reshape(-1, 3)
     forces: dict[str, list[float | None]] = {}
     row = {

@@ -163,7 +163,7 @@ class Watch:
             self.method.physical and self.lost >= 0 and flown(system, state, self.found, self.lost, driven=driven)
         )
         parts = 2 * self.method.parts(system, state)
-        known = all(group.cls.conservative for group in system.groups)  # energies show whether a step is too long
+        known = all(group.conservative for group in system.groups)  # energies show whether a step is too long
         if not dividing or self.flew or parts > (UTMOST if known else time_steps.often(system, self.good, self.method)):
             return self._fallen(system)
         good = self.good.copy()
@@ -220,7 +220,7 @@ class Watch:
         bad = ~np.isfinite(state.x).all(axis=1) | ~np.isfinite(state.v).all(axis=1)
         if not bad.any():
             bad = away.max(axis=1) > FAR * self.size
-        particle = int(np.argmax(bad))
+        particle = system.slots.owner(int(np.argmax(bad)))
         others = int(np.count_nonzero(bad)) - 1
         # where many are lost at once, the forces of the first in number need not be the cause
         also = f" and {others} other{'s' * (others > 1)}" if others else _owner(system, particle)
@@ -235,14 +235,15 @@ class Watch:
         spent = self.last - self.first
         if status is Status.CONVERGED:
             rounding = " (the rounding floor)" if found.residual > self.settings.tolerance else ""
-            return f"In equilibrium after {spent} iterations: {left}{rounding}.{_caveat(self.rest)}"
+            return f"In equilibrium after {spent} iterations: {left}{rounding}.{_caveat(system, self.rest)}"
         if status is Status.DIVERGED and self.collapse:
             return f"Collapsed after {spent} iterations; the last good shape is returned. {self.collapse}."
         if status is Status.DIVERGED:
             where = f" after {spent} iterations at {self.fault}" if self.fault else ""  # a state taken up knows no more
             return f"Diverged{where}; the last good shape is returned. {self._advice(system)}."
         if status is Status.STALLED:
-            return f"Stalled after {spent} iterations at particle {found.worst}: {left}. {self._obstacle(system)}."
+            worst = system.slots.owner(found.worst)
+            return f"Stalled after {spent} iterations at particle {worst}: {left}. {self._obstacle(system)}."
         if status is Status.CANCELLED:
             return f"Cancelled after {spent} iterations: {left}."
         if status is Status.TIME_LIMIT:
@@ -320,11 +321,12 @@ def within(x, v, start, free, far):  # type: ignore[no-untyped-def]
     return True
 
 
-def _caveat(rest: Equilibrium | None) -> str:
+def _caveat(system: System, rest: Equilibrium | None) -> str:
     """A sentence on an equilibrium that is not stable."""
     if rest is None or rest.stability not in (Stability.UNSTABLE, Stability.MECHANISM):
         return ""
-    most = f"; particle {rest.soft_particle} moves most" if rest.soft_particle is not None else ""
+    softest = rest.soft_particle
+    most = f"; particle {system.slots.owner(softest)} moves most" if softest is not None else ""
     kind = "It is unstable" if rest.stability is Stability.UNSTABLE else "It is a mechanism"
     return f" {kind}: {rest.stability_reason}{most}."
 
@@ -333,7 +335,7 @@ def _overloaded(system: System, state: State, size: float) -> str:
     """Which load is too large for what holds it: one that would move its particle by many times the model's size."""
     loads = np.sqrt((system.evaluate(state, only="load")[0] ** 2 * state.free).sum(axis=1))
     reach = loads / np.maximum(system.evaluate(state)[1], 1e-300)
-    particle = int(np.argmax(reach))
+    particle = int(np.argmax(reach[: system.slots.count]))
     if reach[particle] <= BEYOND * size:
         return ""
     force, units = _owner(system, particle, role="load"), system.scene.units
@@ -352,7 +354,7 @@ def _adrift(system: System, found: Balance) -> str:
     more = f" (and {len(found.adrift) - 1} more such parts)" if len(found.adrift) > 1 else ""
     load = float(np.abs(found.found[part, ALONG]).max())
     called = _called(system, found, part)
-    count = int(np.count_nonzero(found.components.label == part))
+    count = int(np.count_nonzero(found.components.label[: system.slots.count] == part))
     carry, them = ("carries", "it") if count == 1 and not more else ("carry", "them")
     unit = system.scene.units.force
     return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
@@ -360,8 +362,8 @@ def _adrift(system: System, found: Balance) -> str:
 
 def _called(system: System, found: Balance, part: int) -> str:
     """A component in words."""
-    count = int(np.count_nonzero(found.components.label == part))
-    particle = int(found.components.first[part])
+    count = int(np.count_nonzero(found.components.label[: system.slots.count] == part))
+    particle = system.slots.owner(int(found.components.first[part]))
     called = f"particle {particle}{_owner(system, particle)}"
     return called if count == 1 else f"the {count} particles connected with {called}"
 

@@ -63,9 +63,11 @@ class MeshData(Model):
 
 
 class Anchor(Model):
-    """Particles that are held exactly, on all or some axes, where they are or at targets.
+    """Particles that are held exactly, on all or some axes, where they are or at targets, and their rotations if asked.
 
-    An anchor never moves unless it is moved; its reaction is reported. For a soft one see `anchor_spring`.
+    An anchor never moves unless it is moved; its reaction is reported. For a soft one see `anchor_spring`. Rotations
+    about held axes of space do not happen. If one or three are held, that is the orientation that remains possible; if
+    it is one of three, what the free two add up to about it depends on the path, to second order of the rotation.
     """
 
     name: str = Field(default="", description="Name under which reactions list this anchor")
@@ -74,7 +76,10 @@ class Anchor(Model):
     targets: Maybe[Points] = Field(
         default=None, description="Where to hold them [length]; default: at their start positions"
     )
-    axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = Field(default="xyz", description="Held directions")
+    axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz", ""] = Field(default="xyz", description="Held directions")
+    rotations: Literal["", "x", "y", "z", "xy", "xz", "yz", "xyz"] = Field(
+        default="", description="Axes about which particles with rotations (ends of beams) do not turn"
+    )
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
@@ -83,6 +88,8 @@ class Anchor(Model):
         count = len(self.particles if self.particles is not None else self.points)  # type: ignore[arg-type]
         if self.targets is not None and len(self.targets) != count:
             raise fault(f"{len(self.targets)} targets for {count} particles; give one for each", "/targets")
+        if not self.axes and not self.rotations:
+            raise fault("an anchor holds something: give axes or rotations", "/axes")
         return self
 
 
