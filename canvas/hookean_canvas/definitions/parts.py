@@ -75,3 +75,9 @@ def solving(d: Definition, solver: str, residual: str) -> Made:
     """Settings of a solver that goes on to a residual."""
     texts = d.text("Solver", solver), d.text("Residual [-]", residual)
     return d.component("Settings", solver=texts[0], residual=texts[1], fast=d.toggle("Fast", True))
+
+
+def engine(d: Definition, solver: str, residual: str, **inputs: Any) -> Made:
+    """An engine that brings what is given to rest with a solver, once Reset is False."""
+    settings = solving(d, solver, residual)
+    return d.component("Engine", settings=settings, reset=d.toggle("Reset", True), **inputs)
