@@ -81,3 +81,20 @@ def engine(d: Definition, solver: str, residual: str, **inputs: Any) -> Made:
     """An engine that brings what is given to rest with a solver, once Reset is False."""
     settings = solving(d, solver, residual)
     return d.component("Engine", settings=settings, reset=d.toggle("Reset", True), **inputs)
+
+
+def motion(sentence: str) -> str:
+    """The script of a motion up to a time, by the forces, anchors and settings of a canvas, with its description."""
+    return f'''
+"""{sentence}"""
+
+from hookean_client import canvas
+from hookean_client import canvas_scene
+
+setting = canvas_scene.read([settings], "settings", "settings")[0]
+scene = canvas_scene.compose(canvas_scene.read(forces, None, "forces"), [], setting, [])
+scene["anchors"] = [{{"points": canvas.geometry.points(anchors)}}]
+scene["settings"]["max_iterations"] = int(round(time / scene["settings"]["time_step"]))
+answer = canvas.call(ghenv, "POST", "/v1/relax", scene)
+particles = answer and [canvas.geometry.to_point(p) for p in answer["particles"]]
+'''
