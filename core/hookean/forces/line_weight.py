@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places, units
-from hookean.forces.line_lengths import line
-from hookean.values.columns import Directions, IndexRows, Lines, Reals
+from hookean.forces.base import Block, Floats, OnFilm, Places, units
+from hookean.forces.line_lengths import LineForce, line
+from hookean.values.columns import Directions, Lines, Reals
 from hookean.values.fields import Field, Maybe
 
 
@@ -38,7 +38,7 @@ def line_weight_hessian(x, indices, parameters, memory, blocks):  # type: ignore
                 blocks[e, 3 + i, j] = 0.5 * (one - other)
 
 
-class LineWeight(Force):
+class LineWeight(LineForce):
     """A weight q per length of lines as long as they are now, half of it on each end: f = q l g / 2.
 
     g is the direction of gravity. The load grows with the line, as that of a cable that is paid out, of ice or of snow
@@ -48,7 +48,6 @@ class LineWeight(Force):
     """
 
     kind: Literal["line_weight"] = "line_weight"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends must meet particles")
     weight: Reals = Field(default=1.0, description="q [force/length]")
     direction: Directions = Field(
@@ -59,9 +58,7 @@ class LineWeight(Force):
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     conservative: ClassVar[bool] = False
     creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 2
     on_film: ClassVar[OnFilm] = "spread"
-    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(line_weight_kernel)
     hessian: ClassVar[Any] = staticmethod(line_weight_hessian)
 

@@ -75,10 +75,6 @@ class SelfWeight(Force):
         particles = np.unique(index)
         return Block.of(particles[:, None], vector=weight[particles, None] * down)
 
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """The weight on each particle [force]."""
-        return {"force": element_forces[:, 0]}
-
     @classmethod
     def example(cls) -> tuple[SelfWeight, Floats]:
         """10 N shared by three particles."""

@@ -43,10 +43,6 @@ class Unary(Force):
         """Arrays for the kernel: the vector."""
         return Block.of(places.elements(self), vector=np.atleast_2d(self.vector))
 
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """The load on each particle [force]."""
-        return {"force": element_forces[:, 0]}
-
     @classmethod
     def example(cls) -> tuple[Unary, Floats]:
         """Two loads, in different directions."""

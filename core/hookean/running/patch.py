@@ -12,11 +12,12 @@ from pydantic import StrictInt, StrictStr, ValidationError, model_validator
 
 from hookean.errors import InputError
 from hookean.forces.base import PLACES
-from hookean.scene.scene import Anchor, AnyForce, Scene, Settings, first_fault
+from hookean.scene.scene import Anchor, AnyForce, Scene, Settings
 from hookean.system.state import State
 from hookean.system.system import Floats, Group, Held, Part, System, hold
 from hookean.system.wiring import rewire, with_forces
 from hookean.values.columns import Indices, Model, Points, Vector, fault
+from hookean.values.faults import first_fault
 from hookean.values.fields import Field, Maybe, Parts
 
 Ints = NDArray[np.int64]

@@ -22,10 +22,11 @@ from hookean.running.history import Before
 from hookean.running.patch import Patch, apply
 from hookean.running.result import Result
 from hookean.running.run import relax_state
-from hookean.scene.scene import Scene, first_fault
+from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.system.system import System, compile
 from hookean.values.columns import Model, fault
+from hookean.values.faults import first_fault
 from hookean.values.fields import Field
 
 MOST = 100_000  # items of one sweep

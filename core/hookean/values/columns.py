@@ -7,7 +7,7 @@ import binascii
 import math
 from collections.abc import Mapping
 from itertools import chain
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,8 @@ class Model(BaseModel, metaclass=OneError):
     Constructors and `model_copy` raise InputError.
     """
 
+    called: ClassVar[str] = ""  # the name of the class in sentences: its own in small letters where it gives none
+
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, arbitrary_types_allowed=True, validate_default=True
     )
@@ -36,6 +38,7 @@ class Model(BaseModel, metaclass=OneError):
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
         """The signature names types as the source does: what pydantic makes of them is pages long."""
         super().__pydantic_init_subclass__(**kwargs)
+        cls.called = cls.__dict__.get("called", cls.__name__.lower())
         written = {
             name: text for base in reversed(cls.__mro__) for name, text in vars(base).get("__annotations__", {}).items()
         }
