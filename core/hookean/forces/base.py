@@ -37,6 +37,11 @@ def units(vectors: Floats) -> Floats:
     return np.asarray(rows / lengths(rows)[:, None])
 
 
+def complete(faces: Ints) -> Ints:
+    """The faces (m, 4) of a mesh whose corners all met particles."""
+    return faces[(faces >= 0).all(axis=1)]
+
+
 PLACES = ("particles", "points", "lines", "mesh")
 """The fields that say where a force acts; a force has some of them and is given exactly one."""
 

@@ -28,10 +28,7 @@ class ClampAngle(LineAngle):
 
     formula: ClassVar[str] = "E = S (θ - θ0)²/2"
 
-    @field_validator("lower_limit", "upper_limit")
-    @classmethod
-    def _an_angle(cls, angle: float | Floats) -> float | Floats:
-        return within_half_a_turn(angle)
+    _an_angle = field_validator("lower_limit", "upper_limit")(within_half_a_turn)
 
     @model_validator(mode="after")
     def _limits_in_order(self) -> Self:

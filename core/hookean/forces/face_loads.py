@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Floats, Force, Ints, OnFilm, Places
+from hookean.forces.base import Floats, Force, Ints, OnFilm, Places, complete
 from hookean.forces.soapfilm import halves
 
 
@@ -74,8 +74,7 @@ class FaceLoad(Force):
     @staticmethod
     def triangles(places: Places, mesh: str) -> tuple[Ints, Floats]:
         """Triangles (m, 3) of the scene's mesh whose corners met particles, and their shares (m,)."""
-        faces = places.faces(mesh)
-        corners, part, _ = halves(faces[(faces >= 0).all(axis=1)])
+        corners, part, _ = halves(complete(places.faces(mesh)))
         return corners, part
 
 

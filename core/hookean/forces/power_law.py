@@ -66,6 +66,15 @@ def power_law_hessian(x, indices, parameters, memory, blocks):  # type: ignore[n
                 apart(blocks, e, i, j, entry)
 
 
+def not_too_steep(exponent: float | Floats) -> float | Floats:
+    """An exponent whose powers are finite; else a fault of its field."""
+    values = np.ravel(exponent)
+    steep = values[np.abs(values) > STEEPEST]
+    if len(steep):
+        raise fault(f"{steep[0]:g} given; exponents from -{STEEPEST:g} to {STEEPEST:g} allowed")
+    return exponent
+
+
 class PowerLaw(LineForce):
     """Pairs that repel each other by a power of their distance, F = S d^n; with a negative strength they attract.
 
@@ -87,14 +96,7 @@ class PowerLaw(LineForce):
     kernel: ClassVar[Any] = staticmethod(power_law_kernel)
     hessian: ClassVar[Any] = staticmethod(power_law_hessian)
 
-    @field_validator("exponent")
-    @classmethod
-    def _not_too_steep(cls, exponent: float | Floats) -> float | Floats:
-        values = np.ravel(exponent)
-        steep = values[np.abs(values) > STEEPEST]
-        if len(steep):
-            raise fault(f"{steep[0]:g} given; exponents from -{STEEPEST:g} to {STEEPEST:g} allowed")
-        return exponent
+    _not_too_steep = field_validator("exponent")(not_too_steep)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: strength, exponent, cutoff."""

@@ -59,16 +59,6 @@ class Patch(Model):
         """Whether forces come or go."""
         return bool(self.add or self.remove)
 
-    @classmethod
-    def read(cls, value: Any) -> Patch:
-        """A patch from a dict; InputError with a pointer and one sentence."""
-        if isinstance(value, Patch):
-            return value
-        try:
-            return cls.model_validate(value)
-        except ValidationError as error:
-            raise first_fault(error) from None
-
 
 def apply(system: System, state: State, patch: Patch) -> None:
     """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Before`)."""

@@ -157,9 +157,9 @@ class Script(Model):
     drives: Parts[Drive] = Field(default=(), description="Columns of forces driven by a stream")
 
     @classmethod
-    def read(cls, value: Any, name: str = "") -> Script:
+    def read(cls, value: Any, name: str = "") -> Self:
         """A script from a dict, JSON or TOML text; InputError with a pointer (behind `name`) and one sentence."""
-        if isinstance(value, Script):
+        if isinstance(value, cls):
             return value
         if isinstance(value, str):
             from hookean.scene.text import parse_tables

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, Union
 
 import numpy as np
-from pydantic import ValidationError, field_validator, model_validator
+from pydantic import field_validator, model_validator
 
 from hookean.forces import KINDS, Force
 from hookean.forces.floor import Floor
@@ -25,7 +25,6 @@ from hookean.values.columns import (
     Positives,
     fault,
 )
-from hookean.values.faults import first_fault
 from hookean.values.fields import Field, Maybe, Named, Part, Parts, Switch
 from hookean.values.units import Units
 
@@ -189,14 +188,9 @@ class Scene(Model):
     settings: Part[Settings] = Field(default=Settings(), description="How to solve")
 
     @classmethod
-    def read(cls, value: Any) -> Scene:
+    def read(cls, value: Any) -> Self:
         """A scene from a dict, or from JSON text or bytes; InputError with a pointer and one sentence."""
-        if isinstance(value, str | bytes | bytearray):
-            value = parse(value)
-        try:
-            return cls.model_validate(value)
-        except ValidationError as error:
-            raise first_fault(error) from None
+        return super().read(parse(value) if isinstance(value, str | bytes | bytearray) else value)
 
     def __repr__(self) -> str:
         return "\n".join(["Scene", *(f"  {line}" for line in self.summary())])

@@ -11,9 +11,18 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BaseModel, ConfigDict, PlainSerializer, PlainValidator, WithJsonSchema
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    PlainSerializer,
+    PlainValidator,
+    ValidationError,
+    WithJsonSchema,
+)
 from pydantic_core import PydanticCustomError
 
+from hookean.values.faults import first_fault
 from hookean.values.fields import OneError
 
 if TYPE_CHECKING:
@@ -45,6 +54,16 @@ class Model(BaseModel, metaclass=OneError):
         fields = cls.__signature__.parameters.values()
         plain = [f.replace(annotation=written.get(f.name, f.annotation)) for f in fields]
         cls.__signature__ = cls.__signature__.replace(parameters=plain)
+
+    @classmethod
+    def read(cls, value: Any) -> Self:
+        """The model of a dict, or the one given; InputError with a pointer and one sentence."""
+        if isinstance(value, cls):
+            return value
+        try:
+            return cls.model_validate(value)
+        except ValidationError as error:
+            raise first_fault(error) from None
 
     def __eq__(self, other: object) -> bool:
         return type(other) is type(self) and self.model_dump() == other.model_dump()
