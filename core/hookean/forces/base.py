@@ -40,6 +40,11 @@ def units(vectors: Floats) -> Floats:
     return np.asarray(rows / lengths(rows)[:, None])
 
 
+def complete(faces: Ints) -> Ints:
+    """The faces (m, 4) of a mesh whose corners all met particles."""
+    return faces[(faces >= 0).all(axis=1)]
+
+
 PLACES = ("particles", "points", "lines", "mesh")
 """The fields that say where a force acts; a force has some of them and is given exactly one."""
 
@@ -171,7 +176,7 @@ class Force(Model):
     def __pydantic_init_subclass__(cls, **given: Any) -> None:
         super().__pydantic_init_subclass__(**given)
         if "kind" in cls.model_fields:
-            cls.kind_name = str(cls.model_fields["kind"].default)
+            cls.called = cls.kind_name = str(cls.model_fields["kind"].default)
 
     @property
     def element_arity(self) -> int:
@@ -263,9 +268,10 @@ class Force(Model):
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """What a result reports of each element, by the names and units of `outputs`.
 
-        `element_forces` (m, arity, 3): the force each element puts on each of its particles.
+        `element_forces` (m, arity, 3): the force each element puts on each of its particles. Without a `measure` of
+        its own, a class with the output `force` reports their sum.
         """
-        return {}
+        return {"force": element_forces.sum(axis=1)} if "force" in self.outputs else {}
 
     @classmethod
     def example(cls) -> tuple[Force, Floats]:

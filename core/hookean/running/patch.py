@@ -13,12 +13,13 @@ from pydantic import StrictInt, StrictStr, ValidationError, model_validator
 
 from hookean.errors import InputError
 from hookean.forces.base import PLACES, Rider
-from hookean.scene.scene import Anchor, AnyForce, Scene, Settings, first_fault
+from hookean.scene.scene import Anchor, AnyForce, Scene, Settings
 from hookean.system.group import Group, Part, fitted, ride
 from hookean.system.state import State
 from hookean.system.system import Floats, Held, System, axes_free
 from hookean.system.wiring import rewire, with_forces
 from hookean.values.columns import Indices, Model, Points, Vector, fault
+from hookean.values.faults import first_fault
 from hookean.values.fields import Field, Maybe, Parts
 
 Ints = NDArray[np.int64]
@@ -62,16 +63,6 @@ class Patch(Model):
     def rewires(self) -> bool:
         """Whether forces come or go."""
         return bool(self.add or self.remove)
-
-    @classmethod
-    def read(cls, value: Any) -> Patch:
-        """A patch from a dict; InputError with a pointer and one sentence."""
-        if isinstance(value, Patch):
-            return value
-        try:
-            return cls.model_validate(value)
-        except ValidationError as error:
-            raise first_fault(error) from None
 
 
 def apply(system: System, state: State, patch: Patch) -> None:

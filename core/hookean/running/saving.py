@@ -1,10 +1,11 @@
-"""Files of saved simulations: how they are opened, and what is read back from their arrays."""
+"""Files of saved simulations: what is written to them and read back."""
 
 from __future__ import annotations
 
 import contextlib
 import zipfile
 import zlib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -12,12 +13,45 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
+from hookean.running.result import Status
+from hookean.scene.scene import Scene
 from hookean.system.system import Held, System
 
 UNREADABLE = (
     OSError, KeyError, ValueError, IndexError, TypeError, EOFError, NotImplementedError, zipfile.BadZipFile, zlib.error
 )  # fmt: skip
 """What reading a damaged file raises."""
+
+
+@dataclass
+class Saved:
+    """What a file of a saved simulation has: the scene, the script (JSON, or None) and whether it had finished, the
+    status, and the arrays of the state and the anchors."""
+
+    scene: Scene
+    script: str | None
+    finished: bool
+    status: Status
+    arrays: dict[str, NDArray[Any]]
+
+
+def write(path: str | Path | IO[bytes], saved: Saved, held: list[Held]) -> None:
+    """Write a simulation with its anchors to an .npz file."""
+    texts = {"scene": np.array(saved.scene.canonical), "status": np.array(str(saved.status))}
+    if saved.script is not None:
+        texts["script"], texts["finished"] = np.array(saved.script), np.array(saved.finished)
+    with opened(path, "wb") as file:
+        np.savez(file, allow_pickle=False, **texts, **saved.arrays, **arrays_of(held))
+
+
+def read(path: str | Path | IO[bytes]) -> Saved:
+    """What `write` wrote; one of UNREADABLE or InputError where it is damaged."""
+    with opened(path, "rb") as source, np.load(source, allow_pickle=False) as file:
+        arrays = {name: file[name] for name in file.files}
+    script = str(arrays.pop("script")) if "script" in arrays else None
+    finished = bool(arrays.pop("finished", False))
+    scene = Scene.read(str(arrays.pop("scene")))
+    return Saved(scene, script, finished, Status(str(arrays.pop("status"))), arrays)
 
 
 def opened(path: str | Path | IO[bytes], mode: str) -> contextlib.AbstractContextManager[IO[bytes]]:
