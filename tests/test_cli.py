@@ -293,6 +293,96 @@ def test_scenes_in_json(folder: Path) -> None:
     assert run("relax", "scene.json", "-r", "recipe.toml").exit_code == 2
 
 
+def test_analyse_prints_and_writes_what_the_functions_give(folder: Path) -> None:
+    scene = {
+        "particles": [[-1, 0, 0], [0, 0, 0.3], [1, 0, 0]],
+        "forces": [
+            {"kind": "springs", "particles": [[0, 1], [1, 2]], "stiffness": 100},
+            {"kind": "unary", "name": "snow", "particles": [1], "vector": [0, 0, -1]},
+        ],
+        "anchors": [{"particles": [0, 2]}, {"particles": [1], "axes": "y"}],
+    }
+    (folder / "truss.json").write_text(json.dumps(scene))
+    asked = ("--buckling", "1", "--load-path", "20", "--load", "snow", "--mechanisms", "--frequencies", "2")
+    found = run("analyse", "truss.json", *asked, "--report", "out/")
+    assert found.exit_code == 0, found.output
+    for line in (
+        "mode 1: buckles at 1.8 times the loads",
+        "states of self-stress: 0",
+        "21 points",
+        "mode 2: 2.12685 1/s",
+    ):
+        assert line in found.output
+    written = json.loads((folder / "out" / "truss.analysis.json").read_text())
+    wanted = hookean.load_path(hookean.Scene.read(scene), steps=20).to_dict()
+    assert written["load_path"] == json.loads(json.dumps(wanted))
+    assert sorted(written) == ["buckling", "frequencies", "load_path", "mechanisms"]
+    assert run("analyse", "truss.json", "--buckling", "1", "--load", "wind").exit_code == 2
+    assert "natural" not in run("analyse", "truss.json", "-q").output
+
+
+def test_relax_solves_a_load_case_and_checks_it(folder: Path) -> None:
+    """Displacements from the form, reactions and slack of the case; the loads of the case do not act without it."""
+    scene = {
+        "particles": [[0, 0, 0], [2, 0, 0], [4, 0, 0]],
+        "forces": [
+            {"kind": "constant_tension", "name": "cable", "particles": [[0, 1], [1, 2]], "tension": 30},
+            {"kind": "unary", "name": "snow load", "particles": [1], "vector": [0, 0, -10]},
+        ],
+        "anchors": [{"name": "ends", "particles": [0, 2]}],
+        "load_cases": {"snow": {"forces": ["snow load"]}},
+        "combinations": {"ULS 1": {"snow": 1.5, "prestress": 1.35}},
+        "stages": {"freeze": {"cable": {"axial_stiffness": 2000, "tension_only": True}}},
+    }
+    (folder / "cable.json").write_text(json.dumps(scene))
+    for case, name in (("snow", "snow"), ("ULS 1", "uls")):
+        found = run("relax", "cable.json", "--case", case, "-o", f"{name}.json", "--csv", "t.csv", "--picture", "p.png")
+        assert found.exit_code == 0, found.output
+        wanted = hookean.load_cases(Scene.read(scene), [case]).cases[case].result
+        assert json.loads((folder / f"{name}.json").read_text())["particles"] == wanted.particles.tolist()
+    assert run("relax", "cable.json", "-o", "form.json", "--csv", "f.csv", "--picture", "f.png").exit_code == 0
+    assert json.loads((folder / "form.json").read_text())["particles"] == scene["particles"]
+    sag = -wanted.particles[1, 2]
+    (folder / "limits.toml").write_text(
+        f"max_displacement = {0.9 * sag}\nmax_slack = 0\n[anchor.ends]\nmax_reaction = 1"
+    )
+    found = run("relax", "cable.json", "--case", "ULS 1", "--check", "limits.toml")
+    assert found.exit_code == 1
+    assert f"max displacement {sag:.6g} m" in found.output and "max reaction" in found.output
+    assert "slack" not in found.output
+    scene["forces"][1]["vector"] = [3000, 0, 0]
+    (folder / "cable.json").write_text(json.dumps(scene))
+    found = run("relax", "cable.json", "--case", "snow", "--check", "limits.toml")
+    assert "model: 1 elements are slack, the first is element 1 of cable; at most 0 may be" in found.output
+    assert run("relax", "cable.json", "--case", "rain").exit_code == 2
+
+
+def test_patterns_writes_sheets_and_tables(folder: Path) -> None:
+    mesh = grid(np.arange(5.0), np.arange(5.0))
+    points = mesh.vertices + np.column_stack(
+        [np.zeros((len(mesh.vertices), 2)), 0.2 * np.prod(mesh.vertices[:, :2], axis=1)]
+    )
+    middle = points[:, :2].mean(axis=0)
+    rim = [p for p in points.tolist() if max(abs(p[0] - middle[0]), abs(p[1] - middle[1])) > 1.9]
+    scene = {
+        "meshes": {"roof": {"vertices": points.tolist(), "faces": mesh.faces.tolist()}},
+        "forces": [{"kind": "springs", "name": "cloth", "mesh": "roof", "stiffness": 100, "rest_factor": 0.9}],
+        "anchors": [{"points": rim}],
+    }
+    (folder / "roof.json").write_text(json.dumps(scene))
+    asked = ("--rows", "2", "--compensation", "0.01", "0.02", "--allowance", "0.05", "--stretch", "0.001")
+    files = ("-o", "out/roof.dxf", "--table", "out/", "--cables", "out/")
+    found = run("patterns", "roof.json", *asked, *files)
+    assert found.exit_code == 0, found.output
+    assert "2 strips" in found.output and "cables" in found.output
+    assert names(folder / "out") == ["roof.cables.csv", "roof.dxf", "roof.strips.csv"]
+    lines = (folder / "out" / "roof.strips.csv").read_text().splitlines()
+    assert lines[0].startswith("strip,length [m],width [m]") and len(lines) == 3
+    assert "cut length [m]" in (folder / "out" / "roof.cables.csv").read_text()
+    for wrong in (("--along", "bias"), ("--mesh", "wall"), ("-o", "roof.pdf"), ("--rows", "0")):
+        assert run("patterns", "roof.json", *wrong).exit_code == 2
+
+
 def test_version_forces_and_help() -> None:
     assert run("--version").stdout == f"hookean {hookean.__version__}\n"
     listed = run("forces")

@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[1]
 HOMES = {"hookean": "core", "hookean_server": "server", "hookean_canvas": "canvas"}
 LAYERS = (
     *("errors", "atomic_write", "values", "compiled", "discretize", "forces", "films", "scene", "system", "linear"),
-    *("stability", "solvers", "running", "pictures", "files", "commands", "cli"),
+    *("stability", "solvers", "running", "analysis", "designing", "workshop", "pictures", "files", "commands", "cli"),
 )
 
 

@@ -11,9 +11,11 @@ particles of a solid, so that their sums stay.
 With friction they stick, as stiff along the contact as across it, until mu N is reached, mu the
 smaller of both. What holds starts from where they touch first: at the start itself for what touches
 there, and when they do not move in time. A solid that is not convex is made of several with one
-`collision_group`, on the particles of one body. Corners of two solids at one place, given as
-points, become one particle: give them as particles, or draw a joint. Boxes that are flush without
-friction are no stable stack: each gains room by moving out.
+`collision_group`, on the particles of one body. For boxes that are tilted in any way, give their
+eight corners as a group here and to `rigid_body`; boxes along the axes that may grow or shrink are
+`box_collide`. Corners of two solids at one place, given as points, become one particle: give them
+as particles, or draw a joint. Boxes that are flush without friction are no stable stack: each gains
+room by moving out.
 
 E = k V d
 """

@@ -22,13 +22,14 @@ TAKES = dict(
     [(name, "curve") for name in ("divide", "shatter", "explode", "end_points", "length", "split_at_corners")]
     + [(name, "surface") for name in ("mesh_surface", "mesh_faces")]
     + [(name, "points") for name in ("remove_duplicate_points", "arc", "interpolate", "fold_angle", "mesh_map")]
-    + [(name, "lines") for name in ("remove_duplicate_lines", "catenary")]
+    + [(name, "points") for name in ("interconnect_points", "moebius_transformation")]
+    + [(name, "lines") for name in ("remove_duplicate_lines", "catenary", "bipartite", "pipes")]
     + [("clean", "meshes")]
 )  # what an operation takes; all others take a mesh
 SHAPES = {"source": "mesh", "target": "mesh", "end": "points", "tip_1": "points", "tip_2": "points",
           "vertices": "indices"}  # fmt: skip
 # options that are geometry, or lists
-WHOLE = ("count", "u", "v", "degree", "level", "iterations")  # options that are whole numbers
+WHOLE = ("count", "u", "v", "degree", "level", "iterations", "sides", "turns")  # options that are whole numbers
 PAUSE = 0.02  # seconds between two solutions, at least; runs of one follow each other without
 _turns = {}  # by component
 

@@ -323,6 +323,97 @@ def mesh_map(ghenv, points, source, target, distance):
     return canvas._told(ghenv, work)
 
 
+def interconnect_points(ghenv, points):
+    """A line between every two points of a branch."""
+    found = canvas.discretize(ghenv, "interconnect_points", points)
+    return found and found["lines"]
+
+
+def bipartite(ghenv, lines, tolerance):
+    """The ends of the lines of a branch in two groups, with lines only between these."""
+    found = canvas.discretize(ghenv, "bipartite", lines, tolerance=default(tolerance, 0.01)[0])
+    return (found["first_points"], found["second_points"]) if found else (None, None)
+
+
+def moebius_transformation(ghenv, points, angle, axis, centre, radius):
+    """The points of a branch moved so that spheres, circles and angles stay."""
+
+    def work():
+        if not listed(angle):
+            raise canvas.scene.missing("angle is missing; connect it")
+        given = {"angle": listed(angle)[0], "radius": default(radius, 1.0)[0]}
+        for name, one in (("axis", axis), ("centre", centre)):
+            if listed(one):
+                given[name] = listed(one)[0]
+        found = canvas.discretize(ghenv, "moebius_transformation", points, **given)
+        return found and found["points"]
+
+    return canvas._told(ghenv, work)
+
+
+def pipes(ghenv, lines, radius, sides, tolerance):
+    """Pipes about the lines of a branch, as one closed mesh."""
+
+    def work():
+        if not listed(radius):
+            raise canvas.scene.missing("radius is missing; connect it")
+        given = {"radius": listed(radius)[0], "tolerance": default(tolerance, 0.01)[0]}
+        found = canvas.discretize(ghenv, "pipes", lines, sides=whole(sides, 6, "sides", 3)[0], **given)
+        return found and found["mesh"]
+
+    return canvas._told(ghenv, work)
+
+
+def align_quads(ghenv, meshes, strict):
+    """Each mesh with quads that have the same direction."""
+    return each(ghenv, "align_quads", meshes, ["mesh"], strict=flag(strict, True))[0]
+
+
+def turn_quads(ghenv, meshes, turns):
+    """Each mesh with the direction of its quads turned by right angles."""
+
+    def work():
+        return each(ghenv, "turn_quads", meshes, ["mesh"], turns=whole(turns, 1, "turns"))
+
+    return (canvas._told(ghenv, work) or [None])[0]
+
+
+def strips(ghenv, meshes, direction):
+    """The number of the strip of each face of each mesh."""
+
+    def work():
+        return each(ghenv, "strips", meshes, ["strips"], direction=word(direction, ("warp", "weft"), "direction"))
+
+    return (canvas._told(ghenv, work) or [None])[0]
+
+
+def unroll_strips(ghenv, meshes, direction, gaps):
+    """The strips of each mesh unrolled into the plane z = 0."""
+
+    def work():
+        given = {"direction": word(direction, ("warp", "weft"), "direction"), "gap": default(gaps, 0.0)}
+        return each(ghenv, "unroll_strips", meshes, ["mesh"], **given)
+
+    return (canvas._told(ghenv, work) or [None])[0]
+
+
+def reciprocal_diagram(ghenv, meshes):
+    """The reciprocal figure of each flat mesh, and the force densities of its inner edges."""
+    return each(ghenv, "reciprocal_diagram", meshes, ["lines", "densities"])
+
+
+def live_film(ghenv, meshes, lengths, volumes):
+    """The soap film on each mesh, made again while it relaxes."""
+
+    def work():
+        if not listed(lengths):
+            raise canvas.scene.missing("length is missing; connect it")
+        many = {"length": listed(lengths), "volume_factor": default(volumes, 0.0)}
+        return each(ghenv, "live_film", meshes, ["mesh"], **many)
+
+    return (canvas._told(ghenv, work) or [None])[0]
+
+
 def split_at_corners(ghenv, curves, angles):
     """Points where each polyline turns by more than a number [rad], and its parts between them."""
     return each(ghenv, "split_at_corners", curves, ["points", "polylines"], turning_angle=default(angles, 1.0))

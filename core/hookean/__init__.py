@@ -26,6 +26,23 @@ from typing import TYPE_CHECKING, Any
 from hookean.errors import InputError as InputError
 
 if TYPE_CHECKING:
+    from hookean.analysis.buckling import Buckling as Buckling
+    from hookean.analysis.buckling import buckling as buckling
+    from hookean.analysis.freezing import Frozen as Frozen
+    from hookean.analysis.freezing import freeze as freeze
+    from hookean.analysis.frequencies import Frequencies as Frequencies
+    from hookean.analysis.frequencies import frequencies as frequencies
+    from hookean.analysis.load_cases import LoadCases as LoadCases
+    from hookean.analysis.load_cases import load_cases as load_cases
+    from hookean.analysis.load_path import LoadPath as LoadPath
+    from hookean.analysis.load_path import load_path as load_path
+    from hookean.analysis.mechanisms import Mechanisms as Mechanisms
+    from hookean.analysis.mechanisms import mechanisms as mechanisms
+    from hookean.designing.answer import Design as Design
+    from hookean.designing.problem import Problem as Problem
+    from hookean.designing.search import design as design
+    from hookean.designing.sensitivity import Sensitivity as Sensitivity
+    from hookean.designing.sensitivity import sensitivity as sensitivity
     from hookean.files.save import open as open
     from hookean.files.save import save as save
     from hookean.forces.align_faces import AlignFaces as AlignFaces
@@ -62,6 +79,7 @@ if TYPE_CHECKING:
     from hookean.forces.geodesic_strip import GeodesicStrip as GeodesicStrip
     from hookean.forces.hinge import Hinge as Hinge
     from hookean.forces.hydrostatic import Hydrostatic as Hydrostatic
+    from hookean.forces.impulse import Impulse as Impulse
     from hookean.forces.isothermic import Isothermic as Isothermic
     from hookean.forces.length_ratio import LengthRatio as LengthRatio
     from hookean.forces.length_snap import LengthSnap as LengthSnap
@@ -102,6 +120,7 @@ if TYPE_CHECKING:
     from hookean.forces.wind import Wind as Wind
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
+    from hookean.running.live import relax_live as relax_live
     from hookean.running.patch import Move as Move
     from hookean.running.patch import Patch as Patch
     from hookean.running.result import Result as Result
@@ -112,6 +131,9 @@ if TYPE_CHECKING:
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
+    from hookean.scene.load_cases import ElasticLine as ElasticLine
+    from hookean.scene.load_cases import LoadCase as LoadCase
+    from hookean.scene.load_cases import Stages as Stages
     from hookean.scene.report import Report as Report
     from hookean.scene.scene import Anchor as Anchor
     from hookean.scene.scene import Anchors as Anchors
@@ -122,6 +144,10 @@ if TYPE_CHECKING:
     from hookean.values.materials import Material as Material
     from hookean.values.sections import Section as Section
     from hookean.values.units import Units as Units
+    from hookean.workshop.cables import Cables as Cables
+    from hookean.workshop.cables import cables as cables
+    from hookean.workshop.patterns import Patterns as Patterns
+    from hookean.workshop.patterns import cutting_patterns as cutting_patterns
 
 __version__ = "0.1.0"
 
@@ -145,9 +171,34 @@ _HOMES = {
     "Patch": "running.patch",
     "Script": "running.script",
     "Stream": "running.stream",
+    "Problem": "designing.problem",
+    "Design": "designing.answer",
+    "design": "designing.search",
+    "Sensitivity": "designing.sensitivity",
+    "sensitivity": "designing.sensitivity",
+    "Cables": "workshop.cables",
+    "cables": "workshop.cables",
+    "Patterns": "workshop.patterns",
+    "cutting_patterns": "workshop.patterns",
+    "ElasticLine": "scene.load_cases",
+    "Frozen": "analysis.freezing",
+    "freeze": "analysis.freezing",
+    "LoadCase": "scene.load_cases",
+    "LoadCases": "analysis.load_cases",
+    "load_cases": "analysis.load_cases",
+    "Stages": "scene.load_cases",
+    "Buckling": "analysis.buckling",
+    "buckling": "analysis.buckling",
+    "Frequencies": "analysis.frequencies",
+    "frequencies": "analysis.frequencies",
+    "LoadPath": "analysis.load_path",
+    "load_path": "analysis.load_path",
+    "Mechanisms": "analysis.mechanisms",
+    "mechanisms": "analysis.mechanisms",
     "open": "files.save",
     "picture": "pictures.picture",
     "relax": "running.run",
+    "relax_live": "running.live",
     "render": "pictures.picture",
     "save": "files.save",
     "simulate": "running.simulation",
@@ -163,6 +214,8 @@ __all__ = [
     "AreaWeight",
     "Bend",
     "BoxCollide",
+    "Buckling",
+    "Cables",
     "CircleImage",
     "ClampAngle",
     "ClampLength",
@@ -182,30 +235,39 @@ __all__ = [
     "CyclicQuad",
     "Developable",
     "Direction",
+    "ElasticLine",
     "EqualAngle",
     "EqualLength",
     "Floor",
     "Force",
     "Frame",
+    "Frequencies",
+    "Frozen",
     "Gas",
     "GeodesicStrip",
     "Geometry",
     "Hinge",
     "Hydrostatic",
+    "Impulse",
     "InputError",
     "Isothermic",
     "LengthRatio",
     "LengthSnap",
     "LevelSet",
     "LineWeight",
+    "LoadCase",
+    "LoadCases",
+    "LoadPath",
     "MagnetSnap",
     "Material",
+    "Mechanisms",
     "Membrane",
     "MeshData",
     "Mirror",
     "Move",
     "NoFoldThrough",
     "Patch",
+    "Patterns",
     "Planarize",
     "PolygonArea",
     "PowerLaw",
@@ -233,6 +295,7 @@ __all__ = [
     "SoftCollide",
     "SolidPlaneCollide",
     "Springs",
+    "Stages",
     "Status",
     "Stream",
     "TangentIncircles",
@@ -245,9 +308,18 @@ __all__ = [
     "Volume",
     "Vortex",
     "Wind",
+    "buckling",
+    "cables",
+    "cutting_patterns",
+    "freeze",
+    "frequencies",
+    "load_cases",
+    "load_path",
+    "mechanisms",
     "open",
     "picture",
     "relax",
+    "relax_live",
     "render",
     "save",
     "simulate",

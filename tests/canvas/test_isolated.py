@@ -67,11 +67,14 @@ CURVE = {"NurbsCurve": {"degree": 2, "points": [[0, 0, 0], [1, 2, 0.5], [2, 0, 1
                         "weights": [1, 0.5, 1]}}  # fmt: skip
 SURFACE = {"NurbsSurface": {"degree_u": 1, "degree_v": 1, "points": [[[0, 0, 0], [0, 2, 0]], [[3, 0, 0], [3, 2, 1]]],
                             "knots_u": [0, 1], "knots_v": [0, 1]}}  # fmt: skip
+FLAT = {"Mesh": {**QUADS, "vertices": [[x, y, 0] for x, y, _ in QUADS["vertices"]]}}
 MOVED = {"Mesh": {**QUADS, "vertices": [[y, 5 - x, 2 * z + 1] for x, y, z in QUADS["vertices"]]}}
 FOLD = [[point(0, 0, 0)], [point(1, 0, 0)], [point(0, 1, 0), point(0, 1, 1)], [point(0, -1, 0)]]
 SAMPLES: dict[str, dict[str, Any]] = {
     **{cls.__name__: wired.inputs(kind) for kind, cls in KINDS.items()},
+    "AlignQuads": {"_mesh": [MESH]},
     "Anchors": {"_point": ROW, "_x_": [True, False]},
+    "Bipartite": {"_lines": [line((0, 0, 0), (1, 0, 0)), line((1, 0, 0), (2, 0, 1))]},
     "Checkerboard": {"_mesh": [MESH]},
     "CombineClean": {"_meshes": [MESH, MESH]},
     "Catenary": {"_start": ROW[:1], "_end": ROW[3:], "_length": [4.0], "_count_": [5]},
@@ -82,13 +85,18 @@ SAMPLES: dict[str, dict[str, Any]] = {
     "Divide": {"_curve": [CURVE], "_count_": [7]},
     "FoldAngle": dict(zip(("_start", "_end", "_tip_1", "_tip_2"), FOLD, strict=True)),
     "HingePoints": {"_mesh": [MESH]},
+    "InterconnectPoints": {"_points": ROW},
     "Interpolate": {"_points": ROW, "_count_": [6]},
+    "LiveFilm": {"_mesh": [MESH], "_length": [0.4]},
     "MeshCorners": {"_mesh": [MESH]},
     "MeshEdges": {"_mesh": [MESH]},
     "MeshMap": {"_point": ROW, "_source": [MESH], "_target": [MOVED]},
     "MeshSurface": {"_surface": [SURFACE], "_u_": [3], "_v_": [2]},
     "MeshVertices": {"_mesh": [MESH]},
+    "MoebiusTransformation": {"_points": ROW, "_angle": [0.4]},
     "NakedVertices": {"_mesh": [MESH]},
+    "Pipes": {"_lines": [line((0, 0, 0), (1, 0, 0)), line((0, 0, 0), (0, 1, 0.3))], "_radius": [0.1], "_sides_": [4]},
+    "ReciprocalDiagram": {"_mesh": [FLAT]},
     "RemoveDuplicateLines": {"_lines": [line((0, 0, 0), (1, 0, 0)), line((1, 0, 0), (0, 0, 0))]},
     "RemoveDuplicatePoints": {"_points": [*ROW, *ROW]},
     "Refine": {"_mesh": [MESH], "_smooth_": [True]},
@@ -102,7 +110,10 @@ SAMPLES: dict[str, dict[str, Any]] = {
     "SplitAtCorners": {"_polyline": [{"Polyline": [[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0]]}]},
     "Springs": {"_connection": [line((i, 0, 0), (i + 1, 0, 0)) for i in range(10)], "_stiffness_": [1000.0]},
     "Unary": {"_point": [point(i, 0, 0) for i in range(11)], "_force": [{"Vector3d": [0, 0, -10]}]},
+    "Strips": {"_mesh": [MESH]},
     "Trail": {"_points": ROW, "_record_": [False]},
+    "TurnQuads": {"_mesh": [MESH], "_turns_": [3]},
+    "UnrollStrips": {"_mesh": [MESH], "_direction_": ["weft"], "_gap_": [0.25]},
     "VertexNeighbours": {"_mesh": [MESH], "vertices_": [1, 4]},
     "WarpWeft": {"_mesh": [MESH]},
 }

@@ -75,10 +75,16 @@ def samples() -> dict[str, dict[str, Any]]:
     ]
     held = {"_forces": forces, "anchors_": [places[0], places[-1]]}
     meshes = ("Diagonals", "MeshCorners", "MeshEdges", "NakedVertices", "WarpWeft", "Refine", "RefineStrips")
-    meshes += ("Checkerboard", "Diagonalize", "HingePoints", "VertexNeighbours")
+    meshes += ("Checkerboard", "Diagonalize", "HingePoints", "VertexNeighbours", "AlignQuads", "TurnQuads", "Strips")
+    meshes += ("UnrollStrips", "ReciprocalDiagram")
     return {
         **{name: {"_mesh": [mesh]} for name in meshes},
         "CombineClean": {"_meshes": [mesh, mesh]},
+        "InterconnectPoints": {"_points": row},
+        "Bipartite": {"_lines": [line((0, 0, 0), (1, 0, 0))]},
+        "MoebiusTransformation": {"_points": row, "_angle": [0.5]},
+        "LiveFilm": {"_mesh": [mesh], "_length": [0.5]},
+        "Pipes": {"_lines": [line((0, 0, 0), (1, 0, 0))], "_radius": [0.1]},
         "FoldAngle": {"_start": row[:1], "_end": row[1:2], "_tip_1": row[2:], "_tip_2": [point(1, -1, 0)]},
         "MeshMap": {"_point": row, "_source": [mesh], "_target": [mesh]},
         "Remesh": {"_mesh": [mesh], "_length": [0.5]},

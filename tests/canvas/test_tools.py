@@ -29,7 +29,8 @@ OURS = ("Divide", "Shatter", "Catenary", "MeshSurface", "MeshEdges", "MeshVertic
         "WarpWeft", "Diagonals", "RemoveDuplicateLines", "Interpolate", "Sweep", "RhinoFile", "RemoveDuplicatePoints",
         "CombineClean", "Refine", "RefineStrips", "Diagonalize", "Checkerboard", "HingePoints", "FoldAngle",
         "VertexNeighbours", "MeshMap", "SplitAtCorners", "Remesh", "Counter", "Sequence", "Trail",
-        "Grab")  # fmt: skip
+        "Grab", "InterconnectPoints", "Bipartite", "MoebiusTransformation", "Pipes", "AlignQuads", "TurnQuads",
+        "Strips", "UnrollStrips", "ReciprocalDiagram", "LiveFilm")  # fmt: skip
 EXAMPLES = Path(__file__).parents[2] / "gh_examples"
 BENT = [(0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (3.0, 4.0, 1.0)]
 QUADS = Mesh(

@@ -14,6 +14,7 @@ from canvas.test_isolated import CURVE, MOVED, PYTHONS, QUADS, SAMPLES, SURFACE,
 from hookean.discretize import divide, interpolate, mesh_surface, meshes, nurbs_curve, nurbs_surface, shatter, threads
 from hookean.discretize.catenary import catenary
 from hookean.files.rhino import threedm
+from hookean.running.live import live_film
 from hookean.values.mesh import Mesh
 from serving import Home
 
@@ -60,6 +61,7 @@ def wanted() -> dict[str, dict[str, Any]]:
         "Refine": {"mesh": [hd.refine(MESH, smooth=True)]},
         "RefineStrips": {"mesh": [hd.refine_strips(MESH, 2)]},
         "Remesh": {"mesh": [hd.remesh(MESH, 0.4)]},
+        "LiveFilm": {"mesh": [live_film(MESH, 0.4)]},
         "Diagonalize": {"mesh": [hd.diagonalize(MESH)]},
         "Checkerboard": {"pattern": pattern, "first": first, "second": second},
         "HingePoints": hinges,
@@ -67,6 +69,15 @@ def wanted() -> dict[str, dict[str, Any]]:
         "VertexNeighbours": {"points": V[[1, 4]], "normals": hd.vertex_neighbours(MESH, [1, 4])[1]},
         "MeshMap": {"points": hd.mesh_map(row, MESH, moved)},
         "SplitAtCorners": {"corners": [[2, 0, 0]]},
+        "InterconnectPoints": {"lines": hd.interconnect_points(row)},
+        "Bipartite": {"first": [[0, 0, 0], [2, 0, 1]], "second": [[1, 0, 0]]},
+        "MoebiusTransformation": {"points": hd.moebius_transformation(row, 0.4)},
+        "Pipes": {"mesh": [hd.pipes([[[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 1, 0.3]]], 0.1, 4, 0.01)]},
+        "AlignQuads": {"mesh": [hd.align_quads(MESH)]},
+        "TurnQuads": {"mesh": [hd.turn_quads(MESH, 3)]},
+        "Strips": {"strips": hd.strips(MESH)},
+        "UnrollStrips": {"mesh": [hd.unroll_strips(MESH, "weft", 0.25)]},
+        "ReciprocalDiagram": {"densities": [1.0]},
     }
 
 

@@ -77,6 +77,27 @@ def test_a_disturbed_line_on_a_sphere_comes_back_to_the_great_circle() -> None:
     assert np.abs(found.forces[0]["angle"]).max() <= 1e-7
 
 
+def test_the_edges_of_a_strip_stay_parallel() -> None:
+    """With `equal_length` on the cross edges of either side, a disturbed strip about the equator comes back to one
+    width along its length: by symmetry that of its held ends."""
+    x, faces, rows = band([-0.2, 0.0, 0.2])
+    moved = x.copy()
+    moved[rows[:, 1:-1].ravel(), 2] += 0.03 * np.sin(np.arange(21) * 2.1)
+    moved /= np.linalg.norm(moved, axis=1)[:, None]
+    across = np.concatenate([np.stack([rows[0], rows[1]], axis=1), np.stack([rows[1], rows[2]], axis=1)])
+    even = {"kind": "equal_length", "particles": across, "group": np.repeat([0, 1], 9), "stiffness": 50.0}
+    inner = rows[:, 1:-1].ravel()
+    pull = PullToSurface.on(sphere(1.0), particles=inner, strength=100.0)
+    slide = {"kind": "equal_length", "particles": np.stack([rows[:, :-1], rows[:, 1:]], axis=2).reshape(-1, 2),
+             "group": np.repeat([0, 1, 2], 8), "stiffness": 20.0}  # fmt: skip
+    held = [*rows[:, 0], *rows[:, -1]]
+    found = relax(scene(moved, faces, rows[1], pull, even, slide, anchors=[{"particles": held}]))
+    assert found.converged
+    wide = np.linalg.norm(found.particles[across[:, 0]] - found.particles[across[:, 1]], axis=1)
+    assert wide == pytest.approx(np.full(18, np.linalg.norm(x[rows[0, 0]] - x[rows[1, 0]])), abs=1e-6)
+    assert found.particles[rows[1], 2] == pytest.approx(np.zeros(9), abs=1e-6)
+
+
 def test_a_closed_line_is_straight_where_it_closes() -> None:
     """Given with its first vertex again: as many vertices count as it has."""
     mesh = grid(np.arange(9.0), np.array([-0.2, 0.0, 0.2]))

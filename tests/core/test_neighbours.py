@@ -224,3 +224,25 @@ def test_several_crowds_on_particles_in_any_order_are_packed() -> None:
     for moved in (x, x + [5.0, 0.0, 0.0]):
         difference = packed(block, moved, np.zeros_like(x)) - expected
         assert np.abs(difference).max() <= 1e-12 * np.abs(expected).max() * (1.0 + np.abs(moved).max())
+
+
+def test_a_motion_of_all_together_needs_no_new_list() -> None:
+    """Far beyond the range, and with small ways of their own: the list stays, and the forces are those of a new one, to
+    the bit; ways of their own beyond it make a new one."""
+    x = cloud(7, 300, ordered=True)
+    block = spheres(x)
+    room = block.rooms[0]
+    whole(block, x)
+    seen = room[0].copy()
+    moved = x + [3.0, -2.0, 50.0] + np.random.default_rng(8).uniform(-0.01, 0.01, x.shape)
+    found, quick = whole(block, moved), packed(block, moved, np.zeros_like(x))
+    kept = neighbours.HEAD + (neighbours.HERE + neighbours.SUMS + 1) * len(x)
+    assert (room[0, kept : kept + 5 * len(x)] == seen[kept : kept + 5 * len(x)]).all()
+    room[0, neighbours.COUNT] = -1.0
+    new, lean = whole(block, moved), packed(block, moved, np.zeros_like(x))
+    assert (new[0] == found[0]).all() and (new[1] == found[1]).all() and new[2] == found[2]
+    assert (lean == quick).all()
+    apart = moved.copy()
+    apart[0, 0] += 5.0
+    whole(block, apart)
+    assert room[0, kept] == apart[0, 0]

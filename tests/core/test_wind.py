@@ -10,6 +10,7 @@ from scipy.spatial import ConvexHull
 
 from core.test_volume import icosahedron
 from hookean import InputError, Scene, relax
+from hookean.solvers import solver
 from hookean.system.system import compile
 
 Q = 0.6
@@ -65,6 +66,75 @@ def test_a_hanging_plate_leans_with_the_wind() -> None:
     reach = np.hypot(lower[0], lower[2])
     assert found.converged
     assert lower[0] / -lower[2] == pytest.approx(Q * width * reach / (2.0 * weight), rel=1e-7)
+
+
+def plate(height: float) -> np.ndarray:
+    """A plate across the wind, 2 wide, from z = 0 to a height."""
+    return np.array([[0, 0, 0], [0, 2, 0], [0, 2, height], [0, 0, height]], float)
+
+
+@pytest.mark.parametrize("below", [False, True])
+@pytest.mark.parametrize("level", [-1.0, 0.0, 0.7, 2.0, 4.0])
+def test_a_waterline_cuts_the_wind_exactly(level: float, below: bool) -> None:
+    """On a plate across the wind: the resultant is q b times the height in the wind, with its line of action in the
+    middle of that."""
+    x, force = plate(3.0), {"kind": "wind", "mesh": "m", "pressure": Q, "waterline": level, "below": below}
+    system = compile(Scene(particles=x, meshes={"m": {"vertices": x, "faces": [[0, 1, 2, 3]]}}, forces=[force]))
+    f = system.evaluate(system.start())[0]
+    low, high = (0.0, min(max(level, 0.0), 3.0)) if below else (min(max(level, 0.0), 3.0), 3.0)
+    assert f.sum(axis=0) == pytest.approx([Q * 2.0 * (high - low), 0, 0], abs=1e-13)
+    assert (x[:, 2] * f[:, 0]).sum() == pytest.approx(Q * (high**2 - low**2), abs=1e-13)
+
+
+def test_a_plate_free_in_the_wind_comes_to_its_speed() -> None:
+    """m u' = q A (1 - u / W): u = W (1 - exp(-q A t / (m W))). A step of verlet has order 2: (dt q A / m W)^2."""
+    x, speed, mass, dt = plate(1.5), 4.0, 0.8, 0.01
+    force = {"kind": "wind", "mesh": "m", "pressure": Q, "speed": speed}
+    scene = Scene(
+        particles=x, masses=mass / 4.0, meshes={"m": {"vertices": x, "faces": [[0, 1, 2, 3]]}}, forces=[force],
+        settings={"solver": "verlet", "drag": 0.0, "time_step": dt},
+    )  # fmt: skip
+    system = compile(scene)
+    state, method = system.start(), solver("verlet")
+    method.start(system, state)
+    method.advance(system, state, 200, 0.0)
+    rate = Q * 3.0 / (mass * speed)
+    expected = speed * (1.0 - np.exp(-rate * 2.0))
+    assert state.v[:, 0] == pytest.approx(np.full(4, expected), rel=2.0 * (rate * dt) ** 2)
+
+
+def test_wind_takes_the_energy_of_a_plate_that_vibrates_across_it() -> None:
+    """A plate on a spring k: m x'' = -k x - q A / W x', so that amplitudes fall by exp(-q A t / (2 m W)); along the
+    plate nothing is taken."""
+    x, speed, mass, k = plate(1.5), 2.0, 1.0, 100.0
+    forces = [
+        {"kind": "wind", "mesh": "m", "pressure": Q, "speed": speed},
+        {"kind": "anchor_spring", "particles": range(4), "strength": k / 4.0},
+    ]
+    velocities = np.tile([1.0, 0.0, 1.0], (4, 1))
+    scene = Scene(
+        particles=x, masses=mass / 4.0, velocities=velocities, forces=forces,
+        meshes={"m": {"vertices": x, "faces": [[0, 1, 2, 3]]}},
+        settings={"solver": "verlet", "drag": 0.0, "time_step": 0.001},
+    )  # fmt: skip
+    system = compile(scene)
+    state, method = system.start(), solver("verlet")
+    method.start(system, state)
+    method.advance(system, state, 3000, 0.0)
+    c, rest = Q * 3.0 / (2.0 * mass * speed), Q * 3.0 / k
+    w = np.sqrt(k / mass - c * c)
+    a, b = -rest, (1.0 - c * rest) / w  # x - rest = exp(-c t) (a cos w t + b sin w t)
+    away = np.exp(-c * 3.0) * (a * np.cos(3.0 * w) + b * np.sin(3.0 * w))
+    assert state.x[0, 0] == pytest.approx(rest + away, abs=1e-4)
+    assert state.x[0, 2] == pytest.approx(np.sin(30.0) / 10.0, abs=1e-4)
+
+
+def test_a_suction_has_no_speed() -> None:
+    """It would feed vibrations."""
+    x = np.eye(3)
+    force = {"kind": "wind", "mesh": "m", "pressure": -1.0, "speed": 2.0}
+    with pytest.raises(InputError, match="/forces/0/pressure: a negative pressure given with a speed"):
+        Scene(particles=x, meshes={"m": {"vertices": x, "faces": [[0, 1, 2]]}}, forces=[force])
 
 
 def test_a_wind_without_direction_is_refused() -> None:

@@ -97,7 +97,7 @@ def scene_of(force: Force, x: np.ndarray, **more: Any) -> Scene:
 
 def case_of(name: str, force: Force, x: np.ndarray, held: tuple[int, ...] = ()) -> Case:
     """A force compiled alone; with anchors at `held` particles, to which it may then hold on."""
-    cls, system = type(force), compile(scene_of(force, x, anchors=[{"particles": held}] if held else []))
+    cls, system = force.compiled_as, compile(scene_of(force, x, anchors=[{"particles": held}] if held else []))
     (group,) = system.groups or system.contacts
 
     def reordered(order: np.ndarray) -> Block:
@@ -105,7 +105,7 @@ def case_of(name: str, force: Force, x: np.ndarray, held: tuple[int, ...] = ()) 
         rows = {
             n: v[order] for n, v in given.items() if isinstance(v, np.ndarray) and len(v) == len(group.block.indices)
         }
-        return case_of(name, cls(**{**given, **rows}), x, held).block
+        return case_of(name, type(force)(**{**given, **rows}), x, held).block
 
     together = cls.gathered(group.block, group.block.memory, system.x, None) is not None
     return Case(

@@ -105,6 +105,16 @@ def surface() -> Any:
     return rhino3dm.NurbsSurface.CreateRuledSurface(*ends)
 
 
+def flat() -> Any:
+    """Two squares side by side."""
+    mesh = rhino3dm.Mesh()
+    for x, y in ((0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)):
+        mesh.Vertices.Add(float(x), float(y), 0.0)
+    mesh.Faces.AddFace(0, 1, 4, 3)
+    mesh.Faces.AddFace(1, 2, 5, 4)
+    return mesh
+
+
 def brep() -> Any:
     return rhino3dm.Brep.CreateFromSurface(surface())
 
@@ -117,11 +127,17 @@ FOLD = ([(1.0, 0.0, 0.0)] * 4, [(0.0, 0.0, 9.0)] * 4, [(0.5, -7.0, 2.0)] * 4)
 MORE: dict[str, Any] = {
     "fold_angle": dict(zip(("Fold end", "Tip 1", "Tip 2"), FOLD, strict=True)),
     "remesh": {"Length": 1.0},
+    "live_film": {"Length": 0.8},
+    "moebius_transformation": {"Angle": 0.4},
+    "pipes": {"Radius": 0.1},
     "mesh_map": {"Source": quads, "Target": quads},
 }
 """Options that have no default, as Hops sends them."""
 MADE = {
     "explode": polyline,
+    "pipes": lambda: LINES[1:],
+    "bipartite": lambda: LINES[1:],
+    "reciprocal_diagram": flat,
     "split_at_corners": polyline,
     "fold_angle": lambda: [(0.0, 0.0, 0.0)] * 4,
     "arc": lambda: POINTS[:3],
@@ -129,6 +145,7 @@ MADE = {
     "interpolate": lambda: POINTS[:3],
 }
 DIRECT = ("points", "lines", "warp_naked", "weft_naked", "pattern", "first", "second", "angles", "normals")
+DIRECT += ("first_points", "second_points", "strips", "densities")
 OWN = [name for name in OPERATIONS if name != "catenary"]  # which is one of its own
 
 

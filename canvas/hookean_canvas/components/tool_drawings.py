@@ -107,6 +107,80 @@ def remesh(pen: Pen) -> None:
                 pen.line(*inside, colour=BLUE, width=1.3)
 
 
+def interconnect_points(pen: Pen) -> None:
+    spots = [(12.0 + 9.0 * math.sin(k * 0.4 * math.pi), 12.5 - 9.0 * math.cos(k * 0.4 * math.pi)) for k in range(5)]
+    for k, spot in enumerate(spots):
+        for other in spots[k + 1 :]:
+            pen.line(spot, other, width=1.1)
+    pen_dots(pen, spots, BLUE, 2.3)
+
+
+def bipartite(pen: Pen) -> None:
+    for a, b in ((0, 0), (0, 1), (1, 0), (1, 2), (2, 1), (2, 2)):
+        pen.line((5.0, 4.0 + 8.0 * a), (19.0, 4.0 + 8.0 * b), width=1.2)
+    pen_dots(pen, [(5.0, 4.0 + 8.0 * k) for k in range(3)], BLUE, 2.5)
+    pen_dots(pen, [(19.0, 4.0 + 8.0 * k) for k in range(3)], ORANGE, 2.5)
+
+
+def moebius_transformation(pen: Pen) -> None:
+    for radius, lift in ((9.5, 0.0), (5.5, 3.2), (2.2, 5.4)):
+        pen.line(*arc((12.0, 12.0 - lift), radius, 0, 360), colour=BLUE, width=1.4)
+    pen.arrow((12.0, 21.0), (12.0, 8.0))
+
+
+def pipes(pen: Pen) -> None:
+    for end in ((2.5, 19.5), (21.5, 19.5), (12.0, 2.0)):
+        pen.line((12.0, 13.0), end, colour=INK, width=6.4)
+        pen.line((12.0, 13.0), end, colour=(214, 228, 240, 255), width=4.0)
+    pen.dot((12.0, 13.0), 4.6, BLUE)
+
+
+def align_quads(pen: Pen) -> None:
+    squares(pen, PALE, 1.0)
+    for j in range(3):
+        pen.arrow((4.0, 6.0 + 6.0 * j), (20.5, 6.0 + 6.0 * j), width=1.3, head=3.4)
+
+
+def turn_quads(pen: Pen) -> None:
+    pen.line(*CORNERS, closed=True, colour=PALE, width=1.4)
+    path = arc((12.0, 12.0), 5.6, 180, 430)
+    pen.line(*path, colour=ORANGE, width=1.8)
+    pen.arrow(path[-2], (path[-1][0] + 1.2, path[-1][1] + 1.4), head=4.4)
+
+
+def strips(pen: Pen) -> None:
+    for k, colour in enumerate((BLUE, PALE, ORANGE)):
+        x = 3.0 + 6.2 * k
+        pen.area((x, 3.0), (x + 5.6, 3.0), (x + 5.6, 21.0), (x, 21.0), colour=(*colour[:3], 90))
+        for y in (3.0, 9.0, 15.0, 21.0):
+            pen.line((x, y), (x + 5.6, y), colour=colour, width=1.2)
+
+
+def unroll_strips(pen: Pen) -> None:
+    pen.line(*arc((8.0, 10.0), 6.0, 90, 360), width=1.8)
+    pen.line((8.0, 16.0), (22.0, 16.0), colour=BLUE, width=2.2)
+    for x in (10.0, 14.0, 18.0, 22.0):
+        pen.line((x, 14.0), (x, 18.0), colour=BLUE, width=1.3)
+
+
+def reciprocal_diagram(pen: Pen) -> None:
+    for end in ((2.5, 5.0), (21.5, 5.0), (12.0, 22.0)):
+        pen.line((12.0, 11.0), end, width=1.6)
+    pen.line((12.0, 3.5), (18.5, 15.5), (5.5, 15.5), closed=True, colour=ORANGE, width=1.6)
+
+
+def live_film(pen: Pen) -> None:
+    for y in (4.0, 20.0):
+        pen.line(*[(12.0 + 9.5 * math.cos(k * 0.2618), y + 2.4 * math.sin(k * 0.2618)) for k in range(24)], closed=True,
+                 width=1.5)  # fmt: skip
+    for side in (-1.0, 1.0):
+        neck = [(12.0 + side * (5.0 + 4.5 * (k / 4.0) ** 2), 12.0 + 2.0 * k) for k in range(-4, 5)]
+        pen.line(*neck, colour=BLUE, width=1.8)
+    for k in range(-2, 3):
+        pen.line((12.0 - 4.6, 12.0 + 3.0 * k), (12.0 + 4.6, 12.0 + 3.0 * (k + (1 if k % 2 else -1) * 0.5)), colour=PALE,
+                 width=1.0)  # fmt: skip
+
+
 def counter(pen: Pen) -> None:
     for k in range(4):
         pen.line((4.0 + 4.2 * k, 4.5), (4.0 + 4.2 * k, 19.5), width=2.0)
@@ -132,6 +206,8 @@ DRAWINGS: dict[str, Callable[[Pen], None]] = {
     for draw in (
         *(remove_duplicate_points, combine_clean, refine, refine_strips, diagonalize, checkerboard, hinge_points),
         *(fold_angle, vertex_neighbours, mesh_map, split_at_corners, remesh, counter, sequence, trail),
+        *(interconnect_points, bipartite, moebius_transformation, pipes, align_quads, turn_quads, strips),
+        *(unroll_strips, reciprocal_diagram, live_film),
     )
 }
 """Drawings by the name of the bundle, in small letters without blanks."""

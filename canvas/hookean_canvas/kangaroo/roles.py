@@ -39,12 +39,12 @@ _REASONS = {
 }
 REASONS: dict[str, str] = {
     "soapfilm": "warp and weft are families of a mesh's edges here; connect a mesh to SoapFilm",
-    "bomb": "impulses are not here",
+    "bomb": "Impulse takes a time, not counts of iterations; its momentum is another number than the strength",
     "gstring": "Geodesic Strip takes a mesh and the vertices of its lines",
     "imagecircles": "Circle Image takes an image as numbers",
     "boxcollide": "Box Collide takes the diagonals of all boxes",
     "soft&hardsolver": "goals are not of two ranks here; anchors, locks and floors are exact",
-    "livesoap": "meshes do not change their faces while they relax",
+    "livesoap": "Live Film makes the mesh of a film again while it relaxes, without a solver on the canvas",
     "collidesurf": "connect a mesh to Collide Solid",
     "shear": "a force of this kind is not here",
     "edgebend": "Shell takes a mesh; Hinge takes edges with their tips",

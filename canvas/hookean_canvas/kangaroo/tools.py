@@ -39,6 +39,12 @@ BOTH: dict[str, Swap] = {
         "which family comes first may differ; a mesh without two is an error, unless `_strict_` is False",
     ),
     "removeduplicatelines": _tool("RemoveDuplicateLines", {"lines": "lines", "tolerance": "tolerance"}, {"lines": "q"}),
+    "interconnectpoints": _tool(
+        "InterconnectPoints",
+        {"points": "points", "p": "points"},
+        {"lines": "i|lines|l"},
+        "from each point to all later",
+    ),
     "removeduplicatepts": _tool(
         "RemoveDuplicatePoints", {"points": "points", "tolerance": "tolerance"}, {"points": "q|uniquepoints"}
     ),

@@ -56,7 +56,12 @@ class Options:
     ] = None
     picture: Annotated[str | None, typer.Option(metavar="PATH", help="Draw a picture (PNG) of the result")] = None
     check: Annotated[
-        Path | None, typer.Option(help="Limits (TOML, JSON) of force, strain, displacement, reaction to check")
+        Path | None,
+        typer.Option(help="Limits (TOML, JSON) of force, strain, displacement, reaction, slack elements to check"),
+    ] = None
+    case: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Freeze the form and solve this load case or combination of the recipe"),
     ] = None
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only print errors and notes")] = False
 
@@ -89,7 +94,7 @@ def run(options: Options) -> int:
     for job in jobs:
         try:
             with outputs.folders(job.targets):
-                codes.append(_one(job, recipe, name, limits, options.quiet))
+                codes.append(_one(job, recipe, name, limits, options))
         except InputError as error:
             codes.append(bad(error))
             if "nothing to relax" in error.sentence:
@@ -100,16 +105,17 @@ def run(options: Options) -> int:
     return next((code for code in (BAD_INPUT, NOT_CONVERGED, EXCEEDED) if code in codes), CONVERGED)
 
 
-def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] | None, str], quiet: bool) -> int:
+def _one(job: _Job, recipe: str | None, name: str, limits: tuple[dict[str, Any] | None, str], options: Options) -> int:
     from hookean.atomic_write import put
     from hookean.files.relax_file import LimitsError, relax_file, report_json
 
     fault: InputError | None = None
+    quiet = options.quiet
     with _progress(job.source.name, quiet) as progress:
         try:
             found = relax_file(
                 job.source, job.output, recipe, recipe_name=name, limits=limits[0], limits_name=limits[1],
-                progress=progress,
+                progress=progress, case=options.case,
             )  # fmt: skip
         except LimitsError as error:
             found, fault = error.found, error

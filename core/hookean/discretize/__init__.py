@@ -28,8 +28,14 @@ if TYPE_CHECKING:
     from hookean.discretize.duplicates import remove_duplicate_points as remove_duplicate_points
     from hookean.discretize.duplicates import unique_lines as unique_lines
     from hookean.discretize.duplicates import unique_points as unique_points
+    from hookean.discretize.graphs import bipartite as bipartite
+    from hookean.discretize.graphs import interconnect_points as interconnect_points
     from hookean.discretize.grids import grid as grid
     from hookean.discretize.grids import quads as quads
+    from hookean.discretize.ladders import align_quads as align_quads
+    from hookean.discretize.ladders import strips as strips
+    from hookean.discretize.ladders import turn_quads as turn_quads
+    from hookean.discretize.ladders import unroll_strips as unroll_strips
     from hookean.discretize.mapping import mesh_map as mesh_map
     from hookean.discretize.measures import area as area
     from hookean.discretize.measures import volume as volume
@@ -47,11 +53,14 @@ if TYPE_CHECKING:
     from hookean.discretize.meshes import vertices as vertices
     from hookean.discretize.meshes import weld as weld
     from hookean.discretize.meshing import mesh_surface as mesh_surface
+    from hookean.discretize.moebius import moebius_transformation as moebius_transformation
     from hookean.discretize.nurbs import NurbsCurve as NurbsCurve
     from hookean.discretize.nurbs import NurbsSurface as NurbsSurface
     from hookean.discretize.nurbs import nurbs_curve as nurbs_curve
     from hookean.discretize.nurbs import nurbs_surface as nurbs_surface
+    from hookean.discretize.pipe_meshes import pipes as pipes
     from hookean.discretize.polylines import split_at_corners as split_at_corners
+    from hookean.discretize.reciprocal import reciprocal_diagram as reciprocal_diagram
     from hookean.discretize.remeshing import remesh as remesh
     from hookean.discretize.subdivision import diagonalize as diagonalize
     from hookean.discretize.subdivision import refine as refine
@@ -66,15 +75,20 @@ _NAMES = {
     "cleaning": "clean",
     "curves": "divide end_points explode length shatter",
     "duplicates": "remove_duplicate_lines remove_duplicate_points unique_lines unique_points",
+    "graphs": "bipartite interconnect_points",
     "grids": "grid quads",
     "mapping": "mesh_map",
     "measures": "area volume",
     "meshes": "as_mesh boundary clothed_vertices corners diagonals edges join naked_edges naked_vertices on_boundary "
     "triangles vertices weld",
+    "moebius": "moebius_transformation",
     "nurbs": "NurbsCurve NurbsSurface nurbs_curve nurbs_surface",
     "meshing": "mesh_surface",
+    "pipe_meshes": "pipes",
     "polylines": "split_at_corners",
+    "reciprocal": "reciprocal_diagram",
     "remeshing": "remesh",
+    "ladders": "align_quads strips turn_quads unroll_strips",
     "subdivision": "diagonalize refine refine_strips",
     "warpweft": "threads warp_weft",
 }

@@ -10,7 +10,19 @@ from hookean.discretize.cleaning import clean
 from hookean.discretize.mapping import Closest
 from hookean.discretize.measures import area
 from hookean.discretize.meshes import as_mesh, triangles
-from hookean.discretize.triangle_nets import FIXED, FREE, ON_LINE, Array, Index, Net, Table, collapse, flip, split
+from hookean.discretize.triangle_nets import (
+    FIXED,
+    FREE,
+    ON_LINE,
+    Array,
+    Flags,
+    Index,
+    Net,
+    Table,
+    collapse,
+    flip,
+    split,
+)
 from hookean.errors import InputError
 from hookean.values.mesh import Mesh
 
@@ -35,15 +47,20 @@ def remesh(mesh: Any, length: float, feature_angle: float = np.pi / 6, iteration
     expected_faces(mesh, length, feature_angle, iterations)
     whole = clean([mesh], _WELD * length)
     given = Mesh(whole.vertices, triangles(whole)[:, [0, 1, 2, 2]])
-    net = _net(given, float(feature_angle))
-    surface = Closest(given.vertices, given.faces[:, :3])
-    lines = Closest(given.vertices, net.lines[:, [0, 1, 1]]) if len(net.lines) else None
-    for _ in range(int(iterations)):
+    net = net_of(given, float(feature_angle), float(feature_angle))
+    remeshed(net, given, length, int(iterations))
+    return Mesh(net.vertices, net.faces[:, [0, 1, 2, 2]])
+
+
+def remeshed(net: Net, mesh: Mesh, length: float, iterations: int) -> None:
+    """Iterations of `remesh` on a net whose vertices stay on a mesh, and those of its lines on these as they are."""
+    surface = Closest(mesh.vertices, mesh.faces[:, :3])
+    lines = Closest(mesh.vertices, net.lines[:, [0, 1, 1]]) if len(net.lines) else None
+    for _ in range(iterations):
         split(net, _LONG * length)
         collapse(net, _SHORT * length, _LONG * length)
         flip(net)
         _smooth(net, surface, lines)
-    return Mesh(net.vertices, net.faces[:, [0, 1, 2, 2]])
 
 
 def expected_faces(mesh: Any, length: float, feature_angle: float = np.pi / 6, iterations: int = 15) -> int:
@@ -74,8 +91,9 @@ def _halves(mesh: Mesh, longest: float) -> float:
     return float((sides[:, 2] * np.maximum(sides[:, 0], 1.0))[sides[:, 2] > 1.0].sum())
 
 
-def _net(mesh: Mesh, angle: float) -> Net:
-    """The mesh with its lines: boundaries and folds, and the vertices that stay."""
+def net_of(mesh: Mesh, fold_angle: float, turn_angle: float, seams: Flags | None = None) -> Net:
+    """The mesh with its lines, and the vertices that stay: boundaries, edges that fold by more than an angle [rad] and
+    `seams`, by edges of its `Table`; vertices where a line ends, branches or turns by more than an angle [rad]."""
     t, v = mesh.faces[:, :3], mesh.vertices
     table = Table(t, len(v))
     if table.most > 2:
@@ -86,7 +104,8 @@ def _net(mesh: Mesh, angle: float) -> Net:
     normals = np.cross(v[t[:, 1]] - v[t[:, 0]], v[t[:, 2]] - v[t[:, 0]])
     one, two = normals[table.left // 3], normals[table.right // 3]
     fold = np.arctan2(np.linalg.norm(np.cross(one, two), axis=1), (one * two).sum(axis=1))
-    lines = table.edges[~inner | (fold > angle)]
+    chosen = ~inner | (fold > fold_angle)
+    lines = table.edges[chosen if seams is None else chosen | seams]
     kinds, size = np.full(len(v), FREE), np.bincount(lines.ravel(), minlength=len(v))
     kinds[size > 0] = FIXED
     out = np.zeros((len(v), 2, 3))  # along the two lines at a vertex
@@ -97,7 +116,7 @@ def _net(mesh: Mesh, angle: float) -> Net:
                 out[a, place[a]] = v[b] - v[a]
                 place[a] += 1
     turn = np.arctan2(np.linalg.norm(np.cross(out[:, 0], -out[:, 1]), axis=1), -(out[:, 0] * out[:, 1]).sum(axis=1))
-    kinds[(size == 2) & (turn <= angle)] = ON_LINE
+    kinds[(size == 2) & (turn <= turn_angle)] = ON_LINE
     return Net(v.copy(), t.copy(), kinds, _valences(v, t, table, kinds), lines)
 
 

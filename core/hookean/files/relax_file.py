@@ -12,7 +12,7 @@ import math
 import re
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -128,6 +128,7 @@ def relax_file(
     cancelled: Callable[[], bool] | None = None,
     reading: contextlib.AbstractContextManager[None] | None = None,
     seconds: float | None = None,
+    case: str | None = None,
 ) -> FileResult:
     """Relax what `source` holds and write it to `target` (None: nowhere), replaced in one step or not at all.
 
@@ -136,7 +137,8 @@ def relax_file(
     new shape), an .obj target the shape alone. A shape short of equilibrium is written too, a cancelled one is not.
     `limits` as `tables.read_limits` gives them; pointers into the recipe stand behind `recipe_name`. The source is
     never written. `reading` is entered while the source is read. A solve longer than `seconds` ends with the status
-    `time_limit`.
+    `time_limit`. With a `case` the form is found and frozen, and the result is that of the load case or combination of
+    this name; displacements are those from the form.
 
     Raises InputError: the file cannot be read, the recipe does not fit it, the target cannot be written; LimitsError,
     with everything written, where limits name what the file does not have.
@@ -150,10 +152,26 @@ def relax_file(
         read = open_file(Path(source), recipe_text, recipe_name)
     with about(recipe_name if recipe_text is not None else Path(source).name):
         began = time.monotonic()
-        system = compile(read.scene if seconds is None else bounded(read.scene, seconds))
-        state = system.start() if read.simulation is None else read.simulation.state
-        result = relax_state(system, state, solver(read.scene.settings.solver), progress, cancelled, began)
+        scene = read.scene if seconds is None else bounded(read.scene, seconds)
+        if case is not None:
+            system, result = _under_case(scene, case)
+        else:
+            system = compile(scene)
+            state = system.start() if read.simulation is None else read.simulation.state
+            result = relax_state(system, state, solver(read.scene.settings.solver), progress, cancelled, began)
     return conclude(read, Path(source), system, result, target, limits=limits, limits_name=limits_name)
+
+
+def _under_case(scene: Scene, case: str) -> tuple[System, Result]:
+    """The frozen model of a scene under a load case or combination; its system starts at the form."""
+    from hookean.analysis.load_cases import load_cases
+
+    found = load_cases(scene, [case])
+    result = found.cases[case].result
+    assert result.scene is not None
+    system, _ = found.frozen.system(result.scene)
+    result.report.warnings[:0] = found.frozen.notes
+    return replace(system, x=found.frozen.particles), result
 
 
 def check_output(target: Path | None, source: Path, *, folder: bool = True) -> None:

@@ -8,6 +8,7 @@ A limits file is TOML (or JSON). Limits of the whole model come first; `[force.N
     max_strain = 0.02        # of either sign
     max_displacement = 0.1   # of any particle from its start
     max_reaction = 500
+    max_slack = 0            # number of tension-only elements that hang slack
     units = {length = "m", force = "kN"}   # without it those of the scene
 
     [layer.cables]
@@ -28,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from hookean.analysis.load_cases import slack_elements
 from hookean.errors import InputError
 from hookean.files import cells
 from hookean.running.result import Result
@@ -49,6 +51,7 @@ LIMITS = {
     "max_strain": "",
     "max_displacement": "length",
     "max_reaction": "force",
+    "max_slack": "",
 }
 _SCOPES = ("force", "layer", "anchor")
 
@@ -314,6 +317,9 @@ def _check(
     for limit, dimension in LIMITS.items():
         if limit not in limits:
             continue
+        if limit == "max_slack":
+            found += _slack(where, limits[limit], chosen, system)
+            continue
         scale = result.units.factor(dimension, units)
         worst, place = -math.inf, ""
         for part, mask in chosen:
@@ -331,6 +337,18 @@ def _check(
             value = f"{sign * worst * scale:.6g} {unit}".strip()
             found.append(f"{where}: {what} {value} at {place} {below} the limit {limits[limit]:g} {unit}".strip())
     return found
+
+
+def _slack(where: str, limit: float, chosen: Sequence[tuple[Section, NDArray[np.bool_]]], system: System) -> list[str]:
+    """A sentence if more elements than the limit hang slack."""
+    places = []
+    for part, mask in chosen:
+        if part.number >= 0:
+            rows = slack_elements(system.scene.forces[part.number], part.columns)
+            places += [_spot(part, int(row)) for row in rows[mask[rows]]]
+    if len(places) <= limit:
+        return []
+    return [f"{where}: {len(places)} elements are slack, the first is {places[0]}; at most {limit:g} may be"]
 
 
 def _values(part: Section, limit: str, moved: Floats) -> Floats | None:

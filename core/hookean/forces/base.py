@@ -141,11 +141,14 @@ class Force(Model):
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
     shared: ClassVar[tuple[str, ...]] = ()  # columns of the force as a whole, not one row for each element
     solid: ClassVar[bool] = True  # something lies between the particles of an element, which others may touch
+    momentary: ClassVar[bool] = False  # no force: momentum at moments, by `kick` and `next_moment`; it has no kernel
     rewired: ClassVar[bool] = False  # which of its elements feel one another changes with the shape
     is_film: ClassVar[bool] = False  # has no stiffness along itself
     on_film: ClassVar[OnFilm] = "whole"
     # columns of a result with their unit: length, force, moment, angle or none
     outputs: ClassVar[dict[str, str]] = {}
+
+    variant: ClassVar[bool] = False  # no kind of its own, but what some forces of a kind compile to (`compiled_as`)
 
     kernel: ClassVar[Callable[..., float] | None] = None
     hessian: ClassVar[Callable[..., None] | None] = None
@@ -168,6 +171,11 @@ class Force(Model):
     def element_arity(self) -> int:
         """How many particles an element has; a force whose elements differ by its inputs overrides this."""
         return self.arity
+
+    @property
+    def compiled_as(self) -> type[Force]:
+        """The class whose kernels and declaration count for it: its own, or a `variant`."""
+        return type(self)
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
@@ -231,8 +239,20 @@ class Force(Model):
         return rows, block.some(rows)
 
     @classmethod
-    def brace(cls, block: Block, held: NDArray[np.bool_]) -> None:
-        """Write into the parameters of a block, if it matters, which particles (n,) the scene's anchors hold."""
+    def brace(cls, block: Block, held: NDArray[np.bool_], mass: Floats) -> None:
+        """Write into the parameters of a block, if it matters, which particles (n,) the scene's anchors hold, and their
+        masses (n,) [mass], infinite where they are held on all axes."""
+
+    @classmethod
+    def kick(cls, block: Block, x: Floats, since: float, until: float) -> Floats:
+        """Momentum (m, 3) [force time] given to the first particle of each element at positions `x`, at the beginning
+        of a time step from `since` until before `until` [time]; the same for the same arguments."""
+        raise TypeError(f"{cls.__name__} does not define kick()")
+
+    @classmethod
+    def next_moment(cls, block: Block, since: float) -> float:
+        """The first moment [time] from `since` on at which `kick` gives something; infinite if there is none."""
+        raise TypeError(f"{cls.__name__} does not define next_moment()")
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """What a result reports of each element, by the names and units of `outputs`.

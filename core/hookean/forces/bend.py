@@ -187,7 +187,7 @@ class Bend(Force):
         return block
 
     @classmethod
-    def brace(cls, block: Block, held: NDArray[np.bool_]) -> None:
+    def brace(cls, block: Block, held: NDArray[np.bool_], mass: Floats) -> None:
         """An end of a rod at a held particle does not spin."""
         dispatch.compiled(rod_links.hold)(block.indices, block.parameters, held)
 

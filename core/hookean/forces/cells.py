@@ -155,7 +155,7 @@ def ignore(parameters: Any, e: Any, o: Any) -> Any:
     """Whether two elements ignore each other: those of one group, 0 being none, and capsules that share a particle."""
     if parameters[e, GROUP] == parameters[o, GROUP] and parameters[e, GROUP] != 0.0:
         return True
-    if parameters.shape[1] <= END:
+    if parameters.shape[1] != END + 1:
         return False
     a, b, c, d = parameters[e, START], parameters[e, END], parameters[o, START], parameters[o, END]
     return a in (c, d) or b in (c, d)

@@ -366,6 +366,13 @@ class Collide(Crowd):
     a and b are the radii of two spheres, d is the distance of their centres. All spheres of the force can touch, of any
     radii, except those of one `collision_group`. Two pressed together with a force F overlap by F / k. Spheres with the
     same centre have no direction in which to part: nothing pushes them.
+
+    In physical time (`verlet`, `yoshida`, simulations) two that meet with the speed u part with e u: a dashpot
+    c = 2 zeta sqrt(k m) acts while they overlap, m their reduced mass, zeta = -ln e / sqrt(pi^2 + ln^2 e). With
+    friction they stick where they touched first, as stiff along the contact as across it, until mu N is reached, N the
+    force that presses them together; then they slip. Spheres do not turn, so with friction the sum of their moments is
+    not zero. At rest, and where nothing moves in time, there is neither.
+    Source: Cundall and Strack, "A discrete numerical model for granular assemblies", 1979.
     """
 
     kind: Literal["collide"] = "collide"
@@ -377,10 +384,28 @@ class Collide(Crowd):
         default=None, description="A number for each sphere [-]: those of one group ignore each other; 0: of no group"
     )
 
+    restitution: float = Field(
+        default=1.0, ge=0, le=1, description="e, part of the speed kept in a contact, in physical time [-]"
+    )
+    friction: float = Field(default=0.0, ge=0, le=1e12, description="mu, dry friction, in physical time [-]")
+
     formula: ClassVar[str] = "E = k (a + b - d)²/2"
+
+    @property
+    def compiled_as(self) -> type[Force]:
+        """`RoughCollide` where spheres rub or lose speed."""
+        if self.friction == 0.0 and self.restitution == 1.0:
+            return Collide
+        from hookean.forces.rough_collide import RoughCollide
+
+        return RoughCollide
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: radius, group, stiffness, skin, address of the room for the list of neighbours."""
+        if self.compiled_as is not Collide:
+            from hookean.forces.rough_collide import RoughCollide
+
+            return RoughCollide.built(self, places)
         return crowd(places, places.elements(self), self.radius, self.collision_group, self.strength)
 
     @classmethod

@@ -2,9 +2,10 @@
 
 An element is a sphere about a particle or a capsule about two. The list is kept in a room beside the kernel
 (`make_room`) and holds all pairs that are within a range beyond their reach. It serves as long as nothing has moved by
-half of what the range has beyond what is asked for, or has another size. Pairs are listed by their first row, then by
-their second, and those that are too far away count nothing, so that sums do not depend on when the list was made, or
-how far it ranges. The range follows the motion: a list that lasts long has fewer pairs, one that lasts briefly more.
+half of what the range has beyond what is asked for, but for a motion that all spheres have in common, or has another
+size. Pairs are listed by their first row, then by their second, and those that are too far away count nothing, so that
+sums do not depend on when the list was made, or how far it ranges. The range follows the motion: a list that lasts long
+has fewer pairs, one that lasts briefly more.
 
 Rows are elements in the order in which they are given, if neighbours are then near in memory; else layer by layer from
 where they are at the start (`in_layers`). Source: Verlet, "Computer experiments on classical fluids", 1967 (the list).
@@ -143,15 +144,36 @@ def tables(room: Any, count: Any) -> Any:
 
 @device
 def unmoved(at: Any, seen: Any, most: Any) -> Any:
-    """Whether no sphere has moved by more than the root of `most` since the list was made."""
+    """Whether no sphere has moved by more than the root of `most` since the list was made, but for a motion of all."""
+    return near_seen(at, seen, most, 0.0, 0.0, 0.0) or near_seen(at, seen, most, *drift(at, seen))
+
+
+@device
+def near_seen(at: Any, seen: Any, most: Any, x: Any, y: Any, z: Any) -> Any:
+    """The same of spheres that have all moved by (x, y, z)."""
     away = 0
     for n in range(at.shape[0]):
         i = np.uint64(n)
-        d0 = at[i, 0] - seen[i, 0]
-        d1 = at[i, 1] - seen[i, 1]
-        d2 = at[i, 2] - seen[i, 2]
+        d0 = at[i, 0] - seen[i, 0] - x
+        d1 = at[i, 1] - seen[i, 1] - y
+        d2 = at[i, 2] - seen[i, 2] - z
         away |= 0 if d0 * d0 + d1 * d1 + d2 * d2 <= most else 1
     return away == 0
+
+
+@device
+def drift(at: Any, seen: Any) -> Any:
+    """How far all spheres have moved alike: the middle of the box about their ways since the list was made."""
+    x0 = x1 = at[0, 0] - seen[0, 0]
+    y0 = y1 = at[0, 1] - seen[0, 1]
+    z0 = z1 = at[0, 2] - seen[0, 2]
+    for n in range(at.shape[0]):
+        i = np.uint64(n)
+        dx, dy, dz = at[i, 0] - seen[i, 0], at[i, 1] - seen[i, 1], at[i, 2] - seen[i, 2]
+        x0, x1 = min(x0, dx), max(x1, dx)
+        y0, y1 = min(y0, dy), max(y1, dy)
+        z0, z1 = min(z0, dz), max(z1, dz)
+    return 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1)
 
 
 @device

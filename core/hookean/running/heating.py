@@ -41,7 +41,8 @@ def entered(system: System, state: State, found: Balance, *, driven: bool) -> tu
     if led or not all(group.cls.conservative for group in system.groups):
         state.scratch.pop("energy", None)
         return None
-    still, motion = float(found.energies.sum()), float(_moving(system, state).sum())
+    given = float(state.scratch.get("given", np.zeros(1))[0])  # by impulses, which no step has made
+    still, motion = float(found.energies.sum()) - given, float(_moving(system, state).sum())
     if len(state.scratch.get("energy", ())) != TAKEN + 1:
         state.scratch["energy"] = np.array([still + motion, still, 0.0, still + motion, 0.0])
     books = state.scratch["energy"]

@@ -44,14 +44,13 @@ class Before:
         self.setup = Setup.of(system)
         self._state = state.copy()
         self._parameters = [
-            (group.block.parameters.copy(), [part.force for part in group.parts])
-            for group in system.groups + system.contacts
+            (group.block.parameters.copy(), [part.force for part in group.parts]) for group in system.all_groups
         ]
 
     def put_back(self, system: System, state: State) -> State:
         """Undo what was done to the system since, and its state `state`; the state as it was. Once only."""
         self.setup.wiring.put_into(system, state)
-        for group, (parameters, forces) in zip(system.groups + system.contacts, self._parameters, strict=True):
+        for group, (parameters, forces) in zip(system.all_groups, self._parameters, strict=True):
             group.block.parameters[:] = parameters
             for part, force in zip(group.parts, forces, strict=True):
                 part.force = force

@@ -111,7 +111,7 @@ def _with(scene: Scene, forces: Mapping[int, Any]) -> Scene:
 
 def _put_forces(system: System, scene: Scene) -> None:
     system.places.take_materials(scene)
-    for group in system.groups + system.contacts:
+    for group in system.all_groups:
         for part in group.parts:
             if part.number >= 0 and scene.forces[part.number] is not part.force:
                 part.force = scene.forces[part.number]
@@ -127,6 +127,8 @@ def _rows(system: System, group: Group, part: Part) -> Floats:
     indices, parameters = fresh.indices[met], fresh.parameters[met]
     if not np.array_equal(indices, group.block.indices[part.rows]):
         raise InputError(f"/forces/{part.number}", "this field sets which particles it acts on; send a new scene")
+    if part.force.compiled_as is not group.cls:
+        raise InputError(f"/forces/{part.number}", "this field sets how it acts; send a new scene")
     if fresh.rooms:  # its elements stay in the room they have
         column = fresh.names.index("room")
         parameters[:, column] = group.block.parameters[part.rows, column]

@@ -15,6 +15,7 @@ from hookean.scene.scene import Scene
 from hookean.solvers import Solver, solver
 from hookean.stability import time_steps
 from hookean.stability.equilibrium import assess
+from hookean.system.impulses import ignored
 from hookean.system.state import State
 from hookean.system.system import System, compile
 
@@ -49,6 +50,8 @@ def relax_state(
         raise InputError("/settings/solver", refusal)
     if method.physical and (said := time_steps.warning(system, state, method)) and said not in system.report.warnings:
         system.report.warnings.append(said)
+    if not method.physical:
+        system.report.warnings += [said for said in ignored(system) if said not in system.report.warnings]
     method.start(system, state)
     state.force_scale = np.zeros(0)  # of this run alone
     watch = Watch(system, state, method)

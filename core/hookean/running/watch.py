@@ -16,6 +16,7 @@ from hookean.solvers import Solver
 from hookean.stability import time_steps
 from hookean.stability.equilibrium import Equilibrium, Stability, assess, excess, leave
 from hookean.system.balance import ALONG, Balance, balance
+from hookean.system.impulses import next_moment
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -170,6 +171,7 @@ class Watch:
         state.x, state.v, state.memory = good.x, good.v, good.memory
         state.time, state.iteration = good.time, good.iteration
         state.scratch["parts"] = np.array([parts])
+        _give_back(state, good)
         accept(system, state, self.found)
         self.lost = -1
         return Status.RUNNING
@@ -203,6 +205,8 @@ class Watch:
         """In physical time a shape may pass through balance at full speed: then it has not arrived."""
         if not self.method.physical:
             return True
+        if next_moment(system, state.time) < np.inf:
+            return False
         found, label = self.found, self.found.components.label
         moving = system.mass * (state.v**2 * state.free).sum(axis=1)
         moving = np.bincount(label[label >= 0], moving[label >= 0], len(found.scales))
@@ -298,6 +302,13 @@ class Watch:
             "Common causes: springs at their cutoff, unsupported loads, a shape near snap-through. Check that "
             "particle, or raise the tolerance"
         )
+
+
+def _give_back(state: State, good: State) -> None:
+    """Take impulses given since a good state out of the books: they are given again."""
+    state.scratch.pop("given", None)
+    if "given" in good.scratch:
+        state.scratch["given"] = good.scratch["given"].copy()
 
 
 def within(x, v, start, free, far):  # type: ignore[no-untyped-def]

@@ -16,6 +16,8 @@ from pydantic import ValidationError, field_validator, model_validator
 from hookean.errors import InputError, several
 from hookean.forces import KINDS, Force
 from hookean.forces.floor import Floor
+from hookean.scene import load_cases
+from hookean.scene.load_cases import LoadCase, Stages
 from hookean.scene.references import materials_exist, particles_exist
 from hookean.scene.solver_names import SOLVERS
 from hookean.scene.text import parse
@@ -193,6 +195,11 @@ class Scene(Model):
     anchors: Parts[Anchor] = Field(default=(), description="Particles that are held")
     geometry: Parts[Geometry] = Field(default=(), description="Geometry that moves with the particles")
     settings: Part[Settings] = Field(default=Settings(), description="How to solve")
+    load_cases: Named[LoadCase] = Field(default={}, description="Loads that act on the form, by the name of the case")
+    combinations: dict[str, dict[str, float]] = Field(
+        default={}, description="Factors on load cases, prestress and permanent [-], by the name of the combination"
+    )
+    stages: Switch[Stages] = Field(default=None, description="How the form becomes elastic for its load cases")
 
     @classmethod
     def read(cls, value: Any) -> Scene:
@@ -251,6 +258,7 @@ class Scene(Model):
             raise fault(f"{len(self.velocities)} velocities for {count} particles; give one for each", "/velocities")
         if isinstance(self.masses, np.ndarray) and len(self.masses) != count:
             raise fault(f"{len(self.masses)} masses for {count} particles; give one value or one for each", "/masses")
+        load_cases.check(self)
         return self
 
 

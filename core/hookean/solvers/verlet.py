@@ -16,6 +16,7 @@ from hookean.compiled.dispatch import forces, impacts, notes, supports
 from hookean.compiled.marks import device
 from hookean.solvers.base import Solver
 from hookean.stability import time_steps
+from hookean.system.impulses import give, steps_before
 from hookean.system.packing import Desk, Lean, Seen, contacts, lean
 
 if TYPE_CHECKING:
@@ -197,8 +198,17 @@ class Method(Solver):
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Exactly `count` time steps; physical time does not stop early."""
-        if count < 1:
-            return 0
+        left = count
+        while left > 0:
+            covered = self.covers(system, state)
+            give(system, state, covered)
+            several = steps_before(system, state.time, covered, left)
+            self._steps(system, state, several)
+            left -= several
+        return max(count, 0)
+
+    def _steps(self, system: System, state: State, count: int) -> None:
+        """Time steps without an impulse after the beginning of the first."""
         n, step = len(state.x), system.scene.settings.time_step
         same = self._seen.same(system, state) and self._own is not None and dispatch.same(self._free, state.free)
         if not same or self._own is None:
@@ -225,7 +235,6 @@ class Method(Solver):
         for _ in range(count):
             # one by one: the same bits however the steps are divided into calls
             state.time += covered
-        return count
 
 
 def _noted(system: System, state: State) -> Any:

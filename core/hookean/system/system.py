@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from hookean.compiled import dispatch
 from hookean.errors import InputError
 from hookean.forces import Block, Force
+from hookean.scene.load_cases import case_loads
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.system import components
 from hookean.system.components import Components
+from hookean.system.doubts import doubts
 from hookean.system.state import State
 from hookean.system.weld import Welded
 
@@ -85,6 +87,7 @@ class System:
     mass: Floats
     groups: list[Group]
     contacts: list[Group]
+    impulses: list[Group]
     held: list[Held]
     carried: list[Ints]
     places: Welded
@@ -92,6 +95,11 @@ class System:
     drag: float = 0.0
     _components: Components | None = None
     _films: Films | None = field(default=None, init=False, repr=False)
+
+    @property
+    def all_groups(self) -> list[Group]:
+        """All elements of the scene: those with forces, contacts, impulses."""
+        return self.groups + self.contacts + self.impulses
 
     @property
     def report(self) -> Report:
@@ -221,14 +229,16 @@ class System:
         return next((reason for reason in found if reason), "")
 
     def brace(self) -> None:
-        """Let forces know which particles the scene's anchors hold on some axis."""
+        """Let forces know which particles the scene's anchors hold on some axis, and the masses of those that move."""
         self._components = None  # a patch may have changed which elements belong together
-        held = np.zeros(len(self.x), dtype=bool)
+        held, mass = np.zeros(len(self.x), dtype=bool), self.mass.copy()
         for anchor in self.held:
+            if (anchor.free == 0).all():
+                mass[anchor.particles] = np.inf
             if anchor.number >= 0 and (anchor.free == 0).any():
                 held[anchor.particles] = True
         for group in self.groups:
-            group.cls.brace(group.block, held)
+            group.cls.brace(group.block, held, mass)
 
     def stiffness_blocks(self, group: Group, state: State, memory: Floats) -> Floats:
         """Hessian of the energy of each element `(m, 3 arity, 3 arity)`, exact or by differences of its forces.
@@ -288,10 +298,11 @@ def compile(scene: Scene) -> System:
     x = welded.x
     if not len(x):
         raise InputError("/particles", "the scene has no particles; give particles, or a force with lines or a mesh")
-    given = list(enumerate(scene.forces))
+    later = case_loads(scene)
+    given = [(i, force) for i, force in enumerate(scene.forces) if i not in later]
     if scene.settings.floor is not None:
         given.append((-1, scene.settings.floor))
-    groups, contacts = _groups(given, welded)
+    groups, contacts, impulses = _groups(given, welded)
     load_count = np.zeros(len(x))
     for group in groups:
         if group.cls.role == "load":
@@ -307,15 +318,17 @@ def compile(scene: Scene) -> System:
     held = _anchors(welded)
     welded.report.settle(strict=scene.strict, held=any(len(anchor.particles) for anchor in held))
     carried = [_carried(welded, i) for i in range(len(scene.geometry))]
-    system = System(scene, np.ascontiguousarray(x), v, mass, groups, contacts, held, carried, welded, load_count)
+    system = System(
+        scene, np.ascontiguousarray(x), v, mass, groups, contacts, impulses, held, carried, welded, load_count
+    )
     system.drag = scene.settings.drag
     system.brace()
-    _warn(system)
+    system.report.warnings += doubts(system)
     return system
 
 
-def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group], list[Group]]:
-    """Blocks of all forces, joined where they share a kernel."""
+def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group], list[Group], list[Group]]:
+    """Blocks of all forces, joined where they share a kernel; contacts and impulses apart."""
     joined: dict[type[Force], list[tuple[int, Force, Block, Ints]]] = {}
     for number, force in given:
         pointer = f"/forces/{number}" if number >= 0 else "/settings/floor"
@@ -325,9 +338,10 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
         if block.indices.min(initial=0) < 0:
             inputs = np.flatnonzero((block.indices >= 0).all(axis=1))
             block = block.some(inputs)
-        joined.setdefault(type(force), []).append((number, force, block, inputs))
+        joined.setdefault(force.compiled_as, []).append((number, force, block, inputs))
     groups: list[Group] = []
     contacts: list[Group] = []
+    impulses: list[Group] = []
     for cls, members in joined.items():
         parts: list[Part] = []
         start = 0
@@ -341,8 +355,9 @@ def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group]
             whole.parameters = np.concatenate([b.parameters for b in blocks])
             whole.memory = np.concatenate([b.memory for b in blocks])
             whole.rooms = tuple(room for b in blocks for room in b.rooms)
-        (groups if cls.kernel is not None else contacts).append(Group(cls, whole, parts))
-    return groups, contacts
+        kin = groups if cls.kernel is not None else impulses if cls.momentary else contacts
+        kin.append(Group(cls, whole, parts))
+    return groups, contacts, impulses
 
 
 def _anchors(welded: Welded) -> list[Held]:
@@ -375,62 +390,3 @@ def _carried(welded: Welded, number: int) -> Ints:
             f"/geometry/{number}: {int((found < 0).sum())} of {len(found)} points meet no particle and stay in place"
         )
     return found
-
-
-def coincide(x, indices, rest, touched, same, closed):  # type: ignore[no-untyped-def]
-    """Note which particles elements touch, which of those between two begin and end at one, and which of the others
-    have a rest length and no length at the start; how many of each."""
-    alike, short = 0, 0
-    for e in range(indices.shape[0]):
-        for j in range(indices.shape[1]):
-            touched[indices[e, j]] = 1
-        if indices.shape[1] == 2:
-            a, b = np.uint64(indices[e, 0]), np.uint64(indices[e, 1])
-            here = x[a, 0] == x[b, 0] and x[a, 1] == x[b, 1] and x[a, 2] == x[b, 2]
-            same[e] = a == b
-            closed[e] = here and a != b and rest[e] > 0.0
-            alike += same[e]
-            short += closed[e]
-    return alike, short
-
-
-def _rests(block: Block) -> Floats:
-    """Rest lengths (m,) [length] of elements that have one, else zeros."""
-    rest = [block.parameters[:, i] for i, name in enumerate(block.names) if name in ("rest_length", "rest_factor")]
-    return np.asarray(rest[0] * rest[1]) if len(rest) == 2 else np.zeros(len(block.indices))
-
-
-def _warn(system: System) -> None:
-    """Warnings before a run: springs of zero length, loads on unsupported particles."""
-    warnings = system.report.warnings
-    touched = np.zeros(len(system.x), dtype=np.int8)
-    for group in system.groups:
-        if group.cls.role == "load":
-            continue
-        for part in group.parts:
-            block = group.of(part)
-            same, closed = np.zeros((2, len(block.indices)), dtype=np.int8)
-            alike, short = dispatch.compiled(coincide)(system.x, block.indices, _rests(block), touched, same, closed)
-            if alike:
-                warnings.append(
-                    f"/forces/{part.number}: {alike} of {len(same)} elements start and end at one particle (first: "
-                    f"element {int(np.argmax(same))}) and have no length; lengthen them or lower weld_tolerance"
-                )
-            if short:
-                warnings.append(
-                    f"/forces/{part.number}: {short} of {len(closed)} elements have zero length (first: element "
-                    f"{int(np.argmax(closed))}), so their forces have no direction; move their ends apart"
-                )
-    for anchor in system.held:
-        if (anchor.free == 0).all():
-            touched[anchor.particles] = 1
-    alone = np.flatnonzero((system.load_count > 0) & (touched == 0))
-    if len(alone) and not system.contacts:
-        warnings.append(
-            f"particle {alone[0]} carries a load but is unsupported: no spring, other force or anchor holds it"
-            + (f" (and {len(alone) - 1} more)" if len(alone) > 1 else "")
-        )
-    if sum(len(group.parts) for group in system.groups if group.cls.role == "internal") > 1:
-        from hookean.system.near_misses import near_misses
-
-        warnings += near_misses(system)

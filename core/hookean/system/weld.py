@@ -314,7 +314,7 @@ def _keepers(points: Floats, tolerance: float) -> Ints:
 
 def fits(force: Force, pointer: str, welded: Welded) -> None:
     """InputError where a column of `force` has neither one value nor one for each of its elements."""
-    columns = _columns(type(force))
+    columns = element_columns(type(force))
     if not columns or (force.element_arity > 2 and getattr(force, "mesh", None) is not None):
         return
     count = len(welded.elements(force))
@@ -327,7 +327,7 @@ def fits(force: Force, pointer: str, welded: Welded) -> None:
 
 
 @cache
-def _columns(cls: type[Force]) -> list[tuple[str, bool]]:
+def element_columns(cls: type[Force]) -> list[tuple[str, bool]]:
     """Fields of a force that may have one value for each element, and whether three numbers are one value; none of a
     force without elements."""
     fields = cls.model_fields

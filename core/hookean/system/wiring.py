@@ -27,20 +27,21 @@ class Wiring:
 
     groups: list[Group]
     contacts: list[Group]
+    impulses: list[Group]
     load_count: NDArray[np.float64]
     places: Welded
 
     @classmethod
     def of(cls, system: System) -> Wiring:
         """That of a system now."""
-        return cls(system.groups, system.contacts, system.load_count, system.places)
+        return cls(system.groups, system.contacts, system.impulses, system.load_count, system.places)
 
     def put_into(self, system: System, state: State) -> None:
         """Make this the wiring of a system; elements that were there before remember what they did."""
         if self.groups is system.groups:
             return
         state.memory = _carried(system.groups, state.memory, self.groups)
-        system.groups, system.contacts = self.groups, self.contacts
+        system.groups, system.contacts, system.impulses = self.groups, self.contacts, self.impulses
         system.load_count, system.places = self.load_count, self.places
         system._components = system._films = None
 

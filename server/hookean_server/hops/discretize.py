@@ -72,10 +72,14 @@ _GIVES: dict[str, tuple[Parameter, ...]] = {
         Parameter("Neighbours", "N", "Integer", "Indices of the neighbours of one vertex after the other, from 0"),
         Parameter("Counts", "C", "Integer", "How many of them each vertex has"),
     ),
+    "first_points": (Parameter("First", "A", "Point", "Ends in the first group [model unit]"),),
+    "second_points": (Parameter("Second", "B", "Point", "Ends in the second group [model unit]"),),
+    "strips": (Parameter("Strips", "S", "Integer", "Of each face the number of its strip, from 0"),),
+    "densities": (Parameter("Densities", "D", "Number", "Force densities of the inner edges, about 1 [-]"),),
     "normals": (Parameter("Normals", "Z", "Vector", "Unit normals at the vertices [-]"),),
 }
 _DIRECT = {"points", "lines", "length", "mesh", "polylines", "warp_naked", "weft_naked", "pattern", "first", "second",
-           "angles", "normals"}  # fmt: skip
+           "angles", "normals", "first_points", "second_points", "strips", "densities"}  # fmt: skip
 """Results that are outputs as they are."""
 _OPTIONS = {
     "count": ("Count", "N", "Number of pieces"),
@@ -98,8 +102,15 @@ _OPTIONS = {
     "target": ("Target", "T", "The same mesh, moved"),
     "distance": ("Distance", "D", "Factor of the heights over the mesh [-]"),
     "length": ("Length", "L", "Length of the edges that is wanted [model unit]"),
+    "volume_factor": ("Volume factor", "V", "Factor on the volume of a closed mesh [-]; 0: open, free"),
     "feature_angle": ("Feature angle", "A", "Folds and turns of the boundary above this are kept [rad]"),
     "iterations": ("Iterations", "N", "Rounds of splitting, collapsing, flipping and smoothing"),
+    "axis": ("Axis", "X", "Direction of the transformation [-]"),
+    "centre": ("Centre", "C", "Centre of the circle that does not move [model unit]"),
+    "radius": ("Radius", "R", "Radius of the circle that does not move, or of the pipes [model unit]"),
+    "sides": ("Sides", "N", "Sides of each pipe"),
+    "turns": ("Turns", "T", "Right angles that directions turn by"),
+    "gap": ("Gap", "G", "Distance between strips [model unit]"),
     "turning_angle": ("Turning angle", "A", "Corners turn by more than this [rad]"),
 }
 _KINDS = {"count": "Integer", "whole": "Integer", "level": "Integer", "number": "Number", "flag": "Boolean"}
@@ -111,8 +122,10 @@ def _input(name: str, kind: str, default: Any) -> Parameter:
     if kind in _GEOMETRY:
         most = 1 if kind == "mesh" else MANY
         return Parameter(title, nickname, _GEOMETRY[kind], said, 0 if default is not None else 1, most)
+    if kind == "vectors":
+        return Parameter(title, nickname, "Vector", said, 0, 1)
     low = {"count": 1, "whole": 1, "level": 0, "number": 0.0}
-    bounds: dict[str, Any] = {"minimum": low[kind]} if kind in low and name != "distance" else {}
+    bounds: dict[str, Any] = {"minimum": low[kind]} if kind in low and name not in ("distance", "angle") else {}
     if kind not in _KINDS:
         bounds["choices"] = tuple(kind.split())
     start = 10 if kind == "count" and default is None else default
@@ -137,7 +150,7 @@ def _taking(name: str, operation: Operation) -> Parameter:
 def _run(function: str, operation: Operation, inputs: Inputs) -> dict[str, Any]:
     takes = _taking(function, operation).name
     geometry = _taken(operation, inputs, takes)
-    given = {name: _option(inputs, kind, _OPTIONS[name][0]) for name, (kind, _) in operation.options.items()}
+    given = {name: _option(inputs, *option, _OPTIONS[name][0]) for name, option in operation.options.items()}
     made = len(geometry.Faces) if operation.at == "breps:mesh_faces" and hasattr(geometry, "Edges") else 1
     for name, (kind, _) in operation.options.items():
         if kind == "count":
@@ -157,9 +170,11 @@ def _run(function: str, operation: Operation, inputs: Inputs) -> dict[str, Any]:
     return answer
 
 
-def _option(inputs: Inputs, kind: str, name: str) -> Any:
+def _option(inputs: Inputs, kind: str, default: Any, name: str) -> Any:
     if kind == "points":
         return inputs.points(name)
+    if kind == "vectors":
+        return inputs.points(name)[0] if inputs.many(name) else default
     return inputs.many(name) if kind == "indices" else inputs.one(name)
 
 
@@ -223,8 +238,18 @@ _SUMMARIES = {
     "fold_angle": "Angles between pairs of triangles about their common edges",
     "vertex_neighbours": "The neighbours of the vertices of a mesh, in their order round the normal",
     "remesh": "A mesh as triangles of one size, its boundary and folds kept",
+    "live_film": "The soap film on a mesh, made again while it relaxes",
     "mesh_map": "Points near a mesh moved as the mesh is",
     "split_at_corners": "A polyline cut where it turns",
+    "interconnect_points": "A line between every two points",
+    "bipartite": "The ends of lines in two groups with lines only between these",
+    "moebius_transformation": "Points moved so that spheres, circles and angles stay",
+    "pipes": "Pipes about lines that meet in nodes, as one closed mesh",
+    "align_quads": "A mesh whose quads have the same direction",
+    "turn_quads": "A mesh with the direction of each quad turned by right angles",
+    "strips": "The strip of each face of a mesh",
+    "unroll_strips": "The strips of a mesh unrolled into a plane",
+    "reciprocal_diagram": "The reciprocal figure of a flat mesh: the forces of its edges",
     "remove_duplicate_points": "Points without duplicates",
     "remove_duplicate_lines": "Lines without duplicates, in either direction",
 }

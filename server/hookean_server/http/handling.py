@@ -6,7 +6,7 @@ import asyncio
 import json
 import shutil
 import tempfile
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,8 @@ from hookean_server.lifecycle import leftovers
 from hookean_server.problems import Problem, not_stored
 from hookean_server.settings import Settings
 from hookean_server.workers.pool import Job, Pool, Reply
+
+Run = Callable[[str, dict[str, Any], bytes], Coroutine[Any, Any, Reply]]
 
 
 async def read_json(request: Request) -> bytes:
@@ -36,6 +38,18 @@ async def compute(request: Request, task: str, options: dict[str, Any], *, once:
     with pool.place():
         job = _job(settings, task, options, await read_json(request), once)
         return respond(await answered(request, pool.run(job)))
+
+
+async def compute_steps(request: Request, steps: Callable[[Run, bytes], Coroutine[Any, Any, Reply]]) -> Response:
+    """Run several tasks for one request with a JSON body: `steps` gets the body, and what runs a task with its options
+    and body on a worker."""
+    pool, settings = _service(request)
+
+    async def run(task: str, options: dict[str, Any], body: bytes) -> Reply:
+        return await pool.run(_job(settings, task, options, body, False))
+
+    with pool.place():
+        return respond(await answered(request, steps(run, await read_json(request))))
 
 
 async def compute_for_anyone(request: Request, task: str, options: dict[str, Any], *, once: Any = False) -> Response:

@@ -11,6 +11,7 @@ from fastapi.openapi.utils import get_openapi
 import hookean
 from hookean_server.http import claimed
 from hookean_server.http.access import Access
+from hookean_server.http.analysis_schemas import ANALYSIS_EXAMPLES, CASES_EXAMPLE, analysis_schema, cases_schema
 from hookean_server.http.schemas import EXAMPLES, SCHEMAS, operation_schema
 from hookean_server.http.tokens import cookie_name
 from hookean_server.problems import CATALOGUE, MEDIA_TYPE
@@ -121,6 +122,26 @@ def discretize(name: str) -> dict[str, Any]:
             takes, {"small": EXAMPLES["discretize"][name]} if name in EXAMPLES["discretize"] else {}
         ),
         "operation_id": f"discretize_{name}",
+    }
+
+
+def analysis(name: str) -> dict[str, Any]:
+    """Description of the route of one analysis."""
+    takes, gives = analysis_schema(name)
+    examples = {"small": ANALYSIS_EXAMPLES[name]}
+    return {
+        "responses": problems({"application/json": {"schema": gives}}, computed=True),
+        "openapi_extra": _takes(takes, examples),
+        "operation_id": f"analysis_{name.replace('-', '_')}",
+    }
+
+
+def load_cases() -> dict[str, Any]:
+    """Description of the route of load cases."""
+    takes, gives = cases_schema()
+    return {
+        "responses": problems({"application/json": {"schema": gives}}, computed=True),
+        "openapi_extra": _takes(takes, {"small": CASES_EXAMPLE}),
     }
 
 

@@ -264,6 +264,8 @@ _GIVES: dict[str, dict[str, Any]] = {
     "mesh": {"anyOf": _MESH["anyOf"][:2]},
     "length": _NUMBER,
     "neighbours": {"type": "array", "items": _ARRAY},
+    "first_points": _POINTS,
+    "second_points": _POINTS,
 }
 _OPTIONS: dict[str, dict[str, Any]] = {
     "count": {"type": "integer", "minimum": 1},
@@ -303,7 +305,12 @@ _SMALL = {
     "points": [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
     "lines": [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]],
 }
-_OTHER = {"fold_angle": {"end": [[1.0, 0.0, 1.0]], "tip_1": [[0.0, 0.0, 9.0]], "tip_2": [[-3.0, 7.0, 2.0]]}}
+_CROSS = [[[0.0, 0.0, 0.0], end] for end in ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.5])]
+_OTHER: dict[str, dict[str, Any]] = {
+    "fold_angle": {"end": [[1.0, 0.0, 1.0]], "tip_1": [[0.0, 0.0, 9.0]], "tip_2": [[-3.0, 7.0, 2.0]]},
+    "pipes": {"lines": _CROSS, "radius": 0.1},
+    "moebius_transformation": {"angle": 0.7},
+}
 """Options of which a sample is not like that of others of their kind."""
 _CABLE = {
     "particles": [[2.0 * i, 0.0, 0.0] for i in range(6)],

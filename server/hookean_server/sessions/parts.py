@@ -175,7 +175,7 @@ class Wired:
         groups = simulation.system.groups
         if self._groups is not groups:
             digest = hashlib.sha256()
-            for group in groups + simulation.system.contacts:
+            for group in simulation.system.all_groups:
                 for part in group.parts:
                     digest.update(f"{part.number} {part.force.name!r} {group.cls.__name__} ".encode())
                     digest.update(group.block.indices[part.rows].tobytes())

@@ -24,11 +24,12 @@ from hookean_server.workers.task import Cancelled, Clock, Done
 class Operation:
     """One operation: where its function is, what geometry it takes, its options and what it gives.
 
-    `at`: `module:function`, of `hookean.discretize`. `takes`: `curve`, `surface`,
-    `mesh`, `meshes`, `lines` or `points`. `options`: name -> `count`, `whole`, `level`, `number`, `numbers`, `vectors`,
-    `indices`, `flag`, one of the kinds that `takes` names, or the words to choose from; those with None as default must
-    be given. `gives`: names of the function's results; their places are added to edges and vertices of a mesh, see
-    `PLACES`. `made`: `module:function` that counts the faces of the result beforehand, from the same arguments.
+    `at`: `module:function`, of `hookean.discretize`, or of another room by `room.module:function`. `takes`:
+    `curve`, `surface`, `mesh`, `meshes`, `lines` or `points`. `options`: name -> `count`, `whole`, `level`,
+    `number`, `numbers`, `vectors`, `indices`, `flag`, one of the kinds that `takes` names, or the words to choose
+    from; those with None as default must be given. `gives`: names of the function's results; their places are added
+    to edges and vertices of a mesh, see `PLACES`. `made`: `module:function` that counts the faces or lines of the
+    result before, from the same arguments.
     """
 
     at: str
@@ -54,7 +55,8 @@ class Operation:
 
 def _imported(at: str) -> Callable[..., Any]:
     module, name = at.split(":")
-    found: Callable[..., Any] = getattr(importlib.import_module(f"hookean.discretize.{module}"), name)
+    room = "" if "." in module else "discretize."
+    found: Callable[..., Any] = getattr(importlib.import_module(f"hookean.{room}{module}"), name)
     return found
 
 
@@ -64,6 +66,9 @@ _LEVEL = {"level": ("level", 1)}
 _REMESH = {"length": ("number", None), "feature_angle": ("number", np.pi / 6), "iterations": ("whole", 15)}
 _HANGING = {"length": ("numbers", None), "count": ("count", 50), "gravity": ("vectors", (0.0, 0.0, -1.0))}
 _SMOOTH = {"count": ("count", None), "degree": ("whole", 3)}
+_FAMILY = {"direction": ("warp weft", "warp")}
+_TURN = {"angle": ("number", None), "axis": ("vectors", (0.0, 0.0, 1.0)), "centre": ("vectors", (0.0, 0.0, 0.0)),
+         "radius": ("number", 1.0)}  # fmt: skip
 PLACES = {"edges": "lines", "indices": "points", "naked": "naked_points", "clothed": "clothed_points",
           "warp": "warp_lines", "weft": "weft_lines", "start": "start_points", "end": "end_points",
           "tip_1": "tip_1_points", "tip_2": "tip_2_points"}  # fmt: skip
@@ -119,12 +124,28 @@ OPERATIONS: dict[str, Operation] = {
         "adjacency:vertex_neighbours", "mesh", {"vertices": ("indices", ())}, ("neighbours", "normals")
     ),
     "remesh": Operation("remeshing:remesh", "mesh", _REMESH, ("mesh",), "remeshing:expected_faces"),
+    "live_film": Operation(
+        *("running.live:live_film", "mesh", {"length": ("number", None), "volume_factor": ("number", 0.0)}, ("mesh",)),
+        "running.live:expected_faces",
+    ),
     "mesh_map": Operation(
         "mapping:mesh_map", "points", {"source": ("mesh", None), "target": ("mesh", None), "distance": ("number", 1.0)}
     ),
     "split_at_corners": Operation(
         "polylines:split_at_corners", "curve", {"turning_angle": ("number", 1.0)}, ("points", "polylines")
     ),
+    "interconnect_points": Operation("graphs:interconnect_points", "points", {}, ("lines",), "graphs:expected_lines"),
+    "bipartite": Operation("graphs:bipartite", "lines", _NEAR, ("first_points", "second_points")),
+    "moebius_transformation": Operation("moebius:moebius_transformation", "points", _TURN),
+    "pipes": Operation(
+        *("pipe_meshes:pipes", "lines", {"radius": ("number", None), "sides": ("whole", 6), **_NEAR}, ("mesh",)),
+        "pipe_meshes:expected_faces",
+    ),
+    "align_quads": Operation("ladders:align_quads", "mesh", {"strict": ("flag", True)}, ("mesh",)),
+    "turn_quads": Operation("ladders:turn_quads", "mesh", {"turns": ("whole", 1)}, ("mesh",)),
+    "strips": Operation("ladders:strips", "mesh", _FAMILY, ("strips",)),
+    "unroll_strips": Operation("ladders:unroll_strips", "mesh", {**_FAMILY, "gap": ("number", 0.0)}, ("mesh",)),
+    "reciprocal_diagram": Operation("reciprocal:reciprocal_diagram", "mesh", gives=("lines", "densities")),
     "remove_duplicate_points": Operation("duplicates:remove_duplicate_points", "points", _NEAR),
     "remove_duplicate_lines": Operation("duplicates:remove_duplicate_lines", "lines", _NEAR, ("lines",)),
 }

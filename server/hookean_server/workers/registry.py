@@ -26,10 +26,14 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
 def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
     from hookean_server.hops import functions
     from hookean_server.jobs import work
-    from hookean_server.workers import discretize_task, example_task, file_tasks, relax_task
+    from hookean_server.workers import analysis_task, case_tasks, discretize_task, example_task, file_tasks, relax_task
 
     return {
         "relax": relax_task.relax_scene,
+        "analyse": analysis_task.analyse,
+        "freeze": case_tasks.freeze_form,
+        "case": case_tasks.solve_one,
+        "cases": case_tasks.gather_cases,
         "discretize": discretize_task.discretize,
         "hops": functions.solve,
         "file": file_tasks.relax_upload,

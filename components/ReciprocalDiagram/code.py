@@ -1,0 +1,11 @@
+"""The reciprocal figure of flat meshes: forces that balance at inner vertices.
+
+Each inner edge becomes a line at a right angle to it, force density times its length long; those of
+an inner vertex close to a polygon. Force densities are the nearest to 1 that balance.
+
+Line: q l long, normal to its edge
+"""
+
+from hookean_client import canvas_tools as tools
+
+lines, densities = tools.reciprocal_diagram(ghenv, _mesh)

@@ -1,0 +1,1 @@
+"""What follows from an equilibrium: frequencies, buckling, paths under load, mechanisms, load cases."""

@@ -1,0 +1,227 @@
+"""Steps of given arc length along the equilibrium path of a structure under loads that grow by one factor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.analysis.at_rest import AtRest
+from hookean.analysis.matrices import Unknowns, factor
+from hookean.errors import InputError
+from hookean.system.state import State
+from hookean.system.system import System
+
+Floats = NDArray[np.float64]
+
+ITERATIONS = 15  # Newton steps to a point; more are taken as a step that is too long
+WANTED = 5  # of them: a step that takes more makes the next one shorter
+CUTS = 30  # times a step is halved
+BALANCED = 1e-11  # out of balance, as a part of the largest force
+SETTLED = 1e-14  # a Newton step that moves nothing any more, as a part of the model's size
+HALVINGS = 40  # of a bracket
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of a path: the shape `x` (n, 3), the load factor, the tangent movement (u,) for a unit of the factor,
+    the number of negative eigenvalues of the tangent, and the movement (u,) that led to it from the point before."""
+
+    x: Floats
+    factor: float
+    tangent: Floats
+    negatives: int
+    moved: Floats
+    iterations: int = 0
+
+    def rate(self) -> float:
+        """The change of the load factor along the path, by its arc length; its sign is that of the way it goes."""
+        size = float(np.linalg.norm(self.tangent))
+        ahead = float(self.tangent @ self.moved)
+        return float(np.copysign(1.0 / size, ahead if ahead != 0.0 else 1.0)) if size > 0.0 else 0.0
+
+
+class Follower:
+    """A structure at rest, and a system of the loads that grow."""
+
+    def __init__(self, rest: AtRest, load_system: System, load_state: State) -> None:
+        self.rest, self.loads, self.load_state = rest, load_system, load_state
+        self.state = rest.state.copy()
+        self.unknowns = Unknowns.of(rest.system, rest.state, rest.free)
+        self.shortened = 1.0
+        self.constant = all(group.cls.constant for group in load_system.groups)
+
+    def first(self) -> Point:
+        """The point without the loads."""
+        solved = self._solve(self.rest.state.x, 0.0)
+        matrix = self.unknowns.tangent(self.rest.system, self.rest.state)
+        if solved is None or solved[2] or factor(matrix) is None:
+            said = "without these loads the structure has no stiffness against some motion; brace or prestress it"
+            raise InputError("model", said)
+        _, tangent, negatives = solved
+        return Point(self.rest.state.x.copy(), 0.0, tangent, negatives, np.zeros_like(tangent))
+
+    def reach(self, point: Point, increment: float) -> float:
+        """The arc length of a first step of this load factor; its sign is kept as the way to go."""
+        self.way = 1.0 if increment > 0.0 else -1.0
+        return abs(increment) * float(np.linalg.norm(point.tangent))
+
+    def step(self, points: list[Point], reach: float) -> Point | None:
+        """The next point, `reach` away or less; None where there is none however short the step."""
+        for _ in range(CUTS):
+            found = self.at_arc(points[-1], reach * self.shortened)
+            if found is not None:
+                if found.iterations <= WANTED:
+                    self.shortened = min(1.0, 1.5 * self.shortened)
+                return found
+            self.shortened *= 0.5
+        return None
+
+    def at_arc(self, last: Point, reach: float) -> Point | None:
+        """The point at this arc length after another."""
+        size = float(np.linalg.norm(last.tangent))
+        if not (size > 0.0 and reach > 0.0):
+            return None
+        ahead = float(last.tangent @ last.moved) if last.moved.any() else getattr(self, "way", 1.0)
+        turn = np.copysign(reach / size, ahead)
+        moved, load = turn * last.tangent, last.factor + turn
+        for iteration in range(ITERATIONS):
+            solved = self._solve(last.x + self.unknowns.spread(moved), load)
+            if solved is None:
+                return None
+            left, tangent, negatives = solved
+            change = _crisfield(moved, left, tangent, reach)
+            if change is None:
+                return None
+            step = left + change * tangent
+            still = np.abs(step).max(initial=0.0) <= SETTLED * self.rest.system.size
+            if self.settled or (still and abs(change) <= BALANCED * abs(load)):
+                x = last.x + self.unknowns.spread(moved)
+                return Point(x, load, tangent, negatives, moved, iteration)
+            moved, load = moved + step, load + change
+        return None
+
+    def at_factor(self, before: Point, after: Point, wanted: float) -> Point:
+        """The point between two at a load factor between theirs."""
+
+        def error(point: Point) -> float:
+            return point.factor - wanted
+
+        return self._root(before, after, error) or after
+
+    def between(self, before: Point, after: Point) -> list[tuple[str, Point]]:
+        """Critical points between two points of the path."""
+        found: list[tuple[str, Point]] = []
+        ahead = np.copysign(1.0, self._rate_out(before, after))
+        if ahead * after.rate() < 0.0:
+            limit = self._root(before, after, Point.rate, first=self._rate_out(before, after))
+            if limit is not None:
+                found.append(("limit", limit))
+        crossed = abs(after.negatives - before.negatives)
+        if crossed and not (found and crossed == 1):
+            point = self._crossing(before, after)
+            if point is not None:
+                found.append(("bifurcation", point))
+        return sorted(found, key=lambda item: float(np.linalg.norm(item[1].moved)))
+
+    def _rate_out(self, before: Point, after: Point) -> float:
+        """The rate at which the load factor leaves a point on the way to another."""
+        size = float(np.linalg.norm(before.tangent))
+        return float(np.copysign(1.0 / size, before.tangent @ after.moved)) if size > 0.0 else 0.0
+
+    def _root(
+        self, before: Point, after: Point, value: Callable[[Point], float], first: float | None = None
+    ) -> Point | None:
+        """Where a value of points between two is zero, by the Illinois method on the arc length."""
+        low, high = 0.0, float(np.linalg.norm(after.moved))
+        at_low, at_high = value(before) if first is None else first, value(after)
+        best = after
+        for _ in range(HALVINGS):
+            if at_high == at_low:
+                break
+            middle = high - at_high * (high - low) / (at_high - at_low)
+            if not min(low, high) < middle < max(low, high):
+                break
+            point = self.at_arc(before, middle)
+            if point is None:
+                return None
+            found, best = value(point), point
+            if found == 0.0 or abs(high - low) <= 1e-9 * max(low, high):
+                break
+            if found * at_high < 0.0:
+                low, at_low = high, at_high
+            else:
+                at_low *= 0.5
+            high, at_high = middle, found
+        return best
+
+    def _crossing(self, before: Point, after: Point) -> Point | None:
+        """Where the number of negative eigenvalues changes between two points, by halving."""
+        low, high = 0.0, float(np.linalg.norm(after.moved))
+        found = after
+        for _ in range(HALVINGS):
+            point = self.at_arc(before, 0.5 * (low + high))
+            if point is None:
+                return found
+            if point.negatives == before.negatives:
+                low = 0.5 * (low + high)
+            else:
+                high, found = 0.5 * (low + high), point
+            if high - low <= 1e-9 * high:
+                break
+        return found
+
+    def _solve(self, x: Floats, load: float) -> tuple[Floats, Floats, int] | None:
+        """At a shape: the movement that what is out of balance makes, the tangent movement for a unit of the factor,
+        and the number of negative eigenvalues. `settled`: whether it is in balance."""
+        self.state.x = self.load_state.x = x
+        inner = self.rest.system.evaluate(self.state)[0]
+        outer = self.loads.evaluate(self.load_state)[0]
+        matrix = self.unknowns.tangent(self.rest.system, self.state)
+        if not self.constant:
+            matrix = _sum(matrix, load * self.unknowns.tangent(self.loads, self.load_state))
+        found = _factored(matrix)
+        if found is None:
+            return None
+        left, force = self.unknowns.gather(inner + load * outer), self.unknowns.gather(outer)
+        whole = inner + load * outer
+        scale = max(float(np.abs(load * outer).max(initial=0.0)), float(np.abs(whole).max(initial=0.0)))
+        self.settled = bool(np.abs(left).max(initial=0.0) <= BALANCED * scale)
+        solution = found.solve(left), found.solve(force)
+        if not all(np.isfinite(part).all() for part in solution):
+            return None
+        return np.asarray(solution[0]), np.asarray(solution[1]), found.negatives
+
+
+def _crisfield(moved: Floats, left: Floats, tangent: Floats, reach: float) -> float | None:
+    """The change of the load factor that keeps the arc length: of two, that which turns the step least; None where
+    there is none."""
+    base = moved + left
+    a, b = float(tangent @ tangent), 2.0 * float(tangent @ base)
+    c = float(base @ base) - reach * reach
+    inside = b * b - 4.0 * a * c
+    if a == 0.0 or inside < 0.0:
+        return None
+    far = -0.5 * (b + np.copysign(np.sqrt(inside), b))
+    roots = [far / a, c / far if far != 0.0 else 0.0]
+    return float(max(roots, key=lambda root: float(moved @ (base + root * tangent))))
+
+
+def _sum(matrix: Any, other: Any) -> Any:
+    if other.shape != matrix.shape:
+        other.resize(matrix.shape)
+    return (matrix + other).tocsc()
+
+
+def _factored(matrix: Any) -> Any:
+    """Factors; of a matrix that is singular to the last bit those of one that is not quite."""
+    import scipy.sparse as sparse
+
+    found = factor(matrix)
+    if found is None:
+        size = 1e-14 * float(abs(matrix).max()) if matrix.nnz else 0.0
+        found = factor(matrix + size * sparse.identity(matrix.shape[0], format="csc")) if size else None
+    return found

@@ -1,0 +1,128 @@
+"""Envelopes: the extremes of several results of one model, and which of them has each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.forces import KINDS
+from hookean.values.units import Units
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """Of a column of numbers (m,) over several cases: the `smallest` and `largest` (m,), and in which case each is."""
+
+    smallest: Floats
+    smallest_case: Ints
+    largest: Floats
+    largest_case: Ints
+
+    @classmethod
+    def of(cls, values: Floats) -> Extremes:
+        """Of values (cases, m)."""
+        low, high = values.argmin(axis=0), values.argmax(axis=0)
+        row = np.arange(values.shape[1])
+        return cls(values[low, row], low, values[high, row], high)
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """The extremes of several cases, whose names are `cases`; extremes have the numbers of their cases.
+
+    `displacement` [length]: how far each particle moves; `forces` one dict for each force of the scene with its name,
+    kind and `columns` (size of vectors), in the units of results; `reaction` [force]: the size at each of the held
+    `particles`.
+    """
+
+    cases: tuple[str, ...]
+    displacement: Extremes
+    forces: tuple[dict[str, Any], ...]
+    particles: Ints
+    reaction: Extremes
+    units: Units
+
+    def summary(self) -> list[str]:
+        """The largest displacement, forces and reaction, where they are and in which case."""
+        unit = self.units
+        spot = int(self.displacement.largest.argmax()) if len(self.displacement.largest) else 0
+        lines = [self._line("displacement", self.displacement, spot, unit.length, f"particle {spot}")]
+        for entry in self.forces:
+            for name, found in entry["columns"].items():
+                if name not in ("force", "moment") or not len(found.largest):
+                    continue
+                kind = unit.of(KINDS[entry["kind"]].outputs[name])
+                at, low = int(found.largest.argmax()), int(found.smallest.argmin())
+                lines.append(self._line(f"{entry['name'] or entry['kind']} {name}", found, at, kind, f"element {at}"))
+                if found.smallest[low] < 0.0:
+                    case = self.cases[found.smallest_case[low]]
+                    lines.append(f"  smallest {found.smallest[low]:.5g} {kind} at element {low} in {case}")
+        if len(self.particles):
+            at = int(self.reaction.largest.argmax())
+            lines.append(self._line("reaction", self.reaction, at, unit.force, f"particle {self.particles[at]}"))
+        return lines
+
+    def _line(self, what: str, found: Extremes, at: int, unit: str, where: str) -> str:
+        return f"{what}: largest {found.largest[at]:.5g} {unit} at {where} in {self.cases[found.largest_case[at]]}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain lists and numbers, by the names of the HTTP answer; cases by name."""
+        forces = []
+        for entry in self.forces:
+            columns = {name: self._plain(found) for name, found in entry["columns"].items()}
+            forces.append({**entry, "columns": columns})
+        return {
+            "cases": list(self.cases),
+            "displacement": self._plain(self.displacement),
+            "forces": forces,
+            "reactions": {"particles": self.particles.tolist(), "force": self._plain(self.reaction)},
+        }
+
+    def _plain(self, found: Extremes) -> dict[str, list[Any]]:
+        return {
+            "smallest": found.smallest.tolist(),
+            "smallest_case": [self.cases[i] for i in found.smallest_case],
+            "largest": found.largest.tolist(),
+            "largest_case": [self.cases[i] for i in found.largest_case],
+        }
+
+
+Shown = tuple[Sequence[Mapping[str, Any]], Mapping[str, Any], Floats]
+"""Of a case: its forces and reactions as a result has them, and the displacements (n, 3) [length]."""
+
+
+def envelope(cases: Mapping[str, Shown], units: Units) -> Envelope:
+    """The envelope of cases by their names; at least one."""
+    first, held, _ = next(iter(cases.values()))
+    moved = np.array([np.linalg.norm(displacements, axis=1) for _, _, displacements in cases.values()])
+    reactions = np.array([np.linalg.norm(_vectors(found), axis=1) for _, found, _ in cases.values()])
+    forces = []
+    for number, entry in enumerate(first):
+        columns = {}
+        for name in KINDS[entry["kind"]].outputs:
+            found = [_sizes(own[number].get(name)) for own, _, _ in cases.values()]
+            whole = [values for values in found if values is not None]
+            if len(whole) == len(found) and len({len(values) for values in whole}) == 1:
+                columns[name] = Extremes.of(np.array(whole))
+        forces.append({"name": entry["name"], "kind": entry["kind"], "columns": columns})
+    particles = np.asarray(held["particles"], dtype=np.int64)
+    return Envelope(tuple(cases), Extremes.of(moved), tuple(forces), particles, Extremes.of(reactions), units)
+
+
+def _vectors(reactions: Mapping[str, Any]) -> Floats:
+    return np.asarray(reactions["force"], dtype=float).reshape(-1, 3)
+
+
+def _sizes(column: Any) -> Floats | None:
+    """A column of numbers, or the sizes of vectors; None where there is none."""
+    if column is None:
+        return None
+    values = np.asarray(column, dtype=float)
+    return np.linalg.norm(values, axis=1) if values.ndim == 2 else values

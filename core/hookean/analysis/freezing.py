@@ -1,0 +1,250 @@
+"""Freezing: a form that was found becomes an elastic model that is in equilibrium where it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.analysis.at_rest import AtRest
+from hookean.analysis.matrices import Unknowns, factor
+from hookean.errors import InputError
+from hookean.forces import Block, Force
+from hookean.forces.springs import Springs
+from hookean.running.result import Result, Status, gather
+from hookean.running.run import relax_state
+from hookean.scene.load_cases import ElasticLine, Stages, named
+from hookean.scene.scene import Scene
+from hookean.solvers import solver
+from hookean.stability.equilibrium import assess
+from hookean.system.balance import balance
+from hookean.system.state import State
+from hookean.system.system import Part, System, compile
+
+Floats = NDArray[np.float64]
+
+STEPS = 12  # of Newton's method that take a form to rounding
+ELASTIC = ("anchor_spring", "bend", "gas", "hinge", "membrane", "beam", "power_law", "shell", "springs", "volume")
+"""Internal forces and supports that stay as they are, besides those that `FREEZERS` turns into others."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """An element line of a form, to be frozen: the force that it is of, where that is in the scene, the lengths and
+    tensions (m,) of its elements there, the rows of its block, and what it is to become."""
+
+    force: Force
+    pointer: str
+    length: Floats
+    tension: Floats
+    block: Block
+    wanted: ElasticLine
+
+    @property
+    def axial_stiffness(self) -> Floats:
+        """EA [force], one or one for each element."""
+        return np.asarray(self.wanted.axial_stiffness, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Frozen:
+    """An elastic model that is in equilibrium in a form.
+
+    `scene` has the elastic elements; it keeps the start shape, meshes and load cases of the scene it comes from.
+    `particles` (n, 3) [length] is the form, and `form` the result of finding it. `notes` are sentences on forces that
+    stay as they were although they are not elastic. `lengths` and `tensions` (m,) are those of the elastic lines in the
+    form, by the number of their force.
+    """
+
+    scene: Scene
+    particles: Floats
+    form: Result | None = None
+    notes: tuple[str, ...] = ()
+    lengths: dict[int, Floats] = field(default_factory=dict)
+    tensions: dict[int, Floats] = field(default_factory=dict)
+
+    def system(self, scene: Scene | None = None) -> tuple[System, State]:
+        """The elastic model compiled, and its state in the form."""
+        system = compile(scene or self.scene)
+        state = system.start()
+        state.x = self.particles.copy()
+        return system, state
+
+
+def freeze(scene: Scene) -> Frozen:
+    """Find the form of a scene and freeze it: elastic elements whose unstressed lengths give that very state.
+
+    Loads of load cases do not act. The form is taken to rounding by Newton steps, so that the frozen model does not
+    move. Springs keep stiffness and rest length, or take EA (`Scene.stages`): L0 = l EA / (EA + T), k = EA / L0, with
+    the length l and the tension T of the form. Lines of constant tension and springs without a rest length need EA.
+    Bending, hinges, shells and supports stay as they are; so do other forces, with a note.
+
+    Raises InputError where no form is found, EA is missing, or an element pushes harder than its EA.
+    Source: Schek, The force density method for form finding, 1974; Barnes, Form finding and analysis of tension
+    structures by dynamic relaxation, 1999.
+    """
+    stages = scene.stages or Stages()
+    system, state, form = _form(scene, stages)
+    forces, notes = list(scene.forces), list[str]()
+    lengths: dict[int, Floats] = {}
+    tensions: dict[int, Floats] = {}
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        element_forces = system.element_forces(group, state, memory) if group.cls.role == "internal" else None
+        for part in group.parts:
+            force = scene.forces[part.number] if part.number >= 0 else None
+            if force is None or group.cls.role == "load":
+                continue
+            block = group.of(part)
+            block.memory = memory[part.rows]
+            if group.cls.kind_name in FREEZERS and element_forces is not None:
+                columns = part.force.measure(block, state.x, element_forces[part.rows])
+                line = _line(scene, stages, part, block, columns)
+                forces[part.number] = FREEZERS[group.cls.kind_name](line)
+                lengths[part.number], tensions[part.number] = line.length, line.tension
+            elif group.cls.role == "internal" and group.cls.kind_name not in ELASTIC:
+                name = force.name or force.kind_name
+                notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
+    frozen = scene.replaced(forces=tuple(forces))
+    model = Frozen(frozen, state.x.copy(), form, tuple(notes), lengths, tensions)
+    other = compile(frozen)
+    if not np.array_equal(other.x, system.x):
+        raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")
+    return model
+
+
+def _form(scene: Scene, stages: Stages) -> tuple[System, State, Result]:
+    """The form of a scene: its system, its state and its result."""
+    system = compile(scene)
+    state = system.start()
+    if stages.form == "drawn":
+        found = balance(system, state)
+        said = "The form is the start shape."
+        return system, state, gather(system, state, found, None, Status.CONVERGED, said, "none", moving=False)
+    if system.films is not None:
+        said = "soap films keep their stress at any strain and cannot be frozen; use springs along warp and weft"
+        raise InputError("/forces", said)
+    result = relax_state(system, state, solver(scene.settings.solver))
+    if not result.converged:
+        raise InputError("model", f"no form was found: {result.message}")
+    sharpen(system, state)
+    found = balance(system, state)
+    rest = assess(system, state, found)
+    form = gather(system, state, found, rest, result.status, result.message, result.solver, moving=False)
+    return system, state, form
+
+
+def sharpen(system: System, state: State) -> None:
+    """Take a shape at rest to rounding by Newton steps, as long as they bring it nearer."""
+    if system.no_tangent() or system.contacts:
+        return
+    rest = AtRest.checked(system, state, True, "")
+    unknowns = Unknowns.of(system, state, rest.free)
+    left = system.evaluate(state)[0] * rest.free
+    for _ in range(STEPS):
+        found = factor(unknowns.tangent(system, state))
+        if found is None or not left.any():
+            return
+        before = state.x
+        state.x = before + unknowns.spread(found.solve(unknowns.gather(left)))
+        after = system.evaluate(state)[0] * rest.free
+        if not np.isfinite(after).all() or np.abs(after).max() >= np.abs(left).max():
+            state.x = before
+            return
+        left = after
+
+
+def _line(scene: Scene, stages: Stages, part: Part, block: Block, columns: dict[str, Floats]) -> Line:
+    wanted = ElasticLine()
+    for name, given in stages.freeze.items():
+        if part.number in named(scene, name):
+            wanted = given
+    return Line(part.force, f"/forces/{part.number}", columns["length"], columns["force"], block, wanted)
+
+
+def _place(force: Force) -> dict[str, object]:
+    """The fields that say where a force along lines is."""
+    found = {n: getattr(force, n) for n in ("particles", "lines", "mesh") if getattr(force, n, None) is not None}
+    if getattr(force, "mesh", None) is not None:
+        found["edges"] = getattr(force, "edges", "all")
+    return found
+
+
+def frozen_springs(line: Line) -> Force:
+    """Springs with the rest lengths that they have now, or with EA and those that keep their tension."""
+    p = line.block.parameters
+    rest = p[:, 2] * p[:, 3] + line.block.memory[:, 0]
+    if line.wanted.axial_stiffness is None:
+        if (rest <= 0.0).any():
+            raise _missing(line, "have no rest length")
+        stiffness = p[:, 0]
+    else:
+        stiffness, rest = elastic(line.axial_stiffness, line.length, line.tension, line.pointer)
+    lower = np.maximum(p[:, 5], rest) if line.wanted.tension_only else p[:, 5]
+    return Springs(
+        name=line.force.name,
+        **_place(line.force),  # type: ignore[arg-type]
+        stiffness=stiffness,
+        damping=p[:, 1],
+        rest_length=rest,
+        upper_cutoff=p[:, 4],
+        lower_cutoff=lower,
+        yield_extension=p[:, 6],
+    )
+
+
+def frozen_tension(line: Line) -> Force:
+    """Lines of constant tension as springs with EA."""
+    if line.wanted.axial_stiffness is None:
+        raise _missing(line, "keep their tension at any length")
+    stiffness, rest = elastic(line.axial_stiffness, line.length, line.tension, line.pointer)
+    lower = rest if line.wanted.tension_only else 0.0
+    place = _place(line.force)
+    return Springs(name=line.force.name, **place, stiffness=stiffness, rest_length=rest, lower_cutoff=lower)  # type: ignore[arg-type]
+
+
+def elastic(given: Floats, length: Floats, tension: Floats, pointer: str) -> tuple[Floats, Floats]:
+    """Stiffness [force/length] and rest length [length] of elements of EA (one, or m) [force] with a tension (m,) at
+    their length (m,)."""
+    count = len(tension)
+    if given.ndim and len(given) != count:
+        said = f"{len(given)} values of axial_stiffness for {count} elements; give one value or one for each"
+        raise InputError(pointer, said)
+    ea = np.broadcast_to(given, (count,))
+    if (ea + tension <= 0.0).any():
+        spot = int(np.argmax(ea + tension <= 0.0))
+        said = f"element {spot} pushes with {-tension[spot]:.4g}, more than its axial stiffness {ea[spot]:.4g}"
+        raise InputError(pointer, f"{said}; give a larger one")
+    rest = length * ea / (ea + tension)
+    if (rest <= 0.0).any():
+        spot = int(np.argmin(rest))
+        raise InputError(pointer, f"element {spot} has zero length in the form; move its ends apart")
+    return ea / rest, rest
+
+
+def _missing(line: Line, why: str) -> InputError:
+    name = line.force.name or line.force.kind_name
+    example = f'"stages": {{"freeze": {{"{name}": {{"axial_stiffness": 1e5}}}}}}'
+    said = f"elements of {name} {why}; give their EA, as in {example}"
+    return InputError(line.pointer, said)
+
+
+FREEZERS: dict[str, Callable[[Line], Force]] = {"springs": frozen_springs, "constant_tension": frozen_tension}
+"""By the kind of a force: what makes it elastic."""
+
+
+def prestressed(frozen: Frozen, factor: float) -> Scene:
+    """The elastic scene with the tensions of the form times a factor: lengths l stay, L0 = l EA / (EA + factor T)."""
+    if factor == 1.0:
+        return frozen.scene
+    forces = list(frozen.scene.forces)
+    for number, tension in frozen.tensions.items():
+        force, length = forces[number], frozen.lengths[number]
+        assert isinstance(force, Springs)
+        ea = np.asarray(force.stiffness) * np.asarray(force.rest_length)
+        stiffness, rest = elastic(ea, length, factor * tension, f"/forces/{number}")
+        slack = np.asarray(force.lower_cutoff) >= np.asarray(force.rest_length)
+        lower = np.where(slack, rest, force.lower_cutoff)
+        forces[number] = force.replaced(stiffness=stiffness, rest_length=rest, lower_cutoff=lower)
+    return frozen.scene.replaced(forces=tuple(forces))

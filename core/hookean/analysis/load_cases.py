@@ -1,0 +1,185 @@
+"""Load cases and combinations: the elastic model of a form under each of them, each on its own and from the form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.analysis.envelope import Envelope, envelope
+from hookean.analysis.freezing import Frozen, freeze, prestressed
+from hookean.analysis.load_factors import scaled
+from hookean.errors import InputError
+from hookean.forces import KINDS, Force
+from hookean.forces.springs import Springs
+from hookean.running.result import Result
+from hookean.running.run import relax_state
+from hookean.scene.load_cases import PERMANENT, PRESTRESS, LoadCase, case_loads, named
+from hookean.scene.scene import Scene
+from hookean.solvers import solver
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+IDLE = "loads that do not act"
+
+
+@dataclass(repr=False)
+class CaseResult:
+    """The elastic model under one load case or combination.
+
+    `factors` [-] on cases, prestress and permanent loads; `result` the shape in equilibrium with its forces and
+    reactions; `displacements` (n, 3) [length] from the form; `slack` by the number of a force the elements of it that
+    hang slack (tension-only ones shorter than their rest length).
+    """
+
+    name: str
+    factors: dict[str, float]
+    result: Result
+    displacements: Floats
+    slack: dict[int, Ints] = field(default_factory=dict)
+
+    @property
+    def slack_count(self) -> int:
+        """How many elements are slack."""
+        return sum(len(rows) for rows in self.slack.values())
+
+    def summary(self) -> list[str]:
+        """A few lines: factors, status, largest displacement, slack elements, forces, reactions."""
+        unit, far = self.result.units.length, np.linalg.norm(self.displacements, axis=1)
+        moved = f"moved by up to {far.max(initial=0.0):.4g} {unit}, at particle {int(far.argmax()) if len(far) else 0}"
+        given = ", ".join(f"{factor:g} x {name}" for name, factor in self.factors.items())
+        lines = [f"{given}: {self.result.status}, {self.result.stability}", moved]
+        lines += [f"{self.slack_count} elements are slack"] if self.slack_count else []
+        return [*lines, *self.result.summary()[1:]]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain lists and numbers, by the names of the HTTP answer."""
+        return {
+            "name": self.name,
+            "factors": self.factors,
+            "result": self.result.to_dict(),
+            "displacements": self.displacements.tolist(),
+            "slack": [{"force": number, "elements": rows.tolist()} for number, rows in self.slack.items()],
+        }
+
+
+@dataclass(repr=False)
+class LoadCases:
+    """A form and its elastic model under load cases and combinations, by their names, with their envelope."""
+
+    frozen: Frozen
+    cases: dict[str, CaseResult]
+
+    @property
+    def form(self) -> Result:
+        """The result of finding the form."""
+        assert self.frozen.form is not None
+        return self.frozen.form
+
+    @property
+    def envelope(self) -> Envelope:
+        """The extremes of all cases, and which case has each."""
+        shown = {n: (c.result.forces, c.result.reactions, c.displacements) for n, c in self.cases.items()}
+        return envelope(shown, self.form.units)
+
+    def summary(self) -> list[str]:
+        """Some lines for each case."""
+        return [line for case in self.cases.values() for line in (case.name, *(f"  {s}" for s in case.summary()))]
+
+    def __repr__(self) -> str:
+        return "\n".join(["Load cases", *(f"  {line}" for line in self.summary())])
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain lists and numbers, by the names of the HTTP answer."""
+        return {
+            "form": self.form.to_dict(),
+            "notes": list(self.frozen.notes),
+            "cases": [case.to_dict() for case in self.cases.values()],
+            "envelope": self.envelope.to_dict(),
+            "units": self.form.units.model_dump(),
+        }
+
+
+def load_cases(scene: Scene, names: Sequence[str] | None = None, *, executor: Executor | None = None) -> LoadCases:
+    """Find the form of a scene, freeze it, and put the elastic model under its load cases and combinations.
+
+    Each case starts from the form and depends on nothing else: the same bits in any order, and on any executor.
+
+    - `scene`: A scene with `load_cases`, and if wanted `combinations` and `stages`.
+    - `names`: Which load cases and combinations; default: all.
+    - `executor`: Where the cases are solved side by side, such as a ProcessPoolExecutor; default: one after another.
+
+    Raises InputError for an unknown name, a scene without load cases, or a form that cannot be frozen.
+    """
+    chosen = wanted(scene, names)
+    frozen = freeze(scene)
+    solve = partial(solve_case, frozen)
+    found = executor.map(solve, chosen) if executor is not None else map(solve, chosen)
+    return LoadCases(frozen, dict(zip(chosen, found, strict=True)))
+
+
+def wanted(scene: Scene, names: Sequence[str] | None) -> list[str]:
+    """The names of all load cases and combinations of a scene, or those given; InputError where there are none."""
+    if not scene.load_cases and not scene.combinations:
+        said = 'the scene has none; add them, as in "load_cases": {"snow": {"forces": ["snow load"]}}'
+        raise InputError("/load_cases", said)
+    known = [*scene.load_cases, *scene.combinations]
+    given = [names] if isinstance(names, str) else known if names is None else names
+    for name in given:
+        if name not in known:
+            raise InputError("cases", f"{name!r} is not a load case or combination; the scene has {', '.join(known)}")
+    return list(dict.fromkeys(given))
+
+
+def factors(scene: Scene, name: str) -> dict[str, float]:
+    """The factors of a load case or combination on cases, prestress and permanent loads."""
+    if name in scene.load_cases:
+        return {name: 1.0}
+    return dict(scene.combinations[name])
+
+
+def case_scene(frozen: Frozen, name: str) -> Scene:
+    """The elastic scene of one load case or combination: its loads times their factors, other cases' loads idle."""
+    given = factors(frozen.scene, name)
+    scene = prestressed(frozen, given.get(PRESTRESS, 1.0))
+    later, acting = case_loads(scene), dict[int, float]()
+    for case, factor in given.items():
+        if case in (PRESTRESS, PERMANENT):
+            continue
+        for number in sorted({i for load in scene.load_cases[case].forces for i in named(scene, load)}):
+            acting[number] = acting.get(number, 0.0) + factor * scene.load_cases[case].factor
+    forces = list(scene.forces)
+    for i, force in enumerate(forces):
+        if i in later and i not in acting:
+            forces[i] = force.replaced(name=IDLE)
+        elif KINDS[force.kind_name].role == "load":
+            forces[i] = scaled(force, acting[i] if i in acting else given.get(PERMANENT, 1.0))
+    idle = {IDLE: LoadCase(forces=(IDLE,))} if any(i not in acting for i in later) else {}
+    return scene.replaced(forces=tuple(forces), load_cases=idle, combinations={}, stages=None)
+
+
+def solve_case(frozen: Frozen, name: str) -> CaseResult:
+    """The elastic model under one load case or combination, from the form."""
+    scene = case_scene(frozen, name)
+    system, state = frozen.system(scene)
+    result = relax_state(system, state, solver(scene.settings.solver))
+    for i, force in enumerate(frozen.scene.forces):
+        result.forces[i]["name"] = force.name  # idle loads have another one meanwhile
+    rows = {i: slack_elements(force, result.forces[i]) for i, force in enumerate(scene.forces)}
+    slack = {i: some for i, some in rows.items() if len(some)}
+    given = factors(frozen.scene, name)
+    return CaseResult(name, given, result, result.particles - frozen.particles, slack)
+
+
+def slack_elements(force: Force, columns: Mapping[str, Any]) -> Ints:
+    """The elements of a force that hang slack: springs shorter than their lower cutoff. `columns` of its result."""
+    if not isinstance(force, Springs) or "length" not in columns:
+        return np.zeros(0, np.int64)
+    length, lower = np.asarray(columns["length"]), np.asarray(force.lower_cutoff)
+    return np.flatnonzero((lower > 0.0) & (length < lower))

@@ -1,0 +1,32 @@
+"""Loads times a factor: each load has fields that its force is proportional to, in units of force."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+
+from hookean.forces import Force
+
+
+def magnitudes(cls: type[Force]) -> list[str]:
+    """The fields of a load that its force is proportional to: those whose unit begins with force."""
+    found = []
+    for name, field in cls.model_fields.items():
+        units = re.findall(r"\[([^\]]*)\]", field.description or "")
+        if any(unit.startswith("force") for unit in units):
+            found.append(name)
+    return found
+
+
+def scaled(load: Force, factor: float) -> Force:
+    """A load times a factor; the load itself for the factor 1."""
+    if factor == 1.0:
+        return load
+    changed: dict[str, Any] = {}
+    for name in magnitudes(type(load)):
+        given = getattr(load, name)
+        if given is not None:
+            changed[name] = factor * (np.asarray(given) if isinstance(given, np.ndarray) else float(given))
+    return load.replaced(**changed)

@@ -1,0 +1,236 @@
+"""Columns of forces as variables: their values, and derivatives of what a force says by them.
+
+Derivatives come from differences of the compiled kernel with all elements changed at once, so every force has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.errors import InputError
+from hookean.forces.base import PLACES, Block, Force
+from hookean.running.patch import changed_forces
+from hookean.scene.scene import Scene
+from hookean.system.system import Group, Part, System
+from hookean.system.weld import element_columns
+
+if TYPE_CHECKING:
+    from hookean.designing.problem import Variable
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+STEP = 1e-5  # of a value, and of the mean of its column: the error is its square, and rounding 1e-11
+AXES = {"x": 0, "y": 1, "z": 2}
+
+
+@dataclass
+class Entries:
+    """Numbers (m, c) of which some vary: `tie` (m, c) has the unknown of each, -1 where it keeps its value."""
+
+    values: Floats
+    tie: Ints
+
+    @property
+    def count(self) -> int:
+        """How many unknowns there are."""
+        return int(self.tie.max(initial=-1)) + 1
+
+    @property
+    def start(self) -> Floats:
+        """The mean value (count,) of the entries of each unknown."""
+        kept = self.tie >= 0
+        sums = np.bincount(self.tie[kept], self.values[kept], self.count)
+        return np.asarray(sums / np.bincount(self.tie[kept], minlength=self.count))
+
+    def with_values(self, unknowns: Floats) -> Floats:
+        """All numbers (m, c), those that vary with these values (count,)."""
+        return np.where(self.tie >= 0, unknowns[np.maximum(self.tie, 0)], self.values)
+
+
+def tied(variable: Variable, rows: int, columns: Ints, width: int, pointer: str) -> Ints:
+    """The unknown of each of (rows, width) numbers, those of `columns` varying."""
+    groups: list[Ints]
+    if variable.tie == "each":
+        groups = [np.array([row]) for row in range(rows)]
+    elif variable.tie == "all":
+        groups = [np.arange(rows)]
+    else:
+        groups = [np.asarray(group) for group in variable.tie]
+    found = np.full((rows, width), -1)
+    for i, group in enumerate(groups):
+        if not len(group) or group.max() >= rows:
+            given = "no elements" if not len(group) else f"element {int(group.max())}"
+            raise InputError(f"{pointer}/tie/{i}", f"{given} given; there are {rows}, counted from 0")
+        found[np.ix_(group, columns)] = i * len(columns) + np.arange(len(columns))
+    return found
+
+
+class Column:
+    """A variable that is a column of a force: `entries` with a row for each element, or with all numbers of a column
+    that the force has as a whole in one row."""
+
+    def __init__(self, variable: Variable, system: System, pointer: str) -> None:
+        self.variable, self.pointer = variable, pointer
+        self.number = numbered(system.scene, variable.force, f"{pointer}/force")
+        self.group, self.part = placed(system, self.number, f"{pointer}/force")
+        given = self._given(system)
+        self.elements = len(system.places.recompile(self.number, self.force).indices)
+        vector = dict(element_columns(type(self.force))).get(variable.field)
+        if self.group.block.rooms and vector is None:
+            said = f"{variable.field} of {self.force.kind_name} cannot vary; it is fixed geometry"
+            raise InputError(f"{pointer}/field", said)
+        self.given_shape = given.shape
+        self.by_element = vector is not None and self._by_element(system, given, vector)
+        wide = self.by_element and (vector or given.ndim == 2)
+        columns = np.array([AXES[a] for a in variable.axes]) if wide else np.array([0])
+        if self.by_element:
+            rows = 1 if variable.tie == "all" and given.ndim == int(bool(vector)) else self.elements
+            values = np.array(
+                np.broadcast_to(
+                    given if given.ndim == 2 else given.reshape(-1, 3 if wide else 1), (rows, 3 if wide else 1)
+                )
+            )
+            tie = tied(variable, rows, columns, values.shape[1], pointer)
+        else:
+            values = given.reshape(1, -1).copy()
+            tie = np.zeros(values.shape, np.int64) if variable.tie == "all" else np.arange(values.size).reshape(1, -1)
+        self.entries = Entries(values, tie)
+        self.shape = shape_of(len(columns), self.entries.count, wide)
+        self.lower = self._least(system)
+
+    @property
+    def force(self) -> Force:
+        """The force as it is now."""
+        return self.part.force
+
+    def _given(self, system: System) -> Floats:
+        """The column's values as they are given, or as the force works them out."""
+        field, force = self.variable.field, self.force
+        known = [n for n in type(force).model_fields if n not in ("kind", "name", *PLACES)]
+        if field not in known:
+            said = f"{force.kind_name} has no column {field!r}; it has {', '.join(known)}"
+            raise InputError(f"{self.pointer}/field", said)
+        value = getattr(force, field)
+        if value is None and field in self.group.block.names:
+            value = system.places.recompile(self.number, force).parameters[:, self.group.block.names.index(field)]
+        if value is None:
+            raise InputError(f"{self.pointer}/field", f"{field} has no value to start from; give it one")
+        if isinstance(value, bool | str) or not isinstance(value, int | float | np.ndarray):
+            raise InputError(f"{self.pointer}/field", f"{field} is not a number; only numbers vary")
+        return np.asarray(value, dtype=np.float64)
+
+    def _by_element(self, system: System, given: Floats, vector: bool) -> bool:
+        """Whether the column takes a row for each element."""
+        if given.ndim == 2:
+            return given.shape == (self.elements, 3)
+        if given.ndim == 1 and not vector:
+            return len(given) == self.elements
+        rows = np.broadcast_to(given, (self.elements, *given.shape))
+        return self._accepts(system, rows)
+
+    def _accepts(self, system: System, value: Any) -> bool:
+        try:
+            changed_forces(system.scene, {str(self.number): {self.variable.field: value}})
+        except InputError:
+            return False
+        return True
+
+    def _least(self, system: System) -> float:
+        """0 where the column takes no negative numbers, else -inf."""
+        negative = self._field(-1.0 - np.abs(self.entries.values))
+        return -np.inf if self._accepts(system, negative) else 0.0
+
+    def _field(self, values: Floats) -> Any:
+        """Numbers (m, c) in the shape that the field takes."""
+        if not self.by_element:
+            whole = values.reshape(self.given_shape)
+            return whole if whole.ndim else float(whole)
+        if values.shape[1] == 3:
+            return values if len(self.given_shape) == 2 or len(values) > 1 or self.variable.tie != "all" else values[0]
+        return values[:, 0] if len(values) > 1 or self.given_shape else float(values[0, 0])
+
+    def changed(self, scene: Scene, unknowns: Floats) -> Force:
+        """The force with these values."""
+        return self._with(scene, self.entries.with_values(unknowns))
+
+    def _with(self, scene: Scene, values: Floats) -> Force:
+        force: Force = changed_forces(scene, {str(self.number): {self.variable.field: self._field(values)}})[
+            self.number
+        ]
+        return force
+
+    def differences(self, system: System, give: Callable[[Force, Block], Floats]) -> Iterator[tuple[Ints, Floats]]:
+        """Derivatives (m, ...) of what `give` says of each element, with the unknown (m,) by which, -1 for none: a pair
+        for each number that an element has in the column."""
+        values, tie = self.entries.values, self.entries.tie
+        for column in range(values.shape[1]) if self.by_element else ():
+            if (tie[:, column] >= 0).any():
+                steps = STEP * np.maximum(np.abs(values[:, column]), np.abs(values[:, column]).mean() or 1.0)
+                change = np.zeros(values.shape)
+                change[:, column] = steps
+                slope, unknown = self.slope(system, change, give), np.broadcast_to(tie[:, column], self.elements)
+                by = np.broadcast_to(steps, self.elements)[self.part.inputs]
+                yield unknown[self.part.inputs], slope / by.reshape(-1, *[1] * (slope.ndim - 1))
+        for number in range(self.entries.count) if not self.by_element else ():
+            step = self.step(number)
+            slope = self.slope(system, np.where(tie == number, step, 0.0), give)
+            yield np.full(len(slope), number), slope / step
+
+    def step(self, unknown: int) -> float:
+        """A change of one unknown, small for derivatives."""
+        mean = float(np.abs(self.entries.start).mean()) or 1.0
+        return STEP * max(abs(float(self.entries.start[unknown])), mean)
+
+    def slope(self, system: System, change: Floats, give: Callable[[Force, Block], Floats]) -> Floats:
+        """By how much what `give` says changes with a change (m, c) of the values: differences of second order, on one
+        side where the other is not allowed."""
+        values = self.entries.values
+        both = (values - change >= self.lower).all()
+        ways = ((0.5, 1.0), (-0.5, -1.0)) if both else ((-1.5, 0.0), (2.0, 1.0), (-0.5, 2.0))
+        total: Any = 0.0
+        for weight, way in ways:
+            force = self._with(system.scene, values + way * change)
+            total = total + weight * give(force, compiled(system, self.number, force))
+        return np.asarray(total)
+
+
+def shape_of(columns: int, count: int, wide: Any) -> tuple[int, ...]:
+    """The shape of a variable's values in an answer."""
+    return (count // columns, columns) if wide and columns > 1 else (count,)
+
+
+def compiled(system: System, number: int, force: Force) -> Block:
+    """The block of a changed force, rows that met particles alone, in its own room."""
+    fresh = system.places.recompile(number, force)
+    return fresh.some(np.flatnonzero((fresh.indices >= 0).all(axis=1)))
+
+
+def placed(system: System, number: int, pointer: str) -> tuple[Group, Part]:
+    """The elements of a force."""
+    for group in system.groups:
+        for part in group.parts:
+            if part.number == number:
+                return group, part
+    raise InputError(pointer, f"force {number} is a contact; it has no columns that can vary")
+
+
+def numbered(scene: Scene, wanted: Any, pointer: str) -> int:
+    """The number of the force of a name or number; InputError where there is none."""
+    names = [i for i, force in enumerate(scene.forces) if force.name == wanted and wanted != ""]
+    if len(names) == 1:
+        return names[0]
+    kinds = [i for i, force in enumerate(scene.forces) if force.kind_name == wanted]
+    if not names and len(kinds) == 1:
+        return kinds[0]
+    if not names and isinstance(wanted, int) and 0 <= wanted < len(scene.forces):
+        return wanted
+    if len(names) > 1 or len(kinds) > 1:
+        raise InputError(pointer, f"{len(names) or len(kinds)} forces are called {wanted!r}; give the number of one")
+    known = ", ".join(repr(force.name or force.kind_name) for force in scene.forces) or "none"
+    raise InputError(pointer, f"no force is called {wanted!r}; there are {known}")

@@ -1,0 +1,205 @@
+"""The equilibrium of a scene as its variables change, with the tangent there in factors.
+
+At rest f(x, u) = 0 on the free axes. A change du of the unknowns moves held particles by H du and the others by dx,
+K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films move across themselves alone.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.forces.base import lengths
+from hookean.linear.sparse_factors import Factor, Factors
+from hookean.running.result import Result
+from hookean.running.run import relax_state
+from hookean.solvers import solver
+from hookean.system.state import State
+from hookean.system.system import Group, System
+
+Floats = NDArray[np.float64]
+
+TIGHT = 1e-11  # residual [-] to which shapes are brought
+SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
+SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the same
+POLISH = 6  # exact steps after that, while each leaves less
+
+
+class Equilibrium:
+    """A shape at rest: its state, the result of the run that found it, and its tangent stiffness.
+
+    `tangent` (3n, 3n) is sparse, of all axes; `basis` (3n, r) the motions that are free.
+    """
+
+    def __init__(self, system: System, state: State, result: Result) -> None:
+        self.system, self.state, self.result = system, state, result
+        self.tangent = tangent(system, state)
+        self.basis = _basis(system, state)
+        self._factor: Factor | Any = None
+        self.yielded: list[str] = []  # kinds of forces that have yielded on the way here
+
+    @property
+    def x(self) -> Floats:
+        """Positions (n, 3) [length]."""
+        return self.state.x
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether forces come from an energy, so that the tangent is symmetric."""
+        return all(group.cls.conservative or group.cls.constant for group in self.system.groups)
+
+    def solve(self, b: Floats, *, transposed: bool = False) -> Floats:
+        """K^-1 b, or K^-T b, (3n,) on the free motions; 0 on the others. NaN where K is singular."""
+        if self._factor is None:
+            self._factor = self._factored()
+        right = self.basis.T @ b
+        if not len(right):
+            return np.zeros(len(b))
+        if isinstance(self._factor, Factor):
+            found = self._factor.solve(right)
+        elif self._factor is False:
+            found = np.full(len(right), np.nan)
+        else:
+            found = self._factor.solve(right, trans="T" if transposed else "N")
+        return np.asarray(self.basis @ found)
+
+    def _factored(self) -> Any:
+        reduced = (self.basis.T @ self.tangent @ self.basis).tocsc()
+        if not self.symmetric:
+            from scipy.sparse.linalg import splu
+
+            try:
+                return splu(reduced)
+            except RuntimeError:  # singular
+                return False
+        from scipy.sparse import tril
+
+        lower = tril(reduced, format="csc")
+        lower.sort_indices()
+        factor = Factors(lower.indices.astype(np.int32), lower.indptr.astype(np.int32)).factor(lower.data)
+        return False if factor is None else factor
+
+
+def settle(system: System, state: State) -> Equilibrium:
+    """Bring a state to rest with the scene's solver, and to the last digit by exact steps."""
+    settings = system.scene.settings
+    tight = settings.replaced(tolerance=min(settings.tolerance, TIGHT), position_tolerance=None)
+    before = [memory.copy() for memory in state.memory]
+    system.scene = system.scene.replaced(settings=tight)
+    result = relax_state(system, state, solver(settings.solver))
+    system.scene = system.scene.replaced(settings=settings)
+    found = _polished(system, state, result)
+    found.yielded = _yielded(system, state, before)
+    return found
+
+
+def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
+    """Kinds of forces that were softer on the way to a shape than they are back from it."""
+    found = []
+    for group, now, then in zip(system.groups, state.memory, before, strict=True):
+        if not np.array_equal(now, then):
+            ways = [system.stiffness_blocks(group, state, memory) for memory in (now, then)]
+            if np.abs(ways[0] - ways[1]).max(initial=0.0) > SOFTER * np.abs(ways[0]).max(initial=0.0):
+                found.append(group.cls.kind_name)
+    return found
+
+
+def _polished(system: System, state: State, result: Result) -> Equilibrium:
+    """Exact steps, while each leaves less out of balance."""
+    found = Equilibrium(system, state, result)
+    left = _left(system, state)
+    for _ in range(POLISH):
+        step = found.solve(left.ravel()).reshape(-1, 3)
+        size = lengths(left).max(initial=0.0)
+        if not np.isfinite(step).all() or size == 0.0:
+            break
+        before = state.x.copy()
+        state.x = before + step
+        now = _left(system, state)
+        if lengths(now).max(initial=0.0) >= 0.5 * size:
+            state.x = before
+            break
+        left = now
+        if lengths(step).max(initial=0.0) > SLIGHT * system.size:
+            found = Equilibrium(system, state, result)
+    result.particles = state.x.copy()
+    return found
+
+
+def _left(system: System, state: State) -> Floats:
+    """What is out of balance (n, 3) [force]."""
+    left = system.evaluate(state)[0] * state.free
+    if system.films is not None:
+        system.films.across(state.x, state.free, left)
+    return left
+
+
+def _basis(system: System, state: State) -> Any:
+    """The free motions (3n, r): free axes of particles that something holds; of films the axes that count."""
+    from scipy.sparse import csc_matrix
+
+    parts = system.components(state)
+    free = state.free.copy()
+    loose = np.flatnonzero(parts.label >= 0)
+    free[loose[~parts.joined[parts.label[loose]]]] = 0.0
+    n = len(free)
+    if system.films is None:
+        axes = np.flatnonzero(free.ravel() > 0.0)
+        return csc_matrix((np.ones(len(axes)), (axes, np.arange(len(axes)))), shape=(3 * n, len(axes)))
+    frames, counts = system.films.frames(state.x, free)
+    particle, rank = np.nonzero(counts > 0.0)
+    rows = (3 * particle[:, None] + np.arange(3)).ravel()
+    columns = np.repeat(np.arange(len(particle)), 3)
+    return csc_matrix((frames[particle, rank].ravel(), (rows, columns)), shape=(3 * n, len(particle)))
+
+
+def tangent(system: System, state: State) -> Any:
+    """-df/dx (3n, 3n) [force/length] as a sparse matrix, held axes included; of forces without an energy it is not
+    symmetric."""
+    from scipy.sparse import coo_matrix, csc_matrix
+
+    n = len(state.x)
+    total = csc_matrix((3 * n, 3 * n))
+    for group, memory in system.elements(state.x, state.memory):
+        if group.cls.constant or not len(group.block.indices):
+            continue
+        blocks = (
+            system.stiffness_blocks(group, state, memory)
+            if group.cls.conservative
+            else _slopes(system, group, state, memory)
+        )
+        axes = (3 * group.block.indices[:, :, None] + np.arange(3)).reshape(len(blocks), -1)
+        rows = np.broadcast_to(axes[:, :, None], blocks.shape)
+        columns = np.broadcast_to(axes[:, None, :], blocks.shape)
+        total = total + coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=total.shape).tocsc()
+    return total
+
+
+def _slopes(system: System, group: Group, state: State, memory: Floats) -> Floats:
+    """-df/dx of each element (m, 3 arity, 3 arity) by central differences of its forces, as it is."""
+    index = group.block.indices
+    count, arity = index.shape
+    blocks = np.zeros((count, 3 * arity, 3 * arity))
+    reach = np.ptp(state.x[index], axis=1).max(axis=1)
+    step = 1e-6 * np.where(reach > 0.0, reach, 1.0)
+    for corner in range(arity):
+        for axis in range(3):
+            sides = [
+                _moved(system, group, state, memory, corner, axis, sign * step).reshape(count, -1) for sign in (-1, 1)
+            ]
+            blocks[:, :, 3 * corner + axis] = (sides[0] - sides[1]) / (2.0 * step)[:, None]
+    return blocks
+
+
+def _moved(system: System, group: Group, state: State, memory: Floats, corner: int, axis: int, step: Floats) -> Floats:
+    """Forces of elements (m, arity, 3), each with one of its corners moved."""
+    from dataclasses import replace
+
+    index = group.block.indices
+    count, arity = index.shape
+    private = state.x[index].reshape(-1, 3).copy()
+    private[corner::arity, axis] += step
+    alone = replace(group.block, indices=np.arange(count * arity, dtype=np.int64).reshape(count, arity), plan=[])
+    return system.element_forces(Group(group.cls, alone, []), replace(state, x=private), memory)

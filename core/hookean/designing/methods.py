@@ -1,0 +1,125 @@
+"""The methods of a search, from SciPy: least squares by trust regions, L-BFGS-B, sequential quadratic programming."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.designing.answer import DesignStatus
+from hookean.designing.limits import AT_BOUND
+from hookean.designing.sensitivity import jacobian
+
+if TYPE_CHECKING:
+    from hookean.designing.search import Search
+
+Floats = NDArray[np.float64]
+
+
+class Stopped(Exception):
+    """The caller ended the search."""
+
+
+Ended = tuple[int, DesignStatus, str]
+"""Iterations, how it ended, and a sentence where there is more to say."""
+
+
+def _bounds(search: Search) -> tuple[Floats, Floats]:
+    unknowns = search.unknowns
+    return (unknowns.lower - unknowns.start) / search.scale, (unknowns.upper - unknowns.start) / search.scale
+
+
+def _least_squares(search: Search) -> Ended:
+    from scipy.optimize import least_squares
+
+    settings, (lower, upper) = search.problem.settings, _bounds(search)
+    wide = lower < upper
+    if not wide.all():  # what cannot vary is left out
+        upper = np.where(wide, upper, lower + AT_BOUND)
+    start = np.clip(np.zeros(search.unknowns.count), lower, upper)
+    found = least_squares(
+        search.residuals, start, search.slopes, bounds=(lower, upper), method="trf",
+        ftol=settings.tolerance, xtol=settings.tolerance, gtol=settings.tolerance * 1e-4,
+        max_nfev=settings.max_iterations,
+    )  # fmt: skip
+    ended = DesignStatus.MAX_ITERATIONS if found.status == 0 else DesignStatus.CONVERGED
+    return int(found.njev), ended, ""
+
+
+def _lbfgsb(search: Search) -> Ended:
+    from scipy.optimize import minimize
+
+    settings = search.problem.settings
+    found = minimize(
+        search.objective, np.zeros(search.unknowns.count), jac=search.gradient, method="L-BFGS-B",
+        bounds=list(zip(*_bounds(search), strict=True)),
+        options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12, "maxcor": 30,
+                 "maxfun": 20 * settings.max_iterations},
+    )  # fmt: skip
+    ended = DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED
+    return int(found.nit), ended, ""
+
+
+class Margins:
+    """Constraints as functions that SLSQP wants at least 0, or 0, in parts of the size of each value."""
+
+    def __init__(self, search: Search) -> None:
+        self.search = search
+        lower, upper = (np.concatenate(side) for side in zip(*search.limits, strict=True))
+        first = search.constraint_values(search.first)
+        size = np.concatenate([np.full(len(v), by) for v, by in zip(first, search.sizes, strict=True)])
+        equal = lower == upper
+        low, high = np.flatnonzero(np.isfinite(lower)), np.flatnonzero(np.isfinite(upper) & ~equal)
+        self.rows = np.concatenate([low, high])
+        self.limits = np.concatenate([lower[low], upper[high]])
+        self.scales = np.concatenate([1.0 / size[low], -1.0 / size[high]])
+        self.equal = equal[self.rows]
+        start = np.zeros(search.unknowns.count)
+        kept = self.slopes(start).any(axis=1) | (self.values(start) < 0.0)  # the others no unknown changes
+        self.rows, self.limits, self.scales, self.equal = (
+            each[kept] for each in (self.rows, self.limits, self.scales, self.equal)
+        )
+
+    def values(self, y: Floats) -> Floats:
+        """How far values are within their limits."""
+        values = np.concatenate(self.search.constraint_values(self.search.at(y)))
+        return np.asarray(self.scales * (values[self.rows] - self.limits))
+
+    def slopes(self, y: Floats) -> Floats:
+        """Their derivatives by scaled unknowns."""
+        search = self.search
+        quantities = [(c.quantity, f"/constraints/{i}") for i, c in enumerate(search.problem.constraints)]
+        found = jacobian(search.at(y), search.unknowns, quantities) * search.scale
+        return np.asarray(np.nan_to_num(self.scales[:, None] * found[self.rows]))
+
+    def given(self) -> list[dict[str, Any]]:
+        """As SciPy takes them."""
+        kinds = [("eq", self.equal), ("ineq", ~self.equal)]
+        return [
+            {"type": kind, "fun": lambda y, c=chosen: self.values(y)[c], "jac": lambda y, c=chosen: self.slopes(y)[c]}
+            for kind, chosen in kinds
+            if chosen.any()
+        ]
+
+
+def _slsqp(search: Search) -> Ended:
+    from scipy.optimize import minimize
+
+    settings, start = search.problem.settings, np.zeros(search.unknowns.count)
+    size = abs(search.objective(start)) or 1.0
+    found = minimize(
+        lambda y: search.objective(y) / size, start, jac=lambda y: search.gradient(y) / size, method="SLSQP",
+        bounds=list(zip(*_bounds(search), strict=True)), constraints=Margins(search).given() if search.limits else [],
+        options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3},
+    )  # fmt: skip
+    ended = DesignStatus.MAX_ITERATIONS if found.status == 9 else DesignStatus.CONVERGED
+    return int(found.nit), ended, ""
+
+
+METHODS: dict[str, Callable[[Search], Ended]] = {
+    "least_squares": _least_squares,
+    "l-bfgs-b": _lbfgsb,
+    "slsqp": _slsqp,
+}

@@ -1,0 +1,85 @@
+"""What a quantity of an equilibrium is, and what quantities share.
+
+A quantity has values (k,), their derivatives by all positions (k, 3n), and by the unknowns at fixed positions (k, u).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.values.columns import Model
+
+if TYPE_CHECKING:
+    from hookean.designing.equilibrium import Equilibrium
+    from hookean.designing.unknowns import Unknowns
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Slopes = tuple[Any, Any]
+"""Derivatives by positions (k, 3n) and by unknowns (k, u), sparse."""
+
+Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
+AXES = {"x": 0, "y": 1, "z": 2}
+
+
+class Quantity(Model):
+    """Base of all quantities."""
+
+    unit: ClassVar[str] = ""  # dimension of its values, see `Units.of`
+    kind_name: ClassVar[str] = ""  # the default of `kind`
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **given: Any) -> None:
+        super().__pydantic_init_subclass__(**given)
+        if "kind" in cls.model_fields:
+            cls.kind_name = str(cls.model_fields["kind"].default)
+
+    def values(self, found: Equilibrium, pointer: str) -> Floats:
+        """Its values (k,) at an equilibrium; InputError at the pointer where it does not fit the scene."""
+        raise TypeError(f"{type(self).__name__} does not define values()")
+
+    def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
+        """Their derivatives."""
+        raise TypeError(f"{type(self).__name__} does not define slopes()")
+
+
+def nothing(rows: int, columns: int) -> Any:
+
+    from scipy.sparse import csr_matrix
+
+    return csr_matrix((rows, columns))
+
+
+def matrix(rows: Any, columns: Any, values: Any, shape: tuple[int, int]) -> Any:
+
+    from scipy.sparse import coo_matrix
+
+    flat = [np.asarray(each).ravel() for each in (values, rows, columns)]
+    return coo_matrix((flat[0], (flat[1], flat[2])), shape=shape).tocsr()
+
+
+def combined(slopes: list[Slopes], weights: list[Floats]) -> Slopes:
+    """Sums of derivatives, the rows of each by weights."""
+    from scipy.sparse import diags
+
+    by_place = sum(diags(weight) @ slope[0] for slope, weight in zip(slopes, weights, strict=True))
+    by_unknown = sum(diags(weight) @ slope[1] for slope, weight in zip(slopes, weights, strict=True))
+    return by_place.tocsr(), by_unknown.tocsr()
+
+
+def summed(matrix: Any) -> Any:
+
+    from scipy.sparse import csr_matrix
+
+    return csr_matrix(matrix.sum(axis=0))
+
+
+def less_mean(matrix: Any) -> Any:
+    """Each row less the mean of all rows."""
+
+    from scipy.sparse import csr_matrix
+
+    return csr_matrix(matrix.toarray() - np.asarray(matrix.mean(axis=0)))

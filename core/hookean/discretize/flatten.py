@@ -1,0 +1,250 @@
+"""Flattening: a piece of a mesh laid into the plane with the least distortion.
+
+First triangle after triangle is turned into the plane, which is exact where the piece is developable. Then local and
+global steps take the sum of squared differences from rigid motions of all triangles, weighted by cotangents, to its
+minimum (as rigid as possible). Quads count by both of their diagonals, each with half of the weight.
+Source: Liu, Zhang, Xu, Gotsman and Gortler, A local/global approach to mesh parameterization, 2008.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hookean.discretize.meshes import as_mesh
+from hookean.errors import InputError
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+STEPS = 5000
+STILL = 1e-12  # of the size of the piece: a step that moves less is the last one
+
+
+@dataclass(frozen=True, eq=False)
+class Flat:
+    """A piece in the plane: `points` (n, 2) [length] of its vertices; `stretches` (t, 2) [-], of each triangle the
+    largest and the smallest ratio of lengths in the plane to those in space; `areas` (t,) [length^2] of the triangles,
+    those of quads with half of their area."""
+
+    points: Array
+    stretches: Array
+    areas: Array
+
+    @property
+    def distortion(self) -> float:
+        """The largest difference of a stretch from 1 [-]."""
+        return float(np.abs(self.stretches - 1.0).max(initial=0.0))
+
+    @property
+    def mean_distortion(self) -> float:
+        """The mean difference of the stretches from 1, weighted by area [-]."""
+        total = float(self.areas.sum())
+        return float((np.abs(self.stretches - 1.0).mean(axis=1) * self.areas).sum() / total) if total else 0.0
+
+
+def flatten(mesh: Any) -> Flat:
+    """Lay a piece of a mesh into the plane with the least distortion; developable pieces exactly.
+
+    The piece must be a disc: connected, with one boundary. Raises InputError where it is not, or a face has no area.
+    """
+    m = as_mesh(mesh)
+    faces = oriented(m.faces)
+    _check_disc(m.vertices, faces)
+    quad = faces[:, 2] != faces[:, 3]
+    first = np.concatenate([faces[:, [0, 1, 2]], faces[quad][:, [0, 2, 3]]])
+    other = np.concatenate([faces[quad][:, [0, 1, 3]], faces[quad][:, [1, 2, 3]]])
+    every = np.concatenate([first, other])
+    weights = np.concatenate([np.where(quad, 0.5, 1.0), np.full(len(every) - len(faces), 0.5)])
+    local = _local(m.vertices, every)
+    points = _unfolded(m.vertices, first)
+    points = _rigid(points, every, local, weights)
+    stretches, areas = _stretches(points, every, local)
+    return Flat(points, stretches, areas * weights)
+
+
+def oriented(faces: Index) -> Index:
+    """Faces (m, 4) that all run the same way round as the first one of their part; InputError where they cannot."""
+    faces = faces.copy()
+    sides: dict[tuple[int, int], list[int]] = {}
+    for number, face in enumerate(faces.tolist()):
+        for a, b in _sides(face):
+            sides.setdefault((min(a, b), max(a, b)), []).append(number)
+    seen = np.zeros(len(faces), bool)
+    for seed in range(len(faces)):
+        if seen[seed]:
+            continue
+        seen[seed] = True
+        queue = deque([seed])
+        while queue:
+            number = queue.popleft()
+            for a, b in _sides(faces[number].tolist()):
+                for near in sides[min(a, b), max(a, b)]:
+                    same = near != number and (a, b) in _sides(faces[near].tolist())
+                    if same and seen[near]:
+                        raise InputError(f"mesh/faces/{near}", "the piece is one-sided; cut it")
+                    if near != number and not seen[near]:
+                        seen[near] = True
+                        faces[near] = faces[near][[2, 1, 0, 0]] if same and _three(faces[near]) else faces[near]
+                        faces[near] = faces[near][::-1] if same and not _three(faces[near]) else faces[near]
+                        queue.append(near)
+    return faces
+
+
+def outline(faces: Index) -> Index:
+    """The vertices (k,) around a piece of faces (m, 4) that run one way round; InputError unless it has one
+    boundary."""
+    after: dict[int, int] = {}
+    directed = {side for face in faces.tolist() for side in _sides(face)}
+    for a, b in sorted(directed):
+        if (b, a) not in directed:
+            if a in after:
+                raise InputError("mesh/faces", f"the boundary touches itself at vertex {a}; cut the piece there")
+            after[a] = b
+    if not after:
+        raise InputError("mesh/faces", "the piece is closed; cut it open")
+    loop = [min(after)]
+    while (following := after[loop[-1]]) != loop[0]:
+        loop.append(following)
+    if len(loop) != len(after):
+        raise InputError("mesh/faces", "the piece has several boundaries; cut it from one to the other")
+    return np.array(loop)
+
+
+def _three(face: Any) -> bool:
+    return bool(face[2] == face[3])
+
+
+def _sides(face: list[int]) -> list[tuple[int, int]]:
+    corners = face[:3] if face[2] == face[3] else face
+    return list(zip(corners, [*corners[1:], corners[0]], strict=True))
+
+
+def _check_disc(vertices: Array, faces: Index) -> None:
+    """One part, one boundary, and no hole through it: V - E + F = 1."""
+    if not len(faces):
+        raise InputError("mesh/faces", "the piece has no faces")
+    outline(faces)
+    edges = {(min(s), max(s)) for face in faces.tolist() for s in _sides(face)}
+    used = len(np.unique(faces))
+    if used != len(vertices):
+        raise InputError("mesh/vertices", f"{len(vertices) - used} vertices belong to no face; remove them")
+    if used - len(edges) + len(faces) != 1:
+        raise InputError("mesh/faces", "the piece is not a disc; cut it so that it is connected and without handles")
+
+
+def _local(vertices: Array, triangles: Index) -> Array:
+    """Corners (t, 3, 2) of triangles in planes of their own."""
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    along = np.linalg.norm(b - a, axis=1)
+    height = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    if (height <= 1e-14 * np.maximum(along, 1e-300) * np.linalg.norm(c - a, axis=1)).any():
+        spot = triangles[int(np.argmin(height))]
+        raise InputError("mesh/faces", f"the face at vertices {', '.join(map(str, spot))} has no area; remove it")
+    x = ((b - a) * (c - a)).sum(axis=1) / along
+    local = np.zeros((len(triangles), 3, 2))
+    local[:, 1, 0] = along
+    local[:, 2] = np.stack([x, height / along], axis=1)
+    return local
+
+
+def _unfolded(vertices: Array, triangles: Index) -> Array:
+    """Each triangle turned into the plane of the one before it, breadth first; a vertex lies where it comes first."""
+    sides: dict[tuple[int, int], list[int]] = {}
+    for number, triangle in enumerate(triangles.tolist()):
+        for i in range(3):
+            a, b = triangle[i], triangle[(i + 1) % 3]
+            sides.setdefault((min(a, b), max(a, b)), []).append(number)
+    points = np.zeros((len(vertices), 2))
+    known = np.zeros(len(vertices), bool)
+    a, b, _ = triangles[0].tolist()
+    points[b, 0] = np.linalg.norm(vertices[b] - vertices[a])
+    known[[a, b]] = True
+    queue, seen = deque([0]), {0}
+    while queue:
+        triangle = triangles[queue.popleft()].tolist()
+        for i in range(3):
+            a, b, c = (triangle[(i + j) % 3] for j in range(3))
+            if known[a] and known[b] and not known[c]:
+                points[c] = _third(vertices, points, a, b, c)
+                known[c] = True
+        for i in range(3):
+            a, b = triangle[i], triangle[(i + 1) % 3]
+            for near in sides[min(a, b), max(a, b)]:
+                if near not in seen:
+                    seen.add(near)
+                    queue.append(near)
+    return points
+
+
+def _third(vertices: Array, points: Array, a: int, b: int, c: int) -> Array:
+    """Where c lies left of a-b in the plane."""
+    along, across = vertices[b] - vertices[a], vertices[c] - vertices[a]
+    size = np.linalg.norm(along)
+    x, y = across @ along / size, np.linalg.norm(np.cross(along, across)) / size
+    way = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
+    return np.asarray(points[a] + x * way + y * np.array([-way[1], way[0]]))
+
+
+def _rigid(points: Array, triangles: Index, local: Array, weights: Array) -> Array:
+    """Local and global steps from a start in the plane."""
+    import scipy.sparse as sparse
+    from scipy.sparse.linalg import splu
+
+    after = triangles[:, [1, 2, 0]]
+    edges = local[:, [1, 2, 0]] - local
+    # the cotangent of the corner across from each side
+    out, back = local - local[:, [2, 0, 1]], local[:, [1, 2, 0]] - local[:, [2, 0, 1]]
+    turn = np.abs(out[..., 0] * back[..., 1] - out[..., 1] * back[..., 0])
+    cotangent = (out * back).sum(axis=2) / turn * weights[:, None]
+    row, column, value = triangles.ravel(), after.ravel(), cotangent.ravel()
+    n = len(points)
+    places = np.concatenate([row, column, row, column]), np.concatenate([column, row, row, column])
+    laplacian = sparse.csc_matrix((np.concatenate([-value, -value, value, value]), places), shape=(n, n))
+    free = np.arange(1, n)
+    factor = splu(laplacian[1:, 1:].tocsc())
+    size = float(np.ptp(points, axis=0).max())
+    for _ in range(STEPS):
+        now = points[after] - points[triangles]
+        along = (cotangent * (edges * now).sum(axis=2)).sum(axis=1)
+        across = (cotangent * (edges[..., 0] * now[..., 1] - edges[..., 1] * now[..., 0])).sum(axis=1)
+        length = np.hypot(along, across)
+        cosine, sine = along / length, across / length
+        turned = np.stack(
+            [
+                cosine[:, None] * edges[..., 0] - sine[:, None] * edges[..., 1],
+                sine[:, None] * edges[..., 0] + cosine[:, None] * edges[..., 1],
+            ],
+            axis=2,
+        )
+        pull = (cotangent[..., None] * turned).reshape(-1, 2)
+        left = np.stack([np.bincount(column, pull[:, i], n) - np.bincount(row, pull[:, i], n) for i in (0, 1)], axis=1)
+        left -= laplacian[:, [0]].toarray() * points[0]
+        found = points.copy()
+        found[free] = factor.solve(left[1:])
+        moved = float(np.abs(found - points).max())
+        points = found
+        if moved <= STILL * size:
+            break
+    return points
+
+
+def _stretches(points: Array, triangles: Index, local: Array) -> tuple[Array, Array]:
+    """Singular values (t, 2) of the maps from space to plane, the larger first, and areas (t,) in space."""
+    before = np.stack([local[:, 1] - local[:, 0], local[:, 2] - local[:, 0]], axis=2)
+    now = points[triangles]
+    after = np.stack([now[:, 1] - now[:, 0], now[:, 2] - now[:, 0]], axis=2)
+    maps = after @ np.linalg.inv(before)
+    return np.asarray(np.linalg.svd(maps, compute_uv=False)), np.asarray(0.5 * np.linalg.det(before))
+
+
+def turned_along(points: ArrayLike, direction: ArrayLike) -> Array:
+    """Points (n, 2) turned so that a direction (2,) lies along x, the lowest of each axis at 0."""
+    way = np.asarray(direction, dtype=float)
+    way = way / np.linalg.norm(way)
+    turned = np.asarray(points, dtype=float) @ np.array([[way[0], -way[1]], [way[1], way[0]]])
+    return np.asarray(turned - turned.min(axis=0))

@@ -1,0 +1,92 @@
+"""Load cases, their combinations, and the stages from a form to them, as a scene describes them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+from hookean.forces import KINDS
+from hookean.values.columns import Model, Positives, fault
+from hookean.values.fields import Field, Maybe, Named
+
+if TYPE_CHECKING:
+    from hookean.scene.scene import Scene
+
+PRESTRESS, PERMANENT = "prestress", "permanent"
+"""Names in combinations: what the form is stressed by, and the loads that are in no case."""
+
+
+class LoadCase(Model):
+    """Loads that act together, by their names (or kinds). They do not act while the form is found."""
+
+    forces: tuple[str, ...] = Field(min_length=1, description="Names (or kinds) of loads")
+    factor: float = Field(default=1.0, description="Factor on these loads [-]")
+
+
+class ElasticLine(Model):
+    """What a force along lines becomes when the form is frozen: elastic, with the tension that it has there."""
+
+    axial_stiffness: Maybe[Positives] = Field(
+        default=None, description="EA [force], one or one for each element; default: stiffness x rest length"
+    )
+    tension_only: bool = Field(default=False, description="Whether it goes slack instead of into compression")
+
+
+class Stages(Model):
+    """How a scene gets from its form to its load cases."""
+
+    form: Literal["find", "drawn"] = Field(
+        default="find", description="find: relax the scene to find the form; drawn: the start shape is the form"
+    )
+    freeze: Named[ElasticLine] = Field(default={}, description="By a force's name (or kind), its elastic properties")
+
+
+def named(scene: Scene, name: str) -> list[int]:
+    """The numbers of the forces of a name, or else of a kind."""
+    own = [i for i, force in enumerate(scene.forces) if force.name == name]
+    return own or [i for i, force in enumerate(scene.forces) if force.kind_name == name]
+
+
+def case_loads(scene: Scene) -> frozenset[int]:
+    """The numbers of the loads that are in load cases."""
+    names = (name for case in scene.load_cases.values() for name in case.forces)
+    return frozenset(i for name in names for i in named(scene, name))
+
+
+def check(scene: Scene) -> None:
+    """Raise the fault of a load case, combination or stage that names what is not there."""
+    loads = [f.name or f.kind_name for f in scene.forces if KINDS[f.kind_name].role == "load"]
+    for name, case in scene.load_cases.items():
+        pointer = f"/load_cases/{_escaped(name)}"
+        if name in (PRESTRESS, PERMANENT):
+            raise fault(f"{name} is a reserved name in combinations; choose another name for the case", pointer)
+        for i, load in enumerate(case.forces):
+            found = named(scene, load)
+            if not found:
+                raise fault(f"no load is called {load!r}; {_listed(loads)}", f"{pointer}/forces/{i}")
+            if any(KINDS[scene.forces[number].kind_name].role != "load" for number in found):
+                raise fault(f"{load!r} is not a load; {_listed(loads)}", f"{pointer}/forces/{i}")
+    for name, factors in scene.combinations.items():
+        _check_combination(scene, name, factors)
+    for name in scene.stages.freeze if scene.stages is not None else ():
+        if not named(scene, name):
+            known = [f.name or f.kind_name for f in scene.forces]
+            raise fault(f"no force is called {name!r}; {_listed(known)}", f"/stages/freeze/{_escaped(name)}")
+
+
+def _check_combination(scene: Scene, name: str, factors: Mapping[str, Any]) -> None:
+    pointer = f"/combinations/{_escaped(name)}"
+    if name in scene.load_cases:
+        raise fault("a load case has this name, too; rename one of them", pointer)
+    for key in factors:
+        if key not in scene.load_cases and key not in (PRESTRESS, PERMANENT):
+            known = ", ".join([*scene.load_cases, PRESTRESS, PERMANENT])
+            raise fault(f"no load case is called {key!r}; known: {known}", f"{pointer}/{_escaped(key)}")
+
+
+def _listed(names: list[str]) -> str:
+    return f"the scene has {', '.join(dict.fromkeys(names)) or 'none'}"
+
+
+def _escaped(name: str) -> str:
+    return name.replace("~", "~0").replace("/", "~1")

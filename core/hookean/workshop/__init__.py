@@ -1,0 +1,1 @@
+"""What the workshop needs of a form: cutting patterns and lengths of cables."""

@@ -1,0 +1,153 @@
+"""Cables for the workshop: their unstressed lengths, compensated, and where things are clamped to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.analysis.freezing import Frozen, freeze
+from hookean.errors import InputError
+from hookean.forces.springs import Springs
+from hookean.scene.scene import Scene
+from hookean.values.units import Units
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+STRAIGHT = np.cos(np.pi / 4.0)  # elements that meet at a flatter angle are one cable
+
+
+@dataclass(frozen=True)
+class Cable:
+    """A cable of the elastic model: its `force`, the `particles` (k + 1,) along it, and of its k elements the `tension`
+    [force], `stressed` lengths in the form and `unstressed` lengths [length]. `cut` [length] is its length in the
+    workshop, and `clamps` (k + 1,) [length] where its particles lie along the unstressed cable."""
+
+    name: str
+    force: str
+    particles: Ints
+    tension: Floats = field(repr=False)
+    stressed: Floats = field(repr=False)
+    unstressed: Floats = field(repr=False)
+    cut: float
+
+    @property
+    def clamps(self) -> Floats:
+        """Where its particles lie along the unstressed cable (k + 1,) [length]."""
+        return np.concatenate([[0.0], np.cumsum(self.unstressed)])
+
+
+@dataclass(frozen=True)
+class Cables:
+    """All cables of a form."""
+
+    cables: tuple[Cable, ...]
+    units: Units = field(default_factory=Units)
+
+    def table(self) -> list[dict[str, Any]]:
+        """A row for each cable: lengths, compensation and forces, with their units in their names."""
+        length, force = self.units.length, self.units.force
+        return [
+            {
+                "cable": cable.name,
+                "force": cable.force,
+                "from particle": int(cable.particles[0]),
+                "to particle": int(cable.particles[-1]),
+                "elements": len(cable.tension),
+                f"stressed length [{length}]": float(cable.stressed.sum()),
+                f"unstressed length [{length}]": float(cable.unstressed.sum()),
+                f"cut length [{length}]": cable.cut,
+                "elastic strain [-]": float(cable.stressed.sum() / cable.unstressed.sum() - 1.0),
+                f"smallest force [{force}]": float(cable.tension.min()),
+                f"largest force [{force}]": float(cable.tension.max()),
+            }
+            for cable in self.cables
+        ]
+
+
+def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0) -> Cables:
+    """Unstressed lengths of the cables of a form, compensated for the workshop.
+
+    Elements of one force that continue each other, straight on where several meet, are a cable. Its unstressed length
+    is the sum of l EA / (EA + T); cut it to unstressed length / (1 + stretch) - 2 fitting.
+
+    - `model`: A scene whose form is found and frozen (see `freeze`), or a frozen one.
+    - `stretch`: The construction stretch of new rope, which stays after its first loading [-].
+    - `fitting`: What the fitting at each end takes off [length].
+
+    Raises InputError where a form cannot be frozen, has no cables, or a cut length would not be positive.
+    """
+    for place, value in (("stretch", stretch), ("fitting", fitting)):
+        if not (np.isfinite(value) and value >= 0.0):
+            raise InputError(place, f"{value!r} given; a number of at least 0 is expected")
+    frozen = freeze(model) if isinstance(model, Scene) else model
+    system, state = frozen.system()
+    found: list[Cable] = []
+    for group in system.groups:
+        if group.cls is not Springs:
+            continue
+        for part in group.parts:
+            pairs, rest = group.block.indices[part.rows], np.asarray(part.force.rest_length)  # type: ignore[attr-defined]
+            rest = np.broadcast_to(rest, (len(pairs),))
+            name = part.force.name or part.force.kind_name
+            for rows, particles in chains(state.x, pairs):
+                length, tension = frozen.lengths[part.number][rows], frozen.tensions[part.number][rows]
+                cut = float(rest[rows].sum()) / (1.0 + stretch) - 2.0 * fitting
+                called = f"{name} {1 + sum(cable.force == name for cable in found)}"
+                if cut <= 0.0:
+                    raise InputError("fitting", f"{called} is shorter than its fittings; lower the value")
+                found.append(Cable(called, name, particles, tension, length, rest[rows], cut))
+    if not found:
+        raise InputError("model", "has no cables; add springs or lines of constant tension")
+    return Cables(tuple(found), frozen.scene.units)
+
+
+def chains(x: Floats, pairs: Ints) -> list[tuple[Ints, Ints]]:
+    """Elements (m, 2) that continue each other: of each chain the rows (k,) in order, and its particles (k + 1,).
+
+    At a particle the two elements that are most nearly in line continue each other, if they turn by less than 45
+    degrees, then the next two; two that are alone there always do.
+    """
+    at: dict[int, list[int]] = {}
+    for row, pair in enumerate(pairs.tolist()):
+        for particle in pair:
+            at.setdefault(particle, []).append(row)
+    along = x[pairs[:, 1]] - x[pairs[:, 0]]
+    along = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
+    following: dict[tuple[int, int], int] = {}
+    for particle, rows in at.items():
+        for a, b in _in_line(particle, rows, pairs, along):
+            following[a, particle], following[b, particle] = b, a
+    left, found = dict.fromkeys(range(len(pairs))), list[tuple[Ints, Ints]]()
+    ends = [(row, p) for row in left for p in pairs[row].tolist() if (row, p) not in following]
+    for row, start in [*ends, *((row, int(pairs[row, 0])) for row in list(left))]:
+        if row not in left:
+            continue
+        rows, particles = list[int](), [start]
+        step: int | None = row
+        while step is not None and step in left:
+            del left[step]
+            rows.append(step)
+            a, b = pairs[step].tolist()
+            particles.append(b if a == particles[-1] else a)
+            step = following.get((step, particles[-1]))
+        found.append((np.array(rows), np.array(particles)))
+    return found
+
+
+def _in_line(particle: int, rows: list[int], pairs: Ints, along: Floats) -> list[tuple[int, int]]:
+    """Pairs of elements at a particle that continue each other."""
+    out = {row: along[row] * (1.0 if pairs[row, 0] == particle else -1.0) for row in rows}
+    if len(rows) == 2:
+        return [(rows[0], rows[1])]
+    turns = [(-float(out[a] @ out[b]), a, b) for i, a in enumerate(rows) for b in rows[i + 1 :]]
+    used: set[int] = set()
+    found = []
+    for straight, a, b in sorted(turns, key=lambda turn: (-turn[0], turn[1], turn[2])):
+        if straight > STRAIGHT and not {a, b} & used:
+            used |= {a, b}
+            found.append((a, b))
+    return found

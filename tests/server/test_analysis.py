@@ -1,0 +1,75 @@
+"""Every analysis over HTTP gives what its function gives."""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import httpx
+import pytest
+
+import hookean
+from hookean_server.http.analysis_schemas import ANALYSIS_EXAMPLES, CASES_EXAMPLE
+from hookean_server.workers.analysis_task import ANALYSES
+
+from .conftest import problem
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_an_analysis_is_its_function(client: httpx.Client, name: str) -> None:
+    body = ANALYSIS_EXAMPLES[name]
+    answer = client.post(f"/v1/analysis/{name}", json=body)
+    assert answer.status_code == 200, answer.text
+    given = {key: value for key, value in body.items() if key != "scene"}
+    wanted = ANALYSES[name].function(hookean.Scene.read(body["scene"]), **given).to_dict()
+    assert answer.json() == json.loads(json.dumps(wanted))
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer", "said", "slug"),
+    [
+        ({"scene": None}, "/scene", "an object", "invalid-scene"),
+        ({"count": 0}, "/count", "at least 1", "invalid-input"),
+        ({"cuont": 3}, "/cuont", "no field", "invalid-input"),
+        ({"loads": ["snow"]}, "/loads/0", "no load is called 'snow'", "invalid-input"),
+        (
+            {"count": 200, "scene": {"particles": [[0, 0, float(i)] for i in range(9000)]}},
+            "/",
+            "fewer modes",
+            "invalid-input",
+        ),
+    ],
+)
+def test_bad_requests_get_one_sentence(client: httpx.Client, change: dict, pointer: str, said: str, slug: str) -> None:
+    body = {**copy.deepcopy(ANALYSIS_EXAMPLES["buckling"]), **change}
+    answer = client.post("/v1/analysis/buckling", json=body)
+    found = problem(answer, 422, slug)
+    assert found["errors"][0]["pointer"] == pointer and said in found["errors"][0]["detail"]
+
+
+def test_a_scene_without_equilibrium_is_a_problem(client: httpx.Client) -> None:
+    scene = {"particles": [[0, 0, 0]], "forces": [{"kind": "unary", "particles": [0], "vector": [0, 0, -1]}]}
+    answer = client.post("/v1/analysis/frequencies", json={"scene": scene})
+    assert "not in equilibrium" in answer.json()["detail"]
+    assert client.post("/v1/analysis/frequencies", json=[]).status_code == 422
+    assert client.post("/v1/analysis/frequencies", json={}).status_code == 422
+
+
+def test_load_cases_are_those_of_the_function(client: httpx.Client) -> None:
+    """Each on a worker of its own, with the bits of one after another."""
+    answer = client.post("/v1/analysis/load-cases", json=CASES_EXAMPLE)
+    assert answer.status_code == 200, answer.text
+    wanted = hookean.load_cases(hookean.Scene.read(CASES_EXAMPLE["scene"])).to_dict()
+    assert answer.json() == json.loads(json.dumps(wanted))
+    one = client.post("/v1/analysis/load-cases", json={**CASES_EXAMPLE, "cases": ["ULS 1"]}).json()
+    assert [case["name"] for case in one["cases"]] == ["ULS 1"]
+    assert one["cases"][0] == answer.json()["cases"][1]
+
+
+def test_bad_cases_get_one_sentence(client: httpx.Client) -> None:
+    answer = client.post("/v1/analysis/load-cases", json={**CASES_EXAMPLE, "cases": ["rain"]})
+    found = problem(answer, 422, "invalid-input")
+    assert found["errors"][0]["pointer"] == "/cases" and "'rain' is not a load case" in found["detail"]
+    scene = {**CASES_EXAMPLE["scene"], "load_cases": {}, "combinations": {}}
+    found = problem(client.post("/v1/analysis/load-cases", json={"scene": scene}), 422, "invalid-input")
+    assert found["errors"][0]["pointer"] == "/scene/load_cases"
