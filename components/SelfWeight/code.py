@@ -26,5 +26,6 @@ force = canvas.force(
     section=section_,
     thickness=thickness_,
     gravity=gravity_,
+    factor=_factor_,
     name=name_,
 )

@@ -31,9 +31,9 @@ force = canvas.force(
     "shell",
     mesh=_mesh,
     strength=_strength_,
+    angle_factor=_angle_factor_,
     poisson=poisson_,
     material=material_,
     thickness=thickness_,
-    angle_factor=_angle_factor_,
     name=name_,
 )

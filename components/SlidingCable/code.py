@@ -24,6 +24,5 @@ force = canvas.force(
     section=section_,
     rest_length=rest_length_,
     force=force_,
-    rest_factor=_rest_factor_,
     name=name_,
 )

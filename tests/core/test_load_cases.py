@@ -11,6 +11,7 @@ import scipy.optimize
 
 import hookean
 from hookean import InputError, Scene
+from hookean.analysis.freezing import freeze
 from hookean.analysis.load_factors import magnitudes, scaled
 from hookean.forces import KINDS
 from hookean.running.run import relax_state
@@ -234,6 +235,36 @@ def test_a_load_times_a_factor_is_that_times_its_force(kind: str) -> None:
     assert np.abs(before).max() > 0.0
     np.testing.assert_allclose(pull(scaled(force, -1.5)), -1.5 * before, rtol=1e-12, atol=1e-15)
     assert scaled(force, 1.0) is force
+
+
+def test_the_weight_of_a_material_is_multiplied_too() -> None:
+    """It has no field of its own in units of force."""
+    spec = {**cable(), "sections": {"rod": {"area": 0.01}}}
+    own: Spec = {"particles": [[0, 1]], "material": "S355", "section": "rod"}
+    pulls = []
+    for factor in (1.0, -1.5):
+        load = scaled(hookean.SelfWeight(**own), factor)
+        system = compile(Scene(particles=spec["particles"], sections=spec["sections"], forces=[load]))
+        pulls.append(system.evaluate(system.start())[0])
+    assert np.abs(pulls[0]).max() > 0.0
+    np.testing.assert_allclose(pulls[1], -1.5 * pulls[0], rtol=1e-14)
+
+
+def test_ties_and_struts_stay_so_when_they_are_frozen() -> None:
+    """A cable with EA and a force, slack below its rest length, and a strut: frozen they have the stiffness, the rest
+    length and the one side that they had."""
+    spec = cable(stages={})
+    spec["forces"][0] = {
+        "kind": "springs", "name": "cable", "particles": [[0, 1], [1, 2]], "axial_stiffness": EA, "force": T,
+        "tension_only": True,
+    }  # fmt: skip
+    spec["forces"].append({"kind": "springs", "name": "prop", "particles": [[0, 2]], "compression_only": True})
+    frozen = freeze(Scene.read(spec)).scene
+    tie, prop = frozen.forces[0], frozen.forces[-1]
+    assert tie.tension_only and not tie.compression_only and prop.compression_only
+    rest = L / 2 * EA / (EA + T)
+    assert tie.rest_length == pytest.approx([rest, rest], rel=1e-9)
+    assert tie.stiffness == pytest.approx([EA / rest, EA / rest], rel=1e-9)
 
 
 def faces(load: Any) -> list[list[int]]:

@@ -19,7 +19,8 @@ PAIRS = [[0, 1], [1, 2], [2, 3], [3, 4]]
 def test_the_force_is_the_same_all_along() -> None:
     """Over held saddles T = EA (L - L0) / L0 in every line, however long, and each saddle carries T (u - v) of the unit
     vectors along its two lines."""
-    cable = SlidingCable(particles=PAIRS, axial_stiffness=500.0, rest_factor=0.9)
+    whole = float(np.linalg.norm(np.diff(SADDLES, axis=0), axis=1).sum())
+    cable = SlidingCable(particles=PAIRS, axial_stiffness=500.0, rest_length=0.9 * whole)
     found = relax(Scene(particles=SADDLES, forces=[cable], anchors=[{"particles": range(5)}]))
     tension = 500.0 * (1 / 0.9 - 1)
     assert found.force("sliding_cable")["force"] == pytest.approx(np.full(4, tension), rel=1e-13)
@@ -68,7 +69,7 @@ def test_prestress_and_materials() -> None:
 
 
 def test_a_long_cable_is_slack() -> None:
-    cable = SlidingCable(particles=PAIRS, rest_factor=1.1)
+    cable = SlidingCable(particles=PAIRS, rest_length=12.0)
     system = compile(Scene(particles=SADDLES, forces=[cable]))
     f, _, energy = system.evaluate(system.start())
     assert not f.any() and not energy.any()

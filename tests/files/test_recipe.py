@@ -232,6 +232,18 @@ def test_tension_only_is_slack_below_the_rest_length(draw: Callable[..., Any]) -
     assert scene_of(model, springs(mesh="*", divide=[1, 1], tension_only=True)).forces[0].tension_only
 
 
+def test_a_membrane_has_a_cloth_of_the_recipe_and_its_warp_along_lines_of_the_file(draw: Callable[..., Any]) -> None:
+    model = draw(NewObject(LINE, "warp"), NewObject(SQUARE, "net"))
+    cloth = {"warp_stiffness": 600.0, "weft_stiffness": 500.0, "shear_stiffness": 20.0, "poisson": 0.3}
+    table = {"kind": "membrane", "mesh": "layer:net", "material": "cloth", "warp_lines": "layer:warp"}
+    recipe = {"materials": {"cloth": cloth}, "sections": {"tube": {"area": 1.0}}, "forces": [table]}
+    scene = scene_of(model, {"units": {"length": "m", "force": "kN"}, **recipe})
+    (membrane,) = scene.forces
+    assert membrane.warp_lines.tolist() == [LINE.tolist()] and membrane.mesh in scene.meshes
+    assert scene.materials["cloth"].weft_stiffness == 500.0 and scene.sections["tube"].area == 1.0
+    assert "finds" in refused(model, {**recipe, "forces": [{**table, "warp_lines": "layer:net"}]}).sentence
+
+
 @pytest.mark.parametrize(("unit", "factor"), [("Millimeters", 1e-3), ("Inches", 0.0254), ("Miles", 1609.344)])
 def test_lengths_of_the_file_become_those_of_the_recipe(draw: Callable[..., Any], unit: str, factor: float) -> None:
     model = draw(NewObject(LINE, "cable"), unit=unit)

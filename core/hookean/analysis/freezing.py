@@ -182,15 +182,19 @@ def frozen_springs(line: Line) -> Force:
         stiffness = p[:, 0]
     else:
         stiffness, rest = elastic(line.axial_stiffness, line.length, line.tension, line.pointer)
-    lower = np.maximum(p[:, 5], rest) if line.wanted.tension_only else p[:, 5]
+    own, high, low = line.force, np.maximum(p[:, 4], 0.0), np.maximum(p[:, 5], 0.0)
+    assert isinstance(own, Springs)
+    lower = np.maximum(low, rest) if line.wanted.tension_only and not own.tension_only else low
     return Springs(
         name=line.force.name,
         **_place(line.force),  # type: ignore[arg-type]
         stiffness=stiffness,
         damping=p[:, 1],
         rest_length=rest,
-        upper_cutoff=p[:, 4],
+        upper_cutoff=high,
         lower_cutoff=lower,
+        tension_only=own.tension_only,
+        compression_only=own.compression_only,
         yield_extension=p[:, 6],
     )
 

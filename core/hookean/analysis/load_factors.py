@@ -21,7 +21,7 @@ def magnitudes(cls: type[Force]) -> list[str]:
 
 
 def scaled(load: Force, factor: float) -> Force:
-    """A load times a factor; the load itself for the factor 1."""
+    """A load times a factor; the load itself for the factor 1. The weight of a material has a factor of its own."""
     if factor == 1.0:
         return load
     changed: dict[str, Any] = {}
@@ -29,4 +29,6 @@ def scaled(load: Force, factor: float) -> Force:
         given = getattr(load, name)
         if given is not None:
             changed[name] = factor * (np.asarray(given) if isinstance(given, np.ndarray) else float(given))
+    if getattr(load, "material", None) is not None:
+        changed["factor"] = factor * getattr(load, "factor", 1.0)
     return load.replaced(**changed)

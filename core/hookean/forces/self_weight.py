@@ -42,6 +42,7 @@ class SelfWeight(Force):
     gravity: float | None = Field(
         default=None, ge=0, le=1e12, description="Of a material [length/time^2]; default: 9.80665 m/s^2"
     )
+    factor: float = Field(default=1.0, ge=-1e12, le=1e12, description="Factor on the weight of a material [-]")
     direction: Vector = Field(
         default=np.array([0.0, 0.0, -1.0]), description="Direction of gravity; its length is ignored"
     )
@@ -109,7 +110,8 @@ class SelfWeight(Force):
         return Block.of(particles[:, None], vector=weight[particles, None] * down)
 
     def _gravity(self, places: Places) -> float:
-        return gravity(places.units) if self.gravity is None else self.gravity
+        """Gravity [length/time^2] times the factor on the weight."""
+        return self.factor * (gravity(places.units) if self.gravity is None else self.gravity)
 
     def _per_length(self, places: Places) -> Any:
         """Weight per length of lines [force/length]."""

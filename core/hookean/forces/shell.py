@@ -151,14 +151,14 @@ class Shell(Force):
     strength: float | None = Field(
         default=500.0, ge=0, le=1e12, description="D, plate bending stiffness [force length]"
     )
+    angle_factor: float = Field(
+        default=1.0, ge=-1e12, le=1e12, description="Factor on the start angles [-]; 0: flat, 1: as drawn"
+    )
     poisson: float | None = Field(
         default=None, gt=-1, lt=1, description="nu, Poisson's ratio [-]; default: 0, or that of the material"
     )
     material: str | None = Field(default=None, description="Name of a solid, with a thickness in the place of D")
     thickness: float | None = Field(default=None, gt=0, le=1e12, description="t, of a material [length]")
-    angle_factor: float = Field(
-        default=1.0, ge=-1e12, le=1e12, description="Factor on the start angles [-]; 0: flat, 1: as drawn"
-    )
 
     formula: ClassVar[str] = "E = A D ((1 - ν) |K - K0|² + ν tr²(K - K0))/2"
     arity: ClassVar[int] = 12

@@ -16,13 +16,15 @@ from hookean.forces.line_lengths import length_and_force, line, pull
 from hookean.values.columns import IndexRows, Labels, Lines, fault
 from hookean.values.fields import Field, Maybe
 
-K, REST, FACTOR = groups.COLUMNS, groups.COLUMNS + 1, groups.COLUMNS + 2  # columns of the parameters
+K, REST = groups.COLUMNS, groups.COLUMNS + 1  # columns of the parameters
+
+LEAST = 1e-12  # length of a cable, below which EA / L0 has no meaning [length]
 
 
 @device
 def stretch(x: Any, indices: Any, parameters: Any, first: Any) -> Any:
     """By how much a cable is longer than at rest, and of how many lines it is."""
-    total, count = -parameters[first, REST] * parameters[first, FACTOR], 0
+    total, count = -parameters[first, REST], 0
     e = first
     while e >= 0:
         total += line(x, indices, e)[0]
@@ -73,7 +75,6 @@ class SlidingCable(groups.Grouped):
         default=None, gt=0, le=1e12, description="L0 of a whole cable [length]; default: the start length"
     )
     force: float | None = Field(default=None, ge=0, le=1e12, description="Prestress: tension at the start [force]")
-    rest_factor: float = Field(default=1.0, gt=0, le=1e12, description="Factor on the rest length [-]")
 
     formula: ClassVar[str] = "E = EA (L - L0)²/(2 L0)"
     arity: ClassVar[int] = 2
@@ -98,7 +99,7 @@ class SlidingCable(groups.Grouped):
         return self
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: links of the cables, EA / L0, L0, its factor; InputError for one without length."""
+        """Arrays for the kernel: links of the cables, EA / L0 and L0; InputError if one has no length."""
         index = places.elements(self)
         links = groups.links(index, self.group)
         axial = self.axial_stiffness
@@ -106,18 +107,16 @@ class SlidingCable(groups.Grouped):
             axial = elastic.axial_stiffness(self, places)
         head = np.arange(len(index)) - links[:, groups.FIRST].astype(np.int64)
         own = lengths(places.x[index[:, 1]] - places.x[index[:, 0]])
-        rest = np.bincount(head, own, len(index))[head] if len(index) else own
+        rest = np.asarray(np.bincount(head, own, len(index))[head] if len(index) else own, dtype=np.float64)
         if self.rest_length is not None:
             rest = np.full(len(index), self.rest_length)
         elif self.force is not None:
             if not axial > 0.0:
                 raise InputError("", "a cable without stiffness cannot have a force; give an axial_stiffness above 0")
             rest = rest * axial / (axial + self.force)
-        if not (rest > 0.0).all():
+        if not (rest > LEAST).all():
             raise InputError("", "a cable of a sliding_cable has no length at the start; give a rest_length")
-        return Block.of(
-            index, links=links, stiffness=axial / (rest * self.rest_factor), rest=rest, rest_factor=self.rest_factor
-        )
+        return Block.of(index, links=links, stiffness=axial / rest, rest=rest)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length of each line [length], and the force of its cable [force]."""
@@ -133,7 +132,8 @@ class SlidingCable(groups.Grouped):
         long = length > 0.0
         u = apart / np.where(long, length, 1.0)[:, None]
         head = groups.heads(block)
-        k = np.where(more > 0.0, block.parameters[:, K], 0.0) * np.bincount(head, minlength=len(head))[head]
+        count = np.bincount(head, minlength=len(head))[head]
+        k = np.asarray(np.where(more > 0.0, block.parameters[:, K], 0.0) * count, dtype=np.float64)
         slope = np.column_stack([-u, u, -np.ones(len(u))])
         density = np.where(long, block.parameters[:, K] * more / np.where(long, length, 1.0), 0.0)
         across = density[:, None, None] * (np.eye(3) - u[:, :, None] * u[:, None])
@@ -158,15 +158,13 @@ class SlidingCable(groups.Grouped):
             if members > groups.LARGEST:
                 found.append((groups.Whole, groups.stiff(block.indices[rows.ravel()], second[rows.ravel(), :6, :6])))
                 continue
+            tension = second[rows][:, :, :6, :6].copy()
+            slope, stiff = _slopes(x, block.indices[rows]), second[rows[:, 0], 6, 6]
+            tension -= stiff[:, None, None, None] * slope[..., :, None] * slope[..., None, :]
             whole = np.zeros((len(rows), members, 6, members, 6))
-            slope = second[rows][:, :, :6, 6]  # -m k g of each line
-            each = second[rows][:, :, :6, :6].copy()
-            stiff = np.maximum(second[rows][:, :, 6, 6], 1e-300)
-            each -= slope[..., :, None] * slope[..., None, :] / stiff[..., None, None]
-            whole[:, range(members), :, range(members)] = each.transpose(1, 0, 2, 3)
-            flat = whole.reshape(len(rows), 6 * members, 6 * members)
-            total = slope.reshape(len(rows), -1)
-            flat += total[:, :, None] * total[:, None] / (members * stiff[:, :1, None])
+            whole[:, range(members), :, range(members)] = tension.transpose(1, 0, 2, 3)
+            flat, total = whole.reshape(len(rows), 6 * members, 6 * members), slope.reshape(len(rows), -1)
+            flat += (stiff / members)[:, None, None] * total[:, :, None] * total[:, None]
             found.append((groups.Whole, groups.stiff(block.indices[rows].reshape(len(rows), -1), flat)))
         return found
 
@@ -176,7 +174,7 @@ class SlidingCable(groups.Grouped):
         x = [[0.0, 0.1, 0.0], [1.0, 0.0, 0.2], [0.3, 1.7, -0.1], [0.2, 0.4, 0.9]]
         x += [[4.0, 0.0, 0.3], [5.1, 0.2, 0.0], [5.0, 2.4, 0.4]]
         pairs = [[0, 1], [4, 5], [1, 2], [5, 6], [2, 3]]
-        return cls(particles=pairs, group=[0, 7, 0, 7, 0], axial_stiffness=60.0, rest_factor=0.6), np.array(x)
+        return cls(particles=pairs, group=[0, 7, 0, 7, 0], axial_stiffness=60.0, force=40.0), np.array(x)
 
 
 def longer(block: Block, x: Floats) -> Floats:
@@ -184,7 +182,15 @@ def longer(block: Block, x: Floats) -> Floats:
     head: Ints = groups.heads(block)
     length = lengths(x[block.indices[:, 1]] - x[block.indices[:, 0]])
     total = np.bincount(head, length, len(head))[head] if len(head) else length
-    return np.maximum(total - block.parameters[:, REST] * block.parameters[:, FACTOR], 0.0)
+    return np.maximum(total - block.parameters[:, REST], 0.0)
+
+
+def _slopes(x: Floats, index: Ints) -> Floats:
+    """Derivatives (..., 6) of the lengths of lines (..., 2) by their ends; 0 for length 0."""
+    apart = x[index[..., 1]] - x[index[..., 0]]
+    length = np.linalg.norm(apart, axis=-1, keepdims=True)
+    u = apart / np.where(length > 0.0, length, 1.0)
+    return np.concatenate([-u, u], axis=-1)
 
 
 def _chained(block: Block, second: Floats, node: int) -> list[tuple[type[Force], Block]]:

@@ -81,9 +81,9 @@ def _of_force(force: Floats, start: Floats, k: Floats | None, axial: Floats | No
         if len(low):
             said = f"element {low[0]} with EA = {axial[low[0]]:g} cannot have a force of {force[low[0]]:g}"
             raise InputError("", f"{said}; more than -EA is possible")
-        return start * axial / whole
+        return np.asarray(start * axial / whole)
     assert k is not None
-    rest = start - np.divide(force, k, out=np.full(start.shape, np.inf), where=k > 0.0)
+    rest: Floats = start - np.divide(force, k, out=np.full(start.shape, np.inf), where=k > 0.0)
     low = np.flatnonzero(~((rest >= 0.0) & np.isfinite(rest)))
     if len(low):
         said = f"element {low[0]} with k = {k[low[0]]:g} and length {start[low[0]]:g} cannot have a force of"

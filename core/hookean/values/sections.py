@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Literal, Self
 
 from pydantic import model_validator
@@ -83,10 +84,7 @@ class Section(Model):
         if self.shape is None:
             return {name: value for name in QUANTITIES if (value := getattr(self, name)) is not None}
         sizes = [float(getattr(self, name)) for name in DIMENSIONS[self.shape]]
-        found: dict[str, float] = {"rod": _rod, "tube": _tube, "rectangle": _rectangle, "I": _i, "rope": _rope}[
-            self.shape
-        ](*sizes)
-        return found
+        return _DERIVED[self.shape](*sizes)
 
 
 def _rod(diameter: float) -> dict[str, float]:
@@ -134,3 +132,12 @@ def _i(width: float, height: float, flange: float, web: float) -> dict[str, floa
 
 def _rope(diameter: float, fill_factor: float) -> dict[str, float]:
     return {"area": fill_factor * math.pi * diameter**2 / 4.0}
+
+
+_DERIVED: dict[str, Callable[..., dict[str, float]]] = {
+    "rod": _rod,
+    "tube": _tube,
+    "rectangle": _rectangle,
+    "I": _i,
+    "rope": _rope,
+}

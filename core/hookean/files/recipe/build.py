@@ -157,6 +157,10 @@ class _Builder:
             owners = [used.items[i] for i in np.unique(used.owner)]
             self._use(owners, said)
             self.notes.append(f"{group}[{number}] {said}: {size} from {shapes.counted(owners)}")
+        if is_selector(table.get("warp_lines")):
+            warp = self._shape("lines", table["warp_lines"], None, f"{pointer}/warp_lines")
+            table["warp_lines"] = warp.array
+            self._use([warp.items[i] for i in np.unique(warp.owner)], f"warp of {said}")
         plain = {k: v for k, v in table.items() if k not in SPLIT_FIELDS}
         if used is None and isinstance(table.get("points"), np.ndarray):
             self.notes.append(f"{group}[{number}] {said}: {count(len(table['points']), 'point')}")

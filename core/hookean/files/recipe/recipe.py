@@ -34,6 +34,7 @@ stands for anything inside a name. Several are joined by commas or in a list.
   without another one, and so does the user text `divide` of the object.
 * `on = "layer:beams"` keeps the points that lie on these curves. `pull_to_curve` selects its `curve`; bent ones with
   `curve_divide = N`; of several each pulls the points nearest to it.
+* `warp_lines` of a membrane: lines and polylines, curves with the user text `divide`.
 * `[[geometry]]` rides along: kind `points`, `lines`, `mesh`, or `polyline` and `curve` with points = a curve.
 
 `tension_only = true` on springs makes them slack below their rest length. `hidden = true` takes hidden
