@@ -54,7 +54,7 @@ class Options:
         str | None, typer.Option(metavar="PATH", help="Draw the frames over each other in a picture (PNG)")
     ] = None
     output: Annotated[
-        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file for the last shape")
+        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json, .obj ... file for the last shape")
     ] = None
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only print errors and notes")] = False
 
