@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.forces.base import Block, Floats, Force, Places, units
-from hookean.forces.transform_lock import distance_and_force, image_hessian, image_kernel, images
+from hookean.forces.transform_lock import distance_and_force, holding, image_hessian, image_kernel, images
 from hookean.values.columns import Direction, IndexRows, Lines, NonNegatives, Vector
 from hookean.values.fields import Field, Maybe
 
@@ -47,6 +47,11 @@ class Mirror(Force):
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance from the mirror image [length] and the force on the second particle [force]."""
         return distance_and_force(block, element_forces)
+
+    @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """As its forces do in all."""
+        return holding(block)
 
     @classmethod
     def example(cls) -> tuple[Mirror, Floats]:

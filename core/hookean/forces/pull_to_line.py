@@ -63,6 +63,13 @@ class PullToLine(Force):
         lead = units(self.direction)
         return Block.of(index, strength=self.strength, origin=np.atleast_2d(self.origin), direction=lead)
 
+    @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """Across the lines."""
+        along = block.parameters[:, 4:7]
+        across = np.eye(3) - along[:, :, None] * along[:, None, :]
+        return np.asarray(across * (block.parameters[:, 0] > 0.0)[:, None, None])
+
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance to the line [length] and the force on the particle [force]."""
         return away(block, element_forces)

@@ -60,6 +60,12 @@ class PullToPlane(Force):
         index = places.elements(self)
         return Block.of(index, strength=self.strength, origin=np.atleast_2d(self.origin), normal=units(self.normal))
 
+    @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """Along the normals."""
+        normal = block.parameters[:, 4:7]
+        return np.asarray(normal[:, :, None] * normal[:, None, :] * (block.parameters[:, 0] > 0.0)[:, None, None])
+
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance to the plane [length] and the force on the particle [force]."""
         return away(block, element_forces)

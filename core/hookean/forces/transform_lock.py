@@ -65,6 +65,16 @@ def distance_and_force(block: Block, element_forces: Floats) -> dict[str, Floats
     return {"distance": np.divide(lengths(force), k, out=np.zeros(len(k)), where=k > 0.0), "force": force}
 
 
+def holding(block: Block) -> Floats:
+    """The projections (m, 3, 3) on the directions of the forces of pairs in all, k (A^T - 1) (p2 - A p1 - t): of a
+    mirror image its normal, of a translation none."""
+    turned = np.eye(3) - block.parameters[:, 2:11].reshape(-1, 3, 3).transpose(0, 2, 1)
+    directions, sizes, _ = np.linalg.svd(turned)
+    directions = directions * (sizes > 1e-12 * (1.0 + block.parameters[:, 1:2]))[:, None, :]
+    strong = (block.parameters[:, 0] > 0.0)[:, None, None]
+    return np.asarray(directions @ directions.transpose(0, 2, 1) * strong)
+
+
 class TransformLock(Force):
     """Pairs of particles a, b of which b is pulled to the image of a, and a so that its image meets b.
 
@@ -106,6 +116,11 @@ class TransformLock(Force):
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance from the image [length] and the force on the second particle [force]."""
         return distance_and_force(block, element_forces)
+
+    @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """As its forces do in all."""
+        return holding(block)
 
     @classmethod
     def example(cls) -> tuple[TransformLock, Floats]:

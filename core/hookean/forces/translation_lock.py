@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.transform_lock import distance_and_force, image_hessian, image_kernel, images
+from hookean.forces.transform_lock import distance_and_force, holding, image_hessian, image_kernel, images
 from hookean.values.columns import IndexRows, Lines, NonNegatives, Vectors
 from hookean.values.fields import Field, Maybe
 
@@ -46,6 +46,11 @@ class TranslationLock(Force):
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance from where the second particle should be [length] and the force on it [force]."""
         return distance_and_force(block, element_forces)
+
+    @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """As its forces do in all."""
+        return holding(block)
 
     @classmethod
     def example(cls) -> tuple[TranslationLock, Floats]:

@@ -14,8 +14,8 @@ from hookean.running.result import Status
 from hookean.running.trial import trial
 from hookean.solvers import Solver
 from hookean.stability import time_steps
-from hookean.stability.equilibrium import Equilibrium, Stability, assess, excess, leave
-from hookean.system.balance import ALONG, Balance, balance
+from hookean.stability.equilibrium import Equilibrium, Stability, amiss, assess, excess, leave
+from hookean.system.balance import Balance, Floats, balance
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -96,7 +96,8 @@ class Watch:
         if self.found.residual < self.best:
             self.best, self.best_at = self.found.residual, state.iteration
             self.top, self.top_found = self.good, self.found
-        if self.found.still(self.tolerance) and self._resting(system, state):
+        rests = self.found.still(self.tolerance) and self._resting(system, state)
+        if rests and not amiss(system, state):  # else the solver may go on, and mend it
             return Status.CONVERGED if self.found.met(self.tolerance) else Status.STALLED
         stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
         if idle or (stuck and not self.method.physical):  # what swings may swing for long
@@ -258,11 +259,12 @@ class Watch:
             held = (0.0, 0.0) if self.driven else trial(system, self.origin, self.good, self.method, type(self))
             return time_steps.too_long(system, self.good, self.method, held)
         part = self.found.components.label[self.lost] if self.lost >= 0 else -1
-        if self.flew and part >= 0 and not self.found.components.supported[part]:
+        free = part >= 0 and not self.found.components.supported[part] and not len(self.found.planes)
+        if self.flew and free:
             return f"Nothing supports {_called(system, self.found, part)}: add anchors"
         if said := _adrift(system, self.found):
             return said
-        if part >= 0 and not self.found.components.supported[part]:
+        if free:
             return f"Nothing supports {_called(system, self.found, part)}: add anchors"
         if said := _overloaded(system, self.good, self.size):
             return said
@@ -280,6 +282,8 @@ class Watch:
         """Why a run stalled."""
         if said := _adrift(system, self.found):
             return said
+        if said := amiss(system, self.good):
+            return f"Forces balance, but {said}"
         if len(self.found.coarse):
             part = int(self.found.coarse[0])
             return (
@@ -334,17 +338,40 @@ def _overloaded(system: System, state: State, size: float) -> str:
 
 
 def _adrift(system: System, found: Balance) -> str:
-    """Which components carry loads that nothing supports; empty where there are none."""
+    """Which components carry loads that nothing can balance; empty where there are none."""
     if not len(found.adrift):
         return ""
     part = int(found.adrift[0])
     more = f" (and {len(found.adrift) - 1} more such parts)" if len(found.adrift) > 1 else ""
-    load = float(np.abs(found.found[part, ALONG]).max())
-    called = _called(system, found, part)
+    called, unit = _called(system, found, part), system.scene.units.force
     count = int(np.count_nonzero(found.components.label == part))
     carry, them = ("carries", "it") if count == 1 and not more else ("carry", "them")
-    unit = system.scene.units.force
-    return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
+    unheld = found.unheld[part]
+    if len(found.planes):
+        return (
+            f"The floor cannot hold {called}{more}: {_load(unheld)} {unit} of the loads lift {them} off or exceed the "
+            f"friction. Anchor {them}, or raise static_friction"
+        )
+    if np.trace(found.components.loose[part]) > 2.5:
+        load = float(np.abs(unheld).max())
+        return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
+    return (
+        f"Nothing supports {called}{more} along {_direction(unheld)}, where {them if them == 'it' else 'they'} {carry} "
+        f"a load of {_load(unheld)} {unit}: hold {them} in that direction too"
+    )
+
+
+def _load(vector: Floats) -> str:
+    return f"{float(np.sqrt(vector @ vector)):.3g}"
+
+
+def _direction(vector: Floats) -> str:
+    """A direction in words: an axis, or a unit vector."""
+    unit = vector / np.sqrt(vector @ vector)
+    axis = int(np.argmax(np.abs(unit)))
+    if np.abs(unit[axis]) > 1.0 - 1e-9:
+        return "xyz"[axis]
+    return f"({', '.join(f'{c:.3g}' for c in np.where(np.abs(unit) > 1e-9, unit, 0.0))})"
 
 
 def _called(system: System, found: Balance, part: int) -> str:
