@@ -204,3 +204,42 @@ def test_a_spring_that_begins_without_length_is_told() -> None:
     said = relax(Scene.read({**spec, "forces": [springs]})).report.warnings
     assert len(said) == 1 and said[0].startswith("/forces/0: 1 of 2 elements have zero length (first: element 0)")
     assert not relax(Scene.read({**spec, "forces": [{**springs, "rest_length": 0.0}]})).report.warnings
+
+
+CANCEL = [[0.1, 0.2, -0.3], [1e4, -1e4 * (1.0 + 2.0**-52)], [1e-9, 1e9, -1e9 - 1e-9]]
+
+
+@pytest.mark.parametrize("solver", ["auto", "newton", "relaxation"])
+@pytest.mark.parametrize("loads", CANCEL)
+def test_loads_that_cancel_but_for_rounding_are_none(loads: list[float], solver: str) -> None:
+    """Three chords of a taut string: the sum of their loads is some 1e-17 of them, and the residual is that of the
+    string without loads, which is measured by its forces: to the rounding of those, 1e-13 of them."""
+    string = {"kind": "springs", "particles": [[0, 1], [1, 2], [2, 3]], "stiffness": 1000.0, "rest_factor": 0.9}
+    spec = {"particles": [[0, 0, 0], [1, 0, 0.1], [2, 0, 0.2], [3, 0, 0]], "anchors": [{"particles": [0, 3]}]}
+    forces = [{"kind": "unary", "particles": [1, 2], "vector": [0, 0, load]} for load in loads]
+    plain, found = (
+        relax(Scene.read({**spec, "forces": [string, *more], "settings": {"solver": solver}})) for more in ([], forces)
+    )
+    assert plain.converged and found.converged, found.message
+    assert np.abs(found.particles - plain.particles).max() <= 1e-6
+    assert found.residual <= 1e-6 and found.rounding_floor == pytest.approx(plain.rounding_floor, rel=1e-6)
+
+
+def test_loads_that_cancel_need_no_support() -> None:
+    """A bar without anchors under 0.1 + 0.2 - 0.3 at each end, which is 5.6e-17; but 1e-10 counts."""
+    forces = [{"kind": "unary", "particles": [0, 1], "vector": [0, 0, load]} for load in (0.1, 0.2, -0.3)]
+    spec = {"particles": [[0, 0, 0], [1, 0, 0]], "forces": [{"kind": "springs", "particles": [[0, 1]]}, *forces]}
+    assert relax(Scene.read(spec)).converged
+    forces.append({"kind": "unary", "particles": [0, 1], "vector": [0, 0, 1e-10]})
+    found = relax(Scene.read({**spec, "forces": [spec["forces"][0], *forces]}))
+    assert not found.converged and "Nothing supports" in found.message
+
+
+def test_a_small_load_beside_large_ones_that_cancel_counts() -> None:
+    """One particle carries 1 N and -1 N, the other 1e-3 N: the scale is that of the other."""
+    forces = [{"kind": "unary", "particles": [1], "vector": [0, 0, load]} for load in (0.3, 0.6, -0.9)]
+    forces.append({"kind": "unary", "particles": [2], "vector": [0, 0, -1e-3]})
+    string = {"kind": "springs", "particles": [[0, 1], [1, 2], [2, 3]], "stiffness": 1.0, "rest_factor": 0.9}
+    spec = {"particles": [[i, 0, 0] for i in range(4)], "anchors": [{"particles": [0, 3]}]}
+    system = compile(Scene.read({**spec, "forces": [string, *forces]}))
+    assert balance(system, system.start()).scale == pytest.approx(1e-3, rel=1e-12)

@@ -266,3 +266,13 @@ def test_multigrid_refuses_contacts_that_come_and_go() -> None:
     x = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]])
     with pytest.raises(InputError, match="/settings/solver: multilevel does not support contacts that come and go"):
         relax(Scene(particles=x, forces=[crowd(x)], settings={"solver": "multilevel"}))
+
+
+@pytest.mark.parametrize("solver", ["auto", "relaxation"])
+def test_spheres_with_the_same_centre_are_not_at_rest(solver: str) -> None:
+    """They have no direction in which to part: the forces are zero, the overlap is not."""
+    force = {"kind": "collide", "particles": [0, 1, 2], "radius": 1.0}
+    found = relax(Scene.read({"particles": [[0, 0, 0], [5, 0, 0], [5, 0, 0]], "forces": [force],
+                              "settings": {"solver": solver}}))  # fmt: skip
+    assert found.status == "stalled" and found.stability == "unknown"
+    assert "the spheres of particles 1 and 2 have the same centre, and nothing pushes them apart" in found.message

@@ -294,8 +294,9 @@ def test_an_independent_evaluator_agrees_with_the_status(seed: int) -> None:
 
 
 @pytest.mark.parametrize("floor", [False, True])
-def test_what_slides_or_may_fall_on_a_floor_is_supported_but_not_joined(floor: bool) -> None:
-    """Two particles on a spring, one that an anchor holds on x alone, one that nothing touches, one held."""
+def test_what_slides_or_may_fall_on_a_floor_is_not_joined(floor: bool) -> None:
+    """Two particles on a spring, one that an anchor holds on x alone, one that nothing touches, one held. What a floor
+    holds depends on the loads; results list what may fall on it as supported."""
     springs = {"kind": "springs", "particles": [[0, 1]]}
     settings = {"floor": {"point": [0, 0, -5]}} if floor else {}
     spec = {"particles": [[i, 0, 0] for i in range(5)], "forces": [springs], "settings": settings}
@@ -303,7 +304,11 @@ def test_what_slides_or_may_fall_on_a_floor_is_supported_but_not_joined(floor: b
     parts = system.components(system.start())
     assert parts.first.tolist() == [0, 2, 3] and parts.label.tolist() == [0, 0, 1, 2, -1]
     assert parts.joined.tolist() == [True, False, False]
-    assert parts.supported.tolist() == [floor, True, floor]
+    assert parts.supported.tolist() == [False, True, False]
+    assert np.trace(parts.loose, axis1=1, axis2=2) == pytest.approx([3.0, 2.0, 3.0])
+    loads = {"kind": "unary", "particles": [1, 3], "vector": [[0, 0, -1], [0, 0, -1]]}
+    found = relax(Scene.read({**spec, "forces": [springs, loads], "settings": {**settings, "max_iterations": 3}}))
+    assert found.components["supported"].tolist() == [floor, floor]
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1.0, 1e200])
@@ -326,3 +331,83 @@ def test_a_part_that_nothing_supports_is_named_when_iterations_run_out() -> None
     found = relax(Scene.read({**scene, "settings": {"solver": "relaxation", "max_iterations": 50}}))
     assert found.status == "max_iterations" and "Raise max_iterations" not in found.message
     assert "Nothing supports the 5 particles connected with particle 0" in found.message
+
+
+def a_bar(load: Any, *more: Spec, axes: str = "", **settings: Any) -> Spec:
+    """Two particles on a spring along x, loaded at one end; the other held on some axes."""
+    springs = {"kind": "springs", "particles": [[0, 1]], "stiffness": 1000.0}
+    loads = {"kind": "unary", "particles": [1], "vector": load}
+    anchors = [{"particles": [0], "axes": axes}] if axes else []
+    spec = {"particles": [[0, 0, 0], [1, 0, 0]], "forces": [springs, loads, *more], "anchors": anchors}
+    return {**spec, "settings": {"max_iterations": 500, **settings}}
+
+
+PLANE = {"kind": "pull_to_plane", "particles": [0, 1]}
+LINE = {"kind": "pull_to_line", "particles": [0, 1]}
+TURN = [[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0]]  # about z
+LOOSE: list[tuple[str, list[float], tuple[Spec, ...], str, str]] = [
+    ("x", [0, 5, 0], (), "y", "5"),
+    ("xz", [3, 5, 7], (), "y", "5"),
+    ("z", [3, 4, 7], (), "(0.6, 0.8, 0)", "5"),
+    ("", [0, 5, 7], (PLANE,), "y", "5"),
+    ("", [3, 4, 7], ({**PLANE, "normal": [1, 0, 1]},), "(-0.408, 0.816, 0.408)", "4.9"),
+    ("", [3, 4, 7], (LINE,), "z", "7"),
+    ("x", [3, 4, 7], (LINE,), "z", "7"),
+    ("x", [3, 0, 5], ({"kind": "direction", "particles": [[0, 1]], "direction": [1, 0, 0]},), "z", "5"),
+    ("y", [3, 5, 0], ({"kind": "translation_lock", "particles": [[0, 1]]},), "x", "3"),
+    ("", [3, 4, 0], ({"kind": "mirror", "particles": [[0, 1]], "normal": [1, 0, 0]},), "y", "4"),
+    ("", [3, 4, 7], ({"kind": "transform_lock", "particles": [[0, 1]], "matrix": TURN},), "z", "7"),
+]
+
+
+@pytest.mark.parametrize("solver", ["auto", "relaxation"])
+@pytest.mark.parametrize(("axes", "load", "more", "along", "size"), LOOSE)
+def test_what_is_held_on_some_axes_and_loaded_along_others_is_named(
+    axes: str, load: Any, more: tuple[Spec, ...], along: str, size: str, solver: str
+) -> None:
+    """The forces between particles cancel, and a pull to a plane only acts along its normal, one to a line across that,
+    one to an image square to what the image leaves in place: the loads have a resultant that nothing can balance."""
+    found = relax(Scene.read(a_bar(load, *more, axes=axes, solver=solver)))
+    assert not found.converged
+    assert f"Nothing supports the 2 particles connected with particle 0 (of /forces/0, springs) along {along}, " in (
+        found.message
+    )
+    assert f"a load of {size} N: hold them in that direction too" in found.message
+
+
+@pytest.mark.parametrize("solver", ["auto", "newton", "relaxation"])
+def test_what_is_held_on_one_axis_is_not_converged_by_a_loose_tolerance(solver: str) -> None:
+    """A resultant of a thousandth of the loads, and a tolerance of a hundredth."""
+    loads = {"kind": "unary", "particles": [0], "vector": [0, -0.999, 0]}
+    found = relax(Scene.read(a_bar([0, 1, 0], loads, axes="x", solver=solver, tolerance=0.01)))
+    assert not found.converged and "along y, where they carry a load of 0.001 N" in found.message
+
+
+@pytest.mark.parametrize("axes", ["y", "xyz"])
+def test_what_is_held_along_its_loads_converges(axes: str) -> None:
+    found = relax(Scene.read(a_bar([0, 5, 0], axes=axes)))
+    assert found.converged, found.message
+    slides = relax(Scene.read(a_bar([0, 5, 0], {**PLANE, "normal": [0, 1, 0]}, max_iterations=100_000)))
+    assert slides.converged, slides.message
+
+
+FLOOR: list[tuple[list[float], float, str, bool]] = [
+    ([0, 0, -5], 0.0, "", True),
+    ([0, 0, 5], 0.5, "", False),
+    ([2, 0, -5], 0.5, "", True),
+    ([3, 0, -5], 0.5, "", False),
+    ([1, 0, -5], 0.0, "", False),
+    ([1, 0, -5], 0.0, "x", True),
+    ([1, 1, -5], 0.0, "x", False),
+    ([0, 0, 5], 0.5, "z", True),
+]
+
+
+@pytest.mark.parametrize(("load", "friction", "axes", "rests"), FLOOR)
+def test_what_a_floor_cannot_hold_is_named(load: Any, friction: float, axes: str, rests: bool) -> None:
+    """It pushes and does not pull, and holds mu N by friction: Coulomb's cone."""
+    floor = {"static_friction": friction, "kinetic_friction": friction}
+    both = {"kind": "unary", "particles": [0], "vector": load}
+    found = relax(Scene.read(a_bar(load, both, axes=axes, floor=floor, solver="relaxation")))
+    assert found.converged == rests, found.message
+    assert ("The floor cannot hold the 2 particles connected with particle 0" in found.message) != rests

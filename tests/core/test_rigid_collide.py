@@ -225,3 +225,22 @@ def test_a_flat_solid_is_refused(x: np.ndarray) -> None:
     force = {"kind": "rigid_collide", "particles": range(len(x))}
     with pytest.raises(InputError, match=r"/forces/0: the . corners of a solid .all particles. lie in a plane"):
         compile(Scene.read({"particles": x, "forces": [force]}))
+
+
+@pytest.mark.parametrize("solver", ["auto", "relaxation"])
+@pytest.mark.parametrize("shift", [0.0, 0.05, -0.24])
+def test_a_solid_inside_another_is_not_at_rest(shift: float, solver: str) -> None:
+    """A cube of half the size within another: the volume they share and the depth of its centroid are constant, so
+    nothing pushes them, though they overlap. In one collision group they do not feel each other, and may rest."""
+    small = 0.5 * CUBE + [shift, 0.0, 0.0]
+    found = relax(solids([CUBE, small], {"solver": solver}))
+    assert not found.converged
+    assert "the solid of particle 8 lies inside that of particle 0, and nothing pushes it out" in found.message
+    assert relax(solids([CUBE, small], {"solver": solver}, collision_group=[1] * 16)).converged
+
+
+def test_solids_at_one_place_part() -> None:
+    """Two equal cubes: the nearest face of one pushes the other out, as far as it must."""
+    found = relax(solids([CUBE, CUBE]))
+    apart = found.particles[8:].mean(axis=0) - found.particles[:8].mean(axis=0)
+    assert found.converged and np.abs(apart).max() >= 1.0 - 1e-9

@@ -286,3 +286,37 @@ def test_repeated_corners_are_left_out_and_faces_without_area_are_film() -> None
     assert energies.sum() == pytest.approx(2.0, rel=4 * EPS)
     state.x[1, 2] = 0.5
     assert system.evaluate(state)[0][1, 2] == pytest.approx(-1.0, rel=1e-12)
+
+
+def test_a_film_that_is_folded_over_is_not_at_rest() -> None:
+    """A flat grid with a vertex drawn beyond its neighbour: its triangles lie on others. A tolerance that the forces
+    meet at once, as large as the loads, does not make that a film; `auto`, which spreads vertices, unfolds it."""
+    x, faces, rim = square(6, lambda x, y: 0.0 * x, "triangles")
+    x[24, 0] += 0.5
+    loads = {"kind": "unary", "particles": [8, 12], "vector": [0.0, 0.0, 10.0]}
+    found = relax(scene(x, faces, rim, [loads], tolerance=1.0, settings={"solver": "relaxation"}))
+    assert found.status is Status.STALLED and found.stability == "unknown"
+    assert "the film is folded over at particle" in found.message and "Use auto" in found.message
+    assert "folded over" in found.stability_reason
+    unfolded = film(x, faces, rim, tolerance=1.0)
+    assert unfolded.stability == "stable" and thinnest(unfolded.particles, faces) > 0.49
+    assert reported_area(unfolded) == pytest.approx(4.0, rel=1e-12)
+
+
+def test_a_graded_film_does_not_fold() -> None:
+    """Scherk's surface on +-1.1, graded like u^3.4 to cells of 2.4e-4 at the rim, from three starts: no triangle faces
+    down, and the error of n = 24 is that of order 2 beside n = 12, to a factor of 2."""
+    errors: dict[str, list[float]] = {}
+    for n in (12, 24):
+        for start in ("flat", "drawn", "noise"):
+            x, faces, rim = square(n, lambda x, y: scherk(1.1 * x, 1.1 * y), "triangles", 3.4)
+            x[:, :2] *= 1.1
+            free = inside(x, rim)
+            x[free, 2] *= start != "flat"
+            x[free] += (start == "noise") * np.random.default_rng(n).uniform(-0.3, 0.3, (len(free), 3))
+            result = film(x, faces, rim)
+            a, b, c = (result.particles[np.asarray(faces)[:, i]] for i in range(3))
+            assert (np.cross(b - a, c - a)[:, 2] > 0.0).all() and result.stability == "stable"
+            errors.setdefault(start, []).append(off_scherk(result.particles))
+    for coarse, fine in errors.values():
+        assert coarse / fine > 2.0

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from core.test_pulls import on_triangles
 from hookean import Scene, relax
 from hookean.errors import InputError
+from hookean.forces import KINDS
 from hookean.running.simulation import Simulation
 from hookean.system.system import compile
 
@@ -114,3 +115,11 @@ def test_bodies_thrown_at_each_other_keep_momentum_and_energy() -> None:
 def test_an_open_mesh_is_no_body() -> None:
     with pytest.raises(InputError, match="/meshes/m/faces: the mesh is not closed at the edge of vertices"):
         compile(scene([BALL], SIDES[1:]))
+
+
+def test_a_mesh_without_particles_at_its_corners_is_named() -> None:
+    kind = KINDS["soft_collide"]
+    force, x = kind.example()
+    mesh = {"vertices": x, "faces": [[*face] for face in kind.example_faces]}
+    with pytest.raises(InputError, match="/meshes/skin/faces: no face has particles at all of its corners; put a"):
+        relax(Scene(particles=[[9.0, 9.0, 9.0]], forces=[force], meshes={"skin": mesh}))

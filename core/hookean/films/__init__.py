@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from hookean.system.system import System
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 __all__ = ["EDGE", "SLIDING", "WHOLE", "WITHIN", "Films"]
@@ -85,6 +86,14 @@ class Films:
         """Take from forces `f` (n, 3) what does not count, in place."""
         axes, counts = self.frames(x, free)
         dispatch.compiled(keep_what_counts)(axes, counts, self.kind, f)
+
+    def folded(self, x: Floats, free: Floats) -> Ints:
+        """Particles inside films around which some triangle faces the other way than they do together."""
+        axes, counts, room = np.empty((len(x), 3, 3)), np.empty((len(x), 3)), np.empty((len(x), 5))
+        dispatch.compiled(lay_frames)(
+            x, free, self.corners, self.signs, self.kind, self.ends, room, axes, counts
+        )  # fmt: skip
+        return np.flatnonzero((self.kind == WITHIN) & (free > 0.0).all(axis=1) & (room[:, 4] > 0.0))
 
     def along(self, x: Floats, free: Floats, vectors: Floats) -> Floats:
         """The part of vectors (n, 3) that does not count: motions that leave the films where they are."""

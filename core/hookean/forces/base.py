@@ -245,6 +245,18 @@ class Force(Model):
         return block.indices[:, : 2 * cls.arity] if cls.turns else block.indices  # without references, which are held
 
     @classmethod
+    def amiss(cls, block: Block, x: Floats) -> str:
+        """Why a shape `x` (n, 3) is no equilibrium although its forces balance, as a sentence without its full stop;
+        empty where it may be one. Bodies that lie in each other so that nothing pushes them out are an example."""
+        return ""
+
+    @classmethod
+    def holds(cls, block: Block) -> Floats | None:
+        """Of a support: the projections (m, 3, 3) on the directions in which its elements can push, whatever the shape;
+        None: in any."""
+        return None
+
+    @classmethod
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
         """Elements of a block (sorted rows) as a block of their own, with those that they feel; and the rows of all."""
         return rows, block.some(rows)

@@ -256,6 +256,11 @@ class BoxCollide(Crowd):
         return [(groups.Whole, groups.stiff(index, stiffness)) for index, stiffness in parts if len(index)]
 
     @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """In no direction: the forces of all elements sum to zero."""
+        return np.zeros((len(block.indices), 3, 3))
+
+    @classmethod
     def example(cls) -> tuple[BoxCollide, Floats]:
         """Four boxes, three of which overlap, given by any opposite corners."""
         x = [[0, 0, 0], [2, 1.5, 1], [1.7, 0.3, 0.2], [3.5, 1.9, 1.4], [3.1, 1.6, 2.5], [2.2, 0.4, 1.1]]

@@ -8,7 +8,7 @@ import numpy as np
 
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.cells import GROUP, PARALLEL, RADIUS, ends, nearest
 from hookean.forces.neighbours import (
     AS_GIVEN,
@@ -361,7 +361,7 @@ class Collide(Crowd):
 
     a and b are the radii of two spheres, d is the distance of their centres. All spheres of the force can touch, of any
     radii, except those of one `collision_group`. Two pressed together with a force F overlap by F / k. Spheres with the
-    same centre have no direction in which to part: nothing pushes them.
+    same centre have no direction in which to part: nothing pushes them, and no result with such is in equilibrium.
 
     In physical time (`verlet`, `yoshida`, simulations) two that meet with the speed u part with e u: a dashpot
     c = 2 zeta sqrt(k m) acts while they overlap, m their reduced mass, zeta = -ln e / sqrt(pi^2 + ln^2 e). With
@@ -403,6 +403,20 @@ class Collide(Crowd):
 
             return RoughCollide.built(self, places)
         return crowd(places, places.elements(self), self.radius, self.collision_group, self.strength)
+
+    @classmethod
+    def amiss(cls, block: Block, x: Floats) -> str:
+        """Spheres with the same centre: nothing pushes them apart."""
+        pair, _ = overlapping(block, x)
+        a, b = block.indices[pair, 0].T
+        same = np.flatnonzero((lengths(x[a] - x[b]) <= NEAREST) & (block.parameters[pair[:, 0], STIFFNESS] > 0.0))
+        if not len(same):
+            return ""
+        more = f" (and {len(same) - 1} more pairs)" if len(same) > 1 else ""
+        return (
+            f"the spheres of particles {a[same[0]]} and {b[same[0]]}{more} have the same centre, and nothing pushes "
+            "them apart. Move one of them"
+        )
 
     @classmethod
     def gathered(

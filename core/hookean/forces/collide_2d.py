@@ -212,6 +212,11 @@ class Collide2d(Crowd):
         return [(groups.Whole, groups.stiff(index, stiffness))]
 
     @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """In no direction: the forces of all elements sum to zero."""
+        return np.zeros((len(block.indices), 3, 3))
+
+    @classmethod
     def example(cls) -> tuple[Collide2d, Floats]:
         """A pentagon and a quad with corners in each other, and a triangle with one in the quad, in a tilted plane."""
         flat = [[0, 0], [2, -0.1], [2.6, 1.5], [1, 2.4], [-0.4, 1.2], [1.7, 0.7], [4.2, 0.4], [4.5, 2.6], [2.2, 1.9]]

@@ -87,6 +87,11 @@ class Direction(Force):
         return {"offset": lengths(apart - (apart * d).sum(axis=1)[:, None] * d), "force": element_forces[:, 1]}
 
     @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """In no direction: the forces of all elements sum to zero."""
+        return np.zeros((len(block.indices), 3, 3))
+
+    @classmethod
     def example(cls) -> tuple[Direction, Floats]:
         """Three lines on four particles, each with a direction of its own."""
         x = np.array([[0.0, 0.1, 0.0], [1.0, 0.0, 0.2], [0.3, 1.1, -0.1], [0.2, 0.4, 0.9]])

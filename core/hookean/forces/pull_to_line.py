@@ -58,6 +58,13 @@ class PullToLine(Pull):
         return Block.of(index, strength=self.strength, origin=np.atleast_2d(self.origin), direction=lead)
 
     @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """Across the lines."""
+        along = block.parameters[:, 4:7]
+        across = np.eye(3) - along[:, :, None] * along[:, None, :]
+        return np.asarray(across * (block.parameters[:, 0] > 0.0)[:, None, None])
+
+    @classmethod
     def example(cls) -> tuple[PullToLine, Floats]:
         """Three particles with lines of their own."""
         return cls(

@@ -54,6 +54,12 @@ class PullToPlane(Pull):
         return Block.of(index, strength=self.strength, origin=np.atleast_2d(self.origin), normal=units(self.normal))
 
     @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """Along the normals."""
+        normal = block.parameters[:, 4:7]
+        return np.asarray(normal[:, :, None] * normal[:, None, :] * (block.parameters[:, 0] > 0.0)[:, None, None])
+
+    @classmethod
     def example(cls) -> tuple[PullToPlane, Floats]:
         """Three particles with planes of their own."""
         return cls(

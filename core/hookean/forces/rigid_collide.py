@@ -286,7 +286,8 @@ class RigidCollide(Crowd):
     For boxes that are tilted in any way, give their eight corners as a group here and to `rigid_body`; boxes along the
     axes that may grow or shrink are `box_collide`.
     Corners of two solids at one place, given as points, become one particle: give them as particles, or draw a joint.
-    Boxes that are flush without friction are no stable stack: each gains room by moving out.
+    Boxes that are flush without friction are no stable stack: each gains room by moving out. A solid inside another is
+    not pushed out: no result with one is in equilibrium.
     """
 
     kind: Literal["rigid_collide"] = "rigid_collide"
@@ -370,6 +371,21 @@ class RigidCollide(Crowd):
             x, np.zeros_like(x), block.indices, block.parameters, block.memory, np.zeros_like(x), w
         )
         return [(groups.Whole, groups.bounded(own[:, None], w[own]))]
+
+    @classmethod
+    def amiss(cls, block: Block, x: Floats) -> str:
+        """Solids inside others, out of which nothing pushes them."""
+        from hookean.forces.contained import find_inside
+
+        found = np.zeros(2, np.int64)
+        count = int(dispatch.compiled(find_inside)(np.ascontiguousarray(x), block.indices, block.parameters, found))
+        if not count:
+            return ""
+        more = f" (and {count - 1} more)" if count > 1 else ""
+        return (
+            f"the solid of particle {found[0]} lies inside that of particle {found[1]}{more}, and nothing pushes it "
+            "out. Move them apart"
+        )
 
     @classmethod
     def no_tangent(cls, block: Block, *, sparse: bool) -> str:

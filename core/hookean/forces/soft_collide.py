@@ -230,6 +230,9 @@ class SoftCollide(Crowd):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: links of the bodies, place in the force, stiffness, skin, corners of each triangle."""
         faces = places.faces(self.mesh)
+        if len(faces) and not (faces >= 0).all(axis=1).any():
+            said = "no face has particles at all of its corners; put a force on this mesh, or particles at its vertices"
+            raise InputError(f"/meshes/{self.mesh}/faces", said)
         triangles, reason = solid(places.x, faces[(faces >= 0).all(axis=1)])
         if reason:
             raise InputError(f"/meshes/{self.mesh}/faces", reason)

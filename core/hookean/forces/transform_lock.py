@@ -59,6 +59,16 @@ def images(index: Ints, stiffness: Any, linear: Floats, shift: ArrayLike) -> Blo
     return Block.of(index, stiffness=stiffness, scale=scale, linear=rows, shift=np.broadcast_to(shift, (len(index), 3)))
 
 
+def holding(block: Block) -> Floats:
+    """The projections (m, 3, 3) on the directions of the forces of pairs in all, k (A^T - 1) (p2 - A p1 - t): of a
+    mirror image its normal, of a translation none."""
+    turned = np.eye(3) - block.parameters[:, 2:11].reshape(-1, 3, 3).transpose(0, 2, 1)
+    directions, sizes, _ = np.linalg.svd(turned)
+    directions = directions * (sizes > 1e-12 * (1.0 + block.parameters[:, 1:2]))[:, None, :]
+    strong = (block.parameters[:, 0] > 0.0)[:, None, None]
+    return np.asarray(directions @ directions.transpose(0, 2, 1) * strong)
+
+
 class Imaged(Force):
     """Base of forces that pull the second particle of a pair to an image of the first."""
 
@@ -79,6 +89,11 @@ class Imaged(Force):
         """Distance of the second particle from the image [length] and the force on it [force]."""
         force, k = element_forces[:, 1], block.parameters[:, 0]
         return {"distance": np.divide(lengths(force), k, out=np.zeros(len(k)), where=k > 0.0), "force": force}
+
+    @classmethod
+    def holds(cls, block: Block) -> Floats:
+        """As its forces do in all."""
+        return holding(block)
 
 
 class TransformLock(Imaged):

@@ -140,7 +140,7 @@ def flown(system: System, state: State, found: Balance, particle: int, *, driven
             return bool(np.isfinite(gain) and gain <= GAIN * max(exchanged, least))
         parts = found.components
         part = parts.label[particle]
-        if part < 0 or parts.supported[part]:
+        if part < 0 or not parts.loose[part].any():
             return False
         some = parts.label == part
         moved = system.mass[some] @ (state.x - system.x)[some] / system.mass[some].sum()

@@ -9,8 +9,8 @@ import numpy as np
 from hookean.running.result import Status
 from hookean.running.trial import trial
 from hookean.stability import time_steps
-from hookean.stability.equilibrium import Equilibrium, Stability
-from hookean.system.balance import ALONG, Balance
+from hookean.stability.equilibrium import Equilibrium, Stability, amiss
+from hookean.system.balance import Balance, Floats
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -57,11 +57,12 @@ def _blame(watch: Watch, system: System) -> str:
         held = (0.0, 0.0) if watch.driven else trial(system, watch.origin, watch.good, watch.method, type(watch))
         return time_steps.too_long(system, watch.good, watch.method, held)
     part = watch.found.components.label[watch.lost] if watch.lost >= 0 else -1
-    if watch.flew and part >= 0 and not watch.found.components.supported[part]:
+    free = part >= 0 and not watch.found.components.supported[part] and not len(watch.found.planes)
+    if watch.flew and free:
         return f"Nothing supports {_called(system, watch.found, part)}: add anchors"
     if said := _adrift(system, watch.found):
         return said
-    if part >= 0 and not watch.found.components.supported[part]:
+    if free:
         return f"Nothing supports {_called(system, watch.found, part)}: add anchors"
     if said := _overloaded(system, watch.good, watch.size):
         return said
@@ -78,6 +79,8 @@ def _obstacle(watch: Watch, system: System) -> str:
     """Why a run stalled."""
     if said := _adrift(system, watch.found):
         return said
+    if said := amiss(system, watch.good):
+        return f"Forces balance, but {said}"
     if len(watch.found.coarse):
         part = int(watch.found.coarse[0])
         return (
@@ -124,17 +127,40 @@ def _overloaded(system: System, state: State, size: float) -> str:
 
 
 def _adrift(system: System, found: Balance) -> str:
-    """Which components carry loads that nothing supports; empty where there are none."""
+    """Which components carry loads that nothing can balance; empty where there are none."""
     if not len(found.adrift):
         return ""
     part = int(found.adrift[0])
     more = f" (and {len(found.adrift) - 1} more such parts)" if len(found.adrift) > 1 else ""
-    load = float(np.abs(found.found[part, ALONG]).max())
-    called = _called(system, found, part)
+    called, unit = _called(system, found, part), system.scene.units.force
     count = int(np.count_nonzero(found.components.label[: system.slots.count] == part))
     carry, them = ("carries", "it") if count == 1 and not more else ("carry", "them")
-    unit = system.scene.units.force
-    return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
+    unheld = found.unheld[part]
+    if len(found.planes):
+        return (
+            f"The floor cannot hold {called}{more}: {_load(unheld)} {unit} of the loads lift {them} off or exceed the "
+            f"friction. Anchor {them}, or raise static_friction"
+        )
+    if np.trace(found.components.loose[part]) > 2.5:
+        load = float(np.abs(unheld).max())
+        return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
+    return (
+        f"Nothing supports {called}{more} along {_direction(unheld)}, where {them if them == 'it' else 'they'} {carry} "
+        f"a load of {_load(unheld)} {unit}: hold {them} in that direction too"
+    )
+
+
+def _load(vector: Floats) -> str:
+    return f"{float(np.sqrt(vector @ vector)):.3g}"
+
+
+def _direction(vector: Floats) -> str:
+    """A direction in words: an axis, or a unit vector."""
+    unit = vector / np.sqrt(vector @ vector)
+    axis = int(np.argmax(np.abs(unit)))
+    if np.abs(unit[axis]) > 1.0 - 1e-9:
+        return "xyz"[axis]
+    return f"({', '.join(f'{c:.3g}' for c in np.where(np.abs(unit) > 1e-9, unit, 0.0))})"
 
 
 def _called(system: System, found: Balance, part: int) -> str:

@@ -367,8 +367,8 @@ def _components(found: Balance, rest: Equilibrium) -> dict[str, Any]:
     counts = np.bincount(parts.label[parts.label >= 0], minlength=len(parts.first))
     errors = rest.position_errors if rest.position_errors is not None else np.full(len(parts.first), np.nan)
     columns = (
-        parts.first, counts, parts.supported, loaded, found.scales, found.found[:, OUT], found.residuals,
-        found.floors, errors,
+        parts.first, counts, parts.supported | (len(found.planes) > 0), loaded, found.scales, found.found[:, OUT],
+        found.residuals, found.floors, errors,
     )  # fmt: skip
     return {name: column[acting] for name, column in zip(COMPONENTS, columns, strict=True)}
 

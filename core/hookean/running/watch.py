@@ -14,7 +14,7 @@ from hookean.running.messages import owner, sentence
 from hookean.running.result import Status
 from hookean.solvers import Solver
 from hookean.stability import time_steps
-from hookean.stability.equilibrium import Equilibrium, Stability, assess, excess, leave
+from hookean.stability.equilibrium import Equilibrium, Stability, amiss, assess, excess, leave
 from hookean.system.balance import Balance, balance
 from hookean.system.impulses import next_moment
 from hookean.system.state import State
@@ -100,7 +100,8 @@ class Watch:
         if self.found.residual < self.best:
             self.best, self.best_at = self.found.residual, state.iteration
             self.top, self.top_found = self.good, self.found
-        if self.found.still(self.tolerance) and self._resting(system, state):
+        rests = self.found.still(self.tolerance) and self._resting(system, state)
+        if rests and not amiss(system, state):  # else the solver may go on, and mend it
             return Status.CONVERGED if self.found.met(self.tolerance) else Status.STALLED
         stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
         if idle or (stuck and not self.method.physical):  # what swings may swing for long

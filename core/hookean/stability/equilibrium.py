@@ -83,6 +83,8 @@ def assess(system: System, state: State, found: Balance, method: Solver | None =
         return unknown(reason)
     if not free.any():
         return Equilibrium(Stability.STABLE, position_errors=np.zeros(len(found.scales)))
+    if reason := amiss(system, state):
+        return unknown(reason)
     certain = _certain(system, state, free, method)
     if certain:
         moved = None if method is None else method.correction(system, state, found)
@@ -92,7 +94,7 @@ def assess(system: System, state: State, found: Balance, method: Solver | None =
             moved = _conjugate.movement(system, state, free, found)
         if moved is not None:
             return Equilibrium(Stability.STABLE, position_errors=_largest(moved, found))
-    rest = _by_modes(system, replace(state, free=free), found, method)
+    rest = _by_modes(system, state, free, found, method)
     if not certain or rest.stability is Stability.STABLE:
         return rest
     return Equilibrium(Stability.STABLE, position_errors=rest.position_errors, position_reason=rest.position_reason)
@@ -105,6 +107,19 @@ def _certain(system: System, state: State, free: Floats, method: Solver | None) 
         return True
     few = np.count_nonzero(free) <= DENSE
     return not few and nets.suits(system) and nets.super_stable(system, state)
+
+
+def amiss(system: System, state: State) -> str:
+    """Why a shape in which forces balance is none that may rest, as a sentence without its full stop; empty where it
+    is one: films that are folded over, bodies that lie in each other."""
+    if system.films is not None and len(folded := system.films.folded(state.x, state.free)):
+        more = f" (and at {len(folded) - 1} more)" if len(folded) > 1 else ""
+        return (
+            f"the film is folded over at particle {folded[0]}{more}: no film has this shape. Use auto, which spreads "
+            "the triangles evenly, or start from a shape without folds"
+        )
+    found = (group.cls.amiss(group.block, state.x) for group in system.groups if group.cls.rewired)
+    return next((reason for reason in found if reason), "")
 
 
 def movable(system: System, state: State, found: Balance) -> tuple[Floats, str]:
@@ -134,29 +149,29 @@ def movable(system: System, state: State, found: Balance) -> tuple[Floats, str]:
     return free, ""
 
 
-def _by_modes(system: System, state: State, found: Balance, method: Solver | None) -> Equilibrium:
-    """By the factors of the tangent, or by multigrid where they are large."""
-    from hookean.stability.modes import factored, iterated
+def _by_modes(system: System, state: State, free: Floats, found: Balance, method: Solver | None) -> Equilibrium:
+    """By the factors of the tangent on what is `free` (n, 3), or by multigrid where they are large."""
+    from hookean.stability.modes import iterated, settled
 
     if missing := system.no_tangent():
         return unknown(missing)
     if system.films is not None:  # multigrid has no axes across them
-        counts = system.films.frames(state.x, state.free)[1]
+        counts = system.films.frames(state.x, free)[1]
         unknowns = int(np.count_nonzero(counts))
         if unknowns > LARGEST_FACTOR:
             return unknown(f"films of {unknowns} unknowns are too large to factor again")
-        return _concluded(factored(system, state, found, DENSE), found)
-    unknowns = int(np.count_nonzero(state.free))
+        return _concluded(settled(system, state, found, free, DENSE), found)
+    unknowns = int(np.count_nonzero(free))
     entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if not g.cls.constant)
     plain = nets.suits(system)
     if unknowns <= LARGEST_FACTOR and entries <= LARGEST_BLOCKS and not (plain and len(state.x) >= LARGE_NET):
-        modes = factored(system, state, found, DENSE)
+        modes = settled(system, state, found, free, DENSE)
     elif missing := system.no_tangent(sparse=False):
         return unknown(missing)
     elif any(group.cls.rewired for group in system.groups):
         return unknown(f"contacts that come and go among {unknowns} unknowns are too many to factor")
     else:
-        modes = iterated(system, state, found, None if method is None else method.tangent)
+        modes = iterated(system, replace(state, free=free), found, None if method is None else method.tangent)
     return _concluded(modes, found)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -21,7 +21,7 @@ from hookean.compiled import dispatch
 from hookean.forces import groups
 from hookean.linear.block_kernels import multiply
 from hookean.linear.sparse_factors import Factors
-from hookean.system.balance import Balance, extents
+from hookean.system.balance import Balance, balance, extents
 
 if TYPE_CHECKING:
     from hookean.linear.tangent import Tangent
@@ -39,6 +39,8 @@ SPARE, INVERSE = 4, 12  # more of them than are asked for, and steps of inverse 
 STEPS = 60  # of conjugate gradients
 STIRRED = 0.2  # noise beside what is out of balance
 SOFT = 1e-3  # a lowest Ritz value below this part of the highest is not known to be positive
+HIDING = 1e-6  # residual up to which what is out of balance says too little of a mode to look closer
+HIDDEN = "the softest mode is so soft that the forces still out of balance hide its sign: lower the tolerance"
 LEAST_SHIFT, LARGEST_SHIFT = 1e-6, 1e2  # of the tangent's Laplacian
 
 
@@ -47,7 +49,7 @@ class Modes:
     """How many modes of a shape are `unstable` and how many `loose` (nothing resists them), the softest `mode` (n, 3),
     its largest part 1, where there is one of these, and the movement (n, 3) [length] that one more exact step would
     make, None where that is not known: `unsettled` has the reason. `reason`: why nothing is known. Not `counted`: there
-    may be more such modes."""
+    may be more such modes. `hidden`: what is out of balance, and not rounding, hides whether a mode is loose."""
 
     unstable: int = 0
     loose: int = 0
@@ -56,6 +58,7 @@ class Modes:
     unsettled: str = ""
     reason: str = ""
     counted: bool = True
+    hidden: bool = False
 
 
 @dataclass(frozen=True)
@@ -174,6 +177,23 @@ def _completed(elements: list[tuple[Group, Floats]], moved: Floats) -> Floats:
     return np.concatenate([moved, found.T[:, :, None] * [1.0, 0.0, 0.0]], axis=1)
 
 
+def settled(system: System, state: State, found: Balance, free: Floats, dense: int) -> Modes:
+    """Modes by factors, `free` (n, 3) what may move; where what is out of balance hides them, those of a shape nearby,
+    to which exact steps lead."""
+    modes, there, now = factored(system, replace(state, free=free), found, dense), found, state.copy()
+    while modes.hidden and there.residual > HIDING:
+        if modes.moved is None:
+            return Modes(reason=HIDDEN)
+        now.x += modes.moved
+        before, there = there, balance(system, now)
+        if not there.residual < 0.5 * before.residual:
+            return Modes(reason=HIDDEN)
+        modes = factored(system, replace(now, free=free), there, dense)
+    if there is found or modes.moved is None:
+        return modes
+    return replace(modes, moved=now.x - state.x + modes.moved)
+
+
 def factored(system: System, state: State, found: Balance, dense: int) -> Modes:
     """Modes by factors: of a dense matrix up to so many unknowns, of a sparse one else, or where groups are large."""
     scaled = Scaled.of(system, state, found)
@@ -287,6 +307,7 @@ def _decided(
     mode /= np.abs(mode).max()
     # of motions whose sizes are measured by W, as eigenvalues are
     limit = noise + scaled.turning
+    hidden = several and bool(((np.abs(values) <= limit) & (np.abs(values) > noise)).any())
     if several:
         below, near = int((values < -limit).sum()), int((np.abs(values) <= limit).sum())
     found = solve()
@@ -295,7 +316,7 @@ def _decided(
         found = found - soft @ (soft.T @ found)
     moved = scaled.motion(found) if np.isfinite(found).all() else None
     if below or near:
-        return Modes(below, near, mode, moved)
+        return Modes(below, near, mode, moved, hidden=hidden and not below)
     return Modes(moved=moved)
 
 
@@ -373,5 +394,7 @@ def _lowest(system: System, state: State, found: Balance, tangent: Tangent) -> M
     if energies[0, 0] > limit:
         return Modes(reason="the tangent is nearly singular")
     falls = energies[0, 0] < -limit
+    if not falls and abs(energies[0, 0]) > noise and found.residual > HIDING:
+        return Modes(reason=HIDDEN)
     unsettled = "the tangent has negative eigenvalues, and multigrid solves only without them"
     return Modes(int(falls), int(not falls), mode, unsettled=unsettled, counted=False)

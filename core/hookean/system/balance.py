@@ -6,7 +6,7 @@ heavy, stiff or far away excuses nothing elsewhere.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any
 
@@ -58,6 +58,7 @@ class Balance:
     floor: float  # the largest rounding floor [-]
     beyond: float  # the largest residual of a particle that is more than rounding leaves there [-]
     falls: bool  # whether some component is adrift
+    planes: Floats  # (p, 9) parameters of those that nothing passes
 
     @property
     def residuals(self) -> Floats:
@@ -86,9 +87,29 @@ class Balance:
 
     @property
     def adrift(self) -> NDArray[np.int64]:
-        """Components that nothing supports although their loads have a resultant."""
-        along = np.abs(self.found[:, ALONG]).max(axis=1, initial=0.0)
-        return np.flatnonzero(~self.components.supported & (along > BALANCED * self.found[:, LOAD]))
+        """Components whose loads have a resultant in directions in which nothing can hold them."""
+        along = np.abs(self.unheld).max(axis=1, initial=0.0)
+        return np.flatnonzero(along > BALANCED * self.found[:, LOAD])
+
+    @property
+    def unheld(self) -> Floats:
+        """Of the sum of the loads of each component (k, 3) [force] what no support can balance: neither one with
+        directions of its own, nor the floor, which pushes and holds by friction."""
+        left = np.einsum("kij,kj->ki", self.components.loose, self.found[:, ALONG])
+        if not len(self.planes):
+            return np.asarray(left)
+        if len(self.planes) > 1:
+            return np.zeros_like(left)
+        normal, friction = self.planes[0, 3:6], self.planes[0, 7]
+        up = self.components.loose @ normal  # where the floor pushes, but for what is held anyway
+        square = (up * up).sum(axis=1)
+        press = np.maximum(-(left * up).sum(axis=1) / np.where(square > 0.0, square, 1.0), 0.0)
+        slid = left + press[:, None] * up
+        size = lengths(slid)
+        whole = np.trace(self.components.loose, axis1=1, axis2=2) > 2.5
+        held = np.where(whole, friction * press, np.inf if friction > 0.0 else 0.0)
+        part = np.minimum(held / np.where(size > 0.0, size, 1.0), 1.0)
+        return np.asarray(slid * (1.0 - part)[:, None])
 
     @property
     def coarse(self) -> NDArray[np.int64]:
@@ -122,15 +143,37 @@ def balance(system: System, state: State) -> Balance:
     for group in system.groups:
         if group.cls.role != "load" and len(group.block.indices):
             dispatch.compiled(reach_of)(group.block.indices, state.x, reach)
-    supported = parts.supported.view(np.int8)
-    loaded, *summed = dispatch.compiled(judge)(
-        state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found, scales, supported,
-    )  # fmt: skip
+    planes = np.concatenate([np.zeros((0, 9)), *(group.block.parameters for group in system.contacts)])
+    loose = np.zeros_like(parts.loose) if len(planes) else parts.loose
+    given = state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found, scales, loose
+    loaded, *summed, faint = dispatch.compiled(judge)(*given)
+    if (faint or summed[-1]) and _cancelled(system, state, loads):
+        found[:] = 0.0
+        loaded, *summed, faint = dispatch.compiled(judge)(*given)
     if not loaded and ((scales <= 0.0) & parts.joined).any():
         scales = np.where(scales <= 0.0, _element_scales(system, state, parts, w, reach), scales)
     if not loaded:
-        summed = dispatch.compiled(summary)(found, scales, supported)
-    return Balance(left, reactions, contact, parts, found, scales, energies, w, *summed)
+        summed = list(dispatch.compiled(summary)(found, scales, loose))
+    part, residual, floor, beyond, falls = summed
+    judged = Balance(
+        left, reactions, contact, parts, found, scales, energies, w, part, residual, floor, beyond, falls, planes
+    )  # fmt: skip
+    return replace(judged, falls=len(judged.adrift) > 0) if len(planes) else judged
+
+
+def _cancelled(system: System, state: State, loads: Floats) -> bool:
+    """Take from `loads` (n, 3) what is left of loads that cancel at a particle but for rounding; whether any was."""
+    sizes, count = np.zeros(len(loads)), np.zeros(len(loads))
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        if group.cls.role == "load" and len(group.block.indices):
+            index = group.block.indices.ravel()
+            each = lengths(system.element_forces(group, state, memory).reshape(-1, 3))
+            sizes += np.bincount(index, each, len(loads))
+            count += np.bincount(index, minlength=len(loads))
+    size = lengths(loads)
+    rest = (size > 0.0) & (size <= ROUNDING * (count + 8.0) * sizes)
+    loads[rest] = 0.0
+    return bool(rest.any())
 
 
 def extents(system: System, state: State) -> Floats:
@@ -182,9 +225,9 @@ def least_goal(found, scales, tolerance):  # type: ignore[no-untyped-def]
 
 
 @device
-def summary(found: Any, scales: Any, supported: Any) -> Any:
+def summary(found: Any, scales: Any, loose: Any) -> Any:
     """The component with the largest residual, that residual, the largest rounding floor and residual beyond it, and
-    whether a component that nothing supports has loads with a resultant."""
+    whether the loads of a component have a resultant in a direction in which nothing supports it."""
     part, residual, floor, beyond, falls = -1, 0.0, 0.0, 0.0, False
     for k in range(found.shape[0]):
         if scales[k] <= 0.0:  # nothing pushes there: balanced if what is left is rounding
@@ -196,18 +239,21 @@ def summary(found: Any, scales: Any, supported: Any) -> Any:
         if not np.isnan(beyond):
             more = found[k, 2] / scales[k]
             beyond = more if np.isnan(more) else max(beyond, more)
-        along = max(abs(found[k, 6]), abs(found[k, 7]), abs(found[k, 8]))
-        falls = falls or (supported[k] == 0 and along > BALANCED * found[k, 4])
+        if loose[k, 0, 0] + loose[k, 1, 1] + loose[k, 2, 2] > 0.5:
+            for i in range(3):
+                along = loose[k, i, 0] * found[k, 6] + loose[k, i, 1] * found[k, 7] + loose[k, i, 2] * found[k, 8]
+                falls = falls or abs(along) > BALANCED * found[k, 4]
     return part, residual, floor, beyond, falls
 
 
 def judge(  # type: ignore[no-untyped-def]
-    x, f, w, free, loads, contact, reach, label, left, reactions, found, scales, supported
+    x, f, w, free, loads, contact, reach, label, left, reactions, found, scales, loose
 ):
     """Write the reactions; and of each component the largest force left, the particle with it, the largest beyond
     rounding and the most that rounding leaves [force], the sizes of loads on what may move: their sum, how many there
     are, and the loads added up along the axes; `scales` their mean. Whether all components are loaded, and then
-    the `summary`."""
+    the `summary`; and whether some load is so faint beside rounding that it may be no more than that."""
+    faint = False
     for i in range(x.shape[0]):
         largest, square, weight = 0.0, 0.0, 0.0
         for c in range(3):
@@ -228,6 +274,7 @@ def judge(  # type: ignore[no-untyped-def]
             part[2] = size
         part[3] = max(part[3], noise)
         if weight > 0.0:
+            faint = faint or COARSE * weight < noise
             part[4] += weight
             part[5] += 1.0
             for c in range(3):
@@ -236,7 +283,9 @@ def judge(  # type: ignore[no-untyped-def]
     for k in range(found.shape[0]):
         scales[k] = found[k, 4] / max(found[k, 5], 1.0)
         every = every and scales[k] > 0.0
-    return (True, *summary(found, scales, supported)) if every else (False, -1, 0.0, 0.0, 0.0, False)
+    if every:
+        return (True, *summary(found, scales, loose), faint)
+    return (False, -1, 0.0, 0.0, 0.0, False, faint)
 
 
 def _element_scales(system: System, state: State, parts: Components, w: Floats, reach: Floats) -> Floats:

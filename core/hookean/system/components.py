@@ -25,35 +25,67 @@ Ints = NDArray[np.int64]
 @dataclass(frozen=True)
 class Components:
     """Connected components: the `label` (n,) of each particle, -1 where it is held on all axes; and of each component
-    its lowest particle `first` (k,), whether something supports it (`supported`), and whether it has elements
-    (`joined`): one without is a single particle."""
+    its lowest particle `first` (k,), whether something supports it (`supported`), whether it has elements (`joined`):
+    one without is a single particle; and the projection `loose` (k, 3, 3) on the directions in which nothing can hold
+    it, 0 where it is held in all."""
 
     free: Floats  # (n, 3), of the state they were found for
     label: Ints
     first: Ints
     supported: NDArray[np.bool_]
     joined: NDArray[np.bool_]
+    loose: Floats
 
 
-def components(groups: list[Group], free: Floats, floor: bool) -> Components:
+def components(groups: list[Group], free: Floats) -> Components:
     """The components of particles with `free` (n, 3) 0 on held axes.
 
-    One is supported by a particle that is held on some axis, by an element to one that is held on all, by a force that
-    acts from outside (an anchor spring, a pull, water), or by a `floor` that it may fall on.
+    One is supported along an axis by a particle that is held on it; in all directions by an element to one that is held
+    on all axes; and by a force that acts from outside (an anchor spring, a pull, water) in the directions in which that
+    `holds`. What contacts with a floor hold depends on the loads (see `balance`).
     """
     n = len(free)
     parent, notes, label = np.arange(n), np.zeros(n, np.int64), np.empty(n, np.int64)
+    partly: list[tuple[Ints, Floats]] = []
     for group in groups:
         index = group.cls.connected(group.block)
         if len(index) and (group.cls.role != "load" or index.shape[1] > 1):
-            dispatch.compiled(unite)(index, free, group.cls.role == "support" or group.cls.bears, parent, notes)
+            supports = group.cls.role == "support" or group.cls.bears
+            directions = group.cls.holds(group.block) if supports else None
+            if directions is not None and directions.any():
+                partly.append((group.block.indices[:, 0], directions))
+            dispatch.compiled(unite)(index, free, supports and directions is None, parent, notes)
     first, flags = np.empty(n, np.int64), np.empty(n, np.int64)
-    count = dispatch.compiled(number)(parent, free, floor, notes, label, first, flags)
-    flags = flags[:count]
-    return Components(free.copy(), label, first[:count], (flags & HELD) > 0, (flags & JOINED) > 0)
+    count = dispatch.compiled(number)(parent, free, notes, label, first, flags)
+    flags, first = flags[:count], first[:count]
+    loose, held = _loose(flags, label, partly)
+    return Components(free.copy(), label, first, held, (flags & JOINED) > 0, loose)
 
 
-JOINED, HELD = 1, 2  # notes on particles: an element acts on it; something supports it
+def _loose(flags: Ints, label: Ints, partly: list[tuple[Ints, Floats]]) -> tuple[Floats, NDArray[np.bool_]]:
+    """The directions (k, 3, 3) in which nothing holds a component, and which have any support (k,)."""
+    loose = np.zeros((len(flags), 3, 3))
+    some = np.flatnonzero((flags & HELD) == 0)
+    if not len(some):
+        return loose, np.ones(len(flags), bool)
+    axes = (flags[some, None] & AXES) > 0
+    supported = (flags & HELD) > 0
+    supported[some] = axes.any(axis=1)
+    loose[some] = np.eye(3) * ~axes[:, :, None]
+    if partly:
+        held = np.eye(3) - loose
+        for particles, directions in partly:
+            mine = label[particles] >= 0
+            np.add.at(held, label[particles][mine], directions[mine])
+        values, vectors = np.linalg.eigh(held[some])
+        vectors = vectors * (values < 1e-9 * np.maximum(values[:, -1:], 1e-300))[:, None, :]
+        supported[some] |= values[:, -1] > 0.0
+        loose[some] = vectors @ vectors.transpose(0, 2, 1)
+    return loose, supported
+
+
+JOINED, HELD = 1, 2  # notes on particles: an element acts on it; something supports it in all directions
+AXES = np.array([4, 8, 16])  # or along x, y, z
 
 
 @device
@@ -86,7 +118,7 @@ def unite(indices, free, supports, parent, notes):  # type: ignore[no-untyped-de
             notes[low] |= 3 if held else 1
 
 
-def number(parent, free, floor, notes, label, first, flags):  # type: ignore[no-untyped-def]
+def number(parent, free, notes, label, first, flags):  # type: ignore[no-untyped-def]
     """Number the components by their lowest particles; how many there are."""
     count = 0
     for i in range(parent.shape[0]):
@@ -101,8 +133,10 @@ def number(parent, free, floor, notes, label, first, flags):  # type: ignore[no-
         else:
             label[i] = label[own]
         flags[label[i]] |= notes[i]
-        if floor or axes < 3.0:
-            flags[label[i]] |= 2
+        if axes < 3.0:
+            for c in range(3):
+                if free[i, c] == 0.0:
+                    flags[label[i]] |= 4 << c
     return count
 
 

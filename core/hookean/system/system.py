@@ -132,7 +132,7 @@ class System:
     def components(self, state: State) -> Components:
         """The connected components of what may move."""
         if self._components is None or not dispatch.same(self._components.free, state.free):
-            self._components = components.components(self.groups, state.free, bool(self.contacts))
+            self._components = components.components(self.groups, state.free)
         return self._components
 
     def put_outside(self, state: State) -> None:

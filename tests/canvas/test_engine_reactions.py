@@ -1,0 +1,50 @@
+"""Reactions on the canvas: one for each anchor, in the order of the anchors, whatever their targets."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from canvas.canvasing import point, xyz
+from canvas.test_engine import Cable, home, rhino, served
+from hookean_client import canvas
+
+__all__ = ["home", "rhino", "served"]
+
+
+def pulls(cable: Cable, number: int) -> np.ndarray:
+    """What holds a particle: the opposite of its springs, 1000 N/m and 1 m long at the start, and of its load."""
+    x = np.array([xyz(p) for p in cable.out.particles])
+    held = np.array([0.0, 0.0, -cable.load])
+    for other in (number - 1, number + 1):
+        if 0 <= other < len(x):
+            span = x[other] - x[number]
+            length = np.linalg.norm(span)
+            held -= 1000.0 * (length - 1.0) * span / length
+    return np.asarray(held)
+
+
+def given(cable: Cable, places: Any, targets: Any, **axes: bool) -> list[str]:
+    """The text of anchors with targets."""
+    made = canvas.anchors(cable.springs, [point(*p) for p in places], [point(*t) for t in targets], **axes)
+    return made if isinstance(made, list) else [made]
+
+
+@pytest.mark.parametrize("order", [[0, 1, 2], [2, 0, 1], [1, 2, 0]])
+def test_reactions_come_in_the_order_of_anchors_with_targets(order: list[int], home: Any) -> None:
+    places, targets = [(0, 0, 0), (4, 0, 0), (10, 0, 0)], [(1, 1, 0), (4, 0, 2), (12, 0, 1)]
+    cable = Cable()
+    cable.anchors = given(cable, [places[i] for i in order], [targets[i] for i in order])
+    cable.run()
+    numbers = [(0, 4, 10)[i] for i in order]
+    found = [xyz(v) for v in cable.out.reactions.Branch(0)]
+    assert [cable.at(n) for n in numbers] == [tuple(map(float, targets[i])) for i in order]
+    assert np.array(found) == pytest.approx(np.array([pulls(cable, n) for n in numbers]), abs=1e-3)
+    cable.anchors = given(
+        cable, [places[i] for i in order], [(x, y + 0.5, z) for x, y, z in (targets[i] for i in order)]
+    )
+    cable.run(lambda out: cable.player.settled)
+    found = [xyz(v) for v in cable.out.reactions.Branch(0)]
+    assert np.array(found) == pytest.approx(np.array([pulls(cable, n) for n in numbers]), abs=1e-3)
