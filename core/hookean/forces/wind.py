@@ -140,7 +140,7 @@ class Wind(FaceLoad):
         x = places.x[corners]
         area = 0.5 * lengths(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]))
         rate = self.pressure / self.speed if self.speed > 0.0 else 0.0
-        water: dict[str, float] = {}
+        water: dict[str, Any] = {}
         if self.waterline is not None:
             water = {"waterline": self.waterline, "below": float(self.below)}
         return Block.of(
