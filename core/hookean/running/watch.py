@@ -9,7 +9,7 @@ import numpy as np
 
 from hookean.compiled import dispatch
 from hookean.films.endings import Endings
-from hookean.running.heating import FAR, accept, cool, flown, gained, heated
+from hookean.running.heating import FAR, accept, cool, flown, gained, give_back, heated
 from hookean.running.result import Status
 from hookean.running.trial import trial
 from hookean.solvers import Solver
@@ -171,7 +171,7 @@ class Watch:
         state.x, state.v, state.memory = good.x, good.v, good.memory
         state.time, state.iteration = good.time, good.iteration
         state.scratch["parts"] = np.array([parts])
-        _give_back(state, good)
+        give_back(state, good)
         accept(system, state, self.found)
         self.lost = -1
         return Status.RUNNING
@@ -302,13 +302,6 @@ class Watch:
             "Common causes: springs at their cutoff, unsupported loads, a shape near snap-through. Check that "
             "particle, or raise the tolerance"
         )
-
-
-def _give_back(state: State, good: State) -> None:
-    """Take impulses given since a good state out of the books: they are given again."""
-    state.scratch.pop("given", None)
-    if "given" in good.scratch:
-        state.scratch["given"] = good.scratch["given"].copy()
 
 
 def within(x, v, start, free, far):  # type: ignore[no-untyped-def]
