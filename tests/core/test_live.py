@@ -103,12 +103,13 @@ def test_a_drop_on_a_plane_is_a_cap_with_its_contact_angle(degrees: float, lengt
 
 
 def test_a_bubble_from_a_cube_is_a_sphere() -> None:
-    """Of its volume, twice that of the cube: 4 pi R^3 / 3, to l^2 / 6R and K's 1 / (R K)."""
+    """Of its volume, twice that of the cube: 4 pi R^3 / 3, to l^2 / 6R; the volume is kept but for p / K,
+    p = 2 / R and K = 1e4 / 1.4."""
     found = live_film(CUBE, 0.35, volume_factor=2.0)
     radius = (3.0 * 2.0 * volume(CUBE) / (4.0 * np.pi)) ** (1.0 / 3.0)
     away = np.linalg.norm(found.vertices - found.vertices.mean(axis=0), axis=1)
     assert len(naked_edges(found)) == 0
-    assert volume(found) == pytest.approx(2.0 * volume(CUBE), rel=2e-3)
+    assert volume(found) == pytest.approx(2.0 * volume(CUBE), rel=1.1 * 2.0 / radius / (1e4 / 1.4))
     assert np.abs(away - radius).max() <= 2.0 * 0.35**2 / (6.0 * radius)
 
 

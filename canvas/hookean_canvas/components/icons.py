@@ -8,11 +8,11 @@ from collections.abc import Sequence
 
 from PIL import Image, ImageDraw
 
-from hookean_canvas.components import icon_drawings, tool_drawings
+from hookean_canvas.components import force_drawings, icon_drawings, tool_drawings
 from hookean_canvas.components.icon_drawings import compas, unknown
 from hookean_canvas.components.pen import SIZE, Pen
 
-DRAWINGS = icon_drawings.DRAWINGS | tool_drawings.DRAWINGS
+DRAWINGS = icon_drawings.DRAWINGS | force_drawings.DRAWINGS | tool_drawings.DRAWINGS
 
 
 def png(name: str) -> bytes:

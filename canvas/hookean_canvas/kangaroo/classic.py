@@ -16,11 +16,11 @@ _FAN = Piece("*fan", {"center": "centre", "neighbours": "neighbours"}, feeds={"m
 _GUST = Piece("*size", {"wind": "vectors", "strength": "factors"}, feeds={"sizes": "0.pressure"})
 _BLOWS = f"the velocity pressure is strength x length of the vector; {_LAW}"
 _STILL = {
-    "relative": "the wind blows past faces at rest",
-    "waterline": "the wind blows at any height",
+    "relative": "the wind blows past faces at rest, unless Wind gets a speed",
+    "waterline": "the wind blows at any height, unless Wind gets a waterline",
 }
 _CALM = {"relative": False, "waterline": 0}
-_WATER = f"water stands up to z = 0 and pushes along the normals, out of counter-clockwise faces; {_LAW}"
+_WATER = f"the level of the water is z = 0, and it pushes along the normals, out of counter-clockwise faces; {_LAW}"
 _OUT = "positive pressure pushes along the normals, out of counter-clockwise faces"
 _TOUCH = "k by the distance between the points where the circles touch the edge"
 

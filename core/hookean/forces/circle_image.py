@@ -13,7 +13,8 @@ from hookean.compiled.marks import device
 from hookean.forces import groups
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.cells import ends
-from hookean.forces.collide import NEAREST, SKIN, STIFFNESS, Crowd, crowd, end_of_crowd, overlapping
+from hookean.forces.collide import Crowd, crowd, overlapping
+from hookean.forces.crowd_rows import NEAREST, SKIN, STIFFNESS, end_of_crowd
 from hookean.forces.neighbours import listed, order_in, pairs_listed, some_pairs, tables
 from hookean.values.columns import IndexRows, Labels, Points, Table, fault
 from hookean.values.fields import Field, Maybe

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
-from hookean.forces.cells import GROUP, PARALLEL, RADIUS, ends, nearest
+from hookean.forces.capsules import gap, push_capsules
+from hookean.forces.cells import GROUP, RADIUS, ends
+from hookean.forces.crowd_rows import NEAREST, ROOM, SKIN, STIFFNESS, end_of_crowd
 from hookean.forces.neighbours import (
     AS_GIVEN,
     HERE,
@@ -27,30 +30,16 @@ from hookean.forces.neighbours import (
     tables,
     unmoved,
 )
+from hookean.forces.rough_collide import SLOT, SLOTS, damping_ratio, dashpots, rough_collide_kernel, rough_collide_note
 from hookean.forces.springs import Springs
 from hookean.values.columns import IndexRows, Labels, Points, Positives
 from hookean.values.fields import Field, Maybe
 
-STIFFNESS, SKIN, ROOM = 2, 3, 4  # columns of parameters, after the two that neighbours read
 SKIN_PART = 0.15  # of the mean radius: how far beyond their reach neighbours are listed
-NEAREST = 1e-20  # distance of centres from which a pair has a direction
-TINY = 1e-280  # square of a length: what is smaller is a point
 SEVERAL = 128  # pairs at a time: what is between stays in the nearest cache
 # packed, a row of parameters for each room: where its elements start and how many they are, k, skin, address, and the
 # first particle where rows are consecutive particles, else -1
 BEGIN, SIZE, K, REACH, ADDRESS, PARTICLE, PACKED = range(7)
-
-
-@device
-def end_of_crowd(parameters: Any, start: Any) -> Any:
-    """Where the elements of one room end."""
-    room, count = parameters[start, ROOM], parameters.shape[0]
-    stop = start + capacity(room)
-    if stop > count or parameters[stop - 1, ROOM] != room or (stop < count and parameters[stop, ROOM] == room):
-        stop = start
-        while stop < count and parameters[stop, ROOM] == room:
-            stop += 1
-    return stop
 
 
 @device
@@ -113,73 +102,6 @@ def push_spheres(  # type: ignore[no-untyped-def]
             sums[j, 2] += d2
             sums[j, 3] += d3
     return energy
-
-
-@device
-def gap(here: Any, i: Any, j: Any) -> Any:
-    """Squared distance of the axes of two elements, and where on the axes they are nearest."""
-    s, t, square = 0.0, 0.0, 0.0
-    if here.shape[1] == HERE:
-        for c in range(3):
-            square += (here[j, c] - here[i, c]) ** 2
-        return square, s, t
-    s, t = nearest(here, i, j, 4)
-    for c in range(3):
-        square += (here[j, c] + t * here[j, 4 + c] - here[i, c] - s * here[i, 4 + c]) ** 2
-    return square, s, t
-
-
-@device
-def stiffer(here: Any, i: Any, j: Any, s: Any, t: Any, length: Any, overlap: Any) -> Any:
-    """How much more than 2 a contact of capsules counts for the stiffness, as its point slides along them.
-
-    With U the half axes along which it slides and q^2 = 1 / the least eigenvalue of U'U, its tangent is at most
-    k n n' + k overlap q (2 + length q / 2), n the gradient of the distance; the rest of it is negative.
-    """
-    uu, vv, turn = 0.0, 0.0, 0.0
-    for c in range(3):
-        d, k = (c + 1) % 3, (c + 2) % 3
-        uu += here[i, 4 + c] * here[i, 4 + c]
-        vv += here[j, 4 + c] * here[j, 4 + c]
-        cross = here[i, 4 + d] * here[j, 4 + k] - here[i, 4 + k] * here[j, 4 + d]
-        turn += cross * cross
-    uu, vv = uu if abs(s) < 1.0 else 0.0, vv if abs(t) < 1.0 else 0.0
-    least = max(turn, PARALLEL * uu * vv) / (uu + vv) if uu > TINY and vv > TINY else uu + vv
-    q = 1.0 / np.sqrt(least) if least > TINY else 0.0
-    return overlap * q * (2.0 + 0.5 * length * q)
-
-
-@device
-def push_capsules(here: Any, i: Any, j: Any, skin: Any, stiffness: Any) -> Any:
-    """Add the forces of two capsules on both ends of each, by where on the axis they act, and how often they count for
-    the stiffness; returns their energy."""
-    apart = 0.0
-    for c in range(3):
-        apart += (here[j, c] - here[i, c]) ** 2
-    reach = here[i, 3] + here[j, 3] + skin
-    if apart >= reach * reach:
-        return 0.0
-    square, s, t = gap(here, i, j)
-    reach = here[i, 7] + here[j, 7]
-    if square >= (reach + skin) * (reach + skin):
-        return 0.0
-    here[i, 15] += 1.0
-    here[j, 15] += 1.0
-    if square >= reach * reach:
-        return 0.0
-    length = np.sqrt(square)
-    overlap = reach - length
-    more = 0.5 * stiffer(here, i, j, s, t, length, overlap)
-    here[i, 15] += more
-    here[j, 15] += more
-    for c in range(3):
-        push = here[j, c] + t * here[j, 4 + c] - here[i, c] - s * here[i, 4 + c]
-        push *= stiffness * overlap / length if length > NEAREST else 0.0
-        here[i, 8 + c] -= 0.5 * (1.0 - s) * push
-        here[i, 11 + c] -= 0.5 * (1.0 + s) * push
-        here[j, 8 + c] += 0.5 * (1.0 - t) * push
-        here[j, 11 + c] += 0.5 * (1.0 + t) * push
-    return 0.5 * stiffness * overlap * overlap
 
 
 @device
@@ -392,17 +314,16 @@ class Collide(Crowd):
         """`RoughCollide` where spheres rub or lose speed."""
         if self.friction == 0.0 and self.restitution == 1.0:
             return Collide
-        from hookean.forces.rough_collide import RoughCollide
-
         return RoughCollide
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: radius, group, stiffness, skin, address of the room for the list of neighbours."""
+        more: dict[str, Any] = {}
         if self.compiled_as is not Collide:
-            from hookean.forces.rough_collide import RoughCollide
-
-            return RoughCollide.built(self, places)
-        return crowd(places, places.elements(self), self.radius, self.collision_group, self.strength)
+            ratio = damping_ratio(self.restitution)
+            more = {"damping_ratio": ratio, "friction": self.friction, "dashpot": 0.0, "damping": 0.0}
+            more["memory"] = SLOTS * SLOT
+        return crowd(places, places.elements(self), self.radius, self.collision_group, self.strength, **more)
 
     @classmethod
     def amiss(cls, block: Block, x: Floats) -> str:
@@ -448,3 +369,24 @@ class Collide(Crowd):
         x = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.2], [0.4, 0.9, -0.1], [1.3, 1.0, 0.4], [0.7, 0.5, 1.1]])
         radius, group = [0.8, 0.9, 0.7, 0.8, 1.0], [0, 1, 1, 0, 0]
         return cls(particles=[0, 1, 2, 3, 4], radius=radius, strength=50.0, collision_group=group), x
+
+
+class RoughCollide(Collide):
+    """What `collide` compiles to where spheres rub or lose speed (see there)."""
+
+    variant: ClassVar[bool] = True
+    conservative: ClassVar[bool] = False
+    damped: ClassVar[bool] = True
+    remembers: ClassVar[bool] = True
+    yielding: ClassVar[tuple[str, ...]] = ("friction",)
+    kernel: ClassVar[Any] = staticmethod(rough_collide_kernel)
+    end_of_step: ClassVar[Any] = staticmethod(rough_collide_note)
+
+    @classmethod
+    def brace(cls, block: Block, held: NDArray[np.bool_], mass: Floats) -> None:
+        """The dashpot of each sphere by its mass, and a bound of all damping [force time/length]."""
+        dashpots(block, mass)
+
+    @classmethod
+    def pack(cls, block: Block, memory: Floats, damped: bool) -> None:
+        """As they are."""

@@ -7,8 +7,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.capsules import TINY
 from hookean.forces.cells import PARALLEL
-from hookean.forces.collide import NEAREST, STIFFNESS, TINY, Crowd, crowd, overlapping
+from hookean.forces.collide import Crowd, crowd, overlapping
+from hookean.forces.crowd_rows import NEAREST, STIFFNESS
 from hookean.values.columns import IndexRows, Labels, Lines, Positives
 from hookean.values.fields import Field, Maybe
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Ints, Places
+from hookean.forces.base import Block, Floats
 from hookean.forces.cells import RADIUS, ends
-from hookean.forces.collide import NEAREST, ROOM, SKIN, STIFFNESS, Collide, crowd, end_of_crowd
+from hookean.forces.crowd_rows import NEAREST, ROOM, SKIN, STIFFNESS, end_of_crowd
 from hookean.forces.neighbours import listed, order_in, pairs_listed, some_pairs, tables
 
 RATIO, FRICTION, DASHPOT = 5, 6, 7  # columns of the parameters, after those of `collide`
@@ -18,6 +17,7 @@ PARTNER, PLACE, SLOT = 0, 1, 4  # of the memory of a contact: number of the othe
 # contacts that a sphere remembers: those with spheres of its size and larger, of which 12 can touch; some more overlap
 SLOTS = 14
 CONTACTS = 6.0  # of a sphere in a dense packing, for the bound of its damping
+SMALLEST = 1e-300  # restitution below which it is this
 UNMOVED = 1e150  # mass of a sphere that is held: its square is a number still
 
 
@@ -161,37 +161,17 @@ def rough_collide_note(x, indices, parameters, memory):  # type: ignore[no-untyp
             memory[e, s + PARTNER] = max(memory[e, s + PARTNER], 0.0)
 
 
-class RoughCollide(Collide):
-    """What `collide` compiles to where spheres rub or lose speed (see there)."""
+def damping_ratio(restitution: float) -> float:
+    """The part zeta of critical damping that leaves two spheres a part of their speed: -ln e / sqrt(pi^2 + ln^2 e)."""
+    log = np.log(max(restitution, SMALLEST))
+    return 1.0 if restitution == 0.0 else float(-log / np.hypot(np.pi, log))
 
-    variant: ClassVar[bool] = True
-    conservative: ClassVar[bool] = False
-    damped: ClassVar[bool] = True
-    remembers: ClassVar[bool] = True
-    yielding: ClassVar[tuple[str, ...]] = ("friction",)
-    kernel: ClassVar[Any] = staticmethod(rough_collide_kernel)
-    end_of_step: ClassVar[Any] = staticmethod(rough_collide_note)
 
-    @classmethod
-    def built(cls, force: Collide, places: Places) -> Block:
-        """Arrays for the kernel: those of `collide`; damping ratio, friction, dashpot and the bound of the damping."""
-        log = np.log(max(force.restitution, np.exp(-700.0)))
-        ratio = 1.0 if force.restitution == 0.0 else -log / np.hypot(np.pi, log)
-        return crowd(
-            places, places.elements(force), force.radius, force.collision_group, force.strength, memory=SLOTS * SLOT,
-            damping_ratio=ratio, friction=force.friction, dashpot=0.0, damping=0.0,
-        )  # fmt: skip
-
-    @classmethod
-    def brace(cls, block: Block, held: NDArray[np.bool_], mass: Floats) -> None:
-        """The dashpot of each sphere by its mass: 2 zeta sqrt(k m) [force time/length]; and a bound of all damping."""
-        p = block.parameters
-        own = mass[block.indices[:, 0]]
-        p[:, DASHPOT] = 2.0 * p[:, RATIO] * np.sqrt(p[:, STIFFNESS] * np.where(np.isfinite(own), own, 1.0))
-        p[:, DASHPOT + 1] = CONTACTS * p[:, DASHPOT]
-        p[~np.isfinite(own) & (p[:, DASHPOT] > 0.0), DASHPOT] = UNMOVED
-
-    @classmethod
-    def pack(cls, block: Block, memory: Floats, damped: bool) -> tuple[Ints, Floats] | None:
-        """As they are."""
-        return None
+def dashpots(block: Block, mass: Floats) -> None:
+    """Write the dashpot of each sphere by its mass, 2 zeta sqrt(k m) [force time/length], and a bound of all
+    damping."""
+    p, own = block.parameters, mass[block.indices[:, 0]]
+    moves = np.isfinite(own)
+    p[:, DASHPOT] = 2.0 * p[:, RATIO] * np.sqrt(p[:, STIFFNESS] * np.where(moves, own, 1.0))
+    p[:, DASHPOT + 1] = CONTACTS * p[:, DASHPOT]
+    p[~moves & (p[:, DASHPOT] > 0.0), DASHPOT] = UNMOVED

@@ -113,6 +113,13 @@ def accept(system: System, state: State, found: Balance) -> None:
         books[BASE], books[SWING] = max(books[BASE], sum(energies)), 0.0
 
 
+def give_back(state: State, good: State) -> None:
+    """Take impulses given since a good state out of the books: they are given again."""
+    state.scratch.pop("given", None)
+    if "given" in good.scratch:
+        state.scratch["given"] = good.scratch["given"].copy()
+
+
 def cool(system: System, state: State, found: Balance) -> None:
     """Take what steps have added out of the motion, all velocities alike."""
     energies = entered(system, state, found, driven=False)

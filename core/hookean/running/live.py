@@ -35,7 +35,7 @@ KINDS = ("soapfilm", "pressure", "gas", "volume", "hydrostatic", "wind", "area_w
 LONG, SHORT = 1.6, 0.4  # of the length that is wanted: what the edges of a mesh that stays are between
 LEAST = 0.2  # quality of a triangle of a mesh that stays
 ITERATIONS = 5  # of remeshing in a round
-STIFF = 1000.0  # bulk modulus of a film's volume, by its tension and size
+STIFF = 1e4  # bulk modulus of a film's volume, by its tension and size
 SECONDS = 120.0  # of one round of `live_film`
 CORNER = np.pi / 6  # turns of rims above this stay corners
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from hookean.compiled import dispatch
 from hookean.films.endings import Endings
-from hookean.running.heating import FAR, accept, cool, flown, gained, heated
+from hookean.running.heating import FAR, accept, cool, flown, gained, give_back, heated
 from hookean.running.messages import owner, sentence
 from hookean.running.result import Status
 from hookean.solvers import Solver
@@ -175,7 +175,7 @@ class Watch:
         state.x, state.v, state.memory = good.x, good.v, good.memory
         state.time, state.iteration = good.time, good.iteration
         state.scratch["parts"] = np.array([parts])
-        _give_back(state, good)
+        give_back(state, good)
         accept(system, state, self.found)
         self.lost = -1
         return Status.RUNNING
@@ -231,13 +231,6 @@ class Watch:
         self.fault = f"particle {particle}{also}"
         self.lost = particle
         return False
-
-
-def _give_back(state: State, good: State) -> None:
-    """Take impulses given since a good state out of the books: they are given again."""
-    state.scratch.pop("given", None)
-    if "given" in good.scratch:
-        state.scratch["given"] = good.scratch["given"].copy()
 
 
 def within(x, v, start, free, far):  # type: ignore[no-untyped-def]

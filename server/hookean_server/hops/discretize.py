@@ -158,7 +158,7 @@ def _run(function: str, operation: Operation, inputs: Inputs) -> dict[str, Any]:
             inputs.makes(made, f"/{_OPTIONS[name][0]}")
     try:
         if faces := operation.pieces(geometry, given):
-            inputs.makes(faces, f"/{_OPTIONS[next(iter(given))][0]}")
+            inputs.makes(faces, f"/{_OPTIONS[next(iter(given))][0] if given else takes}")
         found = operation.function(geometry, **given)
     except InputError as error:
         first = error.pointer.lstrip("/").partition("/")[0]

@@ -170,7 +170,9 @@ def discretize(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Do
         _check_many(len(geometry) * given.get("count", operation.options["count"][1]), "/count", options["largest"])
     clock.lap("decode")
     try:
-        _check_many(operation.pieces(geometry, given), f"/{next(iter(operation.options), '')}", options["largest"])
+        _check_many(
+            operation.pieces(geometry, given), f"/{next(iter(operation.options), operation.takes)}", options["largest"]
+        )
         found = operation.function(geometry, **given)
     except InputError as error:
         raise InputError(_placed(error.pointer, operation.takes), error.sentence) from None
