@@ -360,7 +360,6 @@ class Simulation:
         new = Simulation(scene)
         apart, same = cKDTree(self.system.points).query(new.system.points)
         known = np.flatnonzero(apart <= scene.weld_tolerance)
-        new.state.x[known], new.state.v[known] = self.state.x[same[known]], self.state.v[same[known]]
         new.system.slots.take_over(new.state, known, self.system.slots, self.state, same[known])
         new.system.hold(new.state)
         new.system.put_outside(new.state)
