@@ -73,8 +73,8 @@ def drift(solver: str, step: float, anchors: list[Any]) -> float:
 @pytest.mark.parametrize(("solver", "order"), [("verlet", 2), ("yoshida", 4)])
 @pytest.mark.parametrize("anchors", [[], [CLAMP]], ids=["free", "clamped"])
 def test_energy_errors_have_the_order_of_the_scheme(solver: str, order: int, anchors: list[Any]) -> None:
-    """Half the step, 2^-order of the error: rotations go by the exponential map, moments at its middle (Simo and Vu-Quoc
-    1988). Steps are 30 to 60 to the fastest period, where the next order is a fifth at most."""
+    """Half the step, 2^-order of the error: rotations go by the exponential map, with the moments before and after it
+    (Simo and Vu-Quoc 1988). The fastest period has 30 to 60 steps; the next order is a fifth of the error at most."""
     coarse, fine = (drift(solver, step, anchors) for step in (4e-3, 2e-3))
     assert np.log2(coarse / fine) == pytest.approx(order, abs=0.4)
 
