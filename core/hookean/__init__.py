@@ -102,13 +102,13 @@ if TYPE_CHECKING:
     from hookean.forces.wind import Wind as Wind
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
+    from hookean.running.frame import Frame as Frame
     from hookean.running.patch import Move as Move
     from hookean.running.patch import Patch as Patch
     from hookean.running.result import Result as Result
     from hookean.running.result import Status as Status
     from hookean.running.run import relax as relax
     from hookean.running.script import Script as Script
-    from hookean.running.simulation import Frame as Frame
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
@@ -135,7 +135,7 @@ _HOMES = {
     "Report": "scene.report",
     "Result": "running.result",
     "Status": "running.result",
-    "Frame": "running.simulation",
+    "Frame": "running.frame",
     "Simulation": "running.simulation",
     "Move": "running.patch",
     "Patch": "running.patch",

@@ -39,6 +39,11 @@ def scene(x: np.ndarray, forces: list[Spec], anchors: list[Spec] | None = None, 
     return Scene.read({"particles": x.tolist(), "forces": forces, "anchors": anchors, "settings": settings})
 
 
+def rotation(result: Any, place: int) -> Rotation:
+    """The orientation of a particle in a result, for scipy."""
+    return Rotation.from_quat(result.rotations["quaternions"][place], scalar_first=True)
+
+
 def rod(frames: Any, length: float, curvature: np.ndarray, stiff: np.ndarray, axial: float, force: np.ndarray) -> Any:
     """The shape (3, k) of an elastic rod that is clamped at the origin with the frame `frames` (3, 3) by columns, has
     a `curvature` (3,) [rad/length] in its own frame without stress, the stiffness `stiff` (GJ, EIy, EIz) and `axial`

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
+from hookean.running.frame import Frame
 from hookean.running.history import Before, History
 from hookean.running.patch import Patch, apply
 from hookean.running.result import Result, Status, carried, gather, kinetic
@@ -31,20 +32,6 @@ OFTEN = 30  # frames of a run that is played, at most, from judgement to judgeme
 
 Floats = NDArray[np.float64]
 Source = Stream | str | Path | Iterable[str]
-
-
-@dataclass(frozen=True)
-class Frame:
-    """What a client sees of a running simulation: positions (n, 3) [length], time [time], energies [force length]."""
-
-    particles: Floats
-    geometry: list[dict[str, object]]
-    time: float
-    iteration: int
-    revision: int
-    residual: float
-    status: Status
-    message: str
 
 
 def simulate(
@@ -270,6 +257,7 @@ class Simulation:
             self.balance.residual,
             self.status,
             self.message,
+            self.system.slots.quaternions(self.state.x),
         )
 
     def result(self) -> Result:

@@ -1,0 +1,26 @@
+"""Frame: a running simulation at one moment, as clients see it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.running.result import Status
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a client sees of a running simulation: positions (n, 3) [length], time [time], and the `rotations` (r, 4) of
+    particles at the ends of beams, as `Result.rotations` has them."""
+
+    particles: NDArray[np.float64]
+    geometry: list[dict[str, object]]
+    time: float
+    iteration: int
+    revision: int
+    residual: float
+    status: Status
+    message: str
+    rotations: NDArray[np.float64]
