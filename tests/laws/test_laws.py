@@ -162,7 +162,9 @@ def test_started_at_a_degenerate_shape_forces_are_finite(kind: str) -> None:
             assert str(refused).count("/") and str(refused).count(" ") > 3, shape
             continue
         laws.degenerate_stays_finite(case, case.x, np.random.default_rng(4))
-        laws.degenerate_stays_finite(case, case.x + x[: len(case.x)], np.random.default_rng(5))
+        away = case.x.copy()
+        away[: len(x)] += x[: len(away)]  # not the rows of orientations
+        laws.degenerate_stays_finite(case, away, np.random.default_rng(5))
 
 
 @every

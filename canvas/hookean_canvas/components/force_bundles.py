@@ -170,7 +170,7 @@ def _argument(variables: list[str]) -> str:
 
 def _variable(described: Mapping[str, Any], field: Mapping[str, Any]) -> str:
     """`_required`, `_with_default_` or `optional_`."""
-    name = VARIABLES.get((described["kind"], field["name"])) or VARIABLES.get(field["name"], field["name"])
+    name = VARIABLES.get((described["kind"], field["name"])) or VARIABLES.get(field["name"], field["name"]).lower()
     if _required(described, field):
         return f"_{name}"
     return f"{name}_" if field["default"] in (None, "") else f"_{name}_"
@@ -196,7 +196,7 @@ def _tooltip(described: Mapping[str, Any], field: Mapping[str, Any]) -> str:
         told += f" [{field['unit']}]"
     told = f"{told}."
     if "choices" in field:
-        told += f" One of {', '.join(field['choices'])}."
+        told += f" One of {', '.join(filter(None, field['choices']))}."
     if field["type"] in ("numbers", "vectors") and "for each" not in told:
         told += " One for all, or one for each."
     if not _required(described, field) and field["default"] not in (None, ""):

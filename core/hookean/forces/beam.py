@@ -139,7 +139,7 @@ class Beam(Force):
     hessian: ClassVar[Any] = staticmethod(beam_hessian)
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel, see `beam_element`. InputError for a beam without length, or along its normal."""
+        """Arrays for the kernel, see `beam_element`. InputError for a beam of zero length, or one along its normal."""
         index = places.elements(self)
         chords = places.x[index[:, 1]] + self.offset_end - places.x[index[:, 0]] - self.offset_start
         length = np.sqrt((chords**2).sum(axis=1))

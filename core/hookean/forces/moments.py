@@ -18,6 +18,8 @@ def moment_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-u
         i, length = indices[e, 1], parameters[e, 0]
         a, b, c = parameters[e, 1], parameters[e, 2], parameters[e, 3]
         energy -= (a * x[i, 0] + b * x[i, 1] + c * x[i, 2]) / length
+        turned = np.sqrt(x[i, 0] ** 2 + x[i, 1] ** 2 + x[i, 2] ** 2)
+        w[i] += np.sqrt(a * a + b * b + c * c) * turned / length**3
         a, b, c = mapped(x, i, length, -1.0, a, b, c)
         f[i, 0] += a / length
         f[i, 1] += b / length

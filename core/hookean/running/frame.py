@@ -1,4 +1,8 @@
+<<<<<<< HEAD
 """Frame: what a client sees of a running simulation."""
+=======
+"""Frame: a running simulation at one moment, as clients see it."""
+>>>>>>> beams
 
 from __future__ import annotations
 
@@ -9,6 +13,7 @@ from numpy.typing import NDArray
 
 from hookean.running.result import Status
 
+<<<<<<< HEAD
 Floats = NDArray[np.float64]
 
 
@@ -17,6 +22,15 @@ class Frame:
     """What a client sees of a running simulation: positions (n, 3) [length], time [time], energies [force length]."""
 
     particles: Floats
+=======
+
+@dataclass(frozen=True)
+class Frame:
+    """What a client sees of a running simulation: positions (n, 3) [length], time [time], and the `rotations` (r, 4) of
+    particles at the ends of beams, as `Result.rotations` has them."""
+
+    particles: NDArray[np.float64]
+>>>>>>> beams
     geometry: list[dict[str, object]]
     time: float
     iteration: int
@@ -24,3 +38,7 @@ class Frame:
     residual: float
     status: Status
     message: str
+<<<<<<< HEAD
+=======
+    rotations: NDArray[np.float64]
+>>>>>>> beams

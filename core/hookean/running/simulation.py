@@ -10,7 +10,10 @@ from typing import IO, Any
 import numpy as np
 
 from hookean.errors import InputError
+<<<<<<< HEAD
 from hookean.running import saving
+=======
+>>>>>>> beams
 from hookean.running.frame import Frame
 from hookean.running.history import Before, History
 from hookean.running.patch import Patch, apply
@@ -256,6 +259,7 @@ class Simulation:
             self.balance.residual,
             self.status,
             self.message,
+            self.system.slots.quaternions(self.state.x),
         )
 
     def result(self) -> Result:
@@ -346,7 +350,6 @@ class Simulation:
         new = Simulation(scene)
         apart, same = cKDTree(self.system.points).query(new.system.points)
         known = np.flatnonzero(apart <= scene.weld_tolerance)
-        new.state.x[known], new.state.v[known] = self.state.x[same[known]], self.state.v[same[known]]
         new.system.slots.take_over(new.state, known, self.system.slots, self.state, same[known])
         new.system.hold(new.state)
         new.system.put_outside(new.state)

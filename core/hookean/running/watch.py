@@ -82,6 +82,7 @@ class Watch:
     ) -> Status:
         """Judge the state as it is now; `known`: it is the one this began with, `driven` that a script moves
         it."""
+        system.slots.fold(state)  # where a solver has not
         self.last, self.rest, self.back = state.iteration, None, 0
         self.driven, self.flew, self.advised = driven, False, ""
         if not self._sane(system, state):

@@ -112,7 +112,8 @@ class Slots:
         return np.asarray(rows[own] * arms[:, None])
 
     def take_over(self, state: State, mine: Ints, other: Slots, before: State, theirs: Ints) -> None:
-        """Give particles `mine` the orientations, and how fast they turn, of particles `theirs` of another state."""
+        """Give particles `mine` the places, orientations and velocities of particles `theirs` of another state."""
+        state.x[mine], state.v[mine] = before.x[theirs], before.v[theirs]
         here, there = self.rows(mine), other.rows(theirs)
         both = (here >= 0) & (there >= 0)
         if not both.any():

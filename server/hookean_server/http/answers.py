@@ -16,7 +16,7 @@ from hookean.running.result import Result
 from hookean.scene.scene import Scene
 
 Documents = dict[str | int, compas_json.Document]
-_EMPTY: dict[str, Any] = {"geometry": [], "forces": [], "reactions": {}, "contacts": {}}
+_EMPTY: dict[str, Any] = {"geometry": [], "forces": [], "reactions": {}, "rotations": {}, "contacts": {}}
 
 
 def encode(result: Result, scene: Scene, arrays: str, documents: Documents | None) -> bytes:
@@ -35,6 +35,7 @@ def encode(result: Result, scene: Scene, arrays: str, documents: Documents | Non
         geometry=geometry,
         forces=result.forces,
         reactions=result.reactions,
+        rotations=result.rotations,
         contacts=result.contacts,
     )
     return dump(values, arrays)

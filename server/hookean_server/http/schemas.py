@@ -152,12 +152,8 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         },
         reactions={**_AT, "description": "Forces and moments of the anchors on their particles"},
         rotations={
-            "type": "object",
-            "description": "Particles that have a rotation, and their unit quaternions w, x, y, z",
-            "properties": {
-                "particles": {"type": "array", "items": {"type": "integer"}},
-                "quaternions": {"type": "array", "items": {"type": "array", "items": _NUMBER}},
-            },
+            **_object(particles=_ARRAY, quaternions=_ARRAY),
+            "description": "Particles at the ends of beams, and the unit quaternions w, x, y, z that turn them",
         },
         contacts={**_AT, "description": "Forces of floors on particles"},
         loads={
@@ -337,6 +333,25 @@ _NET = {
     "anchors": [{"points": [[0.0, 0.0, 0.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0]]}],
     "geometry": [{"kind": "mesh", "mesh": "net"}],
 }
+_ARCH = {
+    "particles": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.6], [2.0, 0.0, 0.6], [3.0, 0.0, 0.0]],
+    "forces": [
+        {
+            "kind": "beam",
+            "name": "arch",
+            "particles": [[0, 1], [1, 2], [2, 3]],
+            "normal": [0.0, 0.0, 1.0],
+            "E": 210e9,
+            "G": 81e9,
+            "A": 1.5e-3,
+            "Iy": 1.7e-6,
+            "Iz": 1.7e-6,
+            "J": 3.4e-6,
+        },
+        {"kind": "unary", "particles": [1], "vector": [0.0, 100.0, -600.0], "moment": [0.0, 50.0, 0.0]},
+    ],
+    "anchors": [{"particles": [0], "rotations": "xyz"}, {"particles": [3], "rotations": "x"}],
+}
 
 
 def _tree(kind: str, *values: Any) -> dict[str, Any]:
@@ -363,7 +378,7 @@ _HOPS = {
     ],
 }
 EXAMPLES: dict[str, dict[str, Any]] = {
-    "relax": {"hanging cable": _CABLE, "pulled net": _NET},
+    "relax": {"hanging cable": _CABLE, "pulled net": _NET, "arch of beams": _ARCH},
     "hops": {"hanging cable": _HOPS},
     "discretize": {
         name: {
