@@ -30,9 +30,9 @@ from hookean_canvas.archive.guids import (
 )
 from hookean_canvas.archive.parts import given as typed
 from hookean_canvas.run import stand_in as untyped
-from hookean_canvas.run.components import inputs_of, outputs_of, run_native
+from hookean_canvas.run.components import inputs_of, native_for, outputs_of, run_native
 from hookean_canvas.run.graph import Graph, Node, Port
-from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind, native_of
+from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind
 from hookean_canvas.run.natives.display import SWATCH
 from hookean_canvas.run.natives.expressions import evaluated
 from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
@@ -180,7 +180,7 @@ class Canvas:
             self._say(node, "warning", f"left out, as no Engine needs it: {self._aside[node.id]}")
         elif node.floating:
             self._results[node.id] = self._floating(node)
-        elif (native := native_of(node.guid, node.name)) is not None:
+        elif (native := native_for(node)) is not None:
             self._native(node, native)
         else:
             self._script(node, self._scripts[node.id])

@@ -8,9 +8,9 @@ from uuid import UUID
 
 from hookean.errors import InputError
 from hookean_canvas.archive import guids
-from hookean_canvas.run.components import inputs_of, outputs_of
+from hookean_canvas.run.components import inputs_of, native_for, outputs_of
 from hookean_canvas.run.graph import Graph, Node
-from hookean_canvas.run.natives import INERT, PARAMETERS, native_of
+from hookean_canvas.run.natives import INERT, PARAMETERS
 from hookean_canvas.run.natives.display import SWATCH
 from hookean_canvas.run.scripts import SCRIPTS, code_of
 from hookean_canvas.run.stored import Unread
@@ -88,7 +88,7 @@ def _strange(node: Node) -> str:
         return ""
     if node.guid in SCRIPTS:
         return "" if code_of(node) is not None else "its code is not Python"
-    native = native_of(node.guid, node.name)
+    native = native_for(node)
     if native is not None:
         if inputs_of(node, native) is not None and outputs_of(node, native) is not None:
             return ""
