@@ -155,6 +155,28 @@ def test_points_of_a_solver_go_to_the_anchors_that_pick_from_them() -> None:
     assert report.complete and wires(before) <= wires(after)
 
 
+@pytest.mark.parametrize(
+    ("name", "inputs", "guid"),
+    [
+        ("SoapFilm", (("Mesh", None), ("Strength", 1.0)), "76ab889c-8593-4892-861d-a80b5311a981"),
+        ("SoapFilm", (("M", None), ("Strength", 1.0)), "76ab889c-8593-4892-861d-a80b5311a981"),
+        (
+            "AnchorXYZ",
+            (("Point", None), ("X", True), ("Y", True), ("Z", False), ("Strength", 1000.0)),
+            "2128cde3-9694-40b0-874c-670c89341acd",
+        ),
+    ],
+)
+def test_inputs_are_known_by_their_long_and_their_short_names(name: str, inputs: Any, guid: str) -> None:
+    """Names as the table of components found in public definitions has them."""
+    d = Kangaroo("named", "Named", "A goal by its names.")
+    first = inputs[0][0]
+    data = d.parameter("Mesh" if first.startswith("M") else "Point", "Data")
+    d.panel("particles", d.solved(d.kangaroo(name, inputs, ["S"], guid=UUID(guid), **{first.lower(): data}))["V"])
+    _, report = kangaroo.translate(d.archive(), "named.gh")
+    assert report.complete, report.text()
+
+
 def test_the_corners_of_a_part_are_particles_of_its_body(tmp_path: Path) -> None:
     """A cube and a further point: where a face is turned by 90 degrees and held, all the rest follows."""
     d = Kangaroo("bodies", "Bodies", "A rigid part.")

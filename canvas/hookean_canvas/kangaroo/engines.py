@@ -48,10 +48,11 @@ SETTINGS = Swap(
 
 CLASSIC: dict[str, Swap] = {
     "kangaroophysics": Swap(
-        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),), f"{_ENERGY}; {_ENDS}; {_BARE}"
+        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE, {"reset": False}),),
+        f"{_ENERGY}; {_ENDS}; {_BARE}",
     ),
     "zombiekangaroo": Swap(
-        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),),
+        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE, {"reset": False}),),
         f"the Engine plays on the service instead of holding the canvas; {_ENDS}",
         {"threshold": _ENDS, "maxiters": "the engine stops by itself; `max_iterations` of a scene limits it"},
     ),

@@ -25,6 +25,7 @@ CARRIED = {"length(line)": "line", "rod": "polyline", "edgelengths": "mesh"}
 """Goals of Kangaroo 2 whose output is the geometry of one of their inputs."""
 FLOATING = {"*geometry": "a Data parameter", "*nothing": "an empty Data parameter"}
 """Pieces that are no component, in words."""
+_SHORT = {"mesh": "m", "point": "p"}
 SOLVERS = {0: "verlet", 1: "yoshida"}
 """Solvers of classic Kangaroo by the number that its settings have for them."""
 
@@ -295,8 +296,9 @@ def ports_of(part: Part) -> list[Chunk]:
 
 
 def names_of(port: Chunk) -> list[str]:
-    """The name and the nickname of an input or output."""
-    return [str(port.value("Name", default="")), str(port.value("NickName", default=""))]
+    """The name and the nickname of an input or output, and the short name that some versions give it."""
+    names = [str(port.value("Name", default="")), str(port.value("NickName", default=""))]
+    return names + [_SHORT[key(name)] for name in names if key(name) in _SHORT]
 
 
 def _input_of(chunk: Chunk, name: str) -> Chunk:
