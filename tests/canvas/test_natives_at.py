@@ -82,6 +82,8 @@ def test_isotrim_is_the_same_surface_within_its_domain(surface: Any) -> None:
         for t in (0.0, 0.6, 1.0):
             u, v = part.u[0] + s * (part.u[1] - part.u[0]), part.v[0] + t * (part.v[1] - part.v[0])
             assert plain(found.PointAt(u, v)) == pytest.approx(plain(surface.PointAt(u, v)), abs=1e-12)
+    whole = native("Isotrim")(surface, Domain2((u0, u1), (v0, v1)))[0]
+    assert ends(whole) == [pytest.approx((u0, u1)), pytest.approx((v0, v1))]
 
 
 def test_a_domain_is_divided_in_rows_and_a_surface_is_one() -> None:

@@ -157,8 +157,8 @@ def _trimmed(order: int, knots: list[float], row: shapes.Array, ends: tuple[floa
             raise Unfit("the domain is not within that of the surface")
         parts.append(found.ToNurbsCurve())
     first, weights = parts
-    places = [[*_xyz(first.Points[i]), weights.Points[i].X] for i in range(len(first.Points))]
-    return [first.Knots[i] for i in range(len(first.Knots))], np.array(places)
+    cut = [[*_xyz(first.Points[i]), weights.Points[i].X] for i in range(len(first.Points))]
+    return [first.Knots[i] for i in range(len(first.Knots))], np.array(cut)
 
 
 def _xyz(point: Any) -> tuple[float, float, float]:
@@ -210,7 +210,8 @@ def _bilinear(a: shapes.Array, b: shapes.Array, c: shapes.Array, d: shapes.Array
 def simple_mesh(brep: Any) -> Any:
     """A mesh with one face for each face of a Brep, between its corners."""
     surfaces = [brep.Faces[i] for i in range(len(brep.Faces))] if isinstance(brep, rhino3dm.Brep) else [brep]
-    vertices, faces = [], []
+    vertices: list[shapes.Array] = []
+    faces: list[tuple[int, ...]] = []
     for surface in surfaces:
         (u0, u1), (v0, v1) = _ends(surface, 0), _ends(surface, 1)
         faces.append(tuple(range(len(vertices), len(vertices) + 4)))
