@@ -107,7 +107,7 @@ class Canvas:
         return Outcome(panels, messages, self._solutions, at_rest, engines)
 
     def _status(self, engine: Node) -> list[str]:
-        """What an Engine says of itself; nothing where it has not been run."""
+        """The status of an Engine; nothing where it has not been run."""
         return [
             f"{engine.label}: {text}"
             for port in engine.outputs
