@@ -123,10 +123,7 @@ if TYPE_CHECKING:
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
     from hookean.running.frame import Frame as Frame
-<<<<<<< HEAD
     from hookean.running.live import relax_live as relax_live
-=======
->>>>>>> beams
     from hookean.running.patch import Move as Move
     from hookean.running.patch import Patch as Patch
     from hookean.running.result import Result as Result

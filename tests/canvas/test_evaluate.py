@@ -229,9 +229,13 @@ def test_all_unknown_objects_are_named_at_once() -> None:
     root = d.archive()
     for chunk in root.walk():
         if chunk.value("Name") == "Line" and chunk.item("GUID"):
-            chunk.put("GUID", Type.GUID, graph.UUID("9b2ed0e5-3e2b-4a0b-8b1b-000000000001"))
+            chunk.put("GUID", Type.GUID, graph.UUID("9b2ed0e5-3e2b-4a0b-8b1b-000000000001")).put(
+                "Lib", Type.GUID, graph.UUID(int=1)
+            )
         if chunk.value("Name") == "Construct Point" and chunk.item("GUID"):
-            chunk.put("GUID", Type.GUID, graph.UUID("9b2ed0e5-3e2b-4a0b-8b1b-000000000002"))
+            chunk.put("GUID", Type.GUID, graph.UUID("9b2ed0e5-3e2b-4a0b-8b1b-000000000002")).put(
+                "Lib", Type.GUID, graph.UUID(int=2)
+            )
     with pytest.raises(InputError, match=r"nothing was run.* 1 x Construct Point: .*; 1 x Line: ") as caught:
         Canvas(graph.of(root))
     assert len(caught.value.faults) == 2

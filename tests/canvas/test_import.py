@@ -29,9 +29,9 @@ from canvas.kangaroo_samples import (
 )
 from hookean.errors import InputError
 from hookean_canvas import archive
-from hookean_canvas.archive import Chunk, Item, Type
+from hookean_canvas.archive import Chunk, Item, Type, guids
 from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, CLUSTER, PANEL, PARAMETERS, PYTHON3_SCRIPT
-from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, parts, sources
+from hookean_canvas.archive.parts import Part, Rectangle, bounds_of, inputs, outputs, parts, sources
 from hookean_canvas.command import app
 from hookean_canvas.definitions import containers
 from hookean_canvas.inspect import lint
@@ -94,27 +94,68 @@ def test_a_classic_definition_is_translated_whole_with_its_ids_groups_and_timer(
     assert "Timer is no longer needed" in report.text()
 
 
-def test_objects_stay_where_they_stand() -> None:
-    before, (after, _) = cable().archive(), translated(cable())
-    places = [
-        {part.id: box[:2] for part in parts(root) if (box := bounds_of(part.container))} for root in (before, after)
-    ]
-    assert places[0].items() <= places[1].items()
+Places = dict[UUID, Rectangle]
+
+
+def places(root: Chunk) -> Places:
+    """Where objects are, by their ids; a parameter that was a component by that of its output."""
+    found: Places = {}
+    for part in parts(root):
+        box = bounds_of(part.container)
+        if box is not None and part.container is not None:
+            found |= {one: box for one in [part.id, *(p.value("InstanceGuid") for p in outputs(part.container))] if one}
+    return found
+
+
+def meet(a: Rectangle, b: Rectangle) -> bool:
+    return all(a[i] < b[i] + b[i + 2] and b[i] < a[i] + a[i + 2] for i in (0, 1))
 
 
 def overlapping(before: Chunk, after: Chunk) -> list[tuple[str, str]]:
-    """New objects that share their place with another object, and that one; by their labels."""
+    """Objects that share their place with another one and did not before, and that one; by their labels."""
     boxes = [(part, box) for part in parts(after) if (box := bounds_of(part.container))]
-    old = {part.id for part in parts(before)} | {
-        port.value("InstanceGuid") for part in parts(before) if part.container for port in outputs(part.container)
-    }
+    was = places(before)
     return [
         (part.label, other.label)
         for part, a in boxes
         for other, b in boxes
-        if part.id not in old and other is not part
-        and all(a[i] < b[i] + b[i + 2] and b[i] < a[i] + a[i + 2] for i in (0, 1))
+        if other is not part and meet(a, b)
+        and not (part.id in was and other.id in was and meet(was[part.id], was[other.id]))
     ]  # fmt: skip
+
+
+def test_objects_stay_where_they_stand_where_there_is_room() -> None:
+    before = cable().archive()
+    for i, part in enumerate(one for one in parts(before) if one.container is not None):
+        assert part.container is not None
+        containers.place(part.container, (600.0 * (i % 4), 600.0 * (i // 4), 80.0, 50.0))
+    after, report = kangaroo.translate(before, "cable.gh")
+    old, new = ({one: box[:2] for one, box in places(root).items()} for root in (before, after))
+    assert old.items() <= new.items() and not any("were moved" in note for note in report.notes)
+
+
+@settings(max_examples=200 if SOAK else 20, deadline=None)
+@given(st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8)), min_size=12, max_size=12, unique=True))
+def test_what_becomes_larger_pushes_others_on_and_nothing_comes_to_overlap(cells: list[tuple[int, int]]) -> None:
+    """Objects in cells of a grid at random; each keeps its order with any other that is right of it, or below."""
+    d = Kangaroo("cells", "Cells", "Goals side by side.")
+    mesh = d.parameter("Mesh", "Mesh")
+    typed = (("Mesh", None), ("LengthFactor", 0.5), ("Strength", 10.0))
+    goals = [d.kangaroo("EdgeLengths", typed, ["EL"], mesh=mesh) for _ in range(8)]
+    d.panel("particles", d.solved(*goals)["V"])
+    before = d.archive()
+    placed = [part for part in parts(before) if part.container is not None and part.guid != guids.GROUP]
+    assert len(placed) == 12  # a note, a mesh, eight goals, a solver, a panel
+    for (column, row), part in zip(cells, placed, strict=True):
+        assert part.container is not None
+        containers.place(part.container, (90.0 * column, 54.0 * row, 80.0, 50.0))
+    after, report = kangaroo.translate(before, "cells.gh")
+    assert report.whole == 1 and overlapping(before, after) == []
+    old, new = places(before), places(after)
+    for one, a in old.items():
+        for other, b in old.items():
+            for i in (0, 1):
+                assert a[i] + a[i + 2] > b[i] or new[one][i] < new[other][i]
 
 
 def test_new_objects_are_placed_where_nothing_is_on_a_crowded_canvas() -> None:

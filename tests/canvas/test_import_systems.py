@@ -140,12 +140,12 @@ def test_a_cluster_that_may_make_goals_keeps_the_system(document: bytes, told: s
     assert f"Goals ({told})" in found or f'Cluster "Goals" ({told})' in found
 
 
-def test_a_goal_without_a_solver_stays() -> None:
+def test_a_goal_that_nothing_takes_is_translated_alone() -> None:
+    """Nothing can miss it: it ends in panels and merges."""
     d, _, _ = sprung()
     d.panel("shown", d.kangaroo("Load", (("P", None), ("FV", (0.0, 0.0, 1.0))), ["U"], p=d.point(0, 0, 0)))
-    found = untouched(d)
-    why = "it flows into no solver of Kangaroo; a goal is translated with its solver"
-    assert found == {"Length(Line)": why, "Load": why}
+    after, report = translated(d)
+    assert report.stays == [] and remaining(after) == 0 and len(report.swapped) == 2
 
 
 def test_a_goal_whose_only_taker_is_a_script_stays_and_the_script_is_named() -> None:
@@ -305,6 +305,8 @@ def test_of_any_solvers_and_goals_each_system_is_translated_whole_or_not_at_all(
     swapped |= {shown[part.id] for part in parts(after) if part.id in shown}  # a parameter has the id of its output
     expected = {solver.id for solver, _ in solvers if whole_[solver.id]}
     expected |= {goal for solver, goals in solvers if whole_[solver.id] for goal in goals}
+    held = {goal for _, goals in solvers for goal in goals}
+    expected |= {one.id for one in made.values() if one.kind in TRANSLATED and one.id not in held}
     assert swapped & {*made, *whole_} == expected
     assert (report.solvers, report.whole) == (len(solvers), sum(whole_.values()))
 

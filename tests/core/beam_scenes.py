@@ -1,4 +1,4 @@
-"""Beams for tests: rows of them, and a rod by its differential equation, solved with scipy alone."""
+"""Beams for tests: rows of them, and a rod by its differential equation, solved with scipy, not with the engine."""
 
 from __future__ import annotations
 
@@ -39,10 +39,15 @@ def scene(x: np.ndarray, forces: list[Spec], anchors: list[Spec] | None = None, 
     return Scene.read({"particles": x.tolist(), "forces": forces, "anchors": anchors, "settings": settings})
 
 
+def rotation(result: Any, place: int) -> Rotation:
+    """The orientation of a particle in a result, for scipy."""
+    return Rotation.from_quat(result.rotations["quaternions"][place], scalar_first=True)
+
+
 def rod(frames: Any, length: float, curvature: np.ndarray, stiff: np.ndarray, axial: float, force: np.ndarray) -> Any:
-    """The shape (3, k) of an elastic rod that is clamped at the origin with the frame `frames` (3, 3) by columns, has a
-    `curvature` (3,) [rad/length] in its own frame without stress, the stiffness `stiff` (GJ, EIy, EIz), `axial` (EA),
-    and carries a dead `force` at its end.
+    """The shape (3, k) of an elastic rod that is clamped at the origin with the frame `frames` (3, 3) by columns, has
+    a `curvature` (3,) [rad/length] in its own frame without stress, the stiffness `stiff` (GJ, EIy, EIz) and `axial`
+    (EA), and carries a dead `force` at its end.
 
     Kirchhoff's rod: r' = R e1 (1 + N / EA), q' = q kappa / 2, m' = -r' x n, n = force, m = 0 at the end.
     """

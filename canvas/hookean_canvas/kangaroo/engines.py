@@ -48,10 +48,11 @@ SETTINGS = Swap(
 
 CLASSIC: dict[str, Swap] = {
     "kangaroophysics": Swap(
-        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),), f"{_ENERGY}; {_ENDS}; {_BARE}"
+        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE, {"reset": False}),),
+        f"{_ENERGY}; {_ENDS}; {_BARE}",
     ),
     "zombiekangaroo": Swap(
-        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE),),
+        (Piece("Engine", {**_PHYSICS, "simulationreset": "reset"}, _ENGINE, {"reset": False}),),
         f"the Engine plays on the service instead of holding the canvas; {_ENDS}",
         {"threshold": _ENDS, "maxiters": "the engine stops by itself; `max_iterations` of a scene limits it"},
     ),
@@ -66,17 +67,19 @@ _STEPS = "the Engine runs while reset is False and _on_ True"
 
 def _solver(solver: str, differs: str, **without: str) -> Swap:
     values = {"solver": solver, "all_particles": True} | ({"fast": True} if "holding the canvas" in differs else {})
-    settings = Piece("Settings", {"tolerance": "tolerance"}, values=values, feeds={"settings": "0.settings"})
+    steps = dict.fromkeys(("iterations", "subiterations"), "sub_iterations")
+    settings = Piece("Settings", {"tolerance": "tolerance", **steps}, values=values, feeds={"settings": "0.settings"})
     usual = {
         "threshold": None,
+        "restart": False,
+        "addcurrent": False,
         "damping": 0.99,
-        "iterations": 10,
         "momentum": False,
         "animate": True,
         "parallel": True,
     }
     told = {"threshold": _ENDS, **without}
-    return Swap((Piece("Engine", _GOALS, _SOLVED), settings), f"{differs}; {_OUT}", told, usual)
+    return Swap((Piece("Engine", _GOALS, _SOLVED, {"reset": False}), settings), f"{differs}; {_OUT}", told, usual)
 
 
 SECOND: dict[str, Swap] = {
@@ -92,7 +95,6 @@ SECOND: dict[str, Swap] = {
         "verlet",
         "particles have mass and time is physical, so the motion is another; the shape at rest is the same",
         damping="the settings' drag and the springs' damping slow the motion",
-        iterations="`sub_iterations` of Settings",
     ),
     "zombiesolver": _solver(
         "momentum",
@@ -104,7 +106,6 @@ SECOND: dict[str, Swap] = {
         "the Engine plays on instead of waiting for each step",
         momentum="choose the solver in Settings",
         damping="drag of Settings",
-        subiterations="`sub_iterations` of Settings",
         animate=_STEPS,
     ),
 }

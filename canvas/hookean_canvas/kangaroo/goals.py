@@ -65,8 +65,19 @@ _RIGID = replace(
         points="point",
         strength="strength",
     ),
-    without=dict.fromkeys(("part", "plane"), _CARRIED),
-    usual=dict.fromkeys(("part", "plane"), None),
+    without={"plane": _CARRIED},
+    usual={"plane": None},
+)
+_PART = Swap(
+    (
+        Piece("RigidBody", {"strength": "strength"}, {"force": "rigidbody"}),
+        Piece("*bodies", {"part": "meshes", "points": "points"}, feeds={"points": "0.point"}),
+    ),
+    "the vertices of the part are particles of its body, too; k for each particle; Kangaroo's law is not published",
+    without={"plane": _CARRIED},
+    usual={"plane": None},
+    needs=("part",),
+    other=_RIGID,
 )
 
 _POLYGONS = Swap(
@@ -437,5 +448,5 @@ GOALS: dict[str, Swap] = {
     "collide2d": _POLYGONS,
     "curvecollide": _POLYGONS,
     "rigidpointset": _RIGID,
-    "rigidbody": _RIGID,
+    "rigidbody": _PART,
 }

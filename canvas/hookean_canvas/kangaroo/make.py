@@ -217,6 +217,20 @@ def keeper(id: UUID, name: str, port: Chunk, hint: str) -> tuple[UUID, Chunk, tu
     return guid, chunk, (36.0 + 6.2 * len(name), 20.0)
 
 
+def expressed(id: UUID, name: str, port: Chunk, hint: str) -> tuple[UUID, Chunk, tuple[float, float]]:
+    """A parameter with the expression and the data of an input, which is not wired yet."""
+    items = stored(port)
+    guid = PARAMETERS[_kind(items[0], hint) if items else _EXPRESSED.get(hint, "Number")]
+    title = NAMES[guid][0]
+    chunk = containers.floating(id, title, name, f"Contains a collection of {title.lower()} values")
+    chunk.put("InternalExpression", Type.STRING, port.value("InternalExpression"))
+    data = port.chunk("PersistentData")
+    if data is not None:
+        chunk.chunks.append(data)
+    return guid, chunk, (36.0 + 6.2 * len(name), 20.0)
+
+
+_EXPRESSED: Mapping[str, str] = {"int": "Integer", "bool": "Boolean", "point": "Point", "vector": "Vector"}
 _BY_ITEM: Mapping[str, str] = {"vector": "Vector", "Coordinate": "Point", "boolean": "Boolean", "string": "Text"}
 _BY_HINT: Mapping[str, str] = {"mesh": "Mesh", "curve": "Curve", "point": "Point", "vector": "Vector"}
 

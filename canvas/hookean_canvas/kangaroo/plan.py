@@ -14,6 +14,7 @@ from hookean_canvas.kangaroo.ids import Known, hidden, key, libraries, recognise
 from hookean_canvas.kangaroo.pieces import Swap
 from hookean_canvas.kangaroo.report import Report
 from hookean_canvas.kangaroo.roles import Role, called, reason, role
+from hookean_canvas.kangaroo.room import make_room
 from hookean_canvas.kangaroo.space import Space, size
 from hookean_canvas.kangaroo.streams import Streams, sound
 from hookean_canvas.kangaroo.swap import FLOATING, Swapping, connect, names_of, ports_of
@@ -34,6 +35,7 @@ class Importing:
         self.libraries = libraries(definition)
         self.known = {id(part.chunk): self._recognised(part) for part in parts(root)}
         self.streams = Streams(root)
+        self.points: list[UUID] = []  # inputs Points of solvers, for those who pick from them
         self.numbered = self._numbered()
         self.plan: dict[int, Swap] = {}
         self.stays: dict[int, str] = {}
@@ -61,6 +63,10 @@ class Importing:
         self._reserve()
         for part in found:
             known = self.known[id(part.chunk)]
+            if known and role(known) is Role.SOLVER and id(part.chunk) in self.plan:
+                self.points += [port.value("InstanceGuid") for port in _points(part) if sources(port)]
+        for part in found:
+            known = self.known[id(part.chunk)]
             if known and id(part.chunk) in self.plan:
                 Swapping(self, part, known, self.plan[id(part.chunk)]).run()
             elif known:
@@ -72,13 +78,22 @@ class Importing:
         self._wire_doubles()
 
     def _reserve(self) -> None:
-        """Room for what is larger than before, so that nothing new is placed there."""
+        """Room for what is larger than before, so that nothing else is there, and nothing new is placed there."""
+        larger: dict[int, tuple[float, float]] = {}
         for part in self.streams.parts:
-            swap, bounds = self.plan.get(id(part.chunk)), bounds_of(part.container)
-            if swap and bounds and part.container is not None and swap.pieces[0].bundle not in FLOATING:
+            swap = self.plan.get(id(part.chunk))
+            if swap and part.container is not None and swap.pieces[0].bundle not in FLOATING:
                 of = make.recipe(swap.pieces[0].bundle)
                 box = size([slot.name for slot in of.inputs], [slot.name for slot in of.outputs])
-                self.space.taken[id(part.container)] = (bounds[0], bounds[1], *box)
+                larger[id(part.container)] = box
+        moved = make_room(self.root, larger)
+        if moved:
+            self.report.notes.append(f"{moved} objects were moved down or to the right, as components are larger here")
+        self.space = Space(self.root)
+        for part in self.streams.parts:
+            bounds = bounds_of(part.container)
+            if bounds and id(part.container) in larger:
+                self.space.taken[id(part.container)] = (bounds[0], bounds[1], *larger[id(part.container)])
 
     def _decide(self) -> None:
         """Which components are swapped: those of systems that are whole, and tools of no system that stays."""
@@ -97,9 +112,12 @@ class Importing:
                     self.stays[id(part.chunk)] = self._because(part, system, name)
                 else:
                     self._plan(part)
-        self.stays |= {
-            id(part.chunk): f"{why}; a goal is translated with its solver" for part, why in systems.orphans()
-        }
+        for part, takers in systems.orphans():
+            if takers:
+                why = f"it flows into no solver of Kangaroo, only into {', '.join(takers)}"
+                self.stays[id(part.chunk)] = f"{why}; a goal is translated with its solver"
+            else:
+                self._plan(part)
         for part in self.streams.parts:
             known = self.known[id(part.chunk)]
             if known and role(known) is Role.TOOL and id(part.chunk) not in self.stays:
@@ -166,7 +184,7 @@ class Importing:
         for part in self.streams.parts:
             known = self.known[id(part.chunk)]
             if known and known.generation == "second" and role(known) is Role.SOLVER:
-                found += [sources(port) for port in ports_of(part) if "points" in map(key, names_of(port))]
+                found += [sources(port) for port in _points(part)]
         wired = [one for one in found if one]
         return wired[0] if wired and all(one == wired[0] for one in wired) else []
 
@@ -185,3 +203,8 @@ class Importing:
                     wired = sources(port)
                     if old in wired:
                         connect(port, [*wired, new])
+
+
+def _points(solver: Part) -> list[Chunk]:
+    """The input Points of a solver that has one."""
+    return [port for port in ports_of(solver) if "points" in map(key, names_of(port))]

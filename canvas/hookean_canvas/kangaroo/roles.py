@@ -6,6 +6,7 @@ from enum import Enum
 
 from hookean_canvas.archive.parts import Part
 from hookean_canvas.kangaroo.ids import COMPONENTS, Known, key
+from hookean_canvas.kangaroo.reasons import REASONS
 from hookean_canvas.kangaroo.table import CLASSIC, SECOND
 
 
@@ -27,35 +28,6 @@ unroller vertexneighbours warpweft counter sequence trail wave
 """
 _SOLVERS, _TOOLS = frozenset(_SOLVER_NAMES.split()), frozenset(_TOOL_NAMES.split())
 
-_PURE = "geometry without mechanics of this kind is not here"
-_SOLID = "elements of solids and membranes with a Young's modulus are not here"
-_LINE = (
-    "forces between lines, or points and lines, by a power of their distance are not here; Collide Lines is a contact"
-)
-_REASONS = {
-    _PURE: "g2 cpmesh reciprocalstructure rheotomicsurface",
-    _SOLID: "triangularelement tetrahedralelement",
-    _LINE: "lineline pointline",
-}
-REASONS: dict[str, str] = {
-    "soapfilm": "warp and weft are families of a mesh's edges here; connect a mesh to SoapFilm",
-    "bomb": "Impulse takes a time, not counts of iterations; its momentum is another number than the strength",
-    "gstring": "Geodesic Strip takes a mesh and the vertices of its lines",
-    "imagecircles": "Circle Image takes an image as numbers",
-    "boxcollide": "Box Collide takes the diagonals of all boxes",
-    "soft&hardsolver": "goals are not of two ranks here; anchors, locks and floors are exact",
-    "livesoap": "Live Film makes the mesh of a film again while it relaxes, without a solver on the canvas",
-    "collidesurf": "connect a mesh to Collide Solid",
-    "shear": "a force of this kind is not here",
-    "edgebend": "Shell takes a mesh; Hinge takes edges with their tips",
-    "origami": "Hinge takes edges with their tips, rest angles and an angle factor",
-    "gravity": "Unary takes points and a vector",
-    "particle": "masses and first velocities are fields of a scene; the canvas has no component for them",
-    "beam": "beams of six degrees of freedom are not here",
-    "support": "supports of six degrees of freedom are not here",
-    **{name: why for why, names in _REASONS.items() for name in names.split()},
-}
-"""Why a component has no counterpart, or what to use instead."""
 _KNOWN = {key(known.name) for known in COMPONENTS.values()} | {*CLASSIC, *SECOND, *REASONS}
 
 

@@ -43,11 +43,6 @@ class Space:
                 wide = CHARACTER * len(port.value("NickName", default="")) + 8.0
                 containers.place(port, (x + 2.0 if left else x + width - 2.0 - wide, y + 2.0 + i * row, wide, row))
 
-    def covered(self, container: Chunk) -> bool:
-        """Whether an object shares its place with another one."""
-        own = self.taken.get(id(container))
-        return own is not None and any(_meet(own, box, 0.0) for key, box in self.taken.items() if key != id(container))
-
     def corner(self) -> tuple[float, float]:
         """The upper left corner of all there is."""
         boxes = list(self.taken.values()) or [(0.0, 0.0, 0.0, 0.0)]
@@ -60,5 +55,5 @@ def size(inputs: Sequence[str], outputs: Sequence[str]) -> tuple[float, float]:
     return wide + 32.0, ROW * max(len(inputs), len(outputs), 1) + 4.0
 
 
-def _meet(one: Rectangle, other: Rectangle, gap: float = GAP) -> bool:
-    return all(one[i] < other[i] + other[i + 2] + gap and other[i] < one[i] + one[i + 2] + gap for i in (0, 1))
+def _meet(one: Rectangle, other: Rectangle) -> bool:
+    return all(one[i] < other[i] + other[i + 2] + GAP and other[i] < one[i] + one[i + 2] + GAP for i in (0, 1))

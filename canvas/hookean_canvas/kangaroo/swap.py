@@ -25,6 +25,7 @@ CARRIED = {"length(line)": "line", "rod": "polyline", "edgelengths": "mesh"}
 """Goals of Kangaroo 2 whose output is the geometry of one of their inputs."""
 FLOATING = {"*geometry": "a Data parameter", "*nothing": "an empty Data parameter"}
 """Pieces that are no component, in words."""
+_SHORT = {"mesh": "m", "point": "p"}
 SOLVERS = {0: "verlet", 1: "yoshida"}
 """Solvers of classic Kangaroo by the number that its settings have for them."""
 
@@ -99,8 +100,8 @@ class Swapping:
         for slot, port in zip(recipe.inputs, inputs(chunk), strict=True):
             name = slot.name.strip("_")
             if name in taken:
-                self._connect(taken[name], port, slot)
-            elif name in piece.values:
+                self._connect(taken[name], port, slot, also_usual=name in piece.values)
+            if name in piece.values and not sources(port):
                 self._hold(port, slot, piece.values[name])
             elif piece.bundle == "*indexed" and name == "points":
                 connect(port, self.whole.numbered)
@@ -108,6 +109,8 @@ class Swapping:
     def _input(self, id_: UUID, piece: Piece, slot: Slot, taken: dict[str, Chunk]) -> UUID:
         """The id of an input: Kangaroo's where it stands for one of its inputs, else a new one."""
         name = slot.name.strip("_")
+        if piece.bundle == "*indexed" and name == "points" and self.whole.points:
+            return self.whole.points.pop(0)
         for old, ours in piece.inputs.items():
             if name in ours.split("|") and old in self.given and name not in taken:
                 taken[name] = self.given[old]
@@ -132,13 +135,12 @@ class Swapping:
         self.used.add(found)
         return found
 
-    def _connect(self, old: Chunk, port: Chunk, slot: Slot) -> None:
-        """Wires and modifiers of an input of Kangaroo's, or what is typed into it."""
+    def _connect(self, old: Chunk, port: Chunk, slot: Slot, also_usual: bool = False) -> None:
+        """Wires and modifiers of an input of Kangaroo's, or what is typed into it; `also_usual`: even our default."""
         wired = sources(old)
+        if old.value("InternalExpression"):
+            return self._express(old, port, slot)
         _copy_modifiers(old, port)
-        if old.item("InternalExpression") is not None:
-            expression = old.value("InternalExpression")
-            self._gone(old, f"the expression {expression!r} of this input is not kept; put it into an Expression")
         if wired and self._measures(old, slot):
             wired = [self._length(port, wired)]
         if wired:
@@ -146,7 +148,7 @@ class Swapping:
             return
         items = make.stored(old)
         value = make.single(old)
-        if not items or value is not None and make.usual(slot, value):
+        if not items or value is not None and make.usual(slot, value) and not also_usual:
             return
         if slot.name.strip("_") == "solver":
             if value in SOLVERS:
@@ -162,6 +164,15 @@ class Swapping:
             id_ = uuid5(port.value("InstanceGuid"), "held")
             guid, chunk, box = make.keeper(id_, _title(slot), old, slot.hint)
             self._beside(port, guid, chunk, box)
+
+    def _express(self, old: Chunk, port: Chunk, slot: Slot) -> None:
+        """A parameter that has the expression of an input, which scripts cannot have; it takes over the input's id."""
+        given: UUID = port.value("InstanceGuid")
+        port.put("InstanceGuid", Type.GUID, uuid5(given, "in expressed"))
+        guid, chunk, box = make.expressed(given, _title(slot), old, slot.hint)
+        _copy_modifiers(old, chunk)
+        connect(chunk, sources(old))
+        self._beside(port, guid, chunk, box)
 
     def _measures(self, old: Chunk, slot: Slot) -> bool:
         """Whether a length is wired from the very curves it is the length of; Grasshopper measures them."""
@@ -285,8 +296,9 @@ def ports_of(part: Part) -> list[Chunk]:
 
 
 def names_of(port: Chunk) -> list[str]:
-    """The name and the nickname of an input or output."""
-    return [str(port.value("Name", default="")), str(port.value("NickName", default=""))]
+    """The name and the nickname of an input or output, and the short name that some versions give it."""
+    names = [str(port.value("Name", default="")), str(port.value("NickName", default=""))]
+    return names + [_SHORT[key(name)] for name in names if key(name) in _SHORT]
 
 
 def _input_of(chunk: Chunk, name: str) -> Chunk:

@@ -77,14 +77,12 @@ class Systems:
         """The goals, and in classic Kangaroo the settings, that flow into a solver, in the order of the file."""
         return self._upstream(solver)[0]
 
-    def orphans(self) -> Iterator[tuple[Part, str]]:
-        """Goals that flow into no solver, each with what becomes of them."""
+    def orphans(self) -> Iterator[tuple[Part, list[str]]]:
+        """Goals that flow into no solver, each with the names of the objects of others that take them."""
         held = {id(goal.chunk) for system in self.found for goal in system.goals}
         for part in self._streams.parts:
             if self._role(part, stream=False) is Role.GOAL and id(part.chunk) not in held:
-                takers = [self._named(taker) for taker in self._downstream(part)]
-                told = f", only into {', '.join(dict.fromkeys(takers))}" if takers else ""
-                yield part, f"it flows into no solver of Kangaroo{told}"
+                yield part, list(dict.fromkeys(self._named(taker) for taker in self._downstream(part)))
 
     def _join(self, new: System) -> None:
         """Take up a system, as one with those that share a goal with it."""

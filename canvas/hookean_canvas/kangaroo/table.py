@@ -7,8 +7,9 @@ their variables without underscores. Sources of the differences: docs/from-kanga
 from __future__ import annotations
 
 from hookean_canvas.kangaroo import classic, engines, goals, scripts, tools
-from hookean_canvas.kangaroo.ids import Known, key
+from hookean_canvas.kangaroo.ids import COMPONENTS, Known, key
 from hookean_canvas.kangaroo.pieces import Swap
+from hookean_canvas.kangaroo.reasons import REASONS
 
 CLASSIC: dict[str, Swap] = {**engines.CLASSIC, **classic.FORCES, **tools.CLASSIC}
 SECOND: dict[str, Swap] = {**engines.SECOND, **goals.GOALS, **tools.SECOND}
@@ -20,7 +21,7 @@ def swap_of(known: Known) -> Swap | None:
 
 
 def markdown() -> str:
-    """The table for docs/canvas.md: every component that is translated, by what, and what differs."""
+    """The table for docs/canvas.md: every component that is known, what stands for it, and what differs or why none."""
     lines = ["| Kangaroo | component | here | what differs |", "| --- | --- | --- | --- |"]
     for generation, table in (("0.099", CLASSIC), ("2", SECOND)):
         for name, swap in table.items():
@@ -33,9 +34,15 @@ def markdown() -> str:
                 ]
             )
             lines.append(f"| {generation} | {name} | {by} | {told.strip('; ')} |")
+    there = {key(known.name): known.generation for known in COMPONENTS.values()}
+    for name in dict.fromkeys([*there, *REASONS]):
+        if name not in CLASSIC and name not in SECOND:
+            number = "0.099" if there.get(name) == "classic" else "2" if name in there else "0.099, 2"
+            lines.append(f"| {number} | {name} | stays | {REASONS.get(name, _TOOL)} |")
     return "\n".join(lines) + "\n"
 
 
+_TOOL = "a tool for geometry"
 _HELPER = {
     "*geometry": "a parameter",
     "*nothing": "an empty parameter",

@@ -18,7 +18,7 @@ from uuid import UUID, uuid5
 from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.archive.guids import PANEL, PYTHON3_SCRIPT, SCRIPT_LIBRARY, TIMER
+from hookean_canvas.archive.guids import PANEL, SCRIPT_LIBRARY, TIMER
 from hookean_canvas.archive.parts import inputs, outputs, parts, sources
 from hookean_canvas.definitions import containers
 from hookean_canvas.kangaroo.make import put_object
@@ -53,7 +53,6 @@ def translate(root: Chunk, name: str = "definition") -> tuple[Chunk, Report]:
     _count(work)
     _libraries(work)
     _header(root)
-    _crowded(work)
     _panel(work)
     return root, report
 
@@ -138,16 +137,6 @@ def _header(root: Chunk) -> None:
         old = old if isinstance(old, UUID) else UUID(int=0)
         header.put("DocumentID", Type.GUID, uuid5(old, "hookean import"))
     root.chunks = [chunk for chunk in root.chunks if chunk.name != "Thumbnail"]
-
-
-def _crowded(work: Importing) -> None:
-    """Components of ours are larger than those they stand for, and nothing is moved."""
-    swapped = [part for part in parts(work.root) if work.known.get(id(part.chunk)) and part.guid == PYTHON3_SCRIPT]
-    crowded = [part.label for part in swapped if part.container and work.space.covered(part.container)]
-    if crowded:
-        work.report.notes.append(
-            f"larger than before, and overlapping a neighbour: {', '.join(crowded)}; drag them apart"
-        )
 
 
 def _panel(work: Importing) -> None:

@@ -60,6 +60,7 @@ class Checked:
             "file": self.file.name,
             "at_rest": self.outcome.at_rest,
             "solutions": self.outcome.solutions,
+            "engines": self.outcome.engines,
             "panels": {name: _plain(tree) for name, tree in self.outcome.panels.items()},
             "messages": [{"component": m.component, "level": m.level, "text": m.text} for m in self.outcome.messages],
             "expected": [
@@ -151,6 +152,8 @@ def run(path: Path, texts: list[str], as_json: bool, seconds: float, trust: bool
         return 1 if checked.faults else 0
     for name, tree in checked.outcome.panels.items():
         print(f"{name}: {shown(tree)}")
+    for told in checked.outcome.engines:
+        print(told)
     for message in checked.outcome.messages:
         print(f"{message.level}, {message.component}: {message.text}")
     if checked.compared:

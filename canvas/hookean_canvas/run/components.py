@@ -6,11 +6,30 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from hookean_canvas.run.graph import Node, Port
-from hookean_canvas.run.natives import Native, Unfit
+from hookean_canvas.run.natives import NATIVES, Native, Unfit, native_of
 from hookean_canvas.run.natives.declare import BRANCHES, Input, Output
 from hookean_canvas.run.trees import ITEM, LIST, TREE, Path, Run, Tree, runs
 
 Say = Callable[[str, str], None]
+
+
+def native_for(node: Node) -> Native | None:
+    """The native that stands in for an object; for an older version of one, with an id of its own, the present one.
+
+    Grasshopper's own objects are taken for older versions where name, and names of all inputs and outputs, agree.
+    """
+    found = native_of(node.guid, node.name)
+    if found is not None or node.plugin or node.floating:
+        return found
+    return next((one for one in NATIVES.values() if one.name == node.name and _alike(node, one)), None)
+
+
+def _alike(node: Node, native: Native) -> bool:
+    sides: tuple[tuple[list[Port], Sequence[Any]], ...] = (
+        (node.inputs, native.inputs),
+        (node.outputs, native.outputs),
+    )
+    return all([p.name.lower() for p in ports] == [of.name.lower() for of in declared] for ports, declared in sides)
 
 
 def inputs_of(node: Node, native: Native) -> list[tuple[Port | None, Input]] | None:

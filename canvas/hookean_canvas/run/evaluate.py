@@ -4,7 +4,8 @@ Objects are solved in the order of their wires. Data is matched as Grasshopper m
 components is what the file holds; it runs in this process, with stand-ins for Rhino, Grasshopper and ghenv, and
 rhino3dm as Rhino.Geometry. Solutions that a component schedules are run until nothing is scheduled any more.
 
-A toggle that feeds an input called reset is pressed as a person presses it: True first, then False.
+A toggle that feeds an input called reset is pressed as a person presses it: True first, then False. One that feeds the
+input called on of an Engine is True. Settings keep both from it.
 """
 
 from __future__ import annotations
@@ -29,14 +30,14 @@ from hookean_canvas.archive.guids import (
 )
 from hookean_canvas.archive.parts import given as typed
 from hookean_canvas.run import stand_in as untyped
-from hookean_canvas.run.components import inputs_of, outputs_of, run_native
+from hookean_canvas.run.components import inputs_of, native_for, outputs_of, run_native
 from hookean_canvas.run.graph import Graph, Node, Port
-from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind, native_of
+from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind
 from hookean_canvas.run.natives.display import SWATCH
 from hookean_canvas.run.natives.expressions import evaluated
 from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.run.trees import ITEM, TREE, Run, Tree, modified, runs
-from hookean_canvas.run.unsupported import require_known
+from hookean_canvas.run.unsupported import ENGINE, require_known
 
 stand_in: Any = untyped
 LONGEST_WAIT = 1.0  # s between scheduled solutions, however long one asks to wait
@@ -53,13 +54,14 @@ class Message:
 
 @dataclass
 class Outcome:
-    """What a run came to: `panels` fed by wires, by their names; messages; whether all is at rest."""
+    """What a run came to: `panels` fed by wires, by their names; messages; whether all is at rest; and `engines`, the
+    status of each Engine."""
 
     panels: dict[str, Tree]
     messages: list[Message]
     solutions: int
     at_rest: bool
-    notes: list[str] = field(default_factory=list)
+    engines: list[str] = field(default_factory=list)
 
 
 class Canvas:
@@ -68,10 +70,14 @@ class Canvas:
     def __init__(self, graph: Graph, settings: Mapping[str, str] | None = None) -> None:
         self.graph = graph
         self._order = graph.ordered()
-        require_known(graph)
+        self._aside = require_known(graph)
         self._document = stand_in.Document(path=str(graph.file) if graph.file else None, identity=str(graph.id))
         self._set = _settings(graph, settings or {})
-        self._pressed = [node for node in _resets(graph) if node.id not in self._set]
+        self._pressed = [node for node in _toggles(graph, "reset") if node.id not in self._set]
+        pressed = {node.id for node in self._pressed}
+        for node in _toggles(graph, "on", ENGINE):
+            if node.id not in pressed:
+                self._set.setdefault(node.id, True)
         self._results: dict[UUID, Tree] = {}
         self._messages: dict[UUID, list[Message]] = {}
         self._scripts: dict[UUID, Script] = {}
@@ -96,10 +102,18 @@ class Canvas:
         panels: dict[str, Tree] = {}
         for node in self._order:
             if node.guid == PANEL and node.inputs[0].sources:
-                if node.label in panels:
-                    raise InputError(node.label, "two panels have this name; give each its own")
-                panels[node.label] = self._results[node.id]
-        return Outcome(panels, messages, self._solutions, at_rest)
+                panels[_free(node.label, panels)] = self._results[node.id]
+        engines = [text for node in self._order if node.name == ENGINE for text in self._status(node)]
+        return Outcome(panels, messages, self._solutions, at_rest, engines)
+
+    def _status(self, engine: Node) -> list[str]:
+        """The status of an Engine; nothing where it has not been run."""
+        return [
+            f"{engine.label}: {text}"
+            for port in engine.outputs
+            if port.name == "status"
+            for text in self._results[port.id].values_in_order()
+        ]
 
     def _connect(self) -> None:
         """Give each stand-in component the objects behind its wires, as ghenv.Component.Params shows them."""
@@ -162,9 +176,11 @@ class Canvas:
             return
         if node.guid in INERT:
             return
-        if node.floating:
+        if node.id in self._aside:
+            self._say(node, "warning", f"left out, as no Engine needs it: {self._aside[node.id]}")
+        elif node.floating:
             self._results[node.id] = self._floating(node)
-        elif (native := native_of(node.guid, node.name)) is not None:
+        elif (native := native_for(node)) is not None:
             self._native(node, native)
         else:
             self._script(node, self._scripts[node.id])
@@ -276,11 +292,20 @@ class _standing:
         self._canvas.remove()
 
 
-def _resets(graph: Graph) -> list[Node]:
-    """Toggles that feed an input called reset."""
+def _free(name: str, taken: Mapping[str, Any]) -> str:
+    """A name that nothing has yet: with a number after it where another has the name itself."""
+    number = 2
+    found = name
+    while found in taken:
+        found, number = f"{name} ({number})", number + 1
+    return found
+
+
+def _toggles(graph: Graph, name: str, owner: str = "") -> list[Node]:
+    """Toggles that feed an input of this name, of an object of the name `owner` where one is given."""
     found: dict[UUID, Node] = {}
-    for start, _, _, port in graph.wires():
-        if start.guid == BOOLEAN_TOGGLE and port.nickname.strip("_").lower() == "reset":
+    for start, _, end, port in graph.wires():
+        if start.guid == BOOLEAN_TOGGLE and owner in ("", end.name) and port.nickname.strip("_").lower() == name:
             found[start.id] = start
     return list(found.values())
 

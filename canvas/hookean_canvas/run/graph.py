@@ -50,6 +50,7 @@ class Node:
     outputs: list[Port]
     bounds: Rectangle | None = None
     locked: bool = False
+    plugin: bool = False
 
     @property
     def floating(self) -> bool:
@@ -197,6 +198,7 @@ def _node(guid: UUID, part: Part, container: Chunk, instead: UUID) -> Node:
         outputs=outputs,
         bounds=bounds_of(container),
         locked=given(container, "Locked", False),
+        plugin=part.chunk.item("Lib") is not None,
     )
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
+from uuid import UUID
 
 from hookean.errors import InputError
 from hookean_canvas.archive import guids
-from hookean_canvas.run.components import inputs_of, outputs_of
+from hookean_canvas.run.components import inputs_of, native_for, outputs_of
 from hookean_canvas.run.graph import Graph, Node
-from hookean_canvas.run.natives import INERT, PARAMETERS, native_of
+from hookean_canvas.run.natives import INERT, PARAMETERS
 from hookean_canvas.run.natives.display import SWATCH
 from hookean_canvas.run.scripts import SCRIPTS, code_of
 from hookean_canvas.run.stored import Unread
@@ -21,31 +23,63 @@ VALUES = (
 """Objects that hold or pass on values, besides parameters."""
 
 
-def require_known(graph: Graph) -> None:
-    """InputError for a damaged file, and for one with objects or stored data that cannot be run; a fault for each."""
+ENGINE = "Hookean Engine"
+
+
+def require_known(graph: Graph) -> dict[UUID, str]:
+    """Why objects that no Engine needs cannot be run, by their ids; they are left out.
+
+    InputError for a damaged file, and for one with other objects or stored data that cannot be run; a fault for each.
+    Where there is no Engine, all objects are needed.
+    """
     where = str(graph.file or graph.name)
     if graph.damage:
         raise InputError(where, f"the file is damaged: {'; '.join(graph.damage)}")
-    faults = [InputError(f"{count} x {what}", why) for (what, why), count in unsupported(graph).most_common()]
+    needed, aside = _needed(graph), {}
+    counted: Counter[tuple[str, str]] = Counter()
+    for node, what, why in _unknown(graph):
+        if node.id in needed:
+            counted[what, why] += 1
+        else:
+            aside[node.id] = why
+    faults = [InputError(f"{count} x {what}", why) for (what, why), count in counted.most_common()]
     if faults:
         listed = "; ".join(map(str, faults))
         raise InputError(where, f"nothing was run; these cannot be run without Grasshopper: {listed}", faults)
+    return aside
 
 
 def unsupported(graph: Graph) -> Counter[tuple[str, str]]:
     """How many objects and stored values there are of each kind that cannot be run: what it is, and why."""
-    found: Counter[tuple[str, str]] = Counter()
+    return Counter((what, why) for _, what, why in _unknown(graph))
+
+
+def _needed(graph: Graph) -> set[UUID]:
+    """The objects that an Engine's result depends on, by their ids; all where there is no Engine."""
+    waiting = [node.id for node in graph.nodes if node.name == ENGINE] or [node.id for node in graph.nodes]
+    before: dict[UUID, list[UUID]] = {}
+    for start, _, end, _ in graph.wires():
+        before.setdefault(end.id, []).append(start.id)
+    needed = set(waiting)
+    while waiting:
+        found = set(before.get(waiting.pop(), ())) - needed
+        needed |= found
+        waiting += found
+    return needed
+
+
+def _unknown(graph: Graph) -> Iterator[tuple[Node, str, str]]:
+    """Each object or stored value that cannot be run: the object, what it is, and why."""
     for node in graph.nodes:
         why = _strange(node)
         if why:
-            found[node.name, why] += 1
+            yield node, node.name, why
         for port in node.inputs if not why and node.guid not in INERT else ():
             odd = [value for value in (port.data or Tree()).values_in_order() if isinstance(value, Unread)]
-            if odd and not port.sources:
-                told = odd[0].why or f"stored as {', '.join(odd[0].items)}"
+            if not port.sources:
                 what = node.name if node.floating else f"{node.name}, {port.name or port.nickname}"
-                found[f"data stored in {what}", told] += len(odd)
-    return found
+                for value in odd:
+                    yield node, f"data stored in {what}", value.why or f"stored as {', '.join(value.items)}"
 
 
 def _strange(node: Node) -> str:
@@ -54,7 +88,7 @@ def _strange(node: Node) -> str:
         return ""
     if node.guid in SCRIPTS:
         return "" if code_of(node) is not None else "its code is not Python"
-    native = native_of(node.guid, node.name)
+    native = native_for(node)
     if native is not None:
         if inputs_of(node, native) is not None and outputs_of(node, native) is not None:
             return ""

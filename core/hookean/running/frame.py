@@ -1,8 +1,4 @@
-<<<<<<< HEAD
-"""Frame: what a client sees of a running simulation."""
-=======
 """Frame: a running simulation at one moment, as clients see it."""
->>>>>>> beams
 
 from __future__ import annotations
 
@@ -13,16 +9,6 @@ from numpy.typing import NDArray
 
 from hookean.running.result import Status
 
-<<<<<<< HEAD
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Frame:
-    """What a client sees of a running simulation: positions (n, 3) [length], time [time], energies [force length]."""
-
-    particles: Floats
-=======
 
 @dataclass(frozen=True)
 class Frame:
@@ -30,7 +16,6 @@ class Frame:
     particles at the ends of beams, as `Result.rotations` has them."""
 
     particles: NDArray[np.float64]
->>>>>>> beams
     geometry: list[dict[str, object]]
     time: float
     iteration: int
@@ -38,7 +23,4 @@ class Frame:
     residual: float
     status: Status
     message: str
-<<<<<<< HEAD
-=======
     rotations: NDArray[np.float64]
->>>>>>> beams

@@ -10,10 +10,7 @@ from typing import IO, Any
 import numpy as np
 
 from hookean.errors import InputError
-<<<<<<< HEAD
 from hookean.running import saving
-=======
->>>>>>> beams
 from hookean.running.frame import Frame
 from hookean.running.history import Before, History
 from hookean.running.patch import Patch, apply

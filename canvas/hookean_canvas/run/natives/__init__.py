@@ -9,6 +9,7 @@ from __future__ import annotations
 from hookean_canvas.run.natives import (  # noqa: F401  each declares the natives of a subject
     chance,
     curves,
+    curves_at,
     datatrees,
     expressions,
     lists,
@@ -18,8 +19,10 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     meshes,
     meshes_made,
     primitives,
+    sets,
     subdivision,
     surfaces,
+    surfaces_at,
     tools,
     transforms,
     vectors,

@@ -25,6 +25,10 @@ INERT: dict[UUID, str] = {
 cc14daa5-911a-4fcc-8b3b-1149bf7f2eeb Point List
 1f18e802-4ab9-444f-bf3c-3e7e421a2acf Point List
 f6867cdd-2216-4451-9134-7da94bdcd5af Legend
+49d2e200-b34e-4e1c-82a3-07feb4cb9378 Colour RGB
+a45d68b3-c299-4b17-bdae-7975f216cec6 Colour HSL
+5958a658-20c2-4a2b-86ba-4d1b81bf5348 Colour HSV
+8b4da37d-1124-436a-9de2-952e4224a220 Blend Colours
 """.strip().split("\n")
     )
 }

@@ -14,7 +14,8 @@ SUBJECTS = {
     "expressions": "Expressions", "vectors": "Points, vectors, planes", "transforms": "Transformations",
     "primitives": "Curves", "curves": "On curves", "meshes": "Meshes", "meshes_made": "Making meshes",
     "subdivision": "Weaverbird, by name", "measures": "Measures and boxes", "surfaces": "Surfaces",
-    "tools": "Tools of Kangaroo", "chance": "By chance",
+    "curves_at": "Along curves", "surfaces_at": "On surfaces", "sets": "Sets", "tools": "Tools of Kangaroo",
+    "chance": "By chance",
 }  # fmt: skip
 """Headings by the modules that declare natives."""
 

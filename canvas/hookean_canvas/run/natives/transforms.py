@@ -116,3 +116,9 @@ def polar_array(geometry: Any, frame: Any, count: int, angle: float) -> tuple[li
     step = angle / count if full else angle / max(count - 1, 1)
     changes = [rhino3dm.Transform.Rotation(i * step, frame.ZAxis, frame.Origin) for i in range(count)]
     return [shapes.transformed(geometry, change) for change in changes], changes
+
+
+@native("23285717-156c-468f-a691-b242488c06a6", "Project", "Project", f"{_GEOMETRY}; Plane (P): plane", _OUT)
+def project(geometry: Any, frame: Any) -> tuple[Any, Any]:
+    """Geometry projected onto a plane, along its normal."""
+    return _changed(geometry, rhino3dm.Transform.Scale(frame, 1.0, 1.0, 0.0))
