@@ -357,6 +357,37 @@ def test_relax_solves_a_load_case_and_checks_it(folder: Path) -> None:
     assert run("relax", "cable.json", "--case", "rain").exit_code == 2
 
 
+def test_a_recipe_has_load_cases(folder: Path) -> None:
+    """The tables of a scene, for the objects of a Rhino model; rows of the case name the objects they came from."""
+    ends = [[0, 0, 0], [2, 0, 0], [4, 0, 0]]
+    drawn = [
+        (np.array(ends[:2], float), "cables"),
+        (np.array(ends[1:], float), "cables"),
+        (np.array(ends[1], float), "snow"),
+    ]
+    drawn += [(np.array(end, float), "anchors") for end in (ends[0], ends[2])]
+    threedm.write_new(folder / "cable.3dm", Additions((), [NewObject(*item) for item in drawn]), own=False)
+    recipe = """
+        forces = [
+            {kind = "constant_tension", name = "edge", lines = "layer:cables", tension = 30},
+            {kind = "unary", name = "snow load", points = "layer:snow", vector = [0, 0, -10]},
+        ]
+        anchors = [{points = "layer:anchors"}]
+        load_cases.snow.forces = ["snow load"]
+        combinations."ULS 1" = {prestress = 1.35, snow = 1.5}
+        stages.freeze.edge.axial_stiffness = 2000
+    """
+    (folder / "cases.toml").write_text(recipe)
+    found = run("relax", "cable.3dm", "-r", "cases.toml", "--case", "ULS 1", "-o", "out.3dm", "--csv", "out.csv")
+    assert found.exit_code == 0, found.output
+    assert "moved by up to 0.2614 m" in found.output  # as in tests/core/test_load_cases.py, which has the closed form
+    rows = (folder / "out.csv").read_text().splitlines()
+    assert ",cables,edge,springs,0,0 1," in rows[1]
+    (folder / "cases.toml").write_text(recipe.replace("snow = 1.5", "fog = 1.5"))
+    found = run("relax", "cable.3dm", "-r", "cases.toml", "--case", "ULS 1")
+    assert found.exit_code == 2 and "cases.toml /combinations/ULS 1/fog: no load case is called 'fog'" in found.output
+
+
 def test_patterns_writes_sheets_and_tables(folder: Path) -> None:
     mesh = grid(np.arange(5.0), np.arange(5.0))
     points = mesh.vertices + np.column_stack(

@@ -201,6 +201,21 @@ def test_a_stay_goes_slack() -> None:
     assert case.slack_count == 1 and "1 elements are slack" in case.summary()
 
 
+def test_a_line_of_constant_tension_goes_slack_where_it_is_tension_only() -> None:
+    """A load H = 100 along the cable, more than its prestress, hangs on one span alone: l = L0 (1 + H / EA), with
+    L0 = l0 EA / (EA + T); else both share it, and one is in compression."""
+    spec = cable(combinations={})
+    spec["forces"][1]["vector"] = [100.0, 0, 0]
+    pushed = hookean.load_cases(Scene.read(spec), ["snow"]).cases["snow"]
+    assert pushed.result.force("cable")["force"][1] < 0.0 and not pushed.slack
+    spec["stages"]["freeze"]["cable"]["tension_only"] = True
+    found = hookean.load_cases(Scene.read(spec), ["snow"]).cases["snow"]
+    np.testing.assert_allclose(found.result.force("cable")["force"], [100.0, 0.0], rtol=1e-6, atol=1e-12)
+    moved = L / 2 * EA / (EA + T) * (1.0 + 100.0 / EA) - L / 2
+    np.testing.assert_allclose(found.displacements[1], [moved, 0.0, 0.0], atol=1e-7)
+    assert found.slack[0].tolist() == [1]
+
+
 def test_the_envelope_has_the_extremes_and_their_cases() -> None:
     found = hookean.load_cases(Scene.read(cable()))
     names, envelope = list(found.cases), found.envelope
