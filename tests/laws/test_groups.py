@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from hookean import InputError, Scene, relax
 from hookean.forces import KINDS, Block, Force, groups
 from hookean.linear.subsystem import cut
 from hookean.system.system import compile
+from soak import seeds
 
 from . import laws
 from .cases import Case, case_of, example_system, identity
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=25, database=None)
 GROUPED = [case_of(kind, *cls.example()) for kind, cls in KINDS.items() if issubclass(cls, groups.Grouped)]
 every = pytest.mark.parametrize("case", GROUPED, ids=identity)
 
@@ -44,8 +42,7 @@ def tangent(case: Case, x: np.ndarray, node: int | None) -> np.ndarray:
 
 
 @every
-@SEEDED
-@given(seed=st.integers(0, 2**32 - 1), amount=st.floats(0.01, 0.1))
+@seeds(8, soak=25, most=0.1)
 def test_the_tangent_of_groups_is_the_gradient_of_the_force(case: Case, seed: int, amount: float) -> None:
     """K = -df/dx by differences of order 4, step 1e-4: to 1e-6 of the largest entry, with and without nodes."""
     x = case.moved(np.random.default_rng(seed), amount)

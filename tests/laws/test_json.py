@@ -8,16 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from hookean.forces import KINDS, Force
 from hookean.scene.scene import Scene
 from hookean.values.columns import Model
+from soak import seeds
 
 from .cases import scene_of
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=30, database=None)
 kinds = pytest.mark.parametrize("kind", KINDS)
 
 
@@ -48,8 +46,7 @@ def buffers(value: Any, floats: str = "<f8", whole: str = "<i8") -> Any:
 
 
 @kinds
-@SEEDED
-@given(seed=st.integers(0, 2**32 - 1))
+@seeds(10, soak=30)
 def test_canonical_json_read_again_is_the_same_scene(kind: str, seed: int) -> None:
     """Scene -> canonical JSON -> Scene: equal, same digest, same text; every number to the last bit."""
     scene = shaken(kind, seed)

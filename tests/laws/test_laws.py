@@ -6,20 +6,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from hookean.forces import KINDS
-from serving import SOAK
+from soak import SOAK, seeds
 
 from . import laws
 from .cases import KERNELS, Case, case_of, identity, replaced, resting
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=200 if SOAK else 30, database=None)
-FEWER = settings(derandomize=True, deadline=None, max_examples=50 if SOAK else 10, database=None)
-
-seeds = st.integers(0, 2**32 - 1)
-amounts = st.floats(0.01, 0.15)
+seeded, fewer = seeds(30, soak=200), seeds(10, soak=50)
 every = pytest.mark.parametrize("case", KERNELS, ids=identity)
 conservative = pytest.mark.parametrize("case", [c for c in KERNELS if c.conservative], ids=identity)
 internal = pytest.mark.parametrize("case", [c for c in KERNELS if c.role == "internal"], ids=identity)
@@ -36,8 +30,7 @@ def test_every_kind_is_here() -> None:
 
 
 @conservative
-@SEEDED
-@given(seed=seeds, amount=amounts)
+@seeded
 def test_force_is_minus_the_gradient_of_the_energy(case: Case, seed: int, amount: float) -> None:
     """f = -dE/dx; see the law."""
     laws.force_is_the_gradient(case, np.random.default_rng(seed), amount)
@@ -53,24 +46,21 @@ def test_a_kernel_that_declares_no_energy_has_none() -> None:
 
 
 @internal
-@SEEDED
-@given(seed=seeds, amount=amounts)
+@seeded
 def test_internal_forces_and_moments_sum_to_zero(case: Case, seed: int, amount: float) -> None:
     """Newton's third law, damping and memory included."""
     laws.nothing_from_outside(case, np.random.default_rng(seed), amount)
 
 
 @external
-@FEWER
-@given(seed=seeds)
+@fewer
 def test_external_forces_have_a_resultant(case: Case, seed: int) -> None:
     """A load or a support pushes on the whole."""
     laws.something_from_outside(case, np.random.default_rng(seed))
 
 
 @internal
-@SEEDED
-@given(seed=seeds, amount=amounts)
+@seeded
 def test_rigid_motion_changes_nothing(case: Case, seed: int, amount: float) -> None:
     """Frame indifference of energy, force, stiffness and damping."""
     laws.rigid_motion_changes_nothing(case, np.random.default_rng(seed), amount)
@@ -176,8 +166,7 @@ def test_started_at_a_degenerate_shape_forces_are_finite(kind: str) -> None:
 
 
 @every
-@FEWER
-@given(seed=seeds)
+@fewer
 def test_order_of_elements_and_names_of_particles_do_not_matter(case: Case, seed: int) -> None:
     """Elements permuted: equal to rounding. Particles renumbered: equal to the bit."""
     laws.order_of_elements_does_not_matter(case, np.random.default_rng(seed))
@@ -185,8 +174,7 @@ def test_order_of_elements_and_names_of_particles_do_not_matter(case: Case, seed
 
 
 @every
-@FEWER
-@given(seed=seeds)
+@fewer
 def test_lumped_stiffness_bounds_the_tangent_near_the_example(case: Case, seed: int) -> None:
     """diag(w) - K >= 0 near the example's shape, where relaxation takes its unit step."""
     laws.lumped_stiffness_bounds_the_tangent(case, np.random.default_rng(seed), 1e-3)
@@ -196,8 +184,7 @@ ANYWHERE = ("springs", "anchor_spring", "bend", "hinge", "shell")
 
 
 @pytest.mark.parametrize("case", [c for c in KERNELS if c.name.startswith(ANYWHERE)], ids=identity)
-@SEEDED
-@given(seed=seeds, amount=amounts)
+@seeded
 def test_lumped_stiffness_bounds_the_tangent_far_from_rest_too(case: Case, seed: int, amount: float) -> None:
     """Springs: k (l - L0)/l <= k, so 2k at both ends bounds any length. Bending adds a bound for its moment.
 
@@ -207,16 +194,14 @@ def test_lumped_stiffness_bounds_the_tangent_far_from_rest_too(case: Case, seed:
 
 
 @exact
-@SEEDED
-@given(seed=seeds, amount=amounts)
+@seeded
 def test_a_given_tangent_is_exact(case: Case, seed: int, amount: float) -> None:
     """K = -df/dx where a force gives its Hessian."""
     laws.tangent_is_the_gradient_of_the_force(case, np.random.default_rng(seed), amount)
 
 
 @every
-@FEWER
-@given(seed=seeds)
+@fewer
 def test_declarations_are_true(case: Case, seed: int) -> None:
     """`damped` and `remembers` say what the kernel does; kernels add to f and w and write nothing else."""
     laws.damping_is_as_declared(case, np.random.default_rng(seed))

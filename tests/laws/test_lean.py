@@ -15,6 +15,7 @@ from hookean.forces.springs import SEVERAL
 from hookean.solvers import solver
 from hookean.system.packing import Desk, lean
 from hookean.system.system import System, compile
+from soak import seeds
 
 from .cases import example_system
 
@@ -44,8 +45,7 @@ SYSTEMS["many, damped"] = springs(2 * SEVERAL + 5)
 
 @pytest.mark.parametrize("damped", [True, False])
 @pytest.mark.parametrize("name", SYSTEMS)
-@SEEDED
-@given(seed=st.integers(0, 2**32 - 1))
+@seeds(10, soak=30)
 def test_lean_forces_are_the_forces(name: str, damped: bool, seed: int) -> None:
     """Packed blocks and summed loads push as the kernels in full do.
 
