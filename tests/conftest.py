@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -14,8 +15,33 @@ settings.register_profile("untimed", deadline=None, suppress_health_check=[Healt
 settings.load_profile("untimed")
 
 
-LONGEST_FIRST = ("docs", "studio", "server", "faults", "fuzz", "components", "canvas", "laws")
+LONGEST_FIRST = ("studio", "docs", "tests", "server", "faults", "fuzz", "components", "canvas", "laws")
 """Folders whose tests take long; they run before the others, so that no worker is left alone with one of them."""
+APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium.py")
+"""Long files whose functions share nothing that takes long to make: several workers can have a part of one."""
+
+
+def unit(test: str) -> str:
+    """What a worker takes as a whole: a file, with its fixtures; a function of `APART`; all tests with a browser, which
+    share it, its service and the scripts it has compiled."""
+    file, _, function = test.partition("::")
+    if file.startswith("tests/studio/"):
+        return "studio"
+    return f"{file}::{function.partition('[')[0]}" if file.endswith(APART) else file
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Share tests among workers by `unit`."""
+    if config.getoption("dist") != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class Units(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return unit(nodeid)
+
+    return Units(config, log)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -72,6 +72,7 @@ def pressed(seed: int) -> Spec:
     return {"particles": x, "forces": forces, "anchors": [{"particles": rim}], "settings": {}}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "family", [pytest.param(f, marks=[pytest.mark.soak] if f == "shell" else []) for f in ("pressed", *FAMILIES)]
 )

@@ -198,6 +198,7 @@ def test_patches_take_no_memory_and_can_be_undone() -> None:
     assert (evaluated(simulation.system, x)[0] == before).all() and len(block.rooms) == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("count", "least", "most"), [(150, 0.5, 0.6), pytest.param(2000, 0.58, 0.65, marks=pytest.mark.soak)]
 )

@@ -73,6 +73,7 @@ def evaluated(x: Any, **fields: Any) -> tuple[np.ndarray, np.ndarray, float]:
     return f, force.measure(group.block, x, f[:, None])["depth"], float(energies.sum())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("inside", [False, True])
 @SEEDED
 @given(seed=seeds)

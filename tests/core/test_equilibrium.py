@@ -323,6 +323,7 @@ def test_auto_goes_on_until_the_position_is_known() -> None:
     assert exact_step(structure, known.particles) <= 3e-9 * np.sqrt(2.0)
 
 
+@pytest.mark.slow
 def test_a_flat_sheet_under_compression_is_left_or_called_unstable() -> None:
     """Flat, all springs push, and a push out of the plane is met by none: by factors, and by multigrid."""
     for n in (8, 66):

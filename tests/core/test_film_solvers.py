@@ -123,6 +123,7 @@ def test_a_film_folded_over_itself_is_not_at_rest() -> None:
     assert area(film(x, faces, rim).particles, faces) == pytest.approx(6 * np.sin(np.pi / 6), rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["relaxation", "momentum", "verlet", "yoshida"])
 def test_all_solvers_find_scherks_surface(name: str) -> None:
     """From a flat start, by relaxation, by Kangaroo's steps and in time: the same film, with order 2 (+- 0.4).

@@ -60,6 +60,7 @@ def folder(stored: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(stored, tmp_path / "code"))
 
 
+@pytest.mark.slow
 def test_code_from_the_disk_gives_the_same_bits_as_numba() -> None:
     """One kernel on the same numbers: numba's machine code and that of its file."""
     springs, x = Springs.example()
@@ -236,6 +237,7 @@ def test_a_small_cable_relaxes_without_numba_in_the_second_process(empty: bool, 
     assert second[1] == "[]\n"
 
 
+@pytest.mark.slow
 def test_with_the_object_cache_switched_off_numba_gives_the_same_bits() -> None:
     """HOOKEAN_OBJECT_CACHE=0: the same cable, with numba imported."""
     kept, plain = cable(), cable(HOOKEAN_OBJECT_CACHE="0")

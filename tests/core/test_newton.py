@@ -60,6 +60,7 @@ def energy(found: Result) -> float:
     return sum(value for kind, value in found.energy.items() if kind not in ("kinetic", "total"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("kind", ["compressed", "slack", "stiff", "disorder", "sheet"])
 def test_newton_finds_the_stable_shape_that_relaxation_finds(kind: str, seed: int) -> None:

@@ -104,6 +104,7 @@ def least(matrix: Any) -> float:
     return next((part * largest for part in (1e-3, 1e-5, 1e-7, 1e-9) if definite(matrix, -part * largest)), 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_energy_is_as_low_as_the_slow_solvers(seed: int, method: str) -> None:

@@ -47,6 +47,7 @@ def pinched_ring(force: float, axial: float) -> float:
     return float(y[0, -1])
 
 
+@pytest.mark.slow
 def test_a_ring_pinched_by_two_forces() -> None:
     """F = 3 at EI = R = 1: half height 0.690; at the forces the curvature is reversed, where an angle without a side
     would take it for one to the same side. Order 2: slopes 2 +- 0.15, and 8 / 320^2 = 8e-5 at 320 bars.

@@ -186,6 +186,7 @@ def plucked(scheme: str, factor: float, load: float, part: float, **settings: An
     return net(factor, "corners", load, solver=scheme, time_step=part * limit, **settings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scheme", "factor", "load"), [("verlet", 0.7, -1.0), ("verlet", 0.9, -10.0), ("yoshida", 0.9, -10.0)]
 )

@@ -40,6 +40,7 @@ def lengths(mesh: Mesh, pairs: np.ndarray) -> np.ndarray:
     return np.linalg.norm(np.diff(mesh.vertices[pairs], axis=1)[:, 0], axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("given", "length"),
     [(sphere(4), 0.15), (sphere(2), 0.4), (cylinder(), 0.25), (L_SHAPE, 0.2), (L_SHAPE, 0.3), (RING, 0.25),
@@ -108,6 +109,7 @@ def test_the_rims_of_a_cylinder_stay_circles() -> None:
     assert lengths(made, rim).sum() > 2 * np.pi * chord
 
 
+@pytest.mark.slow
 @settings(derandomize=True, deadline=None, max_examples=8)
 @given(st.integers(0, 999), st.floats(0.3, 3.0))
 def test_the_same_mesh_gives_the_same_triangles(seed: int, size: float) -> None:

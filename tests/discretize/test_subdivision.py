@@ -19,6 +19,7 @@ MIXED = Mesh(
 )
 
 
+@pytest.mark.slow
 @few
 @given(st.integers(1, 5), st.integers(1, 5), st.integers(0, 3), st.booleans())
 def test_a_grid_is_refined_into_the_finer_grid(n: int, m: int, level: int, three: bool) -> None:
