@@ -147,6 +147,7 @@ if __name__ == "__main__":
         case ["check"]:
             check()
         case ["site"]:
-            site_is_built() or build_site()
+            if not site_is_built():
+                build_site()
         case _:
             build()
