@@ -228,6 +228,7 @@ def test_code_that_cannot_be_stored_is_run_by_numba_and_the_reason_logged_once(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("empty", [False, pytest.param(True, marks=pytest.mark.soak)])
 def test_a_small_cable_relaxes_without_numba_in_the_second_process(empty: bool, tmp_path: Path) -> None:
     """All of it: reading, compiling, solving and judging a cable imports neither numba nor scipy. From the cache of

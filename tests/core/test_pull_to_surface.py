@@ -67,6 +67,7 @@ def off_torus(x: np.ndarray) -> np.ndarray:
     return (0.7 / np.linalg.norm(x - ring, axis=1) - 1.0)[:, None] * (x - ring)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("surface", "expected"),
     [(sphere(2.0), off_sphere), (cylinder(1.5, 3.0), off_cylinder), (torus(2.0, 0.7), off_torus)],

@@ -58,6 +58,7 @@ def pulled(force: Any, x: np.ndarray, meshes: Any = None) -> tuple[np.ndarray, n
     return f, told["distance"]
 
 
+@pytest.mark.slow
 @SEEDED
 @given(seeds, st.integers(1, 60))
 def test_the_closest_point_of_a_mesh(seed: int, count: int) -> None:

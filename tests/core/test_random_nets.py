@@ -117,6 +117,7 @@ def test_the_energy_is_as_low_as_the_slow_solvers(seed: int, method: str) -> Non
         assert rest.energy <= slow.energy + 1e-8 * max(rest.sizes, slow.sizes), family(seed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_nothing_can_fall(seed: int, method: str) -> None:

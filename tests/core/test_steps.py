@@ -165,6 +165,7 @@ def omega(spec: dict[str, Any], x: np.ndarray) -> float:
     return float(np.sqrt(np.linalg.eigvalsh(tangent)[-1]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("held", ["rim", "corners"])
 def test_the_bound_of_all_shapes_is_below_the_limit_of_each(held: str):
     """2 / omega of crumpled and stretched shapes of a net never falls below the bound, and comes near it."""
@@ -231,6 +232,7 @@ def test_steps_that_hold_are_not_ended(scheme: str):
     assert energy(spec, patched) - started > 10 * 9.4
 
 
+@pytest.mark.slow
 def test_a_run_that_is_resumed_ends_where_it_would_have_ended():
     """What is known of its energy is saved with it: the same iteration, the same bits."""
     straight = Simulation(Scene.read(plucked("verlet", 0.9, -10.0, 0.85)))

@@ -316,6 +316,7 @@ def test_points_join_the_first_given_particle_however_many_are_near(
     assert found.tolist() == np.array(kept).tolist() and index.tolist() == which
 
 
+@pytest.mark.slow
 def test_a_crowd_of_given_particles_is_welded_to_in_a_moment() -> None:
     """40,000 points all within the tolerance of 40,000 particles: 1.6e9 pairs, which are not looked at one by one."""
     crowd = np.random.default_rng(3).uniform(-1e-4, 1e-4, (40_000, 3))
