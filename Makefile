@@ -7,7 +7,7 @@ EXAMPLE = gh_examples/9.24-membrane
 # Python keeps what it compiles: each of the many processes of a test run would compile it again
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: run test quick soak mutants bench bench-service figures definitions screenshots docs site page studio lint clean
+.PHONY: run test quick soak mutants floors bench bench-service figures definitions screenshots docs site page studio lint clean
 STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
 run: .venv/run
@@ -18,9 +18,10 @@ run: .venv/run
 	@$(BIN)/hookean serve --port $(PORT)
 
 # much of it waits for other processes: four workers keep two processors busy; while one of these checks the style, the
-# other compiles the tests, once for all workers
+# other makes what all workers use: compiled tests and the documentation
 test: .venv/test
-	@$(BIN)/python -m pytest --collect-only -q >/dev/null & $(MAKE) lint && wait
+	@{ $(BIN)/python -m pytest --collect-only -q; $(BIN)/python hatch_build.py site; } >/dev/null 2>&1 & \
+		$(MAKE) lint && wait
 	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 30
 
 quick: .venv/test # laws, core, files: what an edit of the engine breaks
@@ -28,7 +29,11 @@ quick: .venv/test # laws, core, files: what an edit of the engine breaks
 
 soak: .venv/test
 	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile --cov --cov-report term
+	$(MAKE) floors
 	$(MAKE) mutants
+
+floors: # laws, core and a server with the lowest versions of the dependencies that pyproject.toml states
+	$(PYTHON) tests/floors.py .venv/floors
 
 mutants: .venv/mutants # of all modules, or of some: make mutants MODULES="values/units.py forces/springs.py"
 	$(BIN)/python tests/mutation/run.py $(MODULES)

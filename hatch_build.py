@@ -2,7 +2,8 @@
 the documentation by docsite/build.py into server/hookean_server/site, for wheels and sdists.
 
 Nothing is built if the same sources were built before, or if the sources are absent: a package with its page needs no
-Node. By hand: `python hatch_build.py`; `python hatch_build.py check` checks the sources' types.
+Node. By hand: `python hatch_build.py`; `python hatch_build.py check` checks the sources' types, and
+`python hatch_build.py site` builds the documentation where it is not built.
 """
 
 import hashlib
@@ -142,4 +143,10 @@ if importlib.util.find_spec("hatchling"):  # by hand it is not needed
 
 
 if __name__ == "__main__":
-    check() if sys.argv[1:] == ["check"] else build()
+    match sys.argv[1:]:
+        case ["check"]:
+            check()
+        case ["site"]:
+            site_is_built() or build_site()
+        case _:
+            build()

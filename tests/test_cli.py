@@ -383,6 +383,27 @@ def test_patterns_writes_sheets_and_tables(folder: Path) -> None:
         assert run("patterns", "roof.json", *wrong).exit_code == 2
 
 
+def test_report_writes_one_page(folder: Path) -> None:
+    scene = {
+        "particles": [[0, 0, 0], [2, 0, 0], [4, 0, 0]],
+        "forces": [
+            {"kind": "springs", "name": "cable", "particles": [[0, 1], [1, 2]], "rest_factor": 0.9},
+            {"kind": "unary", "name": "snow", "particles": [1], "vector": [0, 0, -10]},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+        "load_cases": {"snow": {"forces": ["snow"]}},
+    }
+    (folder / "cable.json").write_text(json.dumps(scene))
+    (folder / "limits.toml").write_text("max_displacement = 1e-6")
+    assert run("report", "cable.json").exit_code == 0
+    text = (folder / "cable.report.html").read_text()
+    assert "<h1>cable</h1>" in text and "Case snow" in text
+    assert run("report", "cable.json", "-o", "out/", "--title", "My roof", "--check", "limits.toml", "-q").output == ""
+    text = (folder / "out" / "cable.html").read_text()
+    assert "<h1>My roof</h1>" in text and "exceeds the limit" in text
+    assert run("report", "cable.json", "-o", "cable.pdf").exit_code == 2
+
+
 def test_version_forces_and_help() -> None:
     assert run("--version").stdout == f"hookean {hookean.__version__}\n"
     listed = run("forces")

@@ -43,6 +43,8 @@ def imported(name: str) -> frozenset[str]:
 def _wanted(node: ast.AST) -> Iterator[str]:
     """Dotted names that a piece of code imports, not those that type checkers alone do."""
     if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+        for other in node.orelse:
+            yield from _wanted(other)
         return
     if isinstance(node, ast.Import):
         yield from (alias.name for alias in node.names)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+import floors
 from serving import HANG
 
 pytest.importorskip("hatchling", reason="hatchling, which builds packages, is not installed")
@@ -115,6 +116,11 @@ def test_the_documentation_is_built_where_its_sources_changed(sdist: Path):
     )
     done = subprocess.run([sys.executable, "hook.py"], cwd=sdist, capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["editable", "built", "standard"]
+
+
+def test_every_dependency_states_its_lowest_version():
+    """As `make floors` installs them: numbers alone, and no bound above."""
+    assert len(floors.floors()) >= 16 and all(re.fullmatch(r"[\w-]+==\d[\d.]*", one) for one in floors.floors())
 
 
 def test_the_page_is_built_where_its_sources_changed(sdist: Path):

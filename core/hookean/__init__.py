@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from hookean.forces.angle_snap import AngleSnap as AngleSnap
     from hookean.forces.area_weight import AreaWeight as AreaWeight
     from hookean.forces.base import Force as Force
+    from hookean.forces.beam import Beam as Beam
     from hookean.forces.bend import Bend as Bend
     from hookean.forces.box_collide import BoxCollide as BoxCollide
     from hookean.forces.circle_image import CircleImage as CircleImage
@@ -109,6 +110,7 @@ if TYPE_CHECKING:
     from hookean.forces.soft_collide import SoftCollide as SoftCollide
     from hookean.forces.solid_plane_collide import SolidPlaneCollide as SolidPlaneCollide
     from hookean.forces.springs import Springs as Springs
+    from hookean.forces.support import Support as Support
     from hookean.forces.tangent_incircles import TangentIncircles as TangentIncircles
     from hookean.forces.tangential_smooth import TangentialSmooth as TangentialSmooth
     from hookean.forces.thrust import Thrust as Thrust
@@ -120,6 +122,7 @@ if TYPE_CHECKING:
     from hookean.forces.wind import Wind as Wind
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
+    from hookean.running.frame import Frame as Frame
     from hookean.running.live import relax_live as relax_live
     from hookean.running.patch import Move as Move
     from hookean.running.patch import Patch as Patch
@@ -127,7 +130,6 @@ if TYPE_CHECKING:
     from hookean.running.result import Status as Status
     from hookean.running.run import relax as relax
     from hookean.running.script import Script as Script
-    from hookean.running.simulation import Frame as Frame
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
@@ -165,7 +167,7 @@ _HOMES = {
     "Report": "scene.report",
     "Result": "running.result",
     "Status": "running.result",
-    "Frame": "running.simulation",
+    "Frame": "running.frame",
     "Simulation": "running.simulation",
     "Move": "running.patch",
     "Patch": "running.patch",
@@ -212,6 +214,7 @@ __all__ = [
     "Angle",
     "AngleSnap",
     "AreaWeight",
+    "Beam",
     "Bend",
     "BoxCollide",
     "Buckling",
@@ -298,6 +301,7 @@ __all__ = [
     "Stages",
     "Status",
     "Stream",
+    "Support",
     "TangentIncircles",
     "TangentialSmooth",
     "Thrust",

@@ -54,11 +54,9 @@ def definition() -> Definition:
         load = d.slider("Load [N]", -GIVEN["load"], -50, 0, decimals=1)
         down = d.component("Unary", point=points, force=d.native("Unit Z", factor=load))
     with d.group("Engine"):
-        settings = parts.solving(d, "newton", "1e-12")
-        engine = d.component(
-            "Engine", forces=flat(springs, down), anchors=flat(corners["corners"]), settings=settings,
-            geometry=mesh, reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(
+            d, "newton", "1e-12", forces=flat(springs, down), anchors=flat(corners["corners"]), geometry=mesh
+        )
     with d.group("Numbers", "What expected.json holds the figure to."):
         d.panel("report", engine["report"])
         given = {name: engine[name] for name in ("forces", "reactions", "residual")}

@@ -50,11 +50,9 @@ def definition() -> Definition:
         )
         load = d.component("Unary", point=flat(points), force=parts.down(d, GIVEN, 10))
     with d.group("Engine"):
-        settings = parts.solving(d, "newton", "1e-9")
-        engine = d.component(
-            "Engine", forces=flat(springs, load), anchors=flat(ends["Start"], ends["End"]), settings=settings,
-            geometry=chains, reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(
+            d, "newton", "1e-9", forces=flat(springs, load), anchors=flat(ends["Start"], ends["End"]), geometry=chains
+        )
     with d.group("Catenaries", "By their formula, from ends and lengths."):
         given = {"starts": ends["Start"], "ends": ends["End"], "factor": factor}
         lengths = d.script("Lengths", LENGTHS, given, ["lengths"], lists=["starts", "ends"])

@@ -47,11 +47,9 @@ def definition() -> Definition:
             moved = d.native("Move", geometry=corners["points"], motion=up)
             anchors.append(d.component("Anchors", point=corners["points"], targets=moved["Geometry"]))
     with d.group("Engine"):
-        settings = parts.solving(d, "relaxation", "1e-10")
-        engine = d.component(
-            "Engine", forces=flat(springs, weight), anchors=flat(*anchors), settings=settings,
-            geometry=mesh, reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(
+            d, "relaxation", "1e-10", forces=flat(springs, weight), anchors=flat(*anchors), geometry=mesh
+        )
     with d.group("Numbers", "What expected.json holds the figure to."):
         d.panel("report", engine["report"])
         d.numbers(

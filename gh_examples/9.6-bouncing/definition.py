@@ -6,19 +6,9 @@ from hookean_canvas.definitions.write import Definition
 
 GIVEN = defaults(figure("9.6-bouncing").scene)
 
-MOTION = '''
-"""The particles at a time: the same forces, anchors and settings, run for so many steps from the start."""
-
-from hookean_client import canvas
-from hookean_client import canvas_scene
-
-setting = canvas_scene.read([settings], "settings", "settings")[0]
-scene = canvas_scene.compose(canvas_scene.read(forces, None, "forces"), [], setting, [])
-scene["anchors"] = [{"points": canvas.geometry.points(anchors)}]
-scene["settings"]["max_iterations"] = int(round(time / scene["settings"]["time_step"]))
-answer = canvas.call(ghenv, "POST", "/v1/relax", scene)
-particles = answer and [canvas.geometry.to_point(p) for p in answer["particles"]]
-'''
+MOTION = parts.motion(
+    "The particles at a time: the same forces, anchors and settings, run for so many steps from the start."
+)
 NUMBERS = """
 def length(points):
     return sum(a.DistanceTo(b) for a, b in zip(points, points[1:]))

@@ -1,6 +1,7 @@
 """A balloon and a pair of bubbles on the canvas: gas in closed meshes, film on their sides."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat, graft
 
 GIVEN = defaults(figure("balloon").scene)
@@ -131,13 +132,7 @@ def definition() -> Definition:
         gas = d.component("Gas", mesh=graft(boxes["cells"]), pressure=pressure, outside=outside)
         films = d.component("SoapFilm", mesh=graft(boxes["films"]), tension=tension)
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-7"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
-        engine = d.component(
-            "Engine", forces=flat(gas, films), settings=settings, geometry=boxes["films"], reset=d.toggle("Reset", True)
-        )
+        engine = parts.engine(d, "relaxation", "1e-7", forces=flat(gas, films), geometry=boxes["films"])
         d.panel("report", engine["report"])
     with d.group("Numbers", "What expected.json holds it to."):
         given = {"gas": pressure, "outside": outside, "tension": tension}

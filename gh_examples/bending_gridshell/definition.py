@@ -1,6 +1,7 @@
 """A gridshell on the canvas: rods that bend, and anchors with targets that bring their ends together."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
 
 GIVEN = defaults(figure("bending_gridshell").scene)
@@ -142,10 +143,7 @@ def definition() -> Definition:
             for name in ("targets", "less", "more")
         ]
     with d.group("Engines"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-9"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "relaxation", "1e-9")
         common = {"settings": settings, "geometry": made["pieces"], "reset": d.toggle("Reset", True)}
         engine, less, more = (
             d.component("Engine", forces=flat(springs, bend), anchors=flat(ends, single), **common) for ends in anchors

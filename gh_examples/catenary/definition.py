@@ -1,6 +1,7 @@
 """Chains with a sliding support on the canvas: springs, weights, and rings that are pulled to their rails."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat, graft
 
 GIVEN = defaults(figure("catenary").scene)
@@ -102,14 +103,9 @@ def definition() -> Definition:
             strength=stiffness,
         )  # fmt: skip
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-9"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
-        engine = d.component(
-            "Engine", forces=flat(springs, load, rails), anchors=made["nails"], settings=settings,
-            geometry=made["lines"], reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(
+            d, "relaxation", "1e-9", forces=flat(springs, load, rails), anchors=made["nails"], geometry=made["lines"]
+        )
         d.panel("report", engine["report"])
     with d.group("Numbers", "What expected.json holds it to."):
         d.numbers(NUMBERS, {"lines": engine["geometry"], "stiffness": stiffness, **given}, NAMES,

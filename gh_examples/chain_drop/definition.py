@@ -1,6 +1,7 @@
 """A falling chain on the canvas: its shape and energy at some times, each from the start."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
 
 GIVEN = defaults(figure("chain_drop").scene)
@@ -33,20 +34,10 @@ nail = points[0]
 rest = length / count
 load = Rhino.Geometry.Vector3d(0, 0, -gravity)
 """
-MOTION = '''
-"""The free end and the energy at a time: the same forces and settings, run for so many steps from the start."""
-
-from hookean_client import canvas
-from hookean_client import canvas_scene
-
-setting = canvas_scene.read([settings], "settings", "settings")[0]
-scene = canvas_scene.compose(canvas_scene.read(forces, None, "forces"), [], setting, [])
-scene["anchors"] = [{"points": canvas.geometry.points(anchors)}]
-scene["settings"]["max_iterations"] = int(round(time / scene["settings"]["time_step"]))
-answer = canvas.call(ghenv, "POST", "/v1/relax", scene)
-particles = answer and [canvas.geometry.to_point(p) for p in answer["particles"]]
-energy = answer and answer["energy"]["total"]
-'''
+MOTION = parts.motion(
+    "The free end and the energy at a time: the same forces and settings, run for so many steps from the start."
+)
+MOTION += 'energy = answer and answer["energy"]["total"]\n'
 NUMBERS = """
 import math
 

@@ -1,6 +1,7 @@
 """Circles packed in round boundaries on the canvas: spheres that collide, limits on their distance from a centre."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
 
 GIVEN = defaults(figure("circle_packing").scene)
@@ -96,14 +97,9 @@ def definition() -> Definition:
         centres = d.component("Anchors", "Centres", point=made["centres"])
         plane = d.component("Anchors", "Plane", point=made["circles"], x=d.toggle("X", False), y=d.toggle("Y", False))
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-9"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
-        engine = d.component(
-            "Engine", forces=flat(collide, limit), anchors=flat(centres, plane), settings=settings,
-            geometry=made["lines"], reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(
+            d, "relaxation", "1e-9", forces=flat(collide, limit), anchors=flat(centres, plane), geometry=made["lines"]
+        )
         d.panel("report", engine["report"])
     with d.group("Numbers", "What expected.json holds it to."):
         given = {"counts": counts, "boundaries": boundaries, "radius": radius, "stiffness": stiffness}

@@ -1,6 +1,7 @@
 """A pneumatic roof on the canvas: films under pressure on a round rim and on a square frame, in two sizes of mesh."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat, graft
 
 GIVEN = defaults(figure("inflation").scene)
@@ -112,14 +113,7 @@ def definition() -> Definition:
         film = d.component("SoapFilm", mesh=graft(made["films"]), tension=tension)
         air = d.component("Pressure", mesh=graft(made["films"]), pressure=pressure)
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "newton"), residual=d.text("Residual [-]", "1e-7"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
-        engine = d.component(
-            "Engine", forces=flat(film, air), anchors=made["held"], settings=settings, geometry=made["films"],
-            reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(d, "newton", "1e-7", forces=flat(film, air), anchors=made["held"], geometry=made["films"])
         d.panel("report", engine["report"])
     with d.group("Numbers", "What expected.json holds it to."):
         found = {

@@ -1,6 +1,7 @@
 """Chebyshev's linkage on the canvas: bars, rigid couplers, and anchors that turn the cranks."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
 
 GIVEN = defaults(figure("linkage").scene)
@@ -79,14 +80,14 @@ def definition() -> Definition:
         cranks = d.component("Anchors", "Cranks", point=made["cranks"], targets=made["targets"])
         plane = d.component("Anchors", "Plane", point=made["ends"], x=d.toggle("X", False), z=d.toggle("Z", False))
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-9"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
-        engine = d.component(
-            "Engine", forces=flat(bars, bodies, weight), anchors=flat(grounds, cranks, plane), settings=settings,
-            geometry=made["couplers"], reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(
+            d,
+            "relaxation",
+            "1e-9",
+            forces=flat(bars, bodies, weight),
+            anchors=flat(grounds, cranks, plane),
+            geometry=made["couplers"],
+        )
         d.panel("report", engine["report"])
     with d.group("Numbers", "What expected.json holds it to."):
         d.numbers(

@@ -1,6 +1,7 @@
 """Miura's fold on the canvas: rigid panels and hinges in the level creases."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
 
 GIVEN = defaults(figure("miura").scene)
@@ -114,14 +115,9 @@ def definition() -> Definition:
         )  # fmt: skip
         anchors = d.component("Anchors", point=sheet["held"], x=sheet["hold_x"], y=sheet["hold_y"], z=sheet["hold_z"])
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-9"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
-        engine = d.component(
-            "Engine", forces=flat(hinges, bodies), anchors=anchors, settings=settings, geometry=sheet["mesh"],
-            reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(
+            d, "relaxation", "1e-9", forces=flat(hinges, bodies), anchors=anchors, geometry=sheet["mesh"]
+        )
         d.panel("report", engine["report"])
     with d.group("Numbers", "What expected.json holds it to."):
         given = {name: sliders[name] for name in ("fold", "columns", "side", "angle")}

@@ -1,6 +1,7 @@
 """Quads that become flat on the canvas: with the drawing, near it, and without it."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
 
 GIVEN = defaults(figure("planar_quads").scene)
@@ -136,10 +137,7 @@ def definition() -> Definition:
         drawing = d.component("AnchorSpring", point=made["points"], strength=nearness)
         stiffer = d.component("AnchorSpring", "Nearer", point=made["points"], strength=d.text("0.03", "0.03"))
     with d.group("Engines"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-9"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
+        settings = parts.solving(d, "relaxation", "1e-9")
         common = {"settings": settings, "geometry": made["meshes"], "reset": d.toggle("Reset", True)}
         engine = d.component("Engine", forces=flat(planar, drawing), **common)
         near = d.component("Engine", "Near", forces=flat(planar, stiffer), **common)

@@ -1,6 +1,7 @@
 """A wall of loose bricks on the canvas: rigid bodies that collide, on a slab that is held."""
 
 from hookean.commands.examples import defaults, figure
+from hookean_canvas.definitions import parts
 from hookean_canvas.definitions.write import Definition, flat
 
 GIVEN = defaults(figure("rigid_boxes").scene)
@@ -98,14 +99,9 @@ def definition() -> Definition:
         weight = d.component("Unary", point=wall["loaded"], force=wall["loads"])
         anchors = d.component("Anchors", point=wall["slab"])
     with d.group("Engine"):
-        settings = d.component(
-            "Settings", solver=d.text("Solver", "relaxation"), residual=d.text("Residual [-]", "1e-5"),
-            fast=d.toggle("Fast", True),
-        )  # fmt: skip
-        engine = d.component(
-            "Engine", forces=flat(bodies, contacts, weight), anchors=anchors, settings=settings, geometry=wall["mesh"],
-            reset=d.toggle("Reset", True),
-        )  # fmt: skip
+        engine = parts.engine(
+            d, "relaxation", "1e-5", forces=flat(bodies, contacts, weight), anchors=anchors, geometry=wall["mesh"]
+        )
         d.panel("report", engine["report"])
     with d.group("Numbers", "What expected.json holds it to."):
         given = {"mesh": engine["geometry"], "reactions": engine["reactions"], "starts": wall["corners"]}

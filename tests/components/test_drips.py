@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-import hookean_client
+import hookean_client.websocket
 from hookean_client import Client, Problem
 from serving import HANG, wait_for
 
@@ -202,7 +202,7 @@ def test_a_connection_that_becomes_no_link_is_closed(client: Client, monkeypatch
         assert closed.wait(HANG)
         connection.sock.sendall(b"GET")
 
-    monkeypatch.setattr(hookean_client, "Link", shut_before_it_is_asked)
+    monkeypatch.setattr(hookean_client.websocket, "Link", shut_before_it_is_asked)
     frames = client.session("a").frames()
     wait_for(lambda: made)
     frames.close()

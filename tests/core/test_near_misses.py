@@ -290,7 +290,8 @@ def test_every_force_with_lines_or_faces_takes_part() -> None:
             continue
         if cls.solid and {"mesh", "lines"} & cls.model_fields.keys():
             solid.add(kind)
-        other = {"kind": kind, "name": "it"}
+        needed = [name for name, field in cls.model_fields.items() if field.is_required()]
+        other = {"kind": kind, "name": "it", **{name: getattr(cls.example()[0], name) for name in needed}}
         if "mesh" in cls.model_fields:
             other["mesh"] = "m"
         elif "lines" in cls.model_fields:

@@ -10,6 +10,7 @@ import pytest
 import hookean
 from hookean import InputError, Scene
 from hookean.discretize.flatten import flatten, outline
+from hookean.discretize.geodesics import cut_along, geodesic
 from hookean.discretize.outlines import offset
 from hookean.discretize.strips import face_rows, strips
 from hookean.values.mesh import Mesh
@@ -102,6 +103,82 @@ def test_the_gores_of_a_sphere_have_their_closed_form() -> None:
     assert np.abs(chord / classical - 1.0).max() < (np.pi / around) ** 2 / 6.0
     assert found.compensation == (0.0, 0.0) and len(found.seams) == around
     assert max(abs(a - b) for a, b in found.seams.values()) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("start", "end"), [((0, 0), (12, 7)), ((0, 3), (12, 5)), ((0, 0), (5, 3)), ((12, 7), (2, 0)), ((0, 0), (0, 7))]
+)
+def test_a_geodesic_on_a_cylinder_is_a_straight_line_of_its_development(start: Any, end: Any) -> None:
+    """To rounding: the polygonal cylinder unrolls to a plane."""
+    mesh = grid(np.linspace(0, 2, 13), np.linspace(0, 3, 8), lambda a, z: [2 * np.cos(a), 2 * np.sin(a), z])
+    found = geodesic(mesh, 8 * start[0] + start[1], 8 * end[0] + end[1])
+    side = 4.0 * np.sin(1.0 / 12.0)
+    wanted = np.hypot((end[0] - start[0]) * side, (end[1] - start[1]) * 3.0 / 7.0)
+    assert found.length == pytest.approx(wanted, rel=1e-12)
+    flat = np.arctan2(found.points[:, 1], found.points[:, 0])
+    assert np.linalg.norm(np.diff(found.points, axis=0), axis=1).sum() == pytest.approx(wanted, rel=1e-12)
+    assert (np.diff(flat) * (end[0] - start[0]) >= -1e-12).all()
+
+
+def test_a_geodesic_on_a_sphere_tends_to_its_great_circle() -> None:
+    """With the square of the mesh's side: as that is halved, the error falls by 4 +- 15 %."""
+    errors = []
+    for q in (8, 16):
+        mesh = sphere(4 * q, 2 * q)
+        a, b = q // 2, (q + q // 4) * (2 * q + 1) + (3 * q) // 2
+        x, y = mesh.vertices[a] / 3.0, mesh.vertices[b] / 3.0
+        errors.append(1.0 - geodesic(mesh, a, b).length / (3.0 * np.arccos(x @ y)))
+    assert 0.0 < errors[1] < errors[0] < 4e-3
+    assert 3.4 < errors[0] / errors[1] < 4.6
+
+
+def test_geodesic_seams_are_shorter_and_lie_straighter_in_the_cloth() -> None:
+    """On a cap z = -(x^2 + y^2) / 10, beside seams along its rows: a geodesic has no curvature
+    within the surface, so in the plane it bends only by what flattening distorts."""
+    side = np.linspace(-3.0, 3.0, 13)
+    mesh = grid(side, side, lambda a, b: [a, b, -0.1 * (a * a + b * b)])
+    pairs = [(3 * 13, 3 * 13 + 12), (9 * 13, 9 * 13 + 12)]
+    straight = hookean.cutting_patterns(mesh, seams=pairs)
+    along = hookean.cutting_patterns(mesh, labels=np.repeat([0, 0, 0, 1, 1, 1, 1, 1, 1, 2, 2, 2], 12))
+    assert len(straight.strips) == len(along.strips) == 3
+
+    def bend(found: Any) -> float:
+        """How far the seam of the first strip lies from its chord, as a part of that."""
+        strip = found.strips[0]
+        on = np.unique(np.concatenate([strip.seam[i : i + 1] for i in np.flatnonzero(strip.beside >= 0)]))
+        points = strip.points[on]
+        ends = points[[points[:, 0].argmin(), points[:, 0].argmax()]]
+        chord = ends[1] - ends[0]
+        off = (points - ends[0]) @ np.array([-chord[1], chord[0]]) / (chord @ chord)
+        return float(np.abs(off).max())
+
+    assert bend(straight) < 0.5 * bend(along)
+    for start, end in pairs:
+        row = mesh.vertices[np.arange(start, end + 1)]
+        assert geodesic(mesh, start, end).length < np.linalg.norm(np.diff(row, axis=0), axis=1).sum()
+    areas = [sum(strip.flat.areas.sum() for strip in found.strips) for found in (straight, along)]
+    assert areas[0] == pytest.approx(areas[1], rel=1e-3)  # quads fold along one diagonal, or count by both
+
+
+def test_a_cut_keeps_area_and_vertices() -> None:
+    """Crossing seams on a flat sheet: areas of pieces by the shoelace formula."""
+    side = np.linspace(0.0, 4.0, 5)
+    mesh = grid(side, side, lambda a, b: [a, b, 0.0])
+    cut, piece = cut_along(mesh, [(0, 24), (3, 21)])  # from corner to corner, and from (0, 3) to (4, 1): they cross
+    np.testing.assert_array_equal(cut.vertices[:25], mesh.vertices)
+    a, b, c = (cut.vertices[cut.faces[:, i]] for i in range(3))
+    areas = 0.5 * np.cross(b - a, c - a)[:, 2]
+    assert (np.sign(areas) == np.sign(areas[0])).all()
+    found = np.sort(np.bincount(piece, np.abs(areas)))
+    # they meet at (2, 2); corners of the sheet go round the pieces
+    shapes = [
+        [[0, 0], [4, 0], [4, 1], [2, 2]],
+        [[4, 1], [4, 4], [2, 2]],
+        [[4, 4], [0, 4], [0, 3], [2, 2]],
+        [[0, 0], [2, 2], [0, 3]],
+    ]
+    wanted = [0.5 * abs(sum(p[0] * q[1] - p[1] * q[0] for p, q in zip(s, [*s[1:], s[0]], strict=True))) for s in shapes]
+    np.testing.assert_allclose(found, np.sort(wanted), atol=1e-12)
 
 
 def hypar(n: int = 16, span: float = 10.0, rise: float = 2.0) -> Mesh:
@@ -265,6 +342,9 @@ def test_what_cannot_be_flattened_is_one_sentence() -> None:
         ),
         (lambda: hookean.cutting_patterns(hypar(), labels=[0]), "1 labels for 256 faces"),
         (lambda: hookean.cutting_patterns(hypar(), rows=0), "a whole number from 1"),
+        (lambda: hookean.cutting_patterns(hypar(), seams=[(0, 999)]), "vertex 999 is on no face"),
+        (lambda: hookean.cutting_patterns(hypar(), seams=[(4, 4)]), "to itself has no length"),
+        (lambda: hookean.cutting_patterns(hypar(), seams=[(0, 9)], labels=[0]), "labels are given, too"),
         (lambda: hookean.cutting_patterns(hypar(), compensation=(2.0, 0.0)), "two strains"),
         (lambda: hookean.cutting_patterns(hypar(), allowance=-1.0), "at least 0"),
         (lambda: hookean.cutting_patterns(hypar(), mark_every=-1), "a whole number from 0"),

@@ -28,8 +28,8 @@ from hookean import (
     relax,
 )
 from hookean.running.sweep import Sweep
-from hookean.scene.scene import faults
 from hookean.values.columns import Model
+from hookean.values.faults import faults
 from hookean.values.units import METRES, NEWTONS, SECONDS
 
 EXAMPLE = {

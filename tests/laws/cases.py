@@ -11,8 +11,11 @@ import numpy as np
 from hookean.compiled import dispatch
 from hookean.forces import KINDS, Force
 from hookean.forces.base import PLACES, Block
+from hookean.forces.beam import Beam
 from hookean.forces.bend import Bend
 from hookean.forces.springs import Springs
+from hookean.forces.support import Support
+from hookean.forces.unary import Unary
 from hookean.scene.scene import Scene
 from hookean.system.system import System, compile
 
@@ -36,6 +39,8 @@ class Case:
     remembers: bool
     oriented: bool = False
     plain: bool = False
+    arms: tuple[float, ...] = ()
+    """Lengths of its slots, where particles have orientations; `x` has their rows and those of references behind."""
     reordered: Callable[[np.ndarray], Block] | None = None
     """The block of the same elements given in another order, where they feel one another and cannot just be moved."""
 
@@ -75,7 +80,8 @@ class Case:
     @property
     def spacing(self) -> float:
         """Shortest distance between two particles of one element; 1 where elements have one."""
-        corners = self.x[self.block.indices]
+        index = self.block.indices
+        corners = self.x[index if not self.arms else index[:, : index.shape[1] // 3]]
         apart = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=3)
         apart = apart[apart > 0]
         return float(apart.min()) if len(apart) else 1.0
@@ -111,7 +117,7 @@ def case_of(name: str, force: Force, x: np.ndarray, held: tuple[int, ...] = ()) 
     return Case(
         name, group.block, system.x, cls.kernel, cls.hessian, cls.end_of_step,
         "support" if held else cls.role, cls.conservative, cls.damped, cls.remembers,
-        cls.oriented, reordered=reordered if together else None,
+        cls.oriented, arms=tuple(system.slots.lengths), reordered=reordered if together else None,
     )  # fmt: skip
 
 
@@ -161,13 +167,30 @@ def _rods() -> list[Case]:
     return [case_of(f"bend, {name}", *given) for name, given in made.items()]
 
 
+def _beams() -> list[Case]:
+    """Beams bent in, with hinged ends; and what acts on their orientations: moments, and supports of rotations."""
+    beam, x = Beam.example()
+    bent = beam.replaced(curvature="straight", release_start="y", release_end="z", offset_end=np.zeros(3))
+    found = [case_of("beam, bent in and hinged", bent, x)]
+    for name, more in (
+        ("unary, moments", Unary(particles=[0, 2], vector=[0, 0, 1], moment=[[3.0, 1.0, -2.0], [0.0, 4.0, 1.0]])),
+        ("support, rotations", Support(particles=[1, 2], rotation_stiffness=[[3.0, 1.0, 2.0], [0.0, 4.0, 4.0]])),
+    ):
+        system = compile(Scene(particles=x, forces=[beam, more]))
+        group = next(group for group in system.groups if group.cls is type(more).rider)
+        cls, arms = group.cls, tuple(system.slots.lengths)
+        functions = cls.kernel, cls.hessian, None
+        found.append(Case(name, group.block, system.x, *functions, cls.role, cls.conservative, False, False, arms=arms))
+    return found
+
+
 def _examples() -> list[Case]:
     """The example of every kind with a kernel; one that fails is left to the test that misses it, and is told."""
     found: list[Case] = []
     for kind, cls in KINDS.items():
         if cls.kernel is not None:
             found += _tried(kind, lambda kind=kind, cls=cls: [case_of(kind, *cls.example())])  # type: ignore[misc]
-    return found + _tried("springs", _variants) + _tried("bend", _rods)
+    return found + _tried("springs", _variants) + _tried("bend", _rods) + _tried("beam", _beams)
 
 
 def _tried(kind: str, made: Callable[[], list[Case]]) -> list[Case]:

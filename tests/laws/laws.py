@@ -9,6 +9,7 @@ import numpy as np
 from hookean.compiled import dispatch
 
 from .cases import Case
+from .turned import moment_of, movable, moved_rigidly
 
 EPS = float(np.finfo(float).eps)
 
@@ -27,7 +28,7 @@ def force_is_the_gradient(case: Case, rng: np.random.Generator, amount: float = 
     f, _, _ = case.force(x, None, memory)
     h = 1e-5 * case.spacing
     slope = np.zeros_like(x)
-    for spot in np.ndindex(*x.shape):
+    for spot in np.ndindex(movable(case), 3):
         sides = []
         for sign in (1.0, -1.0):
             shifted = x.copy()
@@ -38,12 +39,14 @@ def force_is_the_gradient(case: Case, rng: np.random.Generator, amount: float = 
 
 
 def nothing_from_outside(case: Case, rng: np.random.Generator, amount: float = 0.15) -> None:
-    """Internal: sum f = 0 and sum x cross f = 0, to 1e-12 of the sizes summed, damping and memory included."""
+    """Internal: sum f = 0 and sum x cross f + sum of moments = 0, to 1e-12 of the sizes summed, damping and memory
+    included."""
     memory, x = case.past(rng), case.moved(rng, amount)
     f, w, _ = case.force(x, rng.normal(size=x.shape), memory)
     force, reach = case.scales(x, f, w)
-    _at_most(case, "sum of forces", np.abs(f.sum(axis=0)).max(), 1e-12 * force)
-    moment = np.cross(x - x.mean(axis=0), f).sum(axis=0)
+    n = len(x) - 2 * len(case.arms)
+    _at_most(case, "sum of forces", np.abs(f[:n].sum(axis=0)).max(), 1e-12 * force)
+    moment = moment_of(case, x, f)
     _at_most(case, "sum of moments", np.abs(moment).max(), 1e-12 * force * reach)
 
 
@@ -52,7 +55,7 @@ def something_from_outside(case: Case, rng: np.random.Generator) -> None:
     x = case.moved(rng)
     f, w, _ = case.force(x)
     force, reach = case.scales(x, f, w)
-    moment = np.cross(x, f).sum(axis=0)
+    moment = moment_of(case, x, f) if case.arms else np.cross(x, f).sum(axis=0)
     assert np.abs(f.sum(axis=0)).max() > 1e-9 * force or np.abs(moment).max() > 1e-9 * force * reach, (
         f"{case.name}: the resultant is zero, so role is internal"
     )
@@ -67,7 +70,7 @@ def rigid_motion_changes_nothing(case: Case, rng: np.random.Generator, amount: f
     v = rng.normal(size=x.shape)
     rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     rotation = np.eye(3) if case.oriented else rotation * np.sign(np.linalg.det(rotation))
-    turned = np.ascontiguousarray(x @ rotation.T + rng.normal(size=3) * case.spacing)
+    turned = moved_rigidly(case, x, rotation, rng.normal(size=3) * case.spacing)
     f, w, energy = case.force(x, v, memory)
     g, u, same = case.force(turned, np.ascontiguousarray(v @ rotation.T), memory)
     force, reach = case.scales(x, f, w)
@@ -342,7 +345,7 @@ def _differences(case: Case, x: np.ndarray, memory: np.ndarray) -> np.ndarray:
     alone, private = _apart(case, x)
     h = 1e-5 * case.spacing
     blocks = np.zeros((count, 3 * arity, 3 * arity))
-    for i in range(arity):
+    for i in range(arity if not len(case.arms) else 2 * arity // 3):  # references do not move
         for c in range(3):
             for factor, weight in ((1.0, -2.0 / 3.0), (2.0, 1.0 / 12.0)):
                 for sign in (1.0, -1.0):

@@ -35,6 +35,19 @@ def bend(pen: Pen) -> None:
         pen.dot(spot, 2.0)
 
 
+def beam(pen: Pen) -> None:
+    pen.area((2.5, 15.0), (19.5, 6.0), (21.5, 9.8), (4.5, 18.8), colour=GLASS)
+    pen.line((2.5, 15.0), (19.5, 6.0), (21.5, 9.8), (4.5, 18.8), closed=True, width=1.6)
+    pen.line((3.5, 16.9), (20.5, 7.9), colour=ORANGE, width=1.4)
+
+
+def support(pen: Pen) -> None:
+    pen.line((3.0, 6.0), (21.0, 6.0), width=2.6)
+    pen.spring((12.0, 6.5), (12.0, 17.5), turns=3, swing=3.2)
+    pen.support((12.0, 17.0), 4.6)
+    pen.line(*arc((12.0, 6.0), 5.0, 200, 340), colour=ORANGE, width=1.4)
+
+
 def floor(pen: Pen) -> None:
     pen.line((1.5, 18.0), (22.5, 18.0), colour=BLUE, width=1.8)
     for x in (3.5, 8.0, 12.5, 17.0, 21.5):
@@ -313,7 +326,20 @@ def pen_dots(pen: Pen, spots: Iterable[Spot], colour: Colour, radius: float) -> 
 DRAWINGS: dict[str, Callable[[Pen], None]] = {
     draw.__name__.replace("_", ""): draw
     for draw in (
-        *(springs, unary, anchor_spring, bend, floor, hinge, pressure, pull_to_curve, pull_to_mesh, self_weight),
+        *(
+            springs,
+            unary,
+            anchor_spring,
+            bend,
+            beam,
+            support,
+            floor,
+            hinge,
+            pressure,
+            pull_to_curve,
+            pull_to_mesh,
+            self_weight,
+        ),
         *(shell, soapfilm, engine, settings, anchors, server, divide, shatter, catenary, interpolate, sweep),
         *(mesh_surface, mesh_edges, mesh_vertices, mesh_corners, naked_vertices, warp_weft, diagonals),
         *(remove_duplicate_lines, rhino_file, moments, stream),

@@ -75,3 +75,26 @@ def solving(d: Definition, solver: str, residual: str) -> Made:
     """Settings of a solver that goes on to a residual."""
     texts = d.text("Solver", solver), d.text("Residual [-]", residual)
     return d.component("Settings", solver=texts[0], residual=texts[1], fast=d.toggle("Fast", True))
+
+
+def engine(d: Definition, solver: str, residual: str, **inputs: Any) -> Made:
+    """An engine that brings what is given to rest with a solver, once Reset is False."""
+    settings = solving(d, solver, residual)
+    return d.component("Engine", settings=settings, reset=d.toggle("Reset", True), **inputs)
+
+
+def motion(sentence: str) -> str:
+    """The script of a motion up to a time, by the forces, anchors and settings of a canvas, with its description."""
+    return f'''
+"""{sentence}"""
+
+from hookean_client import canvas
+from hookean_client import canvas_scene
+
+setting = canvas_scene.read([settings], "settings", "settings")[0]
+scene = canvas_scene.compose(canvas_scene.read(forces, None, "forces"), [], setting, [])
+scene["anchors"] = [{{"points": canvas.geometry.points(anchors)}}]
+scene["settings"]["max_iterations"] = int(round(time / scene["settings"]["time_step"]))
+answer = canvas.call(ghenv, "POST", "/v1/relax", scene)
+particles = answer and [canvas.geometry.to_point(p) for p in answer["particles"]]
+'''

@@ -17,8 +17,9 @@ from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.stability.equilibrium import movable
 from hookean.system.balance import balance
+from hookean.system.group import Group, Part
 from hookean.system.state import State
-from hookean.system.system import Group, Part, System, compile
+from hookean.system.system import System, compile
 
 Floats = NDArray[np.float64]
 

@@ -12,8 +12,9 @@ from hookean.compiled import dispatch
 from hookean.forces import Block
 from hookean.linear.film_tangent import CHUNK, turn_blocks
 from hookean.linear.sparse_factors import Factor, Factors
+from hookean.system.group import Group
 from hookean.system.state import State
-from hookean.system.system import Group, System
+from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

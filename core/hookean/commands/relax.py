@@ -39,7 +39,9 @@ class Options:
     files: Annotated[list[Path], typer.Argument(help=".3dm, .obj, .json or .npz files")]
     output: Annotated[
         str | None,
-        typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file to write, or a folder/"),
+        typer.Option(
+            "--output", "-o", metavar="PATH", help=".3dm, .json, .obj, .dxf, .vtu, .inp, .ifc file, or a folder/"
+        ),
     ] = None
     recipe: Annotated[
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); default: layer names define the model")

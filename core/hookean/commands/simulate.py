@@ -54,7 +54,7 @@ class Options:
         str | None, typer.Option(metavar="PATH", help="Draw the frames over each other in a picture (PNG)")
     ] = None
     output: Annotated[
-        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json or .obj file for the last shape")
+        str | None, typer.Option("--output", "-o", metavar="PATH", help=".3dm, .json, .obj ... file for the last shape")
     ] = None
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only print errors and notes")] = False
 
@@ -186,7 +186,7 @@ def _heading(result: Result) -> list[Any]:
 def _row(result: Result, running: Simulation) -> list[Any]:
     import numpy as np
 
-    moved = np.linalg.norm(result.particles - running.system.x, axis=1).max(initial=0.0)
+    moved = np.linalg.norm(result.particles - running.system.points, axis=1).max(initial=0.0)
     reactions = np.asarray(result.reactions["force"]).reshape(-1, 3)
     numbers = [
         result.energy["kinetic"], *(value for _, _, value in _forces(result)),

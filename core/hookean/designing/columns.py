@@ -16,7 +16,8 @@ from hookean.errors import InputError
 from hookean.forces.base import PLACES, Block, Force
 from hookean.running.patch import changed_forces
 from hookean.scene.scene import Scene
-from hookean.system.system import Group, Part, System
+from hookean.system.group import Group, Part
+from hookean.system.system import System
 from hookean.system.weld import element_columns
 
 if TYPE_CHECKING:

@@ -16,8 +16,9 @@ from hookean.linear.sparse_factors import Factor, Factors
 from hookean.running.result import Result
 from hookean.running.run import relax_state
 from hookean.solvers import solver
+from hookean.system.group import Group
 from hookean.system.state import State
-from hookean.system.system import Group, System
+from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 

@@ -14,11 +14,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
-from pydantic import StrictInt, StrictStr, ValidationError, model_validator
+from pydantic import StrictInt, StrictStr, model_validator
 
 from hookean.designing.quantities import QUANTITIES
 from hookean.designing.quantities.base import Quantity
-from hookean.scene.scene import Scene, first_fault
+from hookean.scene.scene import Scene
 from hookean.scene.text import parse
 from hookean.values.columns import Indices, Model, Reals, Table, fault
 from hookean.values.fields import Field, Maybe, Part, Parts
@@ -143,13 +143,6 @@ class Problem(Model):
         return self
 
     @classmethod
-    def read(cls, value: Any) -> Problem:
+    def read(cls, value: Any) -> Self:
         """A problem from a dict, or from JSON text or bytes; InputError with a pointer and one sentence."""
-        if isinstance(value, Problem):
-            return value
-        if isinstance(value, str | bytes | bytearray):
-            value = parse(value)
-        try:
-            return cls.model_validate(value)
-        except ValidationError as error:
-            raise first_fault(error) from None
+        return super().read(parse(value) if isinstance(value, str | bytes | bytearray) else value)

@@ -15,8 +15,9 @@ from hookean.errors import InputError
 from hookean.forces.base import Block, Force
 from hookean.running.patch import lead_forces, named
 from hookean.scene.scene import Scene
+from hookean.system.group import Group
 from hookean.system.state import State
-from hookean.system.system import Group, Held, System, hold
+from hookean.system.system import Held, System, hold
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -107,7 +108,7 @@ class Unknowns:
             if isinstance(variable, Column):
                 variable.entries = replace(variable.entries, values=variable.entries.with_values(values[part]))
         for anchor in system.held:
-            hold(state, anchor)
+            hold(state, anchor, system.slots)
 
     def scene(self, scene: Scene) -> Scene:
         """The scene with the anchors where they are held now; forces have their values already."""

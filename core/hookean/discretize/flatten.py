@@ -21,8 +21,10 @@ from hookean.errors import InputError
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-STEPS = 5000
+STEPS = 20  # local and global
+ROUNDS = 50  # of Newton's method
 STILL = 1e-12  # of the size of the piece: a step that moves less is the last one
+SMALL = 1e-7  # likewise: a step so small is right, whatever rounding makes of the energy
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,46 +193,111 @@ def _third(vertices: Array, points: Array, a: int, b: int, c: int) -> Array:
 
 
 def _rigid(points: Array, triangles: Index, local: Array, weights: Array) -> Array:
-    """Local and global steps from a start in the plane."""
-    import scipy.sparse as sparse
-    from scipy.sparse.linalg import splu
-
-    after = triangles[:, [1, 2, 0]]
-    edges = local[:, [1, 2, 0]] - local
-    # the cotangent of the corner across from each side
-    out, back = local - local[:, [2, 0, 1]], local[:, [1, 2, 0]] - local[:, [2, 0, 1]]
-    turn = np.abs(out[..., 0] * back[..., 1] - out[..., 1] * back[..., 0])
-    cotangent = (out * back).sum(axis=2) / turn * weights[:, None]
-    row, column, value = triangles.ravel(), after.ravel(), cotangent.ravel()
-    n = len(points)
-    places = np.concatenate([row, column, row, column]), np.concatenate([column, row, row, column])
-    laplacian = sparse.csc_matrix((np.concatenate([-value, -value, value, value]), places), shape=(n, n))
-    free = np.arange(1, n)
-    factor = splu(laplacian[1:, 1:].tocsc())
+    """The least sum of squared differences from rigid motions, from a start in the plane: a few local and global steps,
+    then Newton's method with the exact second derivatives, which is quadratic."""
+    energy = _Energy(triangles, local, weights, len(points))
     size = float(np.ptp(points, axis=0).max())
     for _ in range(STEPS):
-        now = points[after] - points[triangles]
-        along = (cotangent * (edges * now).sum(axis=2)).sum(axis=1)
-        across = (cotangent * (edges[..., 0] * now[..., 1] - edges[..., 1] * now[..., 0])).sum(axis=1)
-        length = np.hypot(along, across)
-        cosine, sine = along / length, across / length
-        turned = np.stack(
-            [
-                cosine[:, None] * edges[..., 0] - sine[:, None] * edges[..., 1],
-                sine[:, None] * edges[..., 0] + cosine[:, None] * edges[..., 1],
-            ],
-            axis=2,
-        )
-        pull = (cotangent[..., None] * turned).reshape(-1, 2)
-        left = np.stack([np.bincount(column, pull[:, i], n) - np.bincount(row, pull[:, i], n) for i in (0, 1)], axis=1)
-        left -= laplacian[:, [0]].toarray() * points[0]
-        found = points.copy()
-        found[free] = factor.solve(left[1:])
-        moved = float(np.abs(found - points).max())
-        points = found
-        if moved <= STILL * size:
-            break
+        moved = energy.step(points)
+        far = float(np.abs(moved - points).max())
+        points = moved
+        if far <= STILL * size:
+            return points
+    for _ in range(ROUNDS):
+        step = energy.newton(points)
+        far = float(np.abs(step).max(initial=0.0)) / size
+        if not np.isfinite(far):
+            return points
+        length, before = 1.0, energy.value(points)
+        while far > SMALL and energy.value(points + length * step) > before and length > 1e-6:
+            length *= 0.5
+        points = energy.step(points) if length <= 1e-6 else points + length * step
+        if far <= STILL:
+            return points
     return points
+
+
+class _Energy:
+    """E = sum of c |q - R p|^2 over the sides p of all triangles in space and q in the plane, c half the cotangent of
+    the corner across, R the rotation of each triangle that makes it least: sum of c (|p|^2 + |q|^2) - 2 |(A, B)| with
+    A = sum of c p.q and B = sum of c p x q, which are linear in the points."""
+
+    def __init__(self, triangles: Index, local: Array, weights: Array, count: int) -> None:
+        import scipy.sparse as sparse
+        from scipy.sparse.linalg import splu
+
+        self.triangles, self.after, self.count = triangles, triangles[:, [1, 2, 0]], count
+        self.sides = local[:, [1, 2, 0]] - local
+        out, back = local - local[:, [2, 0, 1]], local[:, [1, 2, 0]] - local[:, [2, 0, 1]]
+        turn = np.abs(out[..., 0] * back[..., 1] - out[..., 1] * back[..., 0])
+        self.cotangent = (out * back).sum(axis=2) / turn * weights[:, None]
+        row, column, value = triangles.ravel(), self.after.ravel(), self.cotangent.ravel()
+        places = np.concatenate([row, column, row, column]), np.concatenate([column, row, row, column])
+        values = np.concatenate([-value, -value, value, value])
+        self.laplacian = sparse.csc_matrix((values, places), shape=(count, count))
+        self.factor = splu(self.laplacian[1:, 1:].tocsc())
+        self.pull = self.cotangent[..., None] * self.sides  # of each side, in the axes of its triangle
+
+    def _turns(self, points: Array) -> tuple[Array, Array, Array]:
+        """A and B of each triangle, and the sides in the plane."""
+        now = points[self.after] - points[self.triangles]
+        along = (self.pull * now).sum(axis=(1, 2))
+        across = (self.pull[..., 0] * now[..., 1] - self.pull[..., 1] * now[..., 0]).sum(axis=1)
+        return along, across, now
+
+    def value(self, points: Array) -> float:
+        """The part of the energy that changes."""
+        along, across, now = self._turns(points)
+        return float((self.cotangent * (now**2).sum(axis=2)).sum() - 2.0 * np.hypot(along, across).sum())
+
+    def _wanted(self, along: Array, across: Array) -> Array:
+        """What the turned sides pull each point by (n, 2)."""
+        size = np.hypot(along, across)
+        cosine, sine = (along / size)[:, None], (across / size)[:, None]
+        x = (cosine * self.pull[..., 0] - sine * self.pull[..., 1]).ravel()
+        y = (sine * self.pull[..., 0] + cosine * self.pull[..., 1]).ravel()
+        row, column, n = self.triangles.ravel(), self.after.ravel(), self.count
+        return np.stack([np.bincount(column, v, n) - np.bincount(row, v, n) for v in (x, y)], axis=1)
+
+    def step(self, points: Array) -> Array:
+        """One local and one global step."""
+        along, across, _ = self._turns(points)
+        left = self._wanted(along, across) - self.laplacian[:, [0]].toarray() * points[0]
+        found = points.copy()
+        found[1:] = self.factor.solve(left[1:])
+        return found
+
+    def newton(self, points: Array) -> Array:
+        """A Newton step (n, 2); the first point stays, and the turn about it is left out."""
+        import scipy.sparse as sparse
+        from scipy.sparse.linalg import splu
+
+        along, across, _ = self._turns(points)
+        slope = 2.0 * (self.laplacian @ points - self._wanted(along, across))
+        size = np.hypot(along, across)
+        # by each side of a triangle, and both axes: how A and B change with it, and what is across (A, B)
+        first, second = self.pull, np.stack([-self.pull[..., 1], self.pull[..., 0]], axis=2)
+        normal = (along[:, None, None] * second - across[:, None, None] * first) / size[:, None, None]
+        corner = np.zeros((len(normal), 3, 2))
+        corner[:, [1, 2, 0]] += normal
+        corner -= normal
+        flat = corner.reshape(len(corner), 6)
+        blocks = -2.0 * flat[:, :, None] * flat[:, None, :] / size[:, None, None]
+        index = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(len(corner), 6)
+        row = np.broadcast_to(index[:, :, None], blocks.shape).ravel()
+        column = np.broadcast_to(index[:, None, :], blocks.shape).ravel()
+        total = 2 * self.count
+        matrix = sparse.coo_matrix((blocks.ravel(), (row, column)), shape=(total, total)).tocsc()
+        matrix = matrix + 2.0 * sparse.kron(self.laplacian, sparse.identity(2))
+        off = np.abs(points - points[0])
+        far, axis = np.unravel_index(int(np.argmax(off)), off.shape)
+        free = np.setdiff1d(np.arange(total), [0, 1, 2 * far + 1 - axis])
+        step = np.zeros(total)
+        try:
+            step[free] = splu(matrix.tocsc()[free][:, free].tocsc()).solve(-slope.ravel()[free])
+        except RuntimeError:  # singular
+            return np.full((self.count, 2), np.nan)
+        return step.reshape(-1, 2)
 
 
 def _stretches(points: Array, triangles: Index, local: Array) -> tuple[Array, Array]:

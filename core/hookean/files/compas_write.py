@@ -33,8 +33,8 @@ def document(system: System, state: State, scene: Scene) -> dict[str, Any]:
         made = compas_json.mesh(state.x[used], renumbered.reshape(faces.shape), name=name)
         vertices = made["data"]["vertex"]
     else:
-        used = np.arange(len(state.x))
-        made = compas_json.graph(state.x, _edges(system))
+        used = np.arange(system.slots.count)
+        made = compas_json.graph(state.x[used], _edges(system))
         vertices = made["data"]["node"]
     held, load = (state.free == 0).any(axis=1), system.evaluate(state, only="load")[0]
     for particle, vertex in zip(used.tolist(), vertices.values(), strict=True):
@@ -74,7 +74,7 @@ def _faces(system: System) -> NDArray[np.int64]:
 
 def _edges(system: System) -> NDArray[np.int64]:
     """Pairs (m, 2) of particles that something pulls together, each once."""
-    found = [g.block.indices for g in system.groups if g.cls.role == "internal" and g.block.indices.shape[1] == 2]
+    found = [g.particles for g in system.groups if g.cls.role == "internal" and g.particles.shape[1] == 2]
     pairs = np.concatenate(found) if found else np.zeros((0, 2), np.int64)
     _, first = np.unique(np.sort(pairs, axis=1), axis=0, return_index=True)
     return pairs[np.sort(first)]

@@ -33,11 +33,11 @@ def text(system: System, particles: Floats, free: Floats, said: Mapping[str, str
         lines += _group(name, "f", _fresh(faces, drawn))
         sides |= {frozenset(side) for face in faces for side in zip(face, face[1:] + face[:1], strict=True)}
     for group in system.groups:
-        if group.cls.role == "internal" and group.block.indices.shape[1] == 2:
+        if group.cls.role == "internal" and group.particles.shape[1] == 2:
             for part in group.parts:
-                pairs = group.block.indices[part.rows].tolist()
+                pairs = group.particles[part.rows].tolist()
                 lines += _group(part.force.name or "springs", "l", _fresh(pairs, sides))
-    held = np.flatnonzero((free == 0).all(axis=1)).tolist()
+    held = np.flatnonzero((free == 0).all(axis=1)[: len(particles)]).tolist()
     lines += _group("anchors", "p", [held] if held else [])
     return "\n".join(lines) + "\n"
 

@@ -21,6 +21,7 @@ import numpy as np
 from hookean.atomic_write import check_target, put
 from hookean.errors import InputError
 from hookean.files import embedded, obj, tables
+from hookean.files.exchange.write import EXCHANGED, ending_of, exchange
 from hookean.files.readers import Recipe, Source, about, read_path
 from hookean.running.claims import document_text
 from hookean.scene.scene import Scene
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from hookean.running.result import Result
     from hookean.system.system import System
 
-WRITTEN = (".3dm", ".json", ".obj")
+WRITTEN = (".3dm", ".json", ".obj", ".dxf", ".vtu", ".inp", ".ifc")
 """Endings of files that results are written to."""
 TOO_LONG = 10.0  # times the rest length; rubber tears before
 Progress = Callable[[int, float], None]
@@ -213,7 +214,7 @@ def conclude(
     )
     found.warnings = [*read.warnings, *result.report.left_out(), *result.report.warnings]
     found.warnings += [*_doubled(parts), *_overstretched(parts, read.built), *_idle(parts, system)]
-    found.moved = float(np.linalg.norm(result.particles - system.x, axis=1).max(initial=0.0))
+    found.moved = float(np.linalg.norm(result.particles - system.points, axis=1).max(initial=0.0))
     fault: InputError | None = None
     if limits is not None:
         try:
@@ -271,6 +272,9 @@ def _idle(parts: list[tables.Section], system: System) -> list[str]:
 def _write(
     found: FileResult, system: System, parts: list[tables.Section], read: Source, source: Path, target: Path
 ) -> None:
+    if ending_of(target) in EXCHANGED:
+        found.unwritten = exchange(found.result, target, system)
+        return
     if target.suffix.lower() == ".json":
         put(target, _json(_finite(_answer(found, read, system))), lambda back: None)
         return
@@ -315,7 +319,7 @@ def _answer(found: FileResult, read: Source, system: System) -> Any:
 
     if read.stored:
         state = system.start()
-        state.x = found.result.particles
+        state.x[: system.slots.count] = found.result.particles
         return compas_write.document(system, state, read.scene)
     if document.kind == "mesh":
         return compas_json.mesh(found.result.particles, document.faces, document.keys)

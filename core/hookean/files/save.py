@@ -9,22 +9,24 @@ from typing import Any
 
 from hookean.atomic_write import put
 from hookean.errors import InputError
+from hookean.files.exchange.write import EXCHANGED, ending_of, exchange
 from hookean.running.result import Result
 from hookean.scene.scene import Scene
 from hookean.system.system import compile
 
-ENDINGS = ".3dm, .json, .obj, .csv or .png"
+ENDINGS = ".3dm, .json, .obj, .csv, .png, .dxf, .vtu, .inp, .ifc or .compas.json"
 
 
 def save(result: Result, path: str | os.PathLike[str]) -> list[str]:
     """Write a result to a file: .3dm and .obj with its shape, .json with everything, .csv with a row for each element
-    and reaction, .png with a picture. Returns sentences on what the file does not hold.
+    and reaction, .png with a picture; for other programs .dxf, .vtu (ParaView), .inp (Abaqus), .ifc and .compas.json (a
+    COMPAS Graph) with elements, forces, supports, loads, reactions. Returns sentences on what the file does not hold.
 
     Raises InputError for another ending, for a result without its scene, or where the file cannot be written.
     """
     target = Path(path)
-    ending = target.suffix.lower()
-    if ending not in ENDINGS.replace(",", "").split():
+    ending = ending_of(target)
+    if ending not in ENDINGS.replace(",", "").replace(" or ", " ").split():
         raise InputError(target.name or str(path), f"has an unknown ending; end the name in {ENDINGS}")
     if ending == ".png":
         from hookean.pictures.picture import render
@@ -33,6 +35,8 @@ def save(result: Result, path: str | os.PathLike[str]) -> list[str]:
         return []
     if result.scene is None:
         raise InputError("result", "has no scene, which writing a file needs; save a result of relax or simulate")
+    if ending in EXCHANGED:
+        return exchange(result, target)
     from hookean.files.readers import Source
     from hookean.files.relax_file import check_output, conclude
 

@@ -312,7 +312,7 @@ def _check(
     result: Result,
     units: Units,
 ) -> list[str]:
-    moved = np.linalg.norm(result.particles - system.x, axis=1)
+    moved = np.linalg.norm(result.particles - system.points, axis=1)
     found = []
     for limit, dimension in LIMITS.items():
         if limit not in limits:

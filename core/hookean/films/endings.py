@@ -10,8 +10,9 @@ from hookean.films import EDGE
 from hookean.forces.soapfilm import SHARE, TENSION, SoapFilm, shapes
 
 if TYPE_CHECKING:
+    from hookean.system.group import Group
     from hookean.system.state import State
-    from hookean.system.system import Group, System
+    from hookean.system.system import System
 
 THINNEST, LARGEST = 0.02, 2.0  # of what triangles and the area were at first: a good shape
 HALF, NEEDLE = 0.5, 1e-4  # thinner than that and with less of its area, or as thin as this, a triangle has collapsed

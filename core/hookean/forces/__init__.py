@@ -14,7 +14,8 @@ for _found in pkgutil.iter_modules(__path__):
     _module = importlib.import_module(f"{__name__}.{_found.name}")
     for _value in vars(_module).values():
         _own = isinstance(_value, type) and _value.__module__ == _module.__name__
-        if _own and issubclass(_value, Force) and _value.kind_name and not _value.variant:
+        _kind = _value.model_fields.get("kind") if _own and issubclass(_value, Force) else None
+        if _kind is not None and _kind.default and not _value.variant:
             KINDS[_value.kind_name] = _value
 
 globals().update({cls.__name__: cls for cls in KINDS.values()})

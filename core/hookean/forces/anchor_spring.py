@@ -117,10 +117,6 @@ class AnchorSpring(Force):
             sticky=self.sticky,
         )
 
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """The force of the anchor on its particle [force]."""
-        return {"force": element_forces[:, 0]}
-
     @classmethod
     def example(cls) -> tuple[AnchorSpring, Floats]:
         """Four soft anchors away from their targets: two that never slide, one that does and one that is about to."""

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import field_validator
 
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_angles import (
-    angle_and_moment,
-    angle_block,
-    angle_hessian,
-    angle_kernel,
-    line_angles,
-    within_half_a_turn,
-)
-from hookean.values.columns import IndexRows, NonNegatives, PointRows, Reals
+from hookean.forces.base import Block, Floats, Places
+from hookean.forces.line_angles import LineAngle, angle_block, line_angles, within_half_a_turn
+from hookean.values.columns import Reals
 from hookean.values.fields import Field, Maybe
 
 
-class Angle(Force):
+class Angle(LineAngle):
     """Moments between pairs of lines that turn them to a rest angle: M = S (theta - theta0).
 
     theta [rad] is the angle between the directions of the lines, start to end, from 0 (the same direction) to pi; the
@@ -32,22 +25,9 @@ class Angle(Force):
     """
 
     kind: Literal["angle"] = "angle"
-    particles: Maybe[IndexRows] = Field(
-        default=None, description="Start and end of line A, start and end of line B, for each pair"
-    )
-    points: Maybe[PointRows] = Field(
-        default=None, description="Coordinates of the start and end of line A, the start and end of line B"
-    )
-    strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
     rest_angle: Maybe[Reals] = Field(default=None, description="theta0 [rad], from 0 to pi; default: the start angle")
 
     formula: ClassVar[str] = "E = S (θ - θ0)²/2"
-    creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 4
-    solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
-    kernel: ClassVar[Any] = staticmethod(angle_kernel)
-    hessian: ClassVar[Any] = staticmethod(angle_hessian)
 
     @field_validator("rest_angle")
     @classmethod
@@ -59,10 +39,6 @@ class Angle(Force):
         index = places.elements(self)
         rest = line_angles(places.x, index) if self.rest_angle is None else self.rest_angle
         return angle_block(index, self.strength, rest, rest)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Angle [rad] and the moment that turns the lines towards each other [force length]."""
-        return angle_and_moment(block, x)
 
     @classmethod
     def example(cls) -> tuple[Angle, Floats]:

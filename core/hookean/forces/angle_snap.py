@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_angles import angle_and_moment, angle_block, angle_hessian, angle_kernel
-from hookean.values.columns import IndexRows, NonNegatives, PointRows, Positives
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, Places
+from hookean.forces.line_angles import LineAngle, angle_block
+from hookean.values.columns import Positives
+from hookean.values.fields import Field
 
 
-class AngleSnap(Force):
+class AngleSnap(LineAngle):
     """Moments between pairs of lines that turn them to the nearest multiple of an angle a: M = S (theta - n a).
 
     theta is the angle between the directions of the lines, from 0 to pi, and n a the nearest multiple up to pi; energy
@@ -22,30 +22,13 @@ class AngleSnap(Force):
     """
 
     kind: Literal["angle_snap"] = "angle_snap"
-    particles: Maybe[IndexRows] = Field(
-        default=None, description="Start and end of line A, start and end of line B, for each pair"
-    )
-    points: Maybe[PointRows] = Field(
-        default=None, description="Coordinates of the start and end of line A, the start and end of line B"
-    )
-    strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
     multiple: Positives = Field(default=np.pi / 2, description="a [rad]: lines turn to 0, a, 2 a, ..., up to pi")
 
     formula: ClassVar[str] = "E = S (θ - n a)²/2"
-    creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 4
-    solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
-    kernel: ClassVar[Any] = staticmethod(angle_kernel)
-    hessian: ClassVar[Any] = staticmethod(angle_hessian)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: S, a."""
         return angle_block(places.elements(self), self.strength, 0.0, 0.0, self.multiple)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Angle [rad] and the moment that turns the lines towards each other [force length]."""
-        return angle_and_moment(block, x)
 
     @classmethod
     def example(cls) -> tuple[AngleSnap, Floats]:

@@ -40,6 +40,11 @@ def units(vectors: Floats) -> Floats:
     return np.asarray(rows / lengths(rows)[:, None])
 
 
+def complete(faces: Ints) -> Ints:
+    """The faces (m, 4) of a mesh whose corners all met particles."""
+    return faces[(faces >= 0).all(axis=1)]
+
+
 PLACES = ("particles", "points", "lines", "mesh")
 """The fields that say where a force acts; a force has some of them and is given exactly one."""
 
@@ -143,6 +148,12 @@ class Force(Model):
     solid: ClassVar[bool] = True  # something lies between the particles of an element, which others may touch
     momentary: ClassVar[bool] = False  # no force: momentum at moments, by `kick` and `next_moment`; it has no kernel
     rewired: ClassVar[bool] = False  # which of its elements feel one another changes with the shape
+    # its particles have orientations: the indices of its elements go on with their slots and references, and a column
+    # `arm` for each particle gets the length of its slot (see `rotations`)
+    turns: ClassVar[bool] = False
+    # what it adds at those of its particles that have orientations by other forces; made by `Rider.of`
+    rider: ClassVar[type[Rider] | None] = None
+    zero: ClassVar[tuple[str, ...]] = ()  # conservative where these columns are all 0
     is_film: ClassVar[bool] = False  # has no stiffness along itself
     on_film: ClassVar[OnFilm] = "whole"
     # columns of a result with their unit: length, force, moment, angle or none
@@ -165,7 +176,7 @@ class Force(Model):
     def __pydantic_init_subclass__(cls, **given: Any) -> None:
         super().__pydantic_init_subclass__(**given)
         if "kind" in cls.model_fields:
-            cls.kind_name = str(cls.model_fields["kind"].default)
+            cls.called = cls.kind_name = str(cls.model_fields["kind"].default)
 
     @property
     def element_arity(self) -> int:
@@ -231,7 +242,7 @@ class Force(Model):
     @classmethod
     def connected(cls, block: Block) -> Ints:
         """Particles that belong to the same component of the model, by rows (see `system.components`)."""
-        return block.indices
+        return block.indices[:, : 2 * cls.arity] if cls.turns else block.indices  # without references, which are held
 
     @classmethod
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
@@ -257,11 +268,33 @@ class Force(Model):
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """What a result reports of each element, by the names and units of `outputs`.
 
-        `element_forces` (m, arity, 3): the force each element puts on each of its particles.
+        `element_forces` (m, arity, 3): the force each element puts on each of its particles. Without a `measure` of
+        its own, a class with the output `force` reports their sum.
         """
-        return {}
+        return {"force": element_forces.sum(axis=1)} if "force" in self.outputs else {}
 
     @classmethod
     def example(cls) -> tuple[Force, Floats]:
         """A small generic instance on particle indices, and positions, for the law tests and the catalogue."""
         raise TypeError(f"{cls.__name__} gives no example")
+
+
+class Rider(Force):
+    """Elements that a force has beside its own, at the particles with orientations (see `Force.rider`)."""
+
+    turns: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, force: Any, block: Block) -> Block:
+        """Its elements, of the force and the rows of its block at particles with orientations."""
+        raise TypeError(f"{cls.__name__} does not define of()")
+
+    @classmethod
+    def missing(cls, force: Any, block: Block) -> str:
+        """A sentence on rows of a block at particles without orientations, if the force needs one there; else empty."""
+        return ""
+
+    @classmethod
+    def measured(cls, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """What it adds to the columns of a result."""
+        return {}

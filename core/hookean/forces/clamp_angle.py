@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import field_validator, model_validator
 
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_angles import (
-    angle_and_moment,
-    angle_block,
-    angle_hessian,
-    angle_kernel,
-    within_half_a_turn,
-)
+from hookean.forces.base import Block, Floats, Places
+from hookean.forces.line_angles import LineAngle, angle_block, within_half_a_turn
 from hookean.forces.line_lengths import in_order
-from hookean.values.columns import IndexRows, NonNegatives, PointRows, Reals
-from hookean.values.fields import Field, Maybe
+from hookean.values.columns import Reals
+from hookean.values.fields import Field
 
 
-class ClampAngle(Force):
+class ClampAngle(LineAngle):
     """Moments between pairs of lines that are free between two angles and elastic outside: M = S (theta - theta0).
 
     theta is the angle between the directions of the lines, from 0 to pi, and theta0 the limit that is passed; energy
@@ -29,28 +23,12 @@ class ClampAngle(Force):
     """
 
     kind: Literal["clamp_angle"] = "clamp_angle"
-    particles: Maybe[IndexRows] = Field(
-        default=None, description="Start and end of line A, start and end of line B, for each pair"
-    )
-    points: Maybe[PointRows] = Field(
-        default=None, description="Coordinates of the start and end of line A, the start and end of line B"
-    )
-    strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
     lower_limit: Reals = Field(default=0.0, description="Least free angle [rad], from 0 to pi")
     upper_limit: Reals = Field(default=np.pi, description="Greatest free angle [rad], from 0 to pi")
 
     formula: ClassVar[str] = "E = S (θ - θ0)²/2"
-    creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 4
-    solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
-    kernel: ClassVar[Any] = staticmethod(angle_kernel)
-    hessian: ClassVar[Any] = staticmethod(angle_hessian)
 
-    @field_validator("lower_limit", "upper_limit")
-    @classmethod
-    def _an_angle(cls, angle: float | Floats) -> float | Floats:
-        return within_half_a_turn(angle)
+    _an_angle = field_validator("lower_limit", "upper_limit")(within_half_a_turn)
 
     @model_validator(mode="after")
     def _limits_in_order(self) -> Self:
@@ -60,10 +38,6 @@ class ClampAngle(Force):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: S, lower and upper limit."""
         return angle_block(places.elements(self), self.strength, self.lower_limit, self.upper_limit)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Angle [rad] and the moment that turns the lines towards each other [force length]."""
-        return angle_and_moment(block, x)
 
     @classmethod
     def example(cls) -> tuple[ClampAngle, Floats]:

@@ -8,9 +8,9 @@ import numpy as np
 from pydantic import model_validator
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places, lengths
-from hookean.forces.line_lengths import fill, in_order, length_and_force, line, pull, resist
-from hookean.values.columns import IndexRows, Lines, NonNegatives
+from hookean.forces.base import Block, Floats, Places, lengths
+from hookean.forces.line_lengths import LineForce, fill, in_order, line, pull, resist
+from hookean.values.columns import NonNegatives
 from hookean.values.fields import Field, Maybe
 
 
@@ -51,7 +51,7 @@ def clamp_length_hessian(x, indices, parameters, memory, blocks):  # type: ignor
         fill(blocks, e, row)
 
 
-class ClampLength(Force):
+class ClampLength(LineForce):
     """Lines that are free between two limits and elastic outside: E = k (l - L)^2 / 2, L the limit that is passed.
 
     The defaults make a rope: its upper limit is the start length, and it has no lower one, so that it is slack where
@@ -60,8 +60,6 @@ class ClampLength(Force):
     """
 
     kind: Literal["clamp_length"] = "clamp_length"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
-    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
     stiffness: NonNegatives = Field(default=1000.0, description="k [force/length]")
     lower_limit: NonNegatives = Field(default=0.0, description="Pushes below this length [length]; 0: never")
     upper_limit: Maybe[NonNegatives] = Field(
@@ -69,9 +67,7 @@ class ClampLength(Force):
     )
 
     formula: ClassVar[str] = "E = k (l - L)²/2"
-    arity: ClassVar[int] = 2
     steady: ClassVar[str] = "stiffness"
-    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(clamp_length_kernel)
     hessian: ClassVar[Any] = staticmethod(clamp_length_hessian)
     central: ClassVar[Any] = staticmethod(clamp_length_central)
@@ -89,10 +85,6 @@ class ClampLength(Force):
         if high is None:
             high = np.maximum(lengths(places.x[index[:, 1]] - places.x[index[:, 0]]), self.lower_limit)
         return Block.of(index, stiffness=self.stiffness, lower_limit=self.lower_limit, upper_limit=high)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Length [length] and force [force; tension +]."""
-        return length_and_force(block, x, element_forces)
 
     @classmethod
     def example(cls) -> tuple[ClampLength, Floats]:

@@ -355,10 +355,6 @@ class Crowd(Force):
             row[:] = start, stop - start, part[0, STIFFNESS], part[0, SKIN], address, particle if straight else -1
         return index, crowds, table
 
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Force of all contacts on each element [force]."""
-        return {"force": element_forces.sum(axis=1)}
-
 
 class Collide(Crowd):
     """Spheres about particles that push each other apart where they overlap: E = k (a + b - d)^2 / 2.

@@ -191,10 +191,6 @@ class Collide2d(Crowd):
             plane=np.ones((len(index), 1)) * [plane],
         )
 
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Force of all contacts on each edge [force]."""
-        return {"force": element_forces.sum(axis=1)}
-
     @classmethod
     def gathered(
         cls, block: Block, memory: Floats, x: Floats, node: int | None

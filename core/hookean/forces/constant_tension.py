@@ -6,10 +6,10 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_lengths import fill, length_and_force, line, pull, resist
-from hookean.values.columns import IndexRows, Lines, Reals
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, Places
+from hookean.forces.line_lengths import LineForce, fill, line, pull, resist
+from hookean.values.columns import Reals
+from hookean.values.fields import Field
 
 
 def constant_tension_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -39,7 +39,7 @@ def constant_tension_hessian(x, indices, parameters, memory, blocks):  # type: i
         fill(blocks, e, row)
 
 
-class ConstantTension(Force):
+class ConstantTension(LineForce):
     """Lines with the same tension T at any length, such as ropes over pulleys to hanging weights: E = T l.
 
     Where three of the same tension meet, they meet at 120 degrees (the Fermat point): the lines of a loaded net of
@@ -49,13 +49,9 @@ class ConstantTension(Force):
     """
 
     kind: Literal["constant_tension"] = "constant_tension"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
-    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
     tension: Reals = Field(default=1.0, description="T [force]; negative: compression")
 
     formula: ClassVar[str] = "E = T l"
-    arity: ClassVar[int] = 2
-    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(constant_tension_kernel)
     hessian: ClassVar[Any] = staticmethod(constant_tension_hessian)
     central: ClassVar[Any] = staticmethod(constant_tension_central)
@@ -63,10 +59,6 @@ class ConstantTension(Force):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: tension."""
         return Block.of(places.elements(self), tension=self.tension)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Length [length] and force [force; tension +]."""
-        return length_and_force(block, x, element_forces)
 
     @classmethod
     def example(cls) -> tuple[ConstantTension, Floats]:

@@ -10,6 +10,7 @@ from hookean.forces import groups
 from hookean.forces.base import Block, Floats, Places
 from hookean.forces.fits import CIRCLE
 from hookean.forces.fitted import Fit
+from hookean.forces.mesh_edges import quads
 from hookean.values.fields import Field
 
 
@@ -33,8 +34,7 @@ class CyclicQuad(Fit):
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: links of the corners of each quad, strength and shape."""
-        faces = places.faces(self.mesh)
-        faces = faces[(faces >= 0).all(axis=1) & (faces[:, 2] != faces[:, 3])]
+        faces = quads(places.faces(self.mesh))
         index = np.ascontiguousarray(faces.reshape(-1, 1))
         quad = np.repeat(np.arange(len(faces)), 4)
         return Block.of(index, links=groups.links(index, quad), strength=self.strength, shape=self.shape)

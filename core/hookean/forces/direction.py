@@ -8,6 +8,7 @@ import numpy as np
 
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Places, lengths, units
+from hookean.forces.line_lengths import apart
 from hookean.values.columns import Directions, IndexRows, Lines, NonNegatives
 from hookean.values.fields import Field, Maybe
 
@@ -40,10 +41,7 @@ def direction_hessian(x, indices, parameters, memory, blocks):  # type: ignore[n
         for i in range(3):
             for j in range(3):
                 entry = parameters[e, 0] * ((1.0 if i == j else 0.0) - parameters[e, 1 + i] * parameters[e, 1 + j])
-                blocks[e, i, j] = entry
-                blocks[e, 3 + i, 3 + j] = entry
-                blocks[e, i, 3 + j] = -entry
-                blocks[e, 3 + i, j] = -entry
+                apart(blocks, e, i, j, entry)
 
 
 class Direction(Force):

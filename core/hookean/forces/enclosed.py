@@ -13,7 +13,7 @@ from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.errors import InputError
 from hookean.forces import groups
-from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places
+from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places, complete
 from hookean.forces.groups import begins, following
 from hookean.forces.soapfilm import halves
 
@@ -108,8 +108,7 @@ class Enclosed(groups.Grouped):
 
     def blocked(self, places: Places, name: str, stiff: float, outside: float, law: float, factor: float) -> Block:
         """The block of the scene's mesh `name`; InputError unless it is closed and has a volume at the start."""
-        faces = places.faces(name)
-        faces = faces[(faces >= 0).all(axis=1)]
+        faces = complete(places.faces(name))
         corners, share, _ = halves(faces)
         reason = "the mesh has no faces; give a closed mesh" if not len(faces) else unclosed(faces)
         volume = float((share * volumes(places.x[corners], places.x[corners[:1, 0]])).sum())

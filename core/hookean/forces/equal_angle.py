@@ -11,8 +11,8 @@ from hookean.compiled.marks import device
 from hookean.forces import groups
 from hookean.forces.base import Block, Floats, Places
 from hookean.forces.groups import begins, following
-from hookean.forces.line_angles import between, fill, line_angles, turn
-from hookean.values.columns import IndexRows, Labels, NonNegatives, PointRows
+from hookean.forces.line_angles import LinePair, between, fill, line_angles, turn
+from hookean.values.columns import Labels, NonNegatives
 from hookean.values.fields import Field, Maybe
 
 S = groups.COLUMNS  # column of the strength
@@ -76,7 +76,7 @@ def equal_angle_second(x, indices, parameters, moments, whole):  # type: ignore[
             e = following(parameters, e)
 
 
-class EqualAngle(groups.Grouped):
+class EqualAngle(LinePair, groups.Grouped):
     """Groups of pairs of lines that turn to the same angle: E = sum S (theta - m)^2 / 2, m the mean of the group.
 
     theta is the angle between the directions of the lines of a pair, from 0 to pi, as for `angle`. m is weighted by S,
@@ -85,19 +85,10 @@ class EqualAngle(groups.Grouped):
     """
 
     kind: Literal["equal_angle"] = "equal_angle"
-    particles: Maybe[IndexRows] = Field(
-        default=None, description="Start and end of line A, start and end of line B, for each pair"
-    )
-    points: Maybe[PointRows] = Field(
-        default=None, description="Coordinates of the start and end of line A, the start and end of line B"
-    )
     group: Maybe[Labels] = Field(default=None, description="Number of the group of each pair; default: all are in one")
     strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
 
     formula: ClassVar[str] = "E = Σ S (θ - m)²/2"
-    creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 4
-    solid: ClassVar[bool] = False
     unknowns: ClassVar[int] = 1
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     kernel: ClassVar[Any] = staticmethod(equal_angle_kernel)

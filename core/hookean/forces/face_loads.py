@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places
+from hookean.forces.base import Floats, Force, Ints, OnFilm, Places, complete
 from hookean.forces.soapfilm import halves
 
 
@@ -74,13 +74,8 @@ class FaceLoad(Force):
     @staticmethod
     def triangles(places: Places, mesh: str) -> tuple[Ints, Floats]:
         """Triangles (m, 3) of the scene's mesh whose corners met particles, and their shares (m,)."""
-        faces = places.faces(mesh)
-        corners, part, _ = halves(faces[(faces >= 0).all(axis=1)])
+        corners, part, _ = halves(complete(places.faces(mesh)))
         return corners, part
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Force on each triangle [force], halved where a quad is cut in two ways."""
-        return {"force": element_forces.sum(axis=1)}
 
 
 def dome() -> Floats:

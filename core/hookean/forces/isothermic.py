@@ -9,6 +9,7 @@ import numpy as np
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Places, lengths
 from hookean.forces.line_angles import unit
+from hookean.forces.mesh_edges import quads
 from hookean.values.columns import IndexRows, PointRows
 from hookean.values.fields import Field, Maybe
 
@@ -115,8 +116,7 @@ class Isothermic(Force):
         """Arrays for the kernel: k."""
         if self.mesh is None:
             return Block.of(places.elements(self), stiffness=self.stiffness)
-        faces = places.faces(self.mesh)
-        return Block.of(faces[(faces >= 0).all(axis=1) & (faces[:, 2] != faces[:, 3])], stiffness=self.stiffness)
+        return Block.of(quads(places.faces(self.mesh)), stiffness=self.stiffness)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """u of each quad, positive where the first side and that across are the longer ones [length], and k times this

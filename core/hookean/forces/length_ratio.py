@@ -7,9 +7,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places, lengths
-from hookean.values.columns import IndexRows, NonNegatives, PointRows
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, Places, lengths
+from hookean.forces.line_angles import LinePair
+from hookean.values.columns import NonNegatives
+from hookean.values.fields import Field
 
 
 @device
@@ -62,7 +63,7 @@ def length_ratio_hessian(x, indices, parameters, memory, blocks):  # type: ignor
                         blocks[e, 3 * p + i, 3 * q + j] = sign * entry
 
 
-class LengthRatio(Force):
+class LengthRatio(LinePair):
     """Pairs of lines A, B of which B is r times as long as A: E = k (b - r a)^2 / 2, a and b their lengths.
 
     The tension k (b - r a) acts in B, and -r times that in A: where B is too long, it shortens and A lengthens. The
@@ -71,19 +72,10 @@ class LengthRatio(Force):
     """
 
     kind: Literal["length_ratio"] = "length_ratio"
-    particles: Maybe[IndexRows] = Field(
-        default=None, description="Start and end of line A, start and end of line B, for each pair"
-    )
-    points: Maybe[PointRows] = Field(
-        default=None, description="Coordinates of the start and end of line A, the start and end of line B"
-    )
     stiffness: NonNegatives = Field(default=1.0, description="k [force/length]")
     ratio: NonNegatives = Field(default=1.0, description="r [-], length of line B by that of line A")
 
     formula: ClassVar[str] = "E = k (b - r a)²/2"
-    creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 4
-    solid: ClassVar[bool] = False
     outputs: ClassVar[dict[str, str]] = {"ratio": "", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(length_ratio_kernel)
     hessian: ClassVar[Any] = staticmethod(length_ratio_hessian)

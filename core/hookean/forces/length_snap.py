@@ -7,10 +7,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_lengths import fill, length_and_force, line, pull, resist
-from hookean.values.columns import IndexRows, Lines, NonNegatives, Positives
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, Places
+from hookean.forces.line_lengths import LineForce, fill, line, pull, resist
+from hookean.values.columns import NonNegatives, Positives
+from hookean.values.fields import Field
 
 
 @device
@@ -48,7 +48,7 @@ def length_snap_hessian(x, indices, parameters, memory, blocks):  # type: ignore
         fill(blocks, e, row)
 
 
-class LengthSnap(Force):
+class LengthSnap(LineForce):
     """Lines that are pulled to the nearest multiple of a length a: E = k (l - n a)^2 / 2, n a whole number.
 
     n is found again wherever the line is, so that each multiple has a well of its own, from (n - 1/2) a to
@@ -57,16 +57,12 @@ class LengthSnap(Force):
     """
 
     kind: Literal["length_snap"] = "length_snap"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
-    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
     stiffness: NonNegatives = Field(default=1.0, description="k [force/length]")
     multiple: Positives = Field(default=1.0, description="a [length]: lines become 0, a, 2 a, ... long")
 
     formula: ClassVar[str] = "E = k (l - n a)²/2"
-    arity: ClassVar[int] = 2
     steady: ClassVar[str] = "stiffness"
     solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(length_snap_kernel)
     hessian: ClassVar[Any] = staticmethod(length_snap_hessian)
     central: ClassVar[Any] = staticmethod(length_snap_central)
@@ -74,10 +70,6 @@ class LengthSnap(Force):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: k, a."""
         return Block.of(places.elements(self), stiffness=self.stiffness, multiple=self.multiple)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Length [length] and force [force; tension +]."""
-        return length_and_force(block, x, element_forces)
 
     @classmethod
     def example(cls) -> tuple[LengthSnap, Floats]:

@@ -9,9 +9,10 @@ from pydantic import model_validator
 
 from hookean.compiled.dispatch import keep, rows
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places
-from hookean.values.columns import IndexRows, NonNegatives, Points, Positives, fault
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, Places
+from hookean.forces.pull_to_mesh import Pull
+from hookean.values.columns import NonNegatives, Points, Positives, fault
+from hookean.values.fields import Field
 
 STRENGTH, LEVEL, MEAN, STEEPEST, TABLE = 0, 1, 2, 3, 4  # columns of the parameters
 NEAREST = 1e-150  # distance to a charge from which it has a direction
@@ -83,7 +84,7 @@ def level_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-un
                 blocks[e, c, d] = parameters[e, STRENGTH] * (g[c] * g[d] + off * h[c, d])
 
 
-class LevelSet(Force):
+class LevelSet(Pull):
     """Particles pulled to the surface on which the potential of point charges is L: E = k d^2 / 2, d = q (1 / phi - 1 /
     L) with phi = sum q_i / r_i.
 
@@ -97,8 +98,6 @@ class LevelSet(Force):
     """
 
     kind: Literal["level_set"] = "level_set"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
-    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
     mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are pulled")
     charges: Points = Field(description="Places of the charges [length], at least one")
     charge: Positives = Field(default=1.0, description="q_i, one for all charges or one for each [length]")
@@ -106,11 +105,8 @@ class LevelSet(Force):
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
 
     formula: ClassVar[str] = "E = k q² (1/φ - 1/L)²/2, φ = Σ q/r"
-    role: ClassVar[Literal["internal", "load", "support"]] = "support"
-    creates: ClassVar[bool] = False
     shared: ClassVar[tuple[str, ...]] = ("charges", "charge")
-    on_film: ClassVar[OnFilm] = "spread"
-    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
+    steady: ClassVar[str] = ""
     kernel: ClassVar[Any] = staticmethod(level_kernel)
     hessian: ClassVar[Any] = staticmethod(level_hessian)
 

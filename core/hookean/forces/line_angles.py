@@ -13,14 +13,15 @@ Adriaenssens and Barnes, "Tensegrity spline beam and grid shell structures", 200
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Ints, lengths
-from hookean.values.columns import fault
+from hookean.forces.base import Block, Floats, Force, Ints, lengths
+from hookean.values.columns import IndexRows, NonNegatives, PointRows, fault
+from hookean.values.fields import Field, Maybe
 
 SHORTEST = 1e-70  # shorter lines have no direction, and no couple
 PARALLEL = 1e-12  # sine below which two lines have no plane, and no couple
@@ -171,18 +172,43 @@ def angle_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-un
         fill(blocks, e, stiffness, parameters[e, 0] * off, sine, cosine, a, b, g)
 
 
+class LinePair(Force):
+    """Base of forces on pairs of lines."""
+
+    kind: str = ""
+    particles: Maybe[IndexRows] = Field(
+        default=None, description="Start and end of line A, start and end of line B, for each pair"
+    )
+    points: Maybe[PointRows] = Field(
+        default=None, description="Coordinates of the start and end of line A, the start and end of line B"
+    )
+
+    creates: ClassVar[bool] = False
+    arity: ClassVar[int] = 4
+    solid: ClassVar[bool] = False
+
+
+class LineAngle(LinePair):
+    """Base of forces that turn pairs of lines, each with a moment of its own."""
+
+    strength: NonNegatives = Field(default=1.0, description="S, moment per angle [force length]")
+
+    outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
+    kernel: ClassVar[Any] = staticmethod(angle_kernel)
+    hessian: ClassVar[Any] = staticmethod(angle_hessian)
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Angle [rad] and the moment that turns the lines towards each other [force length]."""
+        angle = line_angles(x, block.indices)
+        strength, low, high, multiple = block.parameters.T
+        wanted, snaps = np.clip(angle, low, high), multiple > 0.0
+        wanted[snaps] = nearest(angle[snaps], multiple[snaps])
+        return {"angle": angle, "moment": strength * (angle - wanted)}
+
+
 def angle_block(index: Ints, strength: Any, low: Any, high: Any, multiple: Any = 0.0) -> Block:
     """Arrays for `angle_kernel`: moment per angle, limits [rad] and, where not 0, the multiple [rad]."""
     return Block.of(index, strength=strength, lower_limit=low, upper_limit=high, multiple=multiple)
-
-
-def angle_and_moment(block: Block, x: Floats) -> dict[str, Floats]:
-    """Angles [rad] of the elements and the moments that turn their lines towards each other [force length]."""
-    angle = line_angles(x, block.indices)
-    strength, low, high, multiple = block.parameters.T
-    wanted, snaps = np.clip(angle, low, high), multiple > 0.0
-    wanted[snaps] = nearest(angle[snaps], multiple[snaps])
-    return {"angle": angle, "moment": strength * (angle - wanted)}
 
 
 def within_half_a_turn(angle: float | Floats) -> float | Floats:

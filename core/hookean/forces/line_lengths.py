@@ -5,13 +5,14 @@ The tension dE/dl pulls both ends together. The tangent is d2E/dl2 along the lin
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, lengths
-from hookean.values.columns import fault
+from hookean.forces.base import Block, Floats, Force, lengths
+from hookean.values.columns import IndexRows, Lines, fault
+from hookean.values.fields import Field, Maybe
 
 
 @device
@@ -47,15 +48,36 @@ def resist(stiffness: Any, e: Any, along: Any, tension: Any, length: Any, dx: An
 
 
 @device
+def apart(blocks: Any, e: Any, i: Any, j: Any, entry: Any) -> None:
+    """Write one entry of a block of `Force.hessian` where only the vector between two particles counts."""
+    blocks[e, i, j] = entry
+    blocks[e, 3 + i, 3 + j] = entry
+    blocks[e, i, 3 + j] = -entry
+    blocks[e, 3 + i, j] = -entry
+
+
+@device
 def fill(blocks: Any, e: Any, row: Any) -> None:
     """Write the block of `Force.hessian` from a row of `Force.central`."""
     for i in range(3):
         for j in range(3):
             entry = (row[0, 0] - row[0, 1]) * row[0, 2 + i] * row[0, 2 + j] + (row[0, 1] if i == j else 0.0)
-            blocks[e, i, j] = entry
-            blocks[e, 3 + i, 3 + j] = entry
-            blocks[e, i, 3 + j] = -entry
-            blocks[e, 3 + i, j] = -entry
+            apart(blocks, e, i, j, entry)
+
+
+class LineForce(Force):
+    """Base of forces between both ends of straight lines."""
+
+    kind: str = ""
+    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
+    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
+
+    arity: ClassVar[int] = 2
+    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Length [length] and force [force; tension +]."""
+        return length_and_force(block, x, element_forces)
 
 
 def in_order(low: float | Floats, high: float | Floats) -> None:

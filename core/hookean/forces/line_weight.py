@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places, lengths, units
-from hookean.forces.line_lengths import line
-from hookean.values.columns import Directions, IndexRows, Lines, Reals
+from hookean.forces.base import Block, Floats, OnFilm, Places, lengths, units
+from hookean.forces.line_lengths import LineForce, line
+from hookean.values.columns import Directions, Lines, Reals
 from hookean.values.fields import Field, Maybe
 
 Per = Literal["true", "plan", "start"]
@@ -65,7 +65,7 @@ def line_weight_hessian(x, indices, parameters, memory, blocks):  # type: ignore
                 blocks[e, 3 + i, j] = 0.5 * (one - other)
 
 
-class LineWeight(Force):
+class LineWeight(LineForce):
     """A load q per length of lines, in one direction, half of it on each end: f = q l g / 2.
 
     g is the direction of the load, gravity unless given. l is the true length as it is now: the load grows with the
@@ -77,7 +77,6 @@ class LineWeight(Force):
     """
 
     kind: Literal["line_weight"] = "line_weight"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends must meet particles")
     weight: Reals = Field(default=1.0, description="q [force/length]")
     per: Per = Field(default="true", description="Length that counts: as it is, its plan along g, or at the start")
@@ -89,9 +88,7 @@ class LineWeight(Force):
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     conservative: ClassVar[bool] = False
     creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 2
     on_film: ClassVar[OnFilm] = "spread"
-    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(line_weight_kernel)
     hessian: ClassVar[Any] = staticmethod(line_weight_hessian)
 

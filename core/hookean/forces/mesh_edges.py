@@ -1,10 +1,10 @@
-"""Edges between two triangles of a mesh, as forces across them need them."""
+"""Parts of a mesh that are elements of forces: its quads, and the edges between two of its triangles."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from hookean.forces.base import Ints
+from hookean.forces.base import Ints, complete
 
 
 def folds(faces: Ints) -> Ints:
@@ -19,3 +19,8 @@ def folds(faces: Ints) -> Ints:
     _, first, count = np.unique(pairs[order], axis=0, return_index=True, return_counts=True)
     one, other = order[first[count == 2]], order[first[count == 2] + 1]
     return np.column_stack([start[one], end[one], tip[one], tip[other]])
+
+
+def quads(faces: Ints) -> Ints:
+    """The faces (m, 4) with four corners that all met particles."""
+    return complete(faces[faces[:, 2] != faces[:, 3]])

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, Places, units
-from hookean.forces.transform_lock import distance_and_force, image_hessian, image_kernel, images
-from hookean.values.columns import Direction, IndexRows, Lines, NonNegatives, Vector
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, Places, units
+from hookean.forces.transform_lock import Imaged, images
+from hookean.values.columns import Direction, Vector
+from hookean.values.fields import Field
 
 
-class Mirror(Force):
+class Mirror(Imaged):
     """Pairs of particles a, b that are pulled to each other's mirror image in a plane: E = k |b - M a|^2 / 2.
 
     M p = p - 2 n (n . (p - o)) is the image in the plane through o normal to n, which is fixed in space. As M is its
@@ -20,33 +20,19 @@ class Mirror(Force):
     """
 
     kind: Literal["mirror"] = "mirror"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
-    lines: Maybe[Lines] = Field(default=None, description="Lines between the pairs; their ends must meet particles")
-    stiffness: NonNegatives = Field(default=1.0, description="k [force/length]")
     point: Vector = Field(default=np.zeros(3), description="o, a point of the plane [length]")
     normal: Direction = Field(
         default=np.array([1.0, 0.0, 0.0]), description="n, normal to the plane; its length is ignored"
     )
 
     formula: ClassVar[str] = "E = k |b - M a|²/2"
-    role: ClassVar[Literal["internal", "load", "support"]] = "support"
-    creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 2
     shared: ClassVar[tuple[str, ...]] = ("point", "normal")
-    solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
-    kernel: ClassVar[Any] = staticmethod(image_kernel)
-    hessian: ClassVar[Any] = staticmethod(image_hessian)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: those of `transform_lock`, of the mirror image."""
         n = units(self.normal)[0]
         linear = np.eye(3) - 2.0 * np.outer(n, n)
         return images(places.elements(self), self.stiffness, linear, 2.0 * (n @ self.point) * n)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Distance from the mirror image [length] and the force on the second particle [force]."""
-        return distance_and_force(block, element_forces)
 
     @classmethod
     def example(cls) -> tuple[Mirror, Floats]:

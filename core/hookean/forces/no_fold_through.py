@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.base import Block, Floats, Force, Places, complete
 from hookean.forces.dihedral import fold, fold_angles, turn, wrapped
 from hookean.forces.mesh_edges import folds
 from hookean.values.columns import IndexRows, PointRows
@@ -78,8 +78,7 @@ class NoFoldThrough(Force):
         if self.mesh is None:
             index = places.elements(self)
         else:
-            faces = places.faces(self.mesh)
-            index = folds(faces[(faces >= 0).all(axis=1)])
+            index = folds(complete(places.faces(self.mesh)))
         start = fold_angles(places.x, index)
         return Block.of(index, memory=1, strength=self.strength, limit=self.limit, start=start)
 

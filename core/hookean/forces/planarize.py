@@ -9,6 +9,7 @@ import numpy as np
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.line_angles import cross
+from hookean.forces.mesh_edges import quads
 from hookean.forces.soapfilm import SLIVER
 from hookean.values.columns import IndexRows, PointRows
 from hookean.values.fields import Field, Maybe
@@ -123,8 +124,7 @@ class Planarize(Force):
         """Arrays for the kernel: k."""
         if self.mesh is None:
             return Block.of(in_fours(places.elements(self)), stiffness=self.stiffness)
-        faces = places.faces(self.mesh)
-        return Block.of(faces[(faces >= 0).all(axis=1) & (faces[:, 2] != faces[:, 3])], stiffness=self.stiffness)
+        return Block.of(quads(places.faces(self.mesh)), stiffness=self.stiffness)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance between the diagonals of each quad [length], 0 where they are parallel, and the force that closes it

@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import field_validator
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.line_lengths import length_and_force
-from hookean.values.columns import IndexRows, Lines, Reals, fault
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, Places
+from hookean.forces.line_lengths import LineForce, apart, pull
+from hookean.values.columns import Reals, fault
+from hookean.values.fields import Field
 
 STEEPEST = 9.0  # exponent: more would overflow where particles nearly meet
 NEAREST = 1e-20  # distance from which a pair acts
@@ -40,25 +40,16 @@ def potential(strength: Any, power: Any, length: Any) -> Any:
 def power_law_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
     for e in range(indices.shape[0]):
-        a, b = indices[e, 0], indices[e, 1]
         strength, power, cutoff = parameters[e, 0], parameters[e, 1], np.abs(parameters[e, 2])
         length, dx, dy, dz, acts = pair(x, indices, parameters, e)
         if not acts:
             continue
         push = strength * length ** (power - 1.0)  # by distance
         stiffness = 2.0 * np.abs(push) * max(1.0, np.abs(power))
-        w[a] += stiffness
-        w[b] += stiffness
+        w[indices[e, 0]] += stiffness
+        w[indices[e, 1]] += stiffness
         energy += potential(strength, power, length) - (potential(strength, power, cutoff) if cutoff > 0.0 else 0.0)
-        dx *= push
-        dy *= push
-        dz *= push
-        f[a, 0] -= dx
-        f[a, 1] -= dy
-        f[a, 2] -= dz
-        f[b, 0] += dx
-        f[b, 1] += dy
-        f[b, 2] += dz
+        pull(indices, e, -push, dx, dy, dz, f)
     return energy
 
 
@@ -72,13 +63,19 @@ def power_law_hessian(x, indices, parameters, memory, blocks):  # type: ignore[n
         for i in range(3):
             for j in range(3):
                 entry = (along - across) * d[i] * d[j] / square + (across if i == j else 0.0)
-                blocks[e, i, j] = entry
-                blocks[e, 3 + i, 3 + j] = entry
-                blocks[e, i, 3 + j] = -entry
-                blocks[e, 3 + i, j] = -entry
+                apart(blocks, e, i, j, entry)
 
 
-class PowerLaw(Force):
+def not_too_steep(exponent: float | Floats) -> float | Floats:
+    """An exponent whose powers are finite; else a fault of its field."""
+    values = np.ravel(exponent)
+    steep = values[np.abs(values) > STEEPEST]
+    if len(steep):
+        raise fault(f"{steep[0]:g} given; exponents from -{STEEPEST:g} to {STEEPEST:g} allowed")
+    return exponent
+
+
+class PowerLaw(LineForce):
     """Pairs that repel each other by a power of their distance, F = S d^n; with a negative strength they attract.
 
     Energy -S d^(n+1) / (n+1), or -S ln d where n = -1. n = -2 is gravity or electric charge, n = 0 a constant force,
@@ -88,8 +85,6 @@ class PowerLaw(Force):
     """
 
     kind: Literal["power_law"] = "power_law"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
-    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
     strength: Reals = Field(default=1.0, description="S [force/length^n]; positive: they repel each other")
     exponent: Reals = Field(default=-2.0, description="n [-]")
     cutoff: Reals = Field(
@@ -97,29 +92,16 @@ class PowerLaw(Force):
     )
 
     formula: ClassVar[str] = "E = -S d^(n+1)/(n + 1)"
-    arity: ClassVar[int] = 2
     solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(power_law_kernel)
     hessian: ClassVar[Any] = staticmethod(power_law_hessian)
 
-    @field_validator("exponent")
-    @classmethod
-    def _not_too_steep(cls, exponent: float | Floats) -> float | Floats:
-        values = np.ravel(exponent)
-        steep = values[np.abs(values) > STEEPEST]
-        if len(steep):
-            raise fault(f"{steep[0]:g} given; exponents from -{STEEPEST:g} to {STEEPEST:g} allowed")
-        return exponent
+    _not_too_steep = field_validator("exponent")(not_too_steep)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: strength, exponent, cutoff."""
         index = places.elements(self)
         return Block.of(index, strength=self.strength, exponent=self.exponent, cutoff=self.cutoff)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Distance [length] and force [force; attraction +, repulsion -]."""
-        return length_and_force(block, x, element_forces)
 
     @classmethod
     def example(cls) -> tuple[PowerLaw, Floats]:

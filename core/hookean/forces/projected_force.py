@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places, units
-from hookean.forces.line_lengths import length_and_force, line, pull
-from hookean.values.columns import Directions, IndexRows, Lines, Reals
+from hookean.forces.base import Block, Floats, Places, units
+from hookean.forces.line_lengths import LineForce, apart, line, pull
+from hookean.values.columns import Directions, Lines, Reals
 from hookean.values.fields import Field, Maybe
 
 STEEPEST = 1e-6  # cosine below which a line has no force: that would be more than 1e6 times its component
@@ -47,13 +47,10 @@ def projected_force_hessian(x, indices, parameters, memory, blocks):  # type: ig
                     one = d[i] / along * parameters[e, 1 + j]
                     other = d[j] / along * parameters[e, 1 + i]
                     entry -= 0.5 * density * (one + other)
-                blocks[e, i, j] = entry
-                blocks[e, 3 + i, 3 + j] = entry
-                blocks[e, i, 3 + j] = -entry
-                blocks[e, 3 + i, j] = -entry
+                apart(blocks, e, i, j, entry)
 
 
-class ProjectedForce(Force):
+class ProjectedForce(LineForce):
     """Tensions between pairs of particles whose component along a vector stays the same: F = H d / |d . v|.
 
     d is the vector from one to the other, v of length 1 along the given vector, and H the component. With a horizontal
@@ -65,7 +62,6 @@ class ProjectedForce(Force):
     """
 
     kind: Literal["projected_force"] = "projected_force"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends must meet particles")
     component: Reals = Field(default=1.0, description="H [force], tension +, along the vector")
     direction: Directions = Field(
@@ -76,9 +72,7 @@ class ProjectedForce(Force):
     conservative: ClassVar[bool] = False
     oriented: ClassVar[bool] = True
     creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 2
     solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(projected_force_kernel)
     hessian: ClassVar[Any] = staticmethod(projected_force_hessian)
 
@@ -87,10 +81,6 @@ class ProjectedForce(Force):
         index = places.elements(self)
         along = units(self.direction)
         return Block.of(index, component=self.component, direction=along)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Length [length] and force [force; tension +]."""
-        return length_and_force(block, x, element_forces)
 
     @classmethod
     def example(cls) -> tuple[ProjectedForce, Floats]:

@@ -7,13 +7,13 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places
-from hookean.forces.pull_to_mesh import away, pull_hessian, pull_kernel, pulls, tree
-from hookean.values.columns import IndexRows, NonNegatives, Points, fault
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, OnFilm, Places
+from hookean.forces.pull_to_mesh import Pull, pull_hessian, pull_kernel, pulls, tree
+from hookean.values.columns import NonNegatives, Points, fault
+from hookean.values.fields import Field
 
 
-class PullToCurve(Force):
+class PullToCurve(Pull):
     """Particles pulled to the closest point C of a curve that itself stays where it is: E = S |C - x|^2 / 2.
 
     The curve is a polyline, open or closed; give a NURBS curve as points that divide it finely
@@ -25,20 +25,14 @@ class PullToCurve(Force):
     """
 
     kind: Literal["pull_to_curve"] = "pull_to_curve"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
-    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
     mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are pulled")
     curve: Points = Field(description="Corners of the polyline [length], at least two")
     closed: bool = Field(default=False, description="Whether the last corner is joined to the first")
     strength: NonNegatives = Field(default=1000.0, description="S [force/length]")
 
     formula: ClassVar[str] = "E = S |C - x|²/2"
-    role: ClassVar[Literal["internal", "load", "support"]] = "support"
-    creates: ClassVar[bool] = False
-    steady: ClassVar[str] = "strength"
     shared: ClassVar[tuple[str, ...]] = ("curve",)
     on_film: ClassVar[OnFilm] = "curve"
-    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_hessian)
 
@@ -54,10 +48,6 @@ class PullToCurve(Force):
         count = len(self.curve) - (0 if self.closed else 1)
         pieces = np.stack([self.curve, after, after], axis=1)[:count]
         return pulls(places.elements(self), self.strength, *tree(pieces))
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Distance to the curve [length] and the force on the particle [force]."""
-        return away(block, element_forces)
 
     @classmethod
     def example(cls) -> tuple[PullToCurve, Floats]:

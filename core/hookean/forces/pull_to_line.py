@@ -6,10 +6,10 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places, units
-from hookean.forces.pull_to_mesh import away
-from hookean.values.columns import Directions, IndexRows, NonNegatives, Points, Vectors
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, OnFilm, Places, units
+from hookean.forces.pull_to_mesh import Pull
+from hookean.values.columns import Directions, NonNegatives, Vectors
+from hookean.values.fields import Field
 
 
 def pull_to_line_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -34,7 +34,7 @@ def pull_to_line_hessian(x, indices, parameters, memory, blocks):  # type: ignor
                 blocks[e, i, j] = parameters[e, 0] * entry
 
 
-class PullToLine(Force):
+class PullToLine(Pull):
     """Particles pulled to the closest point of a straight line that stays where it is: E = k d^2 / 2.
 
     The line goes through O along t and has no ends (for one with ends, see `pull_to_curve`). Particles may slide along
@@ -42,18 +42,12 @@ class PullToLine(Force):
     """
 
     kind: Literal["pull_to_line"] = "pull_to_line"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
-    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
     origin: Vectors = Field(default=np.zeros(3), description="O, a point of the line [length], or one for each")
     direction: Directions = Field(default=np.array([0.0, 0.0, 1.0]), description="t, or one for each; any length [-]")
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
 
     formula: ClassVar[str] = "E = k (|x - O|² - (t·(x - O))²)/2"
-    role: ClassVar[Literal["internal", "load", "support"]] = "support"
-    creates: ClassVar[bool] = False
-    steady: ClassVar[str] = "strength"
     on_film: ClassVar[OnFilm] = "curve"
-    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_to_line_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_to_line_hessian)
 
@@ -62,10 +56,6 @@ class PullToLine(Force):
         index = places.elements(self)
         lead = units(self.direction)
         return Block.of(index, strength=self.strength, origin=np.atleast_2d(self.origin), direction=lead)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Distance to the line [length] and the force on the particle [force]."""
-        return away(block, element_forces)
 
     @classmethod
     def example(cls) -> tuple[PullToLine, Floats]:

@@ -176,6 +176,24 @@ def pull_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-unt
                 blocks[e, i, j] = parameters[e, 0] * entry
 
 
+class Pull(Force):
+    """Base of forces that pull particles to what stays where it is."""
+
+    kind: str = ""
+    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
+    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
+
+    role: ClassVar[Literal["internal", "load", "support"]] = "support"
+    creates: ClassVar[bool] = False
+    steady: ClassVar[str] = "strength"
+    on_film: ClassVar[OnFilm] = "spread"
+    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Distance to the target [length] and the force on the particle [force]."""
+        return away(block, element_forces)
+
+
 class ToMesh(Force):
     """Base of forces between particles and a mesh that itself stays where it is: the fields that name both."""
 

@@ -6,10 +6,10 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places, units
-from hookean.forces.pull_to_mesh import away
-from hookean.values.columns import Directions, IndexRows, NonNegatives, Points, Vectors
-from hookean.values.fields import Field, Maybe
+from hookean.forces.base import Block, Floats, Places, units
+from hookean.forces.pull_to_mesh import Pull
+from hookean.values.columns import Directions, NonNegatives, Vectors
+from hookean.values.fields import Field
 
 
 def pull_to_plane_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -32,7 +32,7 @@ def pull_to_plane_hessian(x, indices, parameters, memory, blocks):  # type: igno
                 blocks[e, i, j] = parameters[e, 0] * (parameters[e, 4 + i] * parameters[e, 4 + j])
 
 
-class PullToPlane(Force):
+class PullToPlane(Pull):
     """Particles pulled to the closest point of a plane that stays where it is: E = k d^2 / 2, d = n . (x - O).
 
     The plane goes through O, square to the normal n, and has no edge. Particles may slide along it; one rests at a
@@ -40,18 +40,11 @@ class PullToPlane(Force):
     """
 
     kind: Literal["pull_to_plane"] = "pull_to_plane"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pulled particles")
-    points: Maybe[Points] = Field(default=None, description="Coordinates of pulled particles")
     origin: Vectors = Field(default=np.zeros(3), description="O, a point of the plane [length], or one for each")
     normal: Directions = Field(default=np.array([0.0, 0.0, 1.0]), description="n, or one for each; any length [-]")
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
 
     formula: ClassVar[str] = "E = k (n·(x - O))²/2"
-    role: ClassVar[Literal["internal", "load", "support"]] = "support"
-    creates: ClassVar[bool] = False
-    steady: ClassVar[str] = "strength"
-    on_film: ClassVar[OnFilm] = "spread"
-    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(pull_to_plane_kernel)
     hessian: ClassVar[Any] = staticmethod(pull_to_plane_hessian)
 
@@ -59,10 +52,6 @@ class PullToPlane(Force):
         """Arrays for the kernel: strength, origin, unit normal."""
         index = places.elements(self)
         return Block.of(index, strength=self.strength, origin=np.atleast_2d(self.origin), normal=units(self.normal))
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Distance to the plane [length] and the force on the particle [force]."""
-        return away(block, element_forces)
 
     @classmethod
     def example(cls) -> tuple[PullToPlane, Floats]:

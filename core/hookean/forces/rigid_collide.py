@@ -49,7 +49,7 @@ from hookean.forces.convex import (
 from hookean.forces.groups import begins, following
 from hookean.forces.neighbours import listed, make_room, order_in, pairs_listed, some_pairs, tables
 from hookean.forces.rigid_body import CENTRE, POSE, SHAPE, find_pose
-from hookean.forces.sticking import ANCHOR, PARTNER, STARTED, grip, hold_on
+from hookean.forces.rigid_friction import ANCHOR, PARTNER, STARTED, grip, hold_on
 from hookean.values.columns import IndexRows, Labels, NonNegatives, Points
 from hookean.values.fields import Field, Maybe
 

@@ -134,10 +134,6 @@ class SelfWeight(Force):
             raise InputError("", f"{name} is a solid; give its thickness on the mesh, or a section along its edges")
         return material.mass_density(name) * self.thickness * self._gravity(places)
 
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """The weight on each particle [force]."""
-        return {"force": element_forces[:, 0]}
-
     @classmethod
     def example(cls) -> tuple[SelfWeight, Floats]:
         """10 N shared by three particles."""

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.forces import groups
-from hookean.forces.base import Block, Floats, Force, Places, lengths
+from hookean.forces.base import Block, Floats, Force, Places, complete, lengths
 from hookean.forces.groups import begins, following
 from hookean.forces.soapfilm import SLIVER, halves
 from hookean.values.fields import Field
@@ -76,8 +76,7 @@ class Smooth(groups.Grouped):
         """Arrays for the kernel: links of each vertex with its neighbours, k, weights."""
         from hookean.discretize.meshes import boundary, tidy_faces
 
-        faces = places.faces(self.mesh)
-        mesh = Mesh(places.x, tidy_faces(faces[(faces >= 0).all(axis=1)]))
+        mesh = Mesh(places.x, tidy_faces(complete(places.faces(self.mesh))))
         centre, other, weight = neighbours(mesh, self.weights)
         if self.vertices == "interior":
             kept = np.isin(centre, boundary(mesh)[1])

@@ -246,10 +246,6 @@ class SoftCollide(Crowd):
             own=own.reshape(-1, 3),
         )
 
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Force of all contacts on each triangle [force]."""
-        return {"force": element_forces.sum(axis=1)}
-
     @classmethod
     def gathered(
         cls, block: Block, memory: Floats, x: Floats, node: int | None

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hookean.compiled.marks import device
-from hookean.forces.base import Block, Floats, Force, Places, lengths
+from hookean.forces.base import Block, Floats, Force, Places, complete, lengths
 from hookean.forces.line_angles import unit
 from hookean.forces.mesh_edges import folds
 from hookean.values.columns import IndexRows, PointRows
@@ -104,8 +104,7 @@ class TangentIncircles(Force):
         """Arrays for the kernel: k."""
         if self.mesh is None:
             return Block.of(places.elements(self), stiffness=self.stiffness)
-        faces = places.faces(self.mesh)
-        return Block.of(folds(faces[(faces >= 0).all(axis=1)]), stiffness=self.stiffness)
+        return Block.of(folds(complete(places.faces(self.mesh))), stiffness=self.stiffness)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Distance of the points at which both circles touch the edge, positive where that of the first triangle is

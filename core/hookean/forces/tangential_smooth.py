@@ -8,7 +8,7 @@ import numpy as np
 
 from hookean.compiled.marks import device
 from hookean.forces import groups
-from hookean.forces.base import Block, Floats, Force, Places, lengths
+from hookean.forces.base import Block, Floats, Force, Places, complete, lengths
 from hookean.forces.groups import begins, following
 from hookean.forces.line_angles import cross
 from hookean.forces.soapfilm import SLIVER
@@ -120,8 +120,7 @@ class TangentialSmooth(groups.Grouped):
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: links of the corners of each vertex, k, one over their number."""
-        faces = places.faces(self.mesh)
-        index = around(faces[(faces >= 0).all(axis=1)])
+        index = around(complete(places.faces(self.mesh)))
         count = np.bincount(index[:, 0], minlength=1)[index[:, 0]]
         links = groups.links(index, index[:, 0])
         return Block.of(index, links=links, stiffness=self.stiffness, share=1.0 / count)

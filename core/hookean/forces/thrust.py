@@ -66,10 +66,6 @@ class Thrust(Force):
         """Arrays for the kernel: F."""
         return Block.of(places.elements(self), thrust=self.thrust)
 
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """The thrust of each line [force]."""
-        return {"force": element_forces.sum(axis=1)}
-
     @classmethod
     def example(cls) -> tuple[Thrust, Floats]:
         """Three lines on four particles, one of them pushed backwards."""

@@ -52,20 +52,36 @@ def image_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-un
                 blocks[e, j, 3 + i] = -k * parameters[e, 2 + 3 * i + j]
 
 
-def images(index: Ints, stiffness: float | Floats, linear: Floats, shift: ArrayLike) -> Block:
+def images(index: Ints, stiffness: Any, linear: Floats, shift: ArrayLike) -> Block:
     """The block of pairs of particles p1, p2 with p2 = A p1 + t: A (3, 3) `linear`, t (3,) or (m, 3) `shift`."""
     rows = np.broadcast_to(linear.reshape(1, 9), (len(index), 9))
     scale = float(np.linalg.norm(linear, 2))
     return Block.of(index, stiffness=stiffness, scale=scale, linear=rows, shift=np.broadcast_to(shift, (len(index), 3)))
 
 
-def distance_and_force(block: Block, element_forces: Floats) -> dict[str, Floats]:
-    """Distance of the second particle from the image of the first [length] and the force on it [force]."""
-    force, k = element_forces[:, 1], block.parameters[:, 0]
-    return {"distance": np.divide(lengths(force), k, out=np.zeros(len(k)), where=k > 0.0), "force": force}
+class Imaged(Force):
+    """Base of forces that pull the second particle of a pair to an image of the first."""
+
+    kind: str = ""
+    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
+    lines: Maybe[Lines] = Field(default=None, description="Lines between the pairs; their ends must meet particles")
+    stiffness: NonNegatives = Field(default=1.0, description="k [force/length]")
+
+    role: ClassVar[Literal["internal", "load", "support"]] = "support"
+    creates: ClassVar[bool] = False
+    arity: ClassVar[int] = 2
+    solid: ClassVar[bool] = False
+    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
+    kernel: ClassVar[Any] = staticmethod(image_kernel)
+    hessian: ClassVar[Any] = staticmethod(image_hessian)
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Distance of the second particle from the image [length] and the force on it [force]."""
+        force, k = element_forces[:, 1], block.parameters[:, 0]
+        return {"distance": np.divide(lengths(force), k, out=np.zeros(len(k)), where=k > 0.0), "force": force}
 
 
-class TransformLock(Force):
+class TransformLock(Imaged):
     """Pairs of particles a, b of which b is pulled to the image of a, and a so that its image meets b.
 
     Energy k |b - T a|^2 / 2, T an affine transformation: T p = A p + t, given as a matrix of 3 or 4 rows and 4
@@ -76,18 +92,10 @@ class TransformLock(Force):
     kind: Literal["transform_lock"] = "transform_lock"
     particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles: original and image")
     lines: Maybe[Lines] = Field(default=None, description="Lines from originals to images; their ends meet particles")
-    stiffness: NonNegatives = Field(default=1.0, description="k [force/length]")
     matrix: Table = Field(description="T, 3 or 4 rows of 4 numbers, or these in one row; the last column is a length")
 
     formula: ClassVar[str] = "E = k |b - T a|²/2"
-    role: ClassVar[Literal["internal", "load", "support"]] = "support"
-    creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 2
     shared: ClassVar[tuple[str, ...]] = ("matrix",)
-    solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
-    kernel: ClassVar[Any] = staticmethod(image_kernel)
-    hessian: ClassVar[Any] = staticmethod(image_hessian)
 
     @field_validator("matrix")
     @classmethod
@@ -102,10 +110,6 @@ class TransformLock(Force):
         """Arrays for the kernel: k, the greatest scale of A, A, t."""
         rows = np.asarray(self.matrix).reshape(-1, 4)[:3]
         return images(places.elements(self), self.stiffness, rows[:, :3], rows[:, 3])
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Distance from the image [length] and the force on the second particle [force]."""
-        return distance_and_force(block, element_forces)
 
     @classmethod
     def example(cls) -> tuple[TransformLock, Floats]:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, Places
-from hookean.forces.transform_lock import distance_and_force, image_hessian, image_kernel, images
-from hookean.values.columns import IndexRows, Lines, NonNegatives, Vectors
+from hookean.forces.base import Block, Floats, Places
+from hookean.forces.transform_lock import Imaged, images
+from hookean.values.columns import Vectors
 from hookean.values.fields import Field, Maybe
 
 
-class TranslationLock(Force):
+class TranslationLock(Imaged):
     """Pairs of particles a, b that keep the vector t between them: E = k |b - a - t|^2 / 2.
 
     By default t is the vector of the start. The pair may move, and may not turn: forces sum to zero, moments do not.
@@ -20,32 +20,18 @@ class TranslationLock(Force):
     """
 
     kind: Literal["translation_lock"] = "translation_lock"
-    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles")
-    lines: Maybe[Lines] = Field(default=None, description="Lines between the pairs; their ends must meet particles")
-    stiffness: NonNegatives = Field(default=1.0, description="k [force/length]")
     translation: Maybe[Vectors] = Field(
         default=None, description="t [length], one or one for each pair; default: the vector of the start"
     )
 
     formula: ClassVar[str] = "E = k |b - a - t|²/2"
-    role: ClassVar[Literal["internal", "load", "support"]] = "support"
-    creates: ClassVar[bool] = False
-    arity: ClassVar[int] = 2
     steady: ClassVar[str] = "stiffness"
-    solid: ClassVar[bool] = False
-    outputs: ClassVar[dict[str, str]] = {"distance": "length", "force": "force"}
-    kernel: ClassVar[Any] = staticmethod(image_kernel)
-    hessian: ClassVar[Any] = staticmethod(image_hessian)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: those of `transform_lock`, of the translation."""
         index = places.elements(self)
         start = places.x[index[:, 1]] - places.x[index[:, 0]]
         return images(index, self.stiffness, np.eye(3), start if self.translation is None else self.translation)
-
-    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Distance from where the second particle should be [length] and the force on it [force]."""
-        return distance_and_force(block, element_forces)
 
     @classmethod
     def example(cls) -> tuple[TranslationLock, Floats]:

@@ -1,4 +1,4 @@
-"""Unary force: a constant vector on each particle."""
+"""Unary force: a constant vector on each particle, and a constant moment on those with rotations."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places
+from hookean.forces.base import Block, Floats, Force, OnFilm, Places, Rider
+from hookean.forces.moments import Moments
 from hookean.values.columns import IndexRows, Points, Vectors
 from hookean.values.fields import Field, Maybe
 
@@ -24,28 +25,37 @@ def unary_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-un
 
 
 class Unary(Force):
-    """A load: a constant force vector F on each particle. Energy -F . x. Source: the chapter, 9.3."""
+    """A load: a constant force vector F on each particle. Energy -F . x. Source: the chapter, 9.3.
+
+    Particles with rotations, the ends of beams, may have a moment M beside. It keeps its direction in space, and so has
+    no energy in general. Equilibria are exact; tangents leave out its skew part, M x / 2, so that Newton steps
+    and stability are exact where all rotations are about the axis of M.
+    """
 
     kind: Literal["unary"] = "unary"
     particles: Maybe[IndexRows] = Field(default=None, description="Loaded particles")
     points: Maybe[Points] = Field(default=None, description="Coordinates of loaded particles")
     vector: Vectors = Field(description="F [force], one vector or one for each particle")
+    moment: Vectors = Field(default=np.zeros(3), description="M [force length], on particles with rotations (beams)")
 
     formula: ClassVar[str] = "E = -F·x"
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     creates: ClassVar[bool] = False
     constant: ClassVar[bool] = True
     on_film: ClassVar[OnFilm] = "spread"
-    outputs: ClassVar[dict[str, str]] = {"force": "force"}
+    outputs: ClassVar[dict[str, str]] = {"force": "force", "moment": "moment"}
+    rider: ClassVar[type[Rider] | None] = Moments
     kernel: ClassVar[Any] = staticmethod(unary_kernel)
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: the vector."""
-        return Block.of(places.elements(self), vector=np.atleast_2d(self.vector))
+        """Arrays for the kernel: the vector; and the moment, for `Moments`."""
+        index = places.elements(self)
+        moment = np.broadcast_to(self.moment, (len(index), 3))
+        return Block.of(index, vector=np.broadcast_to(self.vector, (len(index), 3)), moment=moment)
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """The load on each particle [force]."""
-        return {"force": element_forces[:, 0]}
+        """The load on each particle [force], and its moment [force length]."""
+        return {"force": element_forces[:, 0], "moment": block.parameters[:, 3:6].copy()}
 
     @classmethod
     def example(cls) -> tuple[Unary, Floats]:

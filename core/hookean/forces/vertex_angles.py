@@ -14,7 +14,7 @@ import numpy as np
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces import groups
-from hookean.forces.base import Block, Floats, Force, Ints, Places
+from hookean.forces.base import Block, Floats, Force, Ints, Places, complete
 from hookean.forces.groups import begins, following
 from hookean.forces.line_angles import PARALLEL, fill, line_angles, spread
 from hookean.values.fields import Field
@@ -112,8 +112,7 @@ class VertexAngles(groups.Grouped):
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: links of the corners of each vertex, m, angle at rest, signs."""
-        faces = places.faces(self.mesh)
-        index, sign = self.signed(around(faces[(faces >= 0).all(axis=1)]))
+        index, sign = self.signed(around(complete(places.faces(self.mesh))))
         links = groups.links(index, index[:, 0])
         return Block.of(index, links=links, strength=self.strength, rest=self.rest, sign=sign)
 

@@ -9,8 +9,8 @@ from pydantic import field_validator
 
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, OnFilm, Places, lengths, units
-from hookean.forces.power_law import NEAREST, STEEPEST
-from hookean.values.columns import Directions, IndexRows, Points, Reals, Vectors, fault
+from hookean.forces.power_law import NEAREST, not_too_steep
+from hookean.values.columns import Directions, IndexRows, Points, Reals, Vectors
 from hookean.values.fields import Field, Maybe
 
 
@@ -91,14 +91,7 @@ class Vortex(Force):
     kernel: ClassVar[Any] = staticmethod(vortex_kernel)
     hessian: ClassVar[Any] = staticmethod(vortex_hessian)
 
-    @field_validator("exponent")
-    @classmethod
-    def _not_too_steep(cls, exponent: float | Floats) -> float | Floats:
-        values = np.ravel(exponent)
-        steep = values[np.abs(values) > STEEPEST]
-        if len(steep):
-            raise fault(f"{steep[0]:g} given; exponents from -{STEEPEST:g} to {STEEPEST:g} allowed")
-        return exponent
+    _not_too_steep = field_validator("exponent")(not_too_steep)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: strength, exponent, cutoff, a point and the unit direction of the axis."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hookean.compiled import dispatch
 from hookean.forces import Block
 from hookean.linear.pattern import Pattern
-from hookean.system.system import Group
+from hookean.system.group import Group
 
 if TYPE_CHECKING:
     from hookean.system.state import State

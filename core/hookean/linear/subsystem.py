@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
+from hookean.system.group import Group
 from hookean.system.state import State
-from hookean.system.system import Group, System
+from hookean.system.system import System
 
 if TYPE_CHECKING:
     from hookean.linear.tangent_blocks import Ints

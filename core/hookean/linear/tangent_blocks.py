@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces import Block
-from hookean.system.system import Group
+from hookean.system.group import Group
 
 if TYPE_CHECKING:
     from hookean.system.state import State

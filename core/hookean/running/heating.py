@@ -38,7 +38,7 @@ def entered(system: System, state: State, found: Balance, *, driven: bool) -> tu
     """Energies of forces and of motion [force length], entered into the books of a run; None if they are unknown:
     anchors are led (`driven`), or a force has no energy."""
     led = driven or state.v[state.free == 0.0].any()
-    if led or not all(group.cls.conservative for group in system.groups):
+    if led or not all(group.conservative for group in system.groups):
         state.scratch.pop("energy", None)
         return None
     given = float(state.scratch.get("given", np.zeros(1))[0])  # by impulses, which no step has made

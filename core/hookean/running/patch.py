@@ -4,6 +4,7 @@ its particles; never the particles themselves."""
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
@@ -11,12 +12,14 @@ from numpy.typing import NDArray
 from pydantic import StrictInt, StrictStr, ValidationError, model_validator
 
 from hookean.errors import InputError
-from hookean.forces.base import PLACES
-from hookean.scene.scene import Anchor, AnyForce, Scene, Settings, first_fault
+from hookean.forces.base import PLACES, Rider
+from hookean.scene.scene import Anchor, AnyForce, Scene, Settings
+from hookean.system.group import Group, Part, fitted, ride
 from hookean.system.state import State
-from hookean.system.system import Floats, Group, Held, Part, System, hold
+from hookean.system.system import Floats, Held, System, axes_free
 from hookean.system.wiring import rewire, with_forces
 from hookean.values.columns import Indices, Model, Points, Vector, fault
+from hookean.values.faults import first_fault
 from hookean.values.fields import Field, Maybe, Parts
 
 Ints = NDArray[np.int64]
@@ -61,16 +64,6 @@ class Patch(Model):
         """Whether forces come or go."""
         return bool(self.add or self.remove)
 
-    @classmethod
-    def read(cls, value: Any) -> Patch:
-        """A patch from a dict; InputError with a pointer and one sentence."""
-        if isinstance(value, Patch):
-            return value
-        try:
-            return cls.model_validate(value)
-        except ValidationError as error:
-            raise first_fault(error) from None
-
 
 def apply(system: System, state: State, patch: Patch) -> None:
     """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Before`)."""
@@ -92,9 +85,8 @@ def retune(system: System, state: State, scene: Scene, held: list[Held]) -> None
     system.held = held
     _put_forces(system, scene)
     system.drag = scene.settings.drag
-    state.free[:] = 1.0
-    for anchor in held:
-        hold(state, anchor)
+    system.slots.fold(state)
+    system.hold(state)
     system.put_outside(state)
     state.force_scale = np.zeros(0)  # that of other parameters
     state.revision += 1
@@ -123,8 +115,12 @@ def _put_forces(system: System, scene: Scene) -> None:
 def _rows(system: System, group: Group, part: Part) -> Floats:
     """Parameters of a changed force for the elements it had; InputError if it has others now."""
     fresh = system.places.recompile(part.number, part.force)
-    met = (fresh.indices >= 0).all(axis=1)
-    indices, parameters = fresh.indices[met], fresh.parameters[met]
+    made = part.number, part.force, fresh.some(np.flatnonzero((fresh.indices >= 0).all(axis=1))), part.inputs
+    if issubclass(group.cls, Rider):
+        made = ride(system.slots, group.cls, (*made[:3], np.arange(len(made[2].indices))))
+    else:
+        made = fitted(system.slots, group.cls, made)
+    indices, parameters = made[2].indices, made[2].parameters
     if not np.array_equal(indices, group.block.indices[part.rows]):
         raise InputError(f"/forces/{part.number}", "this field sets which particles it acts on; send a new scene")
     if part.force.compiled_as is not group.cls:
@@ -137,7 +133,7 @@ def _rows(system: System, group: Group, part: Part) -> Floats:
 
 def _held(system: System, state: State, patch: Patch) -> list[Held]:
     """The anchors after the patch: moved, thinned by releases, joined by pins."""
-    held = [Held(h.number, h.particles, h.targets.copy(), h.free, h.name) for h in system.held]
+    held = [replace(h, targets=h.targets.copy()) for h in system.held]
     for i, move in enumerate(patch.move):
         anchor = named(held, move.anchor, f"/move/{i}/anchor")
         if move.shift is not None:
@@ -149,23 +145,26 @@ def _held(system: System, state: State, patch: Patch) -> list[Held]:
                 f"/move/{i}/targets",
                 f"{len(move.targets)} targets for {len(anchor.particles)} particles; give one for each",
             )
-    _exist(patch.release, len(state.x), "/release")
+    _exist(patch.release, system.slots.count, "/release")
     for h in held:
         _thin(h, patch.release)
     for i, pin in enumerate(patch.pin):
         if pin.particles is None:
             raise InputError(f"/pin/{i}", "a running system pins particles by number; give particles")
-        _exist(pin.particles, len(state.x), f"/pin/{i}/particles")
+        _exist(pin.particles, system.slots.count, f"/pin/{i}/particles")
         targets = state.x[pin.particles] if pin.targets is None else np.array(pin.targets)
-        free = np.array([0.0 if axis in pin.axes else 1.0 for axis in "xyz"])
+        free, turning = axes_free(pin.axes), axes_free(pin.rotations)
+        both = np.concatenate([free, turning])
         new = np.ones(len(pin.particles), bool)
         for h in held:
-            if (free == h.free).all() and not pin.name:
+            own = np.concatenate([h.free, h.turning])
+            if (both == own).all() and not pin.name:
                 new &= ~_lead(h, np.array(pin.particles), targets)
-            elif (free <= h.free).all():  # the pin holds all that this one held
+            elif (both <= own).all():  # the pin holds all that this one held
                 _thin(h, pin.particles)
         if new.any() or pin.name:
-            held.append(Held(-1, np.array(pin.particles)[new], np.ascontiguousarray(targets[new]), free, pin.name))
+            at, there = np.array(pin.particles)[new], np.ascontiguousarray(targets[new])
+            held.append(Held(-1, at, there, free, pin.name, turning))
     return [h for h in held if h.number >= 0 or len(h.particles)]
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hookean.errors import InputError
 from hookean.forces import KINDS
+from hookean.forces.base import Rider
 from hookean.running.loads import applied
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
@@ -50,7 +51,9 @@ class Result:
     strain), `reactions` the particles of anchors and the force (k, 3) [force] the anchors put on them; `contacts` the
     same for floors. Reactions + contacts + loads = 0. `loads` has for each load of the scene its `name`, `kind` and
     number (`force`), the `resultant` (k, 3) [force], the `centre` (k, 3) [length], through which the resultant of
-    parallel forces goes, and the `moment` (k, 3) about it [force length]. `energy` by kind and in total [force length].
+    parallel forces goes, and the `moment` (k, 3) about it [force length]. `rotations`: which `particles` have one (ends
+    of beams), and the unit `quaternions` (r, 4) w, x, y, z that turn them from the start; reactions have the `moment`
+    (k, 3) [force length] there, no rows where no particle has a rotation. `energy` by kind and in total [force length].
     """
 
     status: Status
@@ -59,6 +62,7 @@ class Result:
     geometry: list[dict[str, Any]]
     forces: list[dict[str, Any]]
     reactions: dict[str, Any]
+    rotations: dict[str, Any]
     contacts: dict[str, Any]
     loads: dict[str, Any]
     components: dict[str, Any]
@@ -184,6 +188,7 @@ class Result:
             "geometry": plain(self.geometry),
             "forces": plain(self.forces),
             "reactions": plain(self.reactions),
+            "rotations": plain(self.rotations),
             "contacts": plain(self.contacts),
             "loads": plain(self.loads),
             "components": {**plain(self.components), "position_error": _known(self.components["position_error"])},
@@ -249,10 +254,11 @@ def gather(
     return Result(
         status=status,
         message=message,
-        particles=state.x.copy(),
+        particles=state.x[: system.slots.count].copy(),
         geometry=carried(system, state),
         forces=_measures(system, state),
         reactions=_reactions(system, state, found),
+        rotations={"particles": system.slots.particles.copy(), "quaternions": system.slots.quaternions(state.x)},
         contacts=_contacts(found),
         loads=applied(system, state),
         components=_components(found, rest),
@@ -261,7 +267,7 @@ def gather(
         out_of_balance=found.out_of_balance,
         stability=rest.stability,
         stability_reason=rest.stability_reason,
-        soft_particle=rest.soft_particle,
+        soft_particle=None if rest.soft_particle is None else system.slots.owner(rest.soft_particle),
         soft_modes=rest.soft_modes,
         position_error=rest.position_error,
         position_reason=rest.position_reason,
@@ -312,17 +318,38 @@ def _measures(system: System, state: State) -> list[dict[str, Any]]:
         for part in group.parts:
             block = group.of(part)
             block.memory = memory[part.rows]
+            if issubclass(group.cls, Rider):
+                _ridden(entries[part.number], group.cls.measured(block, state.x, forces[part.rows]), part.inputs)
+                continue
             columns = part.force.measure(block, state.x, forces[part.rows])
-            entries[part.number].update(particles=block.indices, **columns)
+            entries[part.number].update(particles=group.particles[part.rows], **columns)
     return entries
 
 
+def _ridden(entry: dict[str, Any], columns: dict[str, Floats], inputs: NDArray[np.int64]) -> None:
+    """Put what a rider has of some elements of a force into its columns."""
+    for name, values in columns.items():
+        entry[name][inputs] = values
+
+
 def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
-    held = np.flatnonzero(_any(state.free == 0))
+    held = held_particles(system, state)
     names = dict.fromkeys(held.tolist(), "")
     for anchor in system.held:
         names.update(dict.fromkeys(anchor.particles.tolist(), anchor.name))
-    return {"particles": held, "force": found.reactions[held], "names": [names[p] for p in held.tolist()]}
+    return {
+        "particles": held,
+        "force": found.reactions[held],
+        "names": [names[p] for p in held.tolist()],
+        "moment": system.slots.moments(found.reactions, held),
+    }
+
+
+def held_particles(system: System, state: State) -> NDArray[np.int64]:
+    """Particles that are held on some axis, or whose rotations are, in their order."""
+    held, slots = _any(state.free == 0), system.slots
+    held[slots.particles] |= held[slots.first]
+    return np.flatnonzero(held[: slots.count])
 
 
 COMPONENTS = (
@@ -347,7 +374,7 @@ def _components(found: Balance, rest: Equilibrium) -> dict[str, Any]:
 
 
 def _contacts(found: Balance) -> dict[str, Any]:
-    touching = np.flatnonzero(_any(found.contact != 0))
+    touching = np.flatnonzero(_any(found.contact != 0))  # never slots
     return {"particles": touching, "force": found.contact[touching]}
 
 

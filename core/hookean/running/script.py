@@ -39,10 +39,10 @@ from pydantic import WithJsonSchema as Schema
 from hookean.errors import InputError
 from hookean.running.patch import Move, Patch, changed_forces, home, lead_forces, named
 from hookean.running.stream import Row, Stream
-from hookean.scene.scene import first_fault
 from hookean.system.state import State
 from hookean.system.system import Held, System
 from hookean.values.columns import Model, Points, _real, fault
+from hookean.values.faults import first_fault
 from hookean.values.fields import Field, Maybe, Parts
 
 Floats = NDArray[np.float64]
@@ -157,9 +157,9 @@ class Script(Model):
     drives: Parts[Drive] = Field(default=(), description="Columns of forces driven by a stream")
 
     @classmethod
-    def read(cls, value: Any, name: str = "") -> Script:
+    def read(cls, value: Any, name: str = "") -> Self:
         """A script from a dict, JSON or TOML text; InputError with a pointer (behind `name`) and one sentence."""
-        if isinstance(value, Script):
+        if isinstance(value, cls):
             return value
         if isinstance(value, str):
             from hookean.scene.text import parse_tables

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hookean.errors import InputError
+from hookean.running import saving
+from hookean.running.frame import Frame
 from hookean.running.history import Before, History
 from hookean.running.patch import Patch, apply
 from hookean.running.result import Result, Status, carried, gather, kinetic
 from hookean.running.run import Progress, relax_state
-from hookean.running.saving import UNREADABLE, anchors_of, arrays_of, no_simulation, opened
+from hookean.running.saving import UNREADABLE, Saved, anchors_of, no_simulation
 from hookean.running.script import Playing, Script
 from hookean.running.stream import Stream
 from hookean.running.watch import Watch, seldom
@@ -25,26 +26,11 @@ from hookean.stability import time_steps
 from hookean.system.addressed import edited_scene
 from hookean.system.balance import Balance, balance
 from hookean.system.state import State
-from hookean.system.system import compile, hold
+from hookean.system.system import compile
 
 OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
 
-Floats = NDArray[np.float64]
 Source = Stream | str | Path | Iterable[str]
-
-
-@dataclass(frozen=True)
-class Frame:
-    """What a client sees of a running simulation: positions (n, 3) [length], time [time], energies [force length]."""
-
-    particles: Floats
-    geometry: list[dict[str, object]]
-    time: float
-    iteration: int
-    revision: int
-    residual: float
-    status: Status
-    message: str
 
 
 def simulate(
@@ -245,7 +231,7 @@ class Simulation:
     @property
     def energy(self) -> float | None:
         """Of all forces and of motion now [force length]; None where a force, such as pressure, has none."""
-        if not all(group.cls.conservative for group in self.system.groups):
+        if not all(group.conservative for group in self.system.groups):
             return None
         moving = kinetic(self.system, self.state) if self.solver.physical else 0.0
         return float(self.balance.energies.sum()) + moving
@@ -262,7 +248,7 @@ class Simulation:
     def frame(self) -> Frame:
         """The state as a client sees it."""
         return Frame(
-            self.state.x.copy(),
+            self.state.x[: self.system.slots.count].copy(),
             carried(self.system, self.state),
             self.state.time,
             self.state.iteration,
@@ -358,11 +344,11 @@ class Simulation:
         from scipy.spatial import cKDTree
 
         new = Simulation(scene)
-        apart, same = cKDTree(self.system.x).query(new.system.x)
-        known = apart <= scene.weld_tolerance
+        apart, same = cKDTree(self.system.points).query(new.system.points)
+        known = np.flatnonzero(apart <= scene.weld_tolerance)
         new.state.x[known], new.state.v[known] = self.state.x[same[known]], self.state.v[same[known]]
-        for anchor in new.system.held:
-            hold(new.state, anchor)
+        new.system.slots.take_over(new.state, known, self.system.slots, self.state, same[known])
+        new.system.hold(new.state)
         new.system.put_outside(new.state)
         new.state.revision = self.state.revision + 1
         new._begin(start=True)
@@ -384,27 +370,21 @@ class Simulation:
     def save(self, path: str | Path | IO[bytes]) -> None:
         """Everything about this simulation in one .npz file: the scene, the state and the anchors as they are now. Its
         history of patches is not in it."""
-        texts = {"scene": np.array(self.scene.canonical), "status": np.array(str(self.status))}
-        if self._playing is not None:
-            texts["script"] = np.array(self._playing.script.model_dump_json())
-            texts["finished"] = np.array(self._playing.finished)
-        with opened(path, "wb") as file:
-            np.savez(file, allow_pickle=False, **texts, **self.state.arrays(), **arrays_of(self.system.held))
+        playing = self._playing
+        script = None if playing is None else playing.script.model_dump_json()
+        finished = playing is not None and playing.finished
+        saving.write(path, Saved(self.scene, script, finished, self.status, self.state.arrays()), self.system.held)
 
     @classmethod
     def load(cls, path: str | Path | IO[bytes], stream: Source | None = None) -> Simulation:
         """The simulation that `save` wrote; it goes on bit for bit, with its stream given again from the first row.
         InputError where the file is not one."""
         try:
-            with opened(path, "rb") as source, np.load(source, allow_pickle=False) as file:
-                arrays = {name: file[name] for name in file.files}
-            script = str(arrays.pop("script")) if "script" in arrays else None
-            finished = bool(arrays.pop("finished", False))
-            loaded = cls(Scene.read(str(arrays.pop("scene"))), script, stream)
-            status = Status(str(arrays.pop("status")))
-            loaded.system.held = anchors_of(arrays, loaded.system)
+            saved = saving.read(path)
+            loaded = cls(saved.scene, saved.script, stream)
+            loaded.system.held = anchors_of(saved.arrays, loaded.system)
             loaded.system.brace()
-            loaded.take_up(State.of(arrays), status)
+            loaded.take_up(State.of(saved.arrays), saved.status)
         except InputError as error:
             if stream is not None or error.pointer == "/drives":
                 raise
@@ -412,7 +392,7 @@ class Simulation:
         except UNREADABLE:
             raise no_simulation(path) from None
         if loaded._playing is not None:
-            loaded._playing.finished = finished  # what patches moved after its end stays moved
+            loaded._playing.finished = saved.finished  # what patches moved after its end stays moved
         return loaded
 
     def reset(self) -> None:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Literal, Self
 
 import numpy as np
-from pydantic import ValidationError, model_validator
+from pydantic import model_validator
 
 from hookean.errors import InputError
 from hookean.forces import KINDS
@@ -22,7 +22,7 @@ from hookean.running.history import Before
 from hookean.running.patch import Patch, apply
 from hookean.running.result import Result
 from hookean.running.run import relax_state
-from hookean.scene.scene import Scene, first_fault
+from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.system.system import System, compile
 from hookean.values.columns import Model, fault
@@ -58,16 +58,6 @@ class Sweep(Model):
         if self.count > MOST:
             raise fault(f"{self.count} items; at most {MOST} are allowed")
         return self
-
-    @classmethod
-    def read(cls, value: Any) -> Sweep:
-        """A sweep from a dict; InputError with a pointer and one sentence."""
-        if isinstance(value, Sweep):
-            return value
-        try:
-            return cls.model_validate(value)
-        except ValidationError as error:
-            raise first_fault(error) from None
 
     @property
     def _lists(self) -> list[tuple[tuple[str, ...], list[Any]]]:
@@ -152,7 +142,7 @@ def figures(result: Result, system: System) -> dict[str, Any]:
     """How a run ended and its largest numbers, in the scene's units: status, message, iterations, residual [-], energy
     [force length], largest displacement [length], largest reaction [force], and under `forces` by name (or kind) the
     smallest and the largest force of each force that has one (moment of hinges and the like), tension +."""
-    moved = np.linalg.norm(result.particles - system.x, axis=1).max(initial=0.0)
+    moved = np.linalg.norm(result.particles - system.points, axis=1).max(initial=0.0)
     reactions = np.asarray(result.reactions["force"], dtype=float).reshape(-1, 3)
     forces: dict[str, list[float | None]] = {}
     row = {

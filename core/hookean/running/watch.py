@@ -10,12 +10,12 @@ import numpy as np
 from hookean.compiled import dispatch
 from hookean.films.endings import Endings
 from hookean.running.heating import FAR, accept, cool, flown, gained, heated
+from hookean.running.messages import owner, sentence
 from hookean.running.result import Status
-from hookean.running.trial import trial
 from hookean.solvers import Solver
 from hookean.stability import time_steps
 from hookean.stability.equilibrium import Equilibrium, Stability, assess, excess, leave
-from hookean.system.balance import ALONG, Balance, balance
+from hookean.system.balance import Balance, balance
 from hookean.system.impulses import next_moment
 from hookean.system.state import State
 from hookean.system.system import System
@@ -24,7 +24,6 @@ UTMOST = 10**12  # parts of a step that is far too long
 FIRST_LOOK = 25  # iterations before the first look at the balance; later looks come at growing distances
 LEAVES = 20  # unstable equilibria that a run leaves
 TRIES = 5  # tighter tolerances that a run takes without half the position error
-BEYOND = 100.0  # sizes of the model that a load may move its particle by, before it is called too large
 PATIENCE = 20_000  # iterations without a better residual before a run counts as stalled, on top of those spent
 
 
@@ -56,7 +55,7 @@ class Watch:
         self.origin, self.driven = self.good, False
         self.fault, self.lost = "", -1  # what is not sane, and the particle
         self.flew = False  # it moved too far, and no time step is to blame
-        self._advised = ""
+        self.advised = ""
         self.collapse = ""
         self.films = Endings(physical=method.physical) if system.films is not None else None
         self._exploding(system, state, self.found, driven=False)  # notes the energy of the start
@@ -67,6 +66,10 @@ class Watch:
     def goal(self) -> float:
         """The out-of-balance force [force] that meets the tolerance."""
         return self.found.goal(self.tolerance)
+
+    def sentence(self, system: System, status: Status) -> str:
+        """The message of a run that ended with `status`."""
+        return sentence(self, system, status)
 
     def burst(self, system: System, state: State) -> int:
         """Iterations until the next look: about 50 ms of springs, or a twenty-fifth of those done."""
@@ -80,7 +83,7 @@ class Watch:
         """Judge the state as it is now; `known`: it is the one this began with, `driven` that a script moves
         it."""
         self.last, self.rest, self.back = state.iteration, None, 0
-        self.driven, self.flew, self._advised = driven, False, ""
+        self.driven, self.flew, self.advised = driven, False, ""
         if not self._sane(system, state):
             return self._burst(system, state, driven=driven)
         if self._collapsed(system, state, known=known):
@@ -146,7 +149,7 @@ class Watch:
         """Whether time steps are too long for the motion; else records which particle and force."""
         particle = heated(system, state, self.method, found, driven=driven) if self.method.physical else None
         if particle is not None:
-            self.fault = f"particle {particle}{_owner(system, particle)}"
+            self.fault = f"particle {particle}{owner(system, particle)}"
         return particle is not None
 
     def _noted(self, system: System, state: State) -> list[str]:
@@ -163,7 +166,7 @@ class Watch:
             self.method.physical and self.lost >= 0 and flown(system, state, self.found, self.lost, driven=driven)
         )
         parts = 2 * self.method.parts(system, state)
-        known = all(group.cls.conservative for group in system.groups)  # energies show whether a step is too long
+        known = all(group.conservative for group in system.groups)  # energies show whether a step is too long
         if not dividing or self.flew or parts > (UTMOST if known else time_steps.often(system, self.good, self.method)):
             return self._fallen(system)
         good = self.good.copy()
@@ -220,88 +223,13 @@ class Watch:
         bad = ~np.isfinite(state.x).all(axis=1) | ~np.isfinite(state.v).all(axis=1)
         if not bad.any():
             bad = away.max(axis=1) > FAR * self.size
-        particle = int(np.argmax(bad))
+        particle = system.slots.owner(int(np.argmax(bad)))
         others = int(np.count_nonzero(bad)) - 1
         # where many are lost at once, the forces of the first in number need not be the cause
-        also = f" and {others} other{'s' * (others > 1)}" if others else _owner(system, particle)
+        also = f" and {others} other{'s' * (others > 1)}" if others else owner(system, particle)
         self.fault = f"particle {particle}{also}"
         self.lost = particle
         return False
-
-    def sentence(self, system: System, status: Status) -> str:
-        """The message of a run that ended with `status`."""
-        found, unit = self.found, system.scene.units.force
-        left = f"residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance"
-        spent = self.last - self.first
-        if status is Status.CONVERGED:
-            rounding = " (the rounding floor)" if found.residual > self.settings.tolerance else ""
-            return f"In equilibrium after {spent} iterations: {left}{rounding}.{_caveat(self.rest)}"
-        if status is Status.DIVERGED and self.collapse:
-            return f"Collapsed after {spent} iterations; the last good shape is returned. {self.collapse}."
-        if status is Status.DIVERGED:
-            where = f" after {spent} iterations at {self.fault}" if self.fault else ""  # a state taken up knows no more
-            return f"Diverged{where}; the last good shape is returned. {self._advice(system)}."
-        if status is Status.STALLED:
-            return f"Stalled after {spent} iterations at particle {found.worst}: {left}. {self._obstacle(system)}."
-        if status is Status.CANCELLED:
-            return f"Cancelled after {spent} iterations: {left}."
-        if status is Status.TIME_LIMIT:
-            most = f"{self.settings.time_limit:g} s"
-            return f"Time limit ({most}) reached after {spent} iterations: {left}. Raise time_limit."
-        advice = _adrift(system, found) or "Raise max_iterations"
-        return f"Not in equilibrium after {spent} iterations: {left}. {advice}."
-
-    def _advice(self, system: System) -> str:
-        """What to do about a run that diverged."""
-        if not self._advised:
-            self._advised = self._blame(system)
-        return self._advised
-
-    def _blame(self, system: System) -> str:
-        if self.method.physical and not self.settings.divide_steps and not self.flew:
-            held = (0.0, 0.0) if self.driven else trial(system, self.origin, self.good, self.method, type(self))
-            return time_steps.too_long(system, self.good, self.method, held)
-        part = self.found.components.label[self.lost] if self.lost >= 0 else -1
-        if self.flew and part >= 0 and not self.found.components.supported[part]:
-            return f"Nothing supports {_called(system, self.found, part)}: add anchors"
-        if said := _adrift(system, self.found):
-            return said
-        if part >= 0 and not self.found.components.supported[part]:
-            return f"Nothing supports {_called(system, self.found, part)}: add anchors"
-        if said := _overloaded(system, self.good, self.size):
-            return said
-        if self.method.physical:
-            return (
-                "The forces grow without bound, and no time step is stable: add damping or mass, or lower the stiffness"
-            )
-        other = "" if self.method.name == "auto" else "use auto, "
-        return (
-            f"The solver {self.method.name} found no equilibrium from here: {other}check that every part is held along "
-            "all axes on which it is loaded, or lower the loads"
-        )
-
-    def _obstacle(self, system: System) -> str:
-        """Why a run stalled."""
-        if said := _adrift(system, self.found):
-            return said
-        if len(self.found.coarse):
-            part = int(self.found.coarse[0])
-            return (
-                f"Rounding alone causes a residual of {self.found.floors[part]:.1g} in "
-                f"{_called(system, self.found, part)}: stiffness or coordinates are too large for these forces. "
-                "Move the model to the origin, or lower the stiffness"
-            )
-        if self.rest is not None and self.rest.position_error is not None:
-            error, unit = self.rest.position_error, system.scene.units.length
-            return (
-                f"Forces balance, but one more exact step would still move a particle by {error:.2g} {unit}, more than "
-                "position_tolerance allows: the structure is close to an instability. Stiffen it, or raise "
-                "position_tolerance"
-            )
-        return (
-            "Common causes: springs at their cutoff, unsupported loads, a shape near snap-through. Check that "
-            "particle, or raise the tolerance"
-        )
 
 
 def _give_back(state: State, good: State) -> None:
@@ -318,59 +246,3 @@ def within(x, v, start, free, far):  # type: ignore[no-untyped-def]
             if not (np.isfinite(v[i, c]) and abs(x[i, c] - start[i, c]) * free[i, c] <= far):
                 return False
     return True
-
-
-def _caveat(rest: Equilibrium | None) -> str:
-    """A sentence on an equilibrium that is not stable."""
-    if rest is None or rest.stability not in (Stability.UNSTABLE, Stability.MECHANISM):
-        return ""
-    most = f"; particle {rest.soft_particle} moves most" if rest.soft_particle is not None else ""
-    kind = "It is unstable" if rest.stability is Stability.UNSTABLE else "It is a mechanism"
-    return f" {kind}: {rest.stability_reason}{most}."
-
-
-def _overloaded(system: System, state: State, size: float) -> str:
-    """Which load is too large for what holds it: one that would move its particle by many times the model's size."""
-    loads = np.sqrt((system.evaluate(state, only="load")[0] ** 2 * state.free).sum(axis=1))
-    reach = loads / np.maximum(system.evaluate(state)[1], 1e-300)
-    particle = int(np.argmax(reach))
-    if reach[particle] <= BEYOND * size:
-        return ""
-    force, units = _owner(system, particle, role="load"), system.scene.units
-    return (
-        f"The load of {loads[particle]:.3g} {units.force} on particle {particle}{force} is too large for the stiffness "
-        f"of its supports, which would stretch by {reach[particle]:.2g} {units.length}: lower the load, or raise the "
-        "stiffness"
-    )
-
-
-def _adrift(system: System, found: Balance) -> str:
-    """Which components carry loads that nothing supports; empty where there are none."""
-    if not len(found.adrift):
-        return ""
-    part = int(found.adrift[0])
-    more = f" (and {len(found.adrift) - 1} more such parts)" if len(found.adrift) > 1 else ""
-    load = float(np.abs(found.found[part, ALONG]).max())
-    called = _called(system, found, part)
-    count = int(np.count_nonzero(found.components.label == part))
-    carry, them = ("carries", "it") if count == 1 and not more else ("carry", "them")
-    unit = system.scene.units.force
-    return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
-
-
-def _called(system: System, found: Balance, part: int) -> str:
-    """A component in words."""
-    count = int(np.count_nonzero(found.components.label == part))
-    particle = int(found.components.first[part])
-    called = f"particle {particle}{_owner(system, particle)}"
-    return called if count == 1 else f"the {count} particles connected with {called}"
-
-
-def _owner(system: System, particle: int, *, role: str = "") -> str:
-    """The first force of a role, or of all but loads, with an element at a particle: " (of /forces/3, springs)"."""
-    for group in system.groups:
-        hit = (group.block.indices == particle).any(axis=1)
-        for part in group.parts:
-            if hit[part.rows].any() and (group.cls.role == role if role else group.cls.role != "load"):
-                return f" (of /forces/{part.number}, {group.cls.kind_name})"
-    return ""

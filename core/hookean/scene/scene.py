@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import json
-import re
 from collections.abc import Mapping
-from types import UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, Union
 
 import numpy as np
-from pydantic import ValidationError, field_validator, model_validator
+from pydantic import field_validator, model_validator
 
-from hookean.errors import InputError, several
 from hookean.forces import KINDS, Force
 from hookean.forces.floor import Floor
 from hookean.scene import load_cases
@@ -46,6 +42,8 @@ else:
 class MeshData(Model):
     """A mesh of the scene, shared by name: vertices `(n, 3)` [length] and faces of three or four vertices."""
 
+    called: ClassVar[str] = "mesh"
+
     vertices: Points = Field(description="Coordinates [length]")
     faces: Faces = Field(description="Three or four vertices each, counted from 0")
 
@@ -63,9 +61,11 @@ class MeshData(Model):
 
 
 class Anchor(Model):
-    """Particles that are held exactly, on all or some axes, where they are or at targets.
+    """Particles that are held exactly, on all or some axes, where they are or at targets, and their rotations if asked.
 
-    An anchor never moves unless it is moved; its reaction is reported. For a soft one see `anchor_spring`.
+    An anchor never moves unless it is moved; its reaction is reported. For a soft one see `anchor_spring`. Rotations
+    about held axes of space do not happen. If one or three are held, that is the orientation that remains possible; if
+    it is one of three, what the free two add up to about it depends on the path, to second order of the rotation.
     """
 
     name: str = Field(default="", description="Name under which reactions list this anchor")
@@ -74,7 +74,10 @@ class Anchor(Model):
     targets: Maybe[Points] = Field(
         default=None, description="Where to hold them [length]; default: at their start positions"
     )
-    axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = Field(default="xyz", description="Held directions")
+    axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz", ""] = Field(default="xyz", description="Held directions")
+    rotations: Literal["", "x", "y", "z", "xy", "xz", "yz", "xyz"] = Field(
+        default="", description="Axes about which particles with rotations (ends of beams) do not turn"
+    )
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
@@ -83,6 +86,8 @@ class Anchor(Model):
         count = len(self.particles if self.particles is not None else self.points)  # type: ignore[arg-type]
         if self.targets is not None and len(self.targets) != count:
             raise fault(f"{len(self.targets)} targets for {count} particles; give one for each", "/targets")
+        if not self.axes and not self.rotations:
+            raise fault("an anchor holds something: give axes or rotations", "/axes")
         return self
 
 
@@ -202,14 +207,9 @@ class Scene(Model):
     stages: Switch[Stages] = Field(default=None, description="How the form becomes elastic for its load cases")
 
     @classmethod
-    def read(cls, value: Any) -> Scene:
+    def read(cls, value: Any) -> Self:
         """A scene from a dict, or from JSON text or bytes; InputError with a pointer and one sentence."""
-        if isinstance(value, str | bytes | bytearray):
-            value = parse(value)
-        try:
-            return cls.model_validate(value)
-        except ValidationError as error:
-            raise first_fault(error) from None
+        return super().read(parse(value) if isinstance(value, str | bytes | bytearray) else value)
 
     def __repr__(self) -> str:
         return "\n".join(["Scene", *(f"  {line}" for line in self.summary())])
@@ -222,7 +222,7 @@ class Scene(Model):
 
     def summary(self) -> list[str]:
         """A few lines for a person: its particles, forces, anchors, solver and units."""
-        forces = [f"{f.name} ({_called(type(f))})" if f.name else _called(type(f)) for f in self.forces]
+        forces = [f"{f.name} ({f.called})" if f.name else f.called for f in self.forces]
         units = self.units
         return [
             f"particles: {len(self.particles)} given; points within {self.weld_tolerance:g} {units.length} become one",
@@ -262,147 +262,6 @@ class Scene(Model):
         return self
 
 
-def faults(error: ValidationError) -> list[InputError]:
-    """Every fault of a validation error as pointer and sentence."""
-    found = []
-    kinds = set(KINDS)
-    root = _model(error.title)
-    for entry in error.errors(include_url=False):
-        context = entry.get("ctx", {})
-        # pydantic names the chosen class of a union in the location; a pointer has no such step
-        place = entry["loc"]
-        steps = [str(s) for i, s in enumerate(place) if not (s in kinds and i == 2 and place[0] in ("forces", "add"))]
-        pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
-        pointer += str(context.get("at", ""))
-        sentence = str(context.get("sentence") or _sentence(entry, root))
-        found.append(InputError(pointer or "/", sentence))
-    return found
-
-
-def _sentence(entry: Any, root: type[Model] | None) -> str:
-    """An error of pydantic as a sentence: what was given, what is allowed."""
-    kind, context, given = entry["type"], entry.get("ctx", {}), _shown(entry["input"])
-    if kind in ("extra_forbidden", "missing"):
-        name, owner = str(entry["loc"][-1]), _owner(root, entry["loc"][:-1])
-        if owner is None:
-            return f"unknown field {_shown(name)}" if kind == "extra_forbidden" else f"{name} is required"
-        if kind == "missing":
-            field = owner.model_fields.get(name)
-            return f"{name} is required: {field.description}" if field and field.description else f"{name} is required"
-        return f"{_called(owner)} has no field {_shown(name)}; {_meant(name, list(owner.model_fields), 'its fields:')}"
-    if kind == "union_tag_invalid":
-        known = re.findall(r"'([^']*)'", context["expected_tags"])
-        return f"unknown kind {_shown(context['tag'])}; {_meant(context['tag'], known, 'known:', always=True)}"
-    if kind == "union_tag_not_found":
-        return f"kind is required; known: {', '.join(KINDS)}"
-    if kind == "literal_error":
-        allowed = re.findall(r"'([^']*)'", context["expected"])
-        return f"{given} given; {_meant(str(entry['input']), allowed, 'allowed:', always=True)}"
-    for rule, key, words in _LIMITS:
-        if kind == rule:
-            return f"{given} given; {words} {context[key]:g} allowed"
-    expected = next((words for start, words in _EXPECTED.items() if kind.startswith(start)), "")
-    if isinstance(entry["input"], str):
-        given = "a text"  # it may be anything, and long
-    return f"{given} given; {expected} expected" if expected else str(entry["msg"])
-
-
-_LIMITS = (
-    ("greater_than", "gt", "more than"),
-    ("greater_than_equal", "ge", "at least"),
-    ("less_than", "lt", "less than"),
-    ("less_than_equal", "le", "at most"),
-)
-_EXPECTED = {
-    "tuple_type": "a list",
-    "list_type": "a list",
-    "dict_type": "an object of names and values",
-    "model_": "an object of names and values",
-    "string_type": "a text",
-    "bool_": "true or false",
-    "int_": "a whole number",
-    "float_": "a number",
-    "finite_number": "a finite number",
-}
-
-
-def _meant(given: Any, known: list[str], introduction: str, *, always: bool = False) -> str:
-    """The nearest known name as a question, or all of them; with `always` both."""
-    near = difflib.get_close_matches(str(given).lower(), {n.lower(): n for n in known}, 1)
-    nearest = next((n for n in known if near and n.lower() == near[0]), None)
-    listed = f"{introduction} {', '.join(known)}"
-    if nearest is None:
-        return listed
-    return f"did you mean {nearest}? ({listed})" if always else f"did you mean {nearest}?"
-
-
-def _shown(value: Any) -> str:
-    """A given value as JSON, if it is short; else its type."""
-    if isinstance(value, str | int | float) or value is None:
-        text = json.dumps(value if not isinstance(value, str) else value[:60])
-        return text if len(text) <= 80 else f"{text[:60]}..."
-    if isinstance(value, dict):
-        return "an object"
-    return "a list" if isinstance(value, list | tuple) else type(value).__name__
-
-
-def _called(model: type[Model]) -> str:
-    """The name of a model in sentences: the kind of a force, else its name."""
-    if issubclass(model, Force):
-        return str(model.model_fields["kind"].default)
-    return "mesh" if model is MeshData else model.__name__.lower()
-
-
-def _model(title: str) -> type[Model] | None:
-    """The model that a validation error is about."""
-    waiting: list[type[Model]] = [Model]
-    for model in waiting:
-        if model.__name__ == title:
-            return model
-        waiting += model.__subclasses__()
-    return None
-
-
-def _owner(root: type[Model] | None, place: tuple[Any, ...]) -> type[Model] | None:
-    """The model at a location within `root`, found by the annotations of fields."""
-    hints: list[Any] = [root]
-    for step in place:
-        hints = [inner for hint in hints for inner in _inside(hint, step)]
-    found = [h for hint in hints for h in _alternatives(hint) if isinstance(h, type) and issubclass(h, Model)]
-    return found[0] if len(found) == 1 else None
-
-
-def _alternatives(hint: Any) -> list[Any]:
-    """A hint without `Annotated`, and the members of a union."""
-    if get_origin(hint) is Annotated:
-        return _alternatives(get_args(hint)[0])
-    if get_origin(hint) in (Union, UnionType):
-        return [a for member in get_args(hint) for a in _alternatives(member)]
-    return [hint]
-
-
-def _inside(hint: Any, step: Any) -> list[Any]:
-    """The hints one step of a location further in."""
-    found: list[Any] = []
-    for option in _alternatives(hint):
-        origin, inner = get_origin(option), get_args(option)
-        if origin in (tuple, list):
-            found += [a for a in inner if a is not Ellipsis]
-        elif origin is dict:
-            found.append(inner[1])
-        elif isinstance(option, type) and issubclass(option, Model):
-            if step in option.model_fields:
-                found.append(option.model_fields[step].annotation)
-            elif issubclass(option, Force) and step == _called(option):
-                found.append(option)
-    return found
-
-
-def first_fault(error: ValidationError) -> InputError:
-    """The faults of a validation error as one; its sentence is the first one and has how many more there are."""
-    return several(faults(error))
-
-
 __all__ = [
     "Anchor",
     "Anchors",
@@ -414,6 +273,4 @@ __all__ = [
     "Section",
     "Settings",
     "Units",
-    "faults",
-    "first_fault",
 ]

@@ -158,7 +158,7 @@ class Shape:
         films.across(state.x, state.free, self.left)
         self.idle = f - self.left
         self.largest = float(lengths(self.left).max(initial=0.0))
-        self._potential = all(group.cls.conservative for group in system.groups)
+        self._potential = all(group.conservative for group in system.groups)
 
     def fall(self, before: Shape) -> float:
         """By how much the energy fell since then [force length], but for the work of what does not count; where some

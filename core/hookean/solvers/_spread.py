@@ -23,8 +23,9 @@ from hookean.linear.sparse_factors import Factors
 
 if TYPE_CHECKING:
     from hookean.films import Films
+    from hookean.system.group import Group
     from hookean.system.state import State
-    from hookean.system.system import Group, System
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -3,7 +3,7 @@
 Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities, soap films
 Newton steps across them, large nets of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose
 shape by those steps may not be the lowest, unless they are too large to wait for relaxation; where relaxation is slow
-or the tolerance tight, Newton steps finish, and where those do not help, relaxation goes on.
+or the tolerance tight, Newton steps finish, and where those do not help, relaxation goes on. Beams begin with them.
 """
 
 from __future__ import annotations
@@ -136,7 +136,10 @@ class Method(Solver):
 
     def _relax_from_here(self, system: System, state: State) -> None:
         self._relaxation.start(system, state)
-        state.scratch["next_newton"] = np.array([state.iteration + FIRST_NEWTON, FIRST_NEWTON, NEWTON_STEPS])
+        first, steps = (state.iteration + FIRST_NEWTON, NEWTON_STEPS)
+        if len(system.slots):  # beams are so much stiffer along than across that relaxation takes long
+            first, steps = state.iteration, SHARP_STEPS
+        state.scratch["next_newton"] = np.array([first, FIRST_NEWTON, steps])
 
     def _by_levels(self, system: System, state: State, count: int, goal: float) -> int:
         """Newton steps by multigrid, where they lead to the shape of least energy; else relaxation from the start."""

@@ -13,6 +13,7 @@ import numpy as np
 
 from hookean.compiled import dispatch
 from hookean.compiled.dispatch import forces, impacts, supports
+from hookean.forces.rotations import fold
 from hookean.solvers.base import Solver
 from hookean.system.packing import contacts, lean
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def momentum_loop(  # type: ignore[no-untyped-def]
-    full, hits, rests, x, v, free, load, still, f, w, mass, carried, loads, count, goal
+    full, hits, rests, x, v, free, load, still, f, w, mass, carried, loads, count, goal, slots, arms
 ):  # fmt: skip
     n = x.shape[0]
     for step in range(count):
@@ -31,12 +32,13 @@ def momentum_loop(  # type: ignore[no-untyped-def]
             for c in range(3):
                 x[i, c] += v[i, c]
                 f[i, c] = load[i, c]
-        impacts(hits, x, v, v, x, v, free, 0.0)
+        fold(x, v, slots, arms)
+        impacts(hits, x[:slots], v[:slots], v[:slots], x[:slots], v[:slots], free[:slots], 0.0)
         forces(full, x, still, f, w)
         for i in range(n):
             for c in range(3):
                 f[i, c] *= free[i, c]
-        supports(rests, x, v, f, carried, free, mass, 0.0)
+        supports(rests, x[:slots], v[:slots], f[:slots], carried[:slots], free[:slots], mass[:slots], 0.0)
         worst = 0.0
         for i in range(n):
             size = f[i, 0] * f[i, 0] + f[i, 1] * f[i, 1] + f[i, 2] * f[i, 2]
@@ -54,7 +56,8 @@ def momentum_loop(  # type: ignore[no-untyped-def]
             if along < 0.0:
                 for c in range(3):
                     v[i, c] *= 0.9
-        impacts(hits, x, v, v, x, v, free, 0.0)
+        fold(x, v, slots, arms)
+        impacts(hits, x[:slots], v[:slots], v[:slots], x[:slots], v[:slots], free[:slots], 0.0)
         if worst <= goal * goal:
             return step + 1
     return count
@@ -77,7 +80,7 @@ class Method(Solver):
         own = lean(system, state, damped=False)
         done = dispatch.compiled(momentum_loop)(
             own.full, *contacts(system), state.x, state.v, state.free, own.load, still, f, w, system.mass, carried,
-            system.load_count, count, goal,
+            system.load_count, count, goal, system.slots.count, system.slots.lengths,
         )  # fmt: skip
         state.iteration += int(done)
         return int(done)

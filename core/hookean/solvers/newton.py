@@ -73,6 +73,9 @@ class Method(Solver):
             # beside what is much stiffer, or has much more energy, a full step is all that shows
             helped |= length == 1.0 and shift == 0.0 and np.abs(step).max() > ROUNDING * system.size
             now = after
+            if len(system.slots):
+                system.slots.fold(state)
+                now = Judged.of(system, state)  # moments have no energy but from the last reference on
             shift = shift * 0.1 if length == 1.0 else shift if length > 0.2 else shift * 10.0
             if shift < 1e-12:
                 shift = 0.0

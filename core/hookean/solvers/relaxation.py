@@ -14,6 +14,7 @@ import numpy as np
 from hookean.compiled import dispatch
 from hookean.compiled.dispatch import forces, impacts, supports
 from hookean.compiled.marks import device
+from hookean.forces.rotations import fold
 from hookean.solvers.base import Solver
 from hookean.system.packing import Desk, contacts, lean
 
@@ -87,7 +88,7 @@ def weigh(mass: Any, inverse: Any, w: Any, caution: Any) -> Any:
 
 
 def relaxation_loop(  # type: ignore[no-untyped-def]
-    full, packed, hits, rests, x, v, free, load, still, f, w, mass, inverse, carried, clock, count, goal
+    full, packed, hits, rests, x, v, free, load, still, f, w, mass, inverse, carried, clock, count, goal, slots, arms
 ):  # fmt: skip
     energy_before = clock[0]
     fresh = clock[1] != 0.0
@@ -103,7 +104,7 @@ def relaxation_loop(  # type: ignore[no-untyped-def]
             forces(packed, x, still, f, w)
         if contacts > 0:
             f *= free
-            supports(rests, x, v, f, carried, free, mass, 0.0)
+            supports(rests, x[:slots], v[:slots], f[:slots], carried[:slots], free[:slots], mass[:slots], 0.0)
         worst, kinetic = push(f, v, free, mass, inverse, 0.5 if fresh else 1.0)
         if worst <= goal * goal:
             v[:] = 0.0
@@ -117,8 +118,9 @@ def relaxation_loop(  # type: ignore[no-untyped-def]
         else:
             move(flat_x, flat_v)
             energy_before = kinetic
+        fold(x, v, slots, arms)
         if contacts > 0:
-            impacts(hits, x, v, v, x, v, free, 0.0)
+            impacts(hits, x[:slots], v[:slots], v[:slots], x[:slots], v[:slots], free[:slots], 0.0)
     clock[0] = energy_before
     clock[1] = 1.0 if fresh else 0.0
     return count
@@ -149,7 +151,7 @@ class Method(Solver):
         mass = state.scratch["mass"]
         done = dispatch.compiled(relaxation_loop)(
             own.full, own.packed, *contacts(system), x, v, free, load, still, f, np.zeros(n), mass, 1.0 / mass, carried,
-            state.scratch["clock"], count, goal,
+            state.scratch["clock"], count, goal, system.slots.count, system.slots.lengths,
         )  # fmt: skip
         state.x[:], state.v[:] = x[:, :3], v[:, :3]
         state.iteration += int(done)

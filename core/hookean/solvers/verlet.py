@@ -14,6 +14,7 @@ import numpy as np
 from hookean.compiled import dispatch
 from hookean.compiled.dispatch import forces, impacts, notes, supports
 from hookean.compiled.marks import device
+from hookean.forces.rotations import fold
 from hookean.solvers.base import Solver
 from hookean.stability import time_steps
 from hookean.system.impulses import give, steps_before
@@ -111,7 +112,7 @@ def take(given_x: Any, given_v: Any, given_free: Any, mass: Any, x: Any, v: Any,
 
 def verlet_loop(  # type: ignore[no-untyped-def]
     quiet, lively, hits, rests, noted, given_x, given_v, given_free, mass, x, v, free, pull, load, raw, base, w, f,
-    carried, x_before, v_before, acceleration, seen, drag, steps, contacts, known, count,
+    carried, x_before, v_before, acceleration, seen, drag, steps, contacts, known, count, slots, arms,
 ):  # fmt: skip
     # `base` is known from the end of the last call, unless somebody has moved something since
     known &= take(given_x, given_v, given_free, mass, x, v, free, pull)
@@ -133,12 +134,15 @@ def verlet_loop(  # type: ignore[no-untyped-def]
                 forces(lively, x, v, raw, w)
             if contacts:
                 only_free(flat_raw, flat_free, flat_f)
-                supports(rests, x, v, f, carried, free, mass, dt)
+                supports(rests, x[:slots], v[:slots], f[:slots], carried[:slots], free[:slots], mass[:slots], dt)
                 accelerate(flat_f, flat_v, flat_pull, drag, flat_a)
                 copy(flat_x, x_before.reshape(size))
                 copy(flat_v, v_before.reshape(size))
                 fly(flat_x, flat_v, flat_a, dt)
-                impacts(hits, x_before, v_before, acceleration, x, v, free, dt)
+                impacts(
+                    hits, x_before[:slots], v_before[:slots], acceleration[:slots], x[:slots], v[:slots], free[:slots],
+                    dt,
+                )  # fmt: skip
                 foresee(flat_v, flat_a, dt, flat_seen)
             elif changing:
                 start_step(flat_raw, flat_x, flat_v, flat_pull, drag, dt, flat_seen)
@@ -146,6 +150,7 @@ def verlet_loop(  # type: ignore[no-untyped-def]
                 turn(flat_raw, flat_x, flat_v, flat_pull, flat_load, drag, 0.0, dt)
             if resting and (contacts or changing):
                 copy(flat_load, flat_base)
+        fold(x, v, slots, arms)
         forces(quiet, x, seen, base, w)
         if changing:
             copy(flat_base, flat_raw)
@@ -153,7 +158,7 @@ def verlet_loop(  # type: ignore[no-untyped-def]
         started = not (contacts or changing or s == last)
         if contacts:
             only_free(flat_raw, flat_free, flat_f)
-            supports(rests, x, v, f, carried, free, mass, dt)
+            supports(rests, x[:slots], v[:slots], f[:slots], carried[:slots], free[:slots], mass[:slots], dt)
             end_step(flat_f, flat_v, flat_pull, drag, dt)
         elif started:
             turn(flat_raw, flat_x, flat_v, flat_pull, flat_load, drag, dt, steps[(s + 1) % steps.shape[0]])
@@ -228,7 +233,8 @@ class Method(Solver):
             load[:, :3] = self._own.load
         dispatch.compiled(verlet_loop)(
             *self._tables, state.x, state.v, state.free, system.mass, x, v, free, pull, load, raw, base, np.zeros(n),
-            *others, seen, system.drag, steps, touching, same and not new, count,
+            *others, seen, system.drag, steps, touching, same and not new, count, system.slots.count,
+            system.slots.lengths,
         )  # fmt: skip
         state.iteration += count
         covered = self.covers(system, state)

@@ -218,6 +218,7 @@ def leave(system: System, state: State, rest: Equilibrium) -> bool:
         for sign in (1.0, -1.0):
             state.x = start + sign * length * rest.mode
             if _energy(system, state)[0] < energy - noise:
+                system.slots.fold(state)
                 return True
         length *= 0.5
     state.x = start

@@ -25,8 +25,9 @@ from hookean.system.balance import Balance, extents
 
 if TYPE_CHECKING:
     from hookean.linear.tangent import Tangent
+    from hookean.system.group import Group
     from hookean.system.state import State
-    from hookean.system.system import Group, System
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -106,7 +107,7 @@ class Scaled:
         for group, blocks in elements:
             whole = own = moved[:, group.block.indices]
             if group.cls.role == "internal":
-                own = own - own[:, :, :1] * (group.block.indices < len(self.state.x))[:, :, None]
+                own = own - own[:, :, :1] * (group.block.indices < self.system.slots.count)[:, :, None]
             own = own.reshape(len(moved), len(blocks), -1)
             total += np.einsum("ame,mef,bmf->ab", own, blocks, own, optimize=True)
             sizes = np.abs(blocks).max(axis=(1, 2), initial=0.0)

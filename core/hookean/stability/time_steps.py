@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.stability.limit import Limit
+from hookean.system.group import Group, Part
 from hookean.system.state import State
-from hookean.system.system import Group, Part, System
+from hookean.system.system import System
 
 if TYPE_CHECKING:
     from hookean.solvers.base import Solver

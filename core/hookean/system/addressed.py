@@ -35,11 +35,12 @@ def addressed(system: System, scene: Scene, particles: Ints, *, points: bool = T
 
 def _numbered(system: System, scene: Scene) -> Scene:
     """The same scene with all particles of the system given: its coordinates weld onto those they welded to before."""
-    changed: dict[str, Any] = {"particles": system.x}
+    n = system.slots.count
+    changed: dict[str, Any] = {"particles": system.points}
     if isinstance(scene.masses, np.ndarray):
-        changed["masses"] = system.mass
+        changed["masses"] = system.mass[:n]
     if scene.velocities is not None:
-        changed["velocities"] = system.v
+        changed["velocities"] = system.v[:n]
     return scene.replaced(**changed)
 
 
@@ -56,6 +57,11 @@ def edited_scene(system: System) -> Scene:
     return scene.replaced(anchors=tuple(anchors))
 
 
+def axes_held(free: NDArray[np.float64]) -> Any:
+    """The axes that are held, such as "xz", by their freedom (3,), 0 where held."""
+    return "".join(axis for axis, movable in zip("xyz", free, strict=True) if not movable)
+
+
 def _same(system: System, held: Held, given: Anchor) -> bool:
     """Whether an anchor holds what it was given to hold, where it was given to hold it."""
     if given.particles is not None:
@@ -70,6 +76,6 @@ def _same(system: System, held: Held, given: Anchor) -> bool:
 def _anchor(system: System, held: Held, place: dict[str, Any]) -> Anchor:
     from hookean.scene.scene import Anchor
 
-    axes: Any = "".join(axis for axis, free in zip("xyz", held.free, strict=True) if not free)
+    axes, rotations = (axes_held(free) for free in (held.free, held.turning))
     targets = None if np.array_equal(held.targets, system.x[held.particles]) else held.targets
-    return Anchor(name=held.name, targets=targets, axes=axes, **place)
+    return Anchor(name=held.name, targets=targets, axes=axes, rotations=rotations, **place)

@@ -17,8 +17,9 @@ from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces.base import lengths
 from hookean.system.components import Components
+from hookean.system.group import Group
 from hookean.system.state import State
-from hookean.system.system import Group, System
+from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 
@@ -137,22 +138,23 @@ def extents(system: System, state: State) -> Floats:
     extent = np.zeros(len(state.x))
     for group in system.groups:
         if group.cls.role != "load" and len(group.block.indices):
-            dispatch.compiled(extent_of)(group.block.indices, state.x, extent)
+            wide = group.particles.shape[1]
+            dispatch.compiled(extent_of)(group.block.indices, wide, state.x, extent)
     return extent
 
 
-def extent_of(indices, x, extent):  # type: ignore[no-untyped-def]
-    """The largest extent along an axis of the elements at each particle."""
+def extent_of(indices, wide, x, extent):  # type: ignore[no-untyped-def]
+    """The largest extent along an axis of the elements at each particle, the first `wide` indices of each, and slot."""
     for e in range(indices.shape[0]):
-        wide = 0.0
+        size = 0.0
         for c in range(3):
             low = high = x[indices[e, 0], c]
-            for j in range(1, indices.shape[1]):
+            for j in range(1, wide):
                 low, high = min(low, x[indices[e, j], c]), max(high, x[indices[e, j], c])
-            wide = max(wide, high - low)
-        if np.isfinite(wide):
+            size = max(size, high - low)
+        if np.isfinite(size):
             for j in range(indices.shape[1]):
-                extent[indices[e, j]] = max(extent[indices[e, j]], wide)
+                extent[indices[e, j]] = max(extent[indices[e, j]], size)
 
 
 def reach_of(indices, x, reach):  # type: ignore[no-untyped-def]

@@ -16,7 +16,7 @@ from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 
 if TYPE_CHECKING:
-    from hookean.system.system import Group
+    from hookean.system.group import Group
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -113,7 +113,7 @@ def sizes(parts: Components, groups: list[Group], x: Floats) -> Floats:
     high = low.copy()
     for group in groups:
         if group.cls.role != "load" and len(group.block.indices):
-            dispatch.compiled(span)(group.block.indices, x, parts.label, low, high)
+            dispatch.compiled(span)(np.ascontiguousarray(group.particles), x, parts.label, low, high)
     found = np.empty(len(low))
     dispatch.compiled(diagonals)(low, high, x, parts.first, found)
     return found

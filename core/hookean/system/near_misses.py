@@ -27,7 +27,8 @@ from numpy.typing import NDArray
 from hookean.forces.base import lengths
 
 if TYPE_CHECKING:
-    from hookean.system.system import Part, System
+    from hookean.system.group import Part
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -51,7 +52,7 @@ def near_misses(system: System) -> list[str]:
     Of the two directions of a pair the one with the larger part of a force's particles is reported.
     """
     forces = [
-        _Force(system, part, group.block.indices[part.rows])
+        _Force(system, part, group.particles[part.rows])
         for group in system.groups
         for part in (group.parts if group.cls.role == "internal" and group.cls.solid else ())
         if part.rows.stop > part.rows.start
@@ -59,16 +60,16 @@ def near_misses(system: System) -> list[str]:
     if len(forces) < 2:
         return []
     forces.sort(key=lambda force: force.part.number)
-    owners = _Owners(forces, len(system.x))
-    spacing = _spacing(forces, len(system.x))
+    x = system.points
+    owners, spacing = _Owners(forces, len(x)), _spacing(forces, len(x))
     most = min(MOST, max(LEAST, ALTOGETHER // max(1, len(forces))))
     best: dict[tuple[int, int], _Met] = {}
     for g, force in enumerate(forces):
-        near = _compared(system.x, force, owners.beside(system.x, g, force), most)
+        near = _compared(x, force, owners.beside(x, g, force), most)
         if not len(near.rows):
             continue
         elements = force.take(near.rows)
-        near = near.take(near.distance < _reach(system.x, owners, spacing, elements, near.particles))
+        near = near.take(near.distance < _reach(x, owners, spacing, elements, near.particles))
         for met in _met(owners, force, g, near):
             pair = (min(met.f, g), max(met.f, g))
             if pair not in best or met.share > best[pair].share:
@@ -152,7 +153,7 @@ class _Force:
 
     def spheres(self) -> tuple[Floats, Floats]:
         """For each element the middle (k, 3), and how far from it a particle that lies on the element can be (k,)."""
-        x = self.system.x
+        x = self.system.points
         ends = [x.take(corner, axis=0) for corner in self.lines.T]
         corners = [x.take(corner, axis=0) for corner in self.faces.T]
         middles = 0.5 * (ends[0] + ends[1]), 0.25 * (corners[0] + corners[1] + corners[2] + corners[3])

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.films.evenness import keeper
+from hookean.system.group import Group
 from hookean.system.state import State
-from hookean.system.system import Group, System
+from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 

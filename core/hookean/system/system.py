@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.errors import InputError
-from hookean.forces import Block, Force
 from hookean.scene.load_cases import case_loads
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.system import components
+from hookean.system.cautions import cautions
 from hookean.system.components import Components
-from hookean.system.doubts import doubts
+from hookean.system.group import Group, groups_of
+from hookean.system.slots import Slots
 from hookean.system.state import State
 from hookean.system.weld import Welded
 
@@ -29,44 +30,6 @@ Ints = NDArray[np.int64]
 
 
 @dataclass
-class Part:
-    """The elements of one force inside a group: `rows` of the group's arrays, and which inputs they came from."""
-
-    number: int  # index in scene.forces, or -1 for the floor of the settings
-    force: Force
-    rows: slice
-    inputs: Ints  # element of the input of every row
-
-
-@dataclass
-class Group:
-    """All elements that share a kernel, in one block."""
-
-    cls: type[Force]
-    block: Block
-    parts: list[Part]
-
-    @property
-    def damped(self) -> bool:
-        """Whether it reads the velocities."""
-        return self.cls.damped and self._uses("damping")
-
-    @property
-    def yields(self) -> bool:
-        """Whether it may change at the end of a step because of what it remembers."""
-        return self.cls.remembers and any(self._uses(column) for column in self.cls.yielding)
-
-    def _uses(self, column: str) -> bool:
-        """Whether the parameters of this name are not all zero; yes where there are none of this name."""
-        columns = [i for i, name in enumerate(self.block.names) if name == column]
-        return not columns or any(np.count_nonzero(self.block.parameters[:, i]) for i in columns)
-
-    def of(self, part: Part) -> Block:
-        """The part's own rows, as views."""
-        return self.block.some(part.rows)
-
-
-@dataclass
 class Held:
     """One anchor of the scene, compiled: its particles, targets and axes."""
 
@@ -75,11 +38,15 @@ class Held:
     targets: Floats
     free: Floats  # (3,) 0 where held
     name: str = ""
+    turning: Floats = field(default_factory=lambda: np.ones(3))  # (3,) 0 where rotations are held
 
 
 @dataclass
 class System:
-    """Arrays of one scene: start positions `x` (n, 3), masses (n,), groups of elements, anchors."""
+    """Arrays of one scene: start positions `x` (n, 3), masses (n,), groups of elements, anchors.
+
+    Behind the rows of particles there are those of slots and references, where particles have orientations (`slots`).
+    """
 
     scene: Scene
     x: Floats
@@ -92,6 +59,7 @@ class System:
     carried: list[Ints]
     places: Welded
     load_count: Floats
+    slots: Slots
     drag: float = 0.0
     _components: Components | None = None
     _films: Films | None = field(default=None, init=False, repr=False)
@@ -107,11 +75,16 @@ class System:
         return self.places.report
 
     @property
+    def points(self) -> Floats:
+        """Start positions of the particles, without slots."""
+        return self.x[: self.slots.count]
+
+    @property
     def size(self) -> float:
         """Length scale of the model [length]: the diagonal of its start and its anchors' targets, or how far from
         the origin it is."""
         box = np.full((2, 3), -np.inf)
-        for points in (self.x, *(anchor.targets for anchor in self.held)):
+        for points in (self.points, *(anchor.targets for anchor in self.held)):
             dispatch.compiled(widen)(points, box)
         return math.hypot(*(box[0] + box[1]).tolist()) or float(np.abs(box).max()) or 1.0
 
@@ -143,13 +116,18 @@ class System:
 
     def start(self) -> State:
         """The state before the first iteration: anchors at their targets, memories empty."""
-        free = np.ones(self.x.shape)
-        state = State(x=self.x.copy(), v=self.v.copy(), free=free)
-        for anchor in self.held:
-            hold(state, anchor)
+        state = State(x=self.x.copy(), v=self.v.copy(), free=np.ones(self.x.shape))
+        self.hold(state)
         self.put_outside(state)
         state.memory = [np.zeros(g.block.memory.shape) for g in self.groups]
         return state
+
+    def hold(self, state: State) -> None:
+        """Hold what the anchors hold, where they hold it, and nothing else."""
+        state.free[:] = 1.0
+        self.slots.hold_references(state)
+        for anchor in self.held:
+            hold(state, anchor, self.slots)
 
     def components(self, state: State) -> Components:
         """The connected components of what may move."""
@@ -159,9 +137,10 @@ class System:
 
     def put_outside(self, state: State) -> None:
         """Put particles that contacts do not allow where they are onto the surface of the contact."""
+        x, v, free = (rows[: self.slots.count] for rows in (state.x, state.v, state.free))
         for group in self.contacts:
             hook = dispatch.compiled(group.cls.impact, "impact")
-            hook(state.x, state.v, state.v, state.x, state.v, state.free, 0.0, group.block.parameters)
+            hook(x, v, v, x, v, free, 0.0, group.block.parameters)
 
     def evaluate(
         self, state: State, *, only: str = "", still: bool = True, loads: Floats | None = None
@@ -185,9 +164,10 @@ class System:
     def support(self, state: State, f: Floats) -> Floats:
         """Take from `f` what contacts carry at rest; returns their force on the particles (n, 3)."""
         carried, still = np.zeros(f.shape), np.zeros(f.shape)
+        rows = [a[: self.slots.count] for a in (state.x, still, f, carried, state.free, self.mass)]
         for group in self.contacts:
             hook = dispatch.compiled(group.cls.support, "support")
-            hook(state.x, still, f, carried, state.free, self.mass, 0.0, group.block.parameters)
+            hook(*rows, 0.0, group.block.parameters)
         return carried
 
     def remember(self, state: State) -> None:
@@ -282,9 +262,13 @@ def widen(points, box):  # type: ignore[no-untyped-def]
             box[1, c] = max(box[1, c], -points[i, c])
 
 
-def hold(state: State, anchor: Held) -> None:
-    """Hold an anchor's particles at its targets, on its axes."""
+def hold(state: State, anchor: Held, slots: Slots) -> None:
+    """Hold an anchor's particles at its targets, on its axes, and their rotations as they are."""
     held, particles = anchor.free == 0, anchor.particles
+    if len(slots) and not anchor.turning.all():
+        turned = slots.rows(particles)
+        for values in (state.free, state.v):
+            values[turned[turned >= 0]] *= anchor.turning
     for values, there in ((state.free, 0.0), (state.x, anchor.targets), (state.v, 0.0)):
         values[particles] = there if held.all() else np.where(held, there, values[particles])
 
@@ -295,14 +279,14 @@ def compile(scene: Scene) -> System:
         said = f"a Scene is expected, not a {type(scene).__name__}; make one with hookean.Scene.read(...)"
         raise InputError("scene", said)
     welded = Welded(scene)
-    x = welded.x
-    if not len(x):
+    if not len(welded.x):
         raise InputError("/particles", "the scene has no particles; give particles, or a force with lines or a mesh")
     later = case_loads(scene)
     given = [(i, force) for i, force in enumerate(scene.forces) if i not in later]
     if scene.settings.floor is not None:
         given.append((-1, scene.settings.floor))
-    groups, contacts, impulses = _groups(given, welded)
+    groups, contacts, impulses, slots = groups_of(given, welded)
+    x = slots.extended(welded.x)
     load_count = np.zeros(len(x))
     for group in groups:
         if group.cls.role == "load":
@@ -315,49 +299,17 @@ def compile(scene: Scene) -> System:
         mass[: len(scene.masses)] = scene.masses
     else:
         mass[:] = scene.masses
+    mass[slots.first] = mass[slots.particles]
     held = _anchors(welded)
     welded.report.settle(strict=scene.strict, held=any(len(anchor.particles) for anchor in held))
     carried = [_carried(welded, i) for i in range(len(scene.geometry))]
     system = System(
-        scene, np.ascontiguousarray(x), v, mass, groups, contacts, impulses, held, carried, welded, load_count
+        scene, np.ascontiguousarray(x), v, mass, groups, contacts, impulses, held, carried, welded, load_count, slots
     )
     system.drag = scene.settings.drag
     system.brace()
-    system.report.warnings += doubts(system)
+    system.report.warnings += cautions(system)
     return system
-
-
-def _groups(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Group], list[Group], list[Group]]:
-    """Blocks of all forces, joined where they share a kernel; contacts and impulses apart."""
-    joined: dict[type[Force], list[tuple[int, Force, Block, Ints]]] = {}
-    for number, force in given:
-        pointer = f"/forces/{number}" if number >= 0 else "/settings/floor"
-        block = welded.block(force, pointer)
-        welded.check_force(force, pointer)
-        inputs = np.arange(len(block.indices))
-        if block.indices.min(initial=0) < 0:
-            inputs = np.flatnonzero((block.indices >= 0).all(axis=1))
-            block = block.some(inputs)
-        joined.setdefault(force.compiled_as, []).append((number, force, block, inputs))
-    groups: list[Group] = []
-    contacts: list[Group] = []
-    impulses: list[Group] = []
-    for cls, members in joined.items():
-        parts: list[Part] = []
-        start = 0
-        for number, force, block, inputs in members:
-            parts.append(Part(number, force, slice(start, start + len(block.indices)), inputs))
-            start += len(block.indices)
-        blocks = [block for _, _, block, _ in members]
-        indices = np.ascontiguousarray(np.concatenate([b.indices for b in blocks]))  # may be the scene's own
-        whole = replace(blocks[0], indices=indices, plan=[])
-        if len(blocks) > 1:
-            whole.parameters = np.concatenate([b.parameters for b in blocks])
-            whole.memory = np.concatenate([b.memory for b in blocks])
-            whole.rooms = tuple(room for b in blocks for room in b.rooms)
-        kin = groups if cls.kernel is not None else impulses if cls.momentary else contacts
-        kin.append(Group(cls, whole, parts))
-    return groups, contacts, impulses
 
 
 def _anchors(welded: Welded) -> list[Held]:
@@ -371,9 +323,14 @@ def _anchors(welded: Welded) -> list[Held]:
             welded.check(f"/anchors/{i}/points", anchor.name, points, particles, "point", "anchor")
         met = particles >= 0
         targets = welded.x[particles] if anchor.targets is None else np.asarray(anchor.targets)
-        free = np.array([0.0 if axis in anchor.axes else 1.0 for axis in "xyz"])
-        held.append(Held(i, particles[met], np.ascontiguousarray(targets[met]), free, anchor.name))
+        free, turning = (axes_free(axes) for axes in (anchor.axes, anchor.rotations))
+        held.append(Held(i, particles[met], np.ascontiguousarray(targets[met]), free, anchor.name, turning))
     return held
+
+
+def axes_free(held: str) -> Floats:
+    """0 for each axis that is held, such as "xz", and 1 for the others (3,)."""
+    return np.array([0.0 if axis in held else 1.0 for axis in "xyz"])
 
 
 def _carried(welded: Welded, number: int) -> Ints:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.system.group import Group
 from hookean.system.state import State
-from hookean.system.system import Group, System
+from hookean.system.system import System
 
 
 def spring_forces(system: System, state: State) -> NDArray[np.float64]:
@@ -15,7 +16,7 @@ def spring_forces(system: System, state: State) -> NDArray[np.float64]:
     for group, memory in zip(system.groups, state.memory, strict=True):
         if _two_ended(group):
             pulls = system.element_forces(group, state, memory)[:, 0]
-            start, end = group.block.indices.T
+            start, end = group.particles.T
             along = state.x.take(end, axis=0) - state.x.take(start, axis=0)
             length = np.sqrt(np.einsum("ij,ij->i", along, along))
             found.append(np.einsum("ij,ij->i", pulls, along) / np.where(length > 0.0, length, 1.0))
@@ -27,7 +28,7 @@ def spring_ends(system: System) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     pairs, numbers = [np.zeros((0, 2), np.int64)], [np.zeros(0, np.int64)]
     for group in system.groups:
         if _two_ended(group):
-            pairs.append(group.block.indices)
+            pairs.append(group.particles)
             number = np.zeros(len(group.block.indices), np.int64)
             for part in group.parts:
                 number[part.rows] = part.number
@@ -36,4 +37,4 @@ def spring_ends(system: System) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 
 def _two_ended(group: Group) -> bool:
-    return bool(group.cls.role == "internal" and group.block.indices.shape[1] == 2)
+    return bool(group.cls.role == "internal" and group.particles.shape[1] == 2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from hookean.errors import InputError
 from hookean.forces import Force
 from hookean.system.addressed import addressed
+from hookean.system.group import Group
+from hookean.system.slots import Slots
 from hookean.system.state import State
-from hookean.system.system import Group, System, compile
+from hookean.system.system import System, compile
 
 if TYPE_CHECKING:
     from hookean.scene.scene import Scene
@@ -30,17 +32,19 @@ class Wiring:
     impulses: list[Group]
     load_count: NDArray[np.float64]
     places: Welded
+    slots: Slots
 
     @classmethod
     def of(cls, system: System) -> Wiring:
         """That of a system now."""
-        return cls(system.groups, system.contacts, system.impulses, system.load_count, system.places)
+        return cls(system.groups, system.contacts, system.impulses, system.load_count, system.places, system.slots)
 
     def put_into(self, system: System, state: State) -> None:
         """Make this the wiring of a system; elements that were there before remember what they did."""
         if self.groups is system.groups:
             return
         state.memory = _carried(system.groups, state.memory, self.groups)
+        _turn_over(system, state, self.slots)
         system.groups, system.contacts, system.impulses = self.groups, self.contacts, self.impulses
         system.load_count, system.places = self.load_count, self.places
         system._components = system._films = None
@@ -53,7 +57,7 @@ def rewire(system: System, state: State, scene: Scene, *, added: int = 0) -> Non
         fresh = compile(scene)
     except InputError as error:
         raise _of_patch(error, len(scene.forces) - added) from None
-    if not np.array_equal(fresh.x, system.x):
+    if not np.array_equal(fresh.points, system.points):
         raise InputError("", "these forces change the particles of the scene; send the changed scene instead")
     Wiring.of(fresh).put_into(system, state)
     system.scene = scene
@@ -86,7 +90,7 @@ def _placed(system: System, scene: Scene, force: Force, pointer: str) -> tuple[S
     particles = getattr(force, "particles", None)
     if particles is None:
         return scene, force
-    count = len(system.x)
+    count = system.slots.count
     if particles.size and int(particles.max()) >= count:
         said = f"particle {int(particles.max())} does not exist; there are {count}, counted from 0"
         raise InputError(f"{pointer}/particles", said)
@@ -118,3 +122,19 @@ def _carried(old: list[Group], memory: list[NDArray[np.float64]], new: list[Grou
             if found:
                 fresh[part.rows] = found.pop(0)
     return carried
+
+
+def _turn_over(system: System, state: State, slots: Slots) -> None:
+    """Give a system and its state other slots; particles that have orientations in both keep them."""
+    if np.array_equal(slots.particles, system.slots.particles) and np.array_equal(slots.lengths, system.slots.lengths):
+        return
+    old, n = system.slots, system.slots.count
+    system.x, system.v, system.mass = (slots.extended(rows[:n]) for rows in (system.x, system.v, system.mass))
+    system.mass[n:] = 1.0
+    system.mass[slots.first] = system.mass[slots.particles]
+    before = replace(state)
+    rows = (state.x, state.v, state.free)
+    state.x, state.v, state.free = (slots.extended(a[:n], fill) for a, fill in zip(rows, (0.0, 0.0, 1.0), strict=True))
+    slots.take_over(state, slots.particles, old, before, slots.particles)
+    system.slots = slots
+    slots.hold_references(state)

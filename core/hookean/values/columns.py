@@ -7,13 +7,22 @@ import binascii
 import math
 from collections.abc import Mapping
 from itertools import chain
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BaseModel, ConfigDict, PlainSerializer, PlainValidator, WithJsonSchema
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    PlainSerializer,
+    PlainValidator,
+    ValidationError,
+    WithJsonSchema,
+)
 from pydantic_core import PydanticCustomError
 
+from hookean.values.faults import first_fault
 from hookean.values.fields import OneError
 
 if TYPE_CHECKING:
@@ -28,6 +37,8 @@ class Model(BaseModel, metaclass=OneError):
     Constructors and `model_copy` raise InputError.
     """
 
+    called: ClassVar[str] = ""  # the name of the class in sentences: its own in small letters where it gives none
+
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, arbitrary_types_allowed=True, validate_default=True
     )
@@ -36,12 +47,23 @@ class Model(BaseModel, metaclass=OneError):
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
         """The signature names types as the source does: what pydantic makes of them is pages long."""
         super().__pydantic_init_subclass__(**kwargs)
+        cls.called = cls.__dict__.get("called", cls.__name__.lower())
         written = {
             name: text for base in reversed(cls.__mro__) for name, text in vars(base).get("__annotations__", {}).items()
         }
         fields = cls.__signature__.parameters.values()
         plain = [f.replace(annotation=written.get(f.name, f.annotation)) for f in fields]
         cls.__signature__ = cls.__signature__.replace(parameters=plain)
+
+    @classmethod
+    def read(cls, value: Any) -> Self:
+        """The model of a dict, or the one given; InputError with a pointer and one sentence."""
+        if isinstance(value, cls):
+            return value
+        try:
+            return cls.model_validate(value)
+        except ValidationError as error:
+            raise first_fault(error) from None
 
     def __eq__(self, other: object) -> bool:
         return type(other) is type(self) and self.model_dump() == other.model_dump()

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import pydantic
 
+from hookean.values.faults import first_fault
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from typing import Generic, TypeVar, dataclass_transform
@@ -93,6 +95,4 @@ else:
             try:
                 return super().__call__(*given, **named)
             except pydantic.ValidationError as error:
-                from hookean.scene.scene import first_fault
-
                 raise first_fault(error) from None

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.discretize.flatten import Flat, flatten, oriented, outline, turned_along
+from hookean.discretize.geodesics import cut_along
 from hookean.discretize.meshes import as_mesh
 from hookean.discretize.outlines import offset
 from hookean.discretize.strips import strips
@@ -122,7 +123,8 @@ def cutting_patterns(
     mesh: str | None = None,
     along: Literal["warp", "weft"] = "warp",
     rows: int = 1,
-    labels: Sequence[int] | None = None,
+    labels: Sequence[int] | Ints | None = None,
+    seams: Sequence[tuple[int, int]] | None = None,
     compensation: tuple[float, float] = (0.0, 0.0),
     allowance: float = 0.0,
     edge_allowance: float | None = None,
@@ -134,6 +136,8 @@ def cutting_patterns(
     - `along`: The direction of the strips by the rows of a quad mesh; the warp of the cloth lies along the strip.
     - `rows`: Rows of faces to a strip.
     - `labels`: The strip of each face instead, numbered from 0; each strip must be a disc.
+    - `seams`: Pairs of vertices of the mesh instead: the surface is cut along the geodesics between them, which lie
+      nearly straight in flat cloth. Its faces are triangles then, and `Patterns.mesh` has the vertices of the cuts.
     - `compensation`: Strains of the cloth under prestress along warp and weft [-]; the strips are smaller by these, so
       that sewn and stretched they have the size of the form.
     - `allowance`: Width of cloth beyond seams [length]; `edge_allowance` beyond edges; default: the same.
@@ -145,6 +149,10 @@ def cutting_patterns(
     """
     shape, units = _surface(surface, mesh)
     _checked(compensation, allowance, edge_allowance, mark_every)
+    if seams is not None:
+        if labels is not None:
+            raise InputError("seams", "labels are given, too; give one of them")
+        shape, labels = cut_along(shape, seams)
     number = np.asarray(strips(shape, along, rows) if labels is None else labels, dtype=np.int64)
     if number.shape != (len(shape.faces),):
         raise InputError("labels", f"{len(number)} labels for {len(shape.faces)} faces; give one for each")

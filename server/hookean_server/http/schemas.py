@@ -150,7 +150,15 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "description": "Columns of each force of the scene, see GET /v1/forces",
             "items": _object(kind={"type": "string"}, name={"type": "string"}),
         },
-        reactions={**_AT, "description": "Forces of the anchors on their particles"},
+        reactions={**_AT, "description": "Forces and moments of the anchors on their particles"},
+        rotations={
+            "type": "object",
+            "description": "Particles that have a rotation, and their unit quaternions w, x, y, z",
+            "properties": {
+                "particles": {"type": "array", "items": {"type": "integer"}},
+                "quaternions": {"type": "array", "items": {"type": "array", "items": _NUMBER}},
+            },
+        },
         contacts={**_AT, "description": "Forces of floors on particles"},
         loads={
             "type": "object",

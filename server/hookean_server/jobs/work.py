@@ -25,12 +25,13 @@ from hookean.running.patch import Patch, apply
 from hookean.running.result import Result, Status, gather
 from hookean.running.run import bounded, relax_state
 from hookean.running.sweep import Sweep, Table, columns, figures, parameters
-from hookean.scene.scene import Scene, faults
+from hookean.scene.scene import Scene
 from hookean.scene.text import parse
 from hookean.solvers import Solver, solver
 from hookean.system.balance import balance
 from hookean.system.state import State
 from hookean.system.system import System, compile
+from hookean.values.faults import faults
 from hookean_server.http import answers
 from hookean_server.problems import faulty
 from hookean_server.workers.task import Cancelled, Done

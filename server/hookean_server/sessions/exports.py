@@ -9,6 +9,7 @@ from typing import Any
 
 from hookean.files import obj
 from hookean.running.simulation import Simulation
+from hookean.system.addressed import axes_held
 from hookean.system.two_ended import spring_ends
 from hookean_server.http import answers
 from hookean_server.lifecycle import leftovers
@@ -58,8 +59,8 @@ def topology(simulation: Simulation) -> dict[str, Any]:
             entry["faces"] = scene.meshes[item.mesh].faces
         geometry.append(entry)
     return {
-        "particles": len(system.x),
-        "start": system.x,
+        "particles": system.slots.count,
+        "start": system.points,
         "springs": pairs,
         "spring_forces": numbers,
         "forces": [{"kind": f.kind_name, "name": f.name, "role": type(f).role} for f in scene.forces],
@@ -91,7 +92,8 @@ def anchors(simulation: Simulation) -> list[dict[str, Any]]:
             "name": h.name,
             "particles": h.particles,
             "targets": h.targets,
-            "axes": "".join(axis for axis, free in zip("xyz", h.free, strict=True) if not free),
+            "axes": axes_held(h.free),
+            "rotations": axes_held(h.turning),
         }
         for h in simulation.system.held
     ]

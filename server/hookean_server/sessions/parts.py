@@ -16,12 +16,11 @@ from hookean.errors import InputError
 from hookean.files import saved as saved_file
 from hookean.files.documents import plain
 from hookean.running.patch import Patch
-from hookean.running.result import Status, kinetic
+from hookean.running.result import Status, held_particles, kinetic
 from hookean.running.simulation import Simulation
 from hookean.scene.scene import Scene
 from hookean.scene.text import parse
 from hookean.system.state import State
-from hookean.system.system import hold
 from hookean.system.two_ended import spring_forces
 from hookean_server.sessions.wire import Shown
 
@@ -111,9 +110,7 @@ def _put(simulation: Simulation, arrays: dict[str, NDArray[Any]]) -> None:
     arrays.setdefault("free", np.ones_like(arrays["x"]))
     state = State.of(arrays)
     if state.fits(simulation.state):
-        state.free[:] = 1.0  # the anchors are those of the edits, whatever the checkpoint saw
-        for anchor in simulation.system.held:
-            hold(state, anchor)
+        simulation.system.hold(state)  # the anchors are those of the edits, whatever the checkpoint saw
         simulation.take_up(state, status)
 
 
@@ -158,7 +155,7 @@ def _sets(value: dict[str, Any], patch: Patch, gesture: str) -> str:
 
 
 def _check(particles: NDArray[np.int64], simulation: Simulation) -> None:
-    count = len(simulation.state.x)
+    count = simulation.system.slots.count
     if int(particles.max()) >= count:
         raise InputError("/pin", f"particle {int(particles.max())} does not exist; there are {count}, counted from 0")
 
@@ -193,7 +190,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         "residual": simulation.balance.residual,
         "status": str(simulation.status),
         "message": simulation.message,
-        "particles": len(state.x),
+        "particles": simulation.system.slots.count,
         "undo": len(simulation.history.before),
         "redo": len(simulation.history.after),
         "energy": energy if energy is not None and math.isfinite(energy) else None,
@@ -206,9 +203,9 @@ def frame(simulation: Simulation, number: int, playing: bool) -> Shown:
     """What clients are shown of a simulation now."""
     system, state = simulation.system, simulation.state
     stand = simulation.balance
-    held = np.flatnonzero((state.free == 0).any(axis=1))
+    held = held_particles(system, state)
     moving = kinetic(system, state) if simulation.solver.physical else 0.0
     return Shown(
         number, state.revision, state.iteration, state.time, float(stand.residual), str(simulation.status), playing,
-        moving, state.x, spring_forces(system, state), stand.reactions[held],
+        moving, state.x[: system.slots.count], spring_forces(system, state), stand.reactions[held],
     )  # fmt: skip

@@ -12,9 +12,10 @@ import hookean
 from hookean.errors import InputError
 from hookean.files.documents import plain
 from hookean.running.run import bounded
-from hookean.scene.scene import Scene, faults
+from hookean.scene.scene import Scene
 from hookean.scene.text import parse
 from hookean.values.columns import Model
+from hookean.values.faults import faults
 from hookean.values.fields import Field
 from hookean_server.http import answers
 from hookean_server.problems import faulty

@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from hookean.errors import InputError
-from hookean.scene.scene import faults
+from hookean.values.faults import faults
 from hookean_server.problems import Problem, faulty, not_stored
 
 Message = tuple[dict[str, Any], bytes]

@@ -10,7 +10,8 @@ import numpy as np
 from hookean.designing.columns import Column, numbered, placed
 from hookean.designing.quantities.base import Floats, matrix, nothing
 from hookean.errors import InputError
-from hookean.system.system import Group, System
+from hookean.system.group import Group
+from hookean.system.system import System
 
 if TYPE_CHECKING:
     from hookean.designing.equilibrium import Equilibrium

@@ -20,7 +20,7 @@ FIELDS_MEANT = {
 }  # fmt: skip
 ADDED = ("divide", "divide_u", "divide_v", "on", "curve_divide")
 """Fields that recipes have beyond those of a scene."""
-TEXTS = ("name", "kind", "points", "lines", "mesh", "curve", "on", "edges", "axes", "anchor")
+TEXTS = ("name", "kind", "points", "lines", "mesh", "curve", "on", "edges", "axes", "rotations", "anchor")
 
 
 def check(recipe: Mapping[str, Any]) -> None:

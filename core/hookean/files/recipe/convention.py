@@ -13,7 +13,7 @@
 User text of an object overrides: `stiffness`, `damping`, `rest_factor`, `rest_length`, `upper_cutoff`,
 `lower_cutoff`, `plasticity`, `edges` (meshes), `divide` ("20", "10, 20"; curved curves are cut into 10 and surfaces
 into 10 x 10 without it), `load` ("0, 0, -20", or "-20" along z; on springs and meshes it acts on every particle of
-the object), `axes` of anchors ("xz").
+the object), `axes` and `rotations` of anchors ("xz").
 
 The defaults and all numbers of user text are in m, N and s, whatever the file's length unit: k = 1000 is 1000 N/m, and
 the same model in mm, m or inches gives the same forces.
@@ -61,7 +61,7 @@ NUMBERS = (
     "plasticity",
 )
 DEFAULT_DIVIDE = 10
-TEXTS = (*NUMBERS, "edges", "divide", "load", "axes")
+TEXTS = (*NUMBERS, "edges", "divide", "load", "axes", "rotations")
 """The keys of user text that mean something."""
 UNITS = {"length": "m", "force": "N", "time": "s"}
 FLOOR = "marks the height of the floor"
@@ -199,7 +199,10 @@ def _division(item: Item) -> shapes.Split | None:
 
 
 def _anchor(item: Item, reading: _Reading) -> None:
-    axes = "".join(sorted(item.text.get("axes", "xyz").strip().lower()))
+    axes, rotations = (
+        "".join(sorted(item.text.get(name, default).strip().lower()))
+        for name, default in (("axes", "xyz"), ("rotations", ""))
+    )
     named = f"id:{item.ids[-1]}"
     if shapes.is_point(item):
         selector, split = named, None
@@ -213,7 +216,8 @@ def _anchor(item: Item, reading: _Reading) -> None:
         reading.left[item] = f"{item.kind} cannot be an anchor"
         return
     name = item.name or item.layer
-    entry = reading.anchors.setdefault((name, axes, split), {"name": name, "axes": axes, "points": []})
+    held = {"name": name, "axes": axes, **({"rotations": rotations} if rotations else {})}
+    entry = reading.anchors.setdefault((name, axes, rotations, split), {**held, "points": []})
     entry["points"].append(selector)
     if split is not None:
         entry["divide"] = list(split)

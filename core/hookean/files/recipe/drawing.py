@@ -139,7 +139,7 @@ def _units(model: Model, given: Any) -> tuple[Units, float, str, str]:
     try:
         units = Units.model_validate(wanted)
     except ValidationError as error:
-        from hookean.scene.scene import first_fault
+        from hookean.values.faults import first_fault
 
         found = first_fault(error)
         raise InputError(f"/units{found.pointer}", found.sentence) from None

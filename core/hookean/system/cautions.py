@@ -1,4 +1,4 @@
-"""Doubts: what a person should know of a scene before it runs."""
+"""What a person should know of a compiled scene before it runs."""
 
 from __future__ import annotations
 
@@ -39,8 +39,9 @@ def _rests(block: Block) -> Floats:
     return np.asarray(rest[0] * rest[1]) if len(rest) == 2 else np.zeros(len(block.indices))
 
 
-def doubts(system: System) -> list[str]:
-    """Warnings before a run: springs of zero length, loads on unsupported particles, parts that nearly meet."""
+def cautions(system: System) -> list[str]:
+    """Warnings before a run: springs of zero length, loads on unsupported particles, rotations held of particles that
+    have none."""
     warnings: list[str] = []
     touched = np.zeros(len(system.x), dtype=np.int8)
     for group in system.groups:
@@ -48,8 +49,9 @@ def doubts(system: System) -> list[str]:
             continue
         for part in group.parts:
             block = group.of(part)
-            same, closed = np.zeros((2, len(block.indices)), dtype=np.int8)
-            alike, short = dispatch.compiled(coincide)(system.x, block.indices, _rests(block), touched, same, closed)
+            index = np.ascontiguousarray(group.particles[part.rows])
+            same, closed = np.zeros((2, len(index)), dtype=np.int8)
+            alike, short = dispatch.compiled(coincide)(system.x, index, _rests(block), touched, same, closed)
             if alike:
                 warnings.append(
                     f"/forces/{part.number}: {alike} of {len(same)} elements start and end at one particle (first: "
@@ -63,7 +65,12 @@ def doubts(system: System) -> list[str]:
     for anchor in system.held:
         if (anchor.free == 0).all():
             touched[anchor.particles] = 1
-    alone = np.flatnonzero((system.load_count > 0) & (touched == 0))
+        if not anchor.turning.all() and (none := system.slots.rows(anchor.particles) < 0).any():
+            warnings.append(
+                f"/anchors/{anchor.number}/rotations: particle {anchor.particles[none][0]} has no rotation to hold: no "
+                "beam ends there" + (f" (nor have {none.sum() - 1} more)" if none.sum() > 1 else "")
+            )
+    alone = np.flatnonzero(((system.load_count > 0) & (touched == 0))[: system.slots.count])
     if len(alone) and not system.contacts:
         warnings.append(
             f"particle {alone[0]} carries a load but is unsupported: no spring, other force or anchor holds it"

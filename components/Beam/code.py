@@ -1,0 +1,42 @@
+"""Beams between two particles with orientations: E = EA u^2/(2L) + (bending) + GJ phi^2/(2L).
+
+Each particle at the end of a beam has an orientation, and takes moments; beams that share one are
+rigidly joined. A beam may move and turn as far as it likes; its strains, seen from its chord, are
+small: u is the change of the chord's length and of what bending shortens it by, L (2 a^2 - a b + 2
+b^2) / 30 for the angles a, b [rad] of its ends to the chord, phi the twist [rad]. Bending about
+each axis has the energy EI/(2L) (4 a^2 + 4 a b + 4 b^2), the cubic of Euler and Bernoulli; with
+shear areas, that of Timoshenko. What a section feels: N (tension +) and Mt, which are even along a
+beam, My and Mz at its start (0) and end (1), and the shear forces Vz = (My1 - My0) / l, Vy = (Mz0 -
+Mz1) / l, as what lies behind a section acts on what lies before it, in the section's axes.
+
+The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. In
+motion a particle has an isotropic inertia, that of a rod of its mass and of the mean length of the
+beams there. Sources: Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and
+shortening); Bergou et al., "Discrete elastic rods", 2008 (twist); Przemieniecki, Theory of matrix
+structural analysis, 1968, 5.6 (shear).
+
+E = EA u^2/(2L) + EI (4a^2+4ab+4b^2)/(2L) + GJ phi^2/(2L)
+"""
+
+from hookean_client import canvas
+
+force = canvas.force(
+    ghenv,
+    "beam",
+    lines=_connection,
+    E=_E,
+    G=_G,
+    A=_A,
+    Iy=_Iy,
+    Iz=_Iz,
+    J=_J,
+    shear_y=_shear_y_,
+    shear_z=_shear_z_,
+    normal=normal_,
+    offset_start=_offset_start_,
+    offset_end=_offset_end_,
+    release_start=release_start_,
+    release_end=release_end_,
+    curvature=_curvature_,
+    name=name_,
+)

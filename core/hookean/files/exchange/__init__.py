@@ -1,0 +1,1 @@
+"""Results for other programs: DXF, VTU, Abaqus, IFC, COMPAS graphs."""

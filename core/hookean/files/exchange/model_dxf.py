@@ -1,0 +1,44 @@
+"""DXF files of a result: lines and faces on layers by their names, supports, reactions as texts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from hookean.files import dxf
+from hookean.files.exchange.structure import Structure, plain_names
+
+SUPPORTS, FACES, LOADS = "SUPPORTS", "FACES_", "LOADS"
+
+
+def write(structure: Structure, target: Path) -> None:
+    """Write a structure: a LINE for each element on the layer of its force, with its numbers as extended data; a 3DFACE
+    for each face on the layer of its mesh; a POINT on SUPPORTS for each held particle; a LINE on LOADS for each load,
+    the largest as long as a tenth of the model."""
+    layers = plain_names([group.name for group in structure.lines])
+    meshes = [f"{FACES}{name}" for name in plain_names(list(structure.faces))]
+    colours = {name: 1 + i % 6 for i, name in enumerate(layers)} | dict.fromkeys(meshes, 8)
+    made = dxf.document(target.name, str(structure.units.length), colours | {SUPPORTS: 7, LOADS: 30})
+    made.appids.add("HOOKEAN")
+    space, points = made.modelspace(), structure.points.tolist()
+    for layer, group in zip(layers, structure.lines, strict=True):
+        for row, (a, b) in enumerate(group.pairs.tolist()):
+            line = space.add_line(points[a], points[b], dxfattribs={"layer": layer})
+            said: list[tuple[int, str | float]] = [(1000, f"force={group.name}")]
+            for name, values in group.columns.items():
+                unit = structure.units.of(group.dimensions[name]) or "-"
+                said += [(1000, f"{name} [{unit}]"), (1040, float(values[row]))]
+            line.set_xdata("HOOKEAN", said)
+    for layer, faces in zip(meshes, structure.faces.values(), strict=True):
+        for face in faces.tolist():
+            space.add_3dface([points[i] for i in face], dxfattribs={"layer": layer})
+    for particle in np.flatnonzero(structure.held.any(axis=1)).tolist():
+        space.add_point(points[particle], dxfattribs={"layer": SUPPORTS})
+    sizes = np.linalg.norm(structure.loads, axis=1)
+    if sizes.max(initial=0.0) > 0.0:
+        long = 0.1 * float(np.linalg.norm(np.ptp(structure.points, axis=0))) / sizes.max()
+        for particle in np.flatnonzero(sizes).tolist():
+            tail = (structure.points[particle] - long * structure.loads[particle]).tolist()
+            space.add_line(tail, points[particle], dxfattribs={"layer": LOADS})
+    dxf.write(made, target)

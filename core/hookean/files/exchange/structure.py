@@ -1,0 +1,107 @@
+"""What other programs take of a result: points, lines with their forces, faces, supports, loads and reactions."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.forces.springs import Springs
+from hookean.running.result import Result
+from hookean.system.system import System, compile
+from hookean.values.units import Units
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The elements of one force along lines: `pairs` (m, 2) of particles, `columns` of numbers (m,) by name, with the
+    `dimensions` of these, and of springs `axial_stiffness` EA (m,) [force], 0 where there is none."""
+
+    name: str
+    kind: str
+    pairs: Ints
+    columns: dict[str, Floats]
+    dimensions: dict[str, str]
+    axial_stiffness: Floats
+
+    @property
+    def force(self) -> Floats:
+        """The force in each element (m,) [force], tension +; 0 where it has none."""
+        return self.columns.get("force", np.zeros(len(self.pairs)))
+
+
+@dataclass(frozen=True)
+class Structure:
+    """A result for other programs. All of `points` (n, 3) [length], `displacements` (n, 3) [length] from the start,
+    `loads` and `reactions` (n, 3) [force], `held` (n, 3) axes; `faces` (m, 4) of meshes by name, in particles."""
+
+    points: Floats
+    displacements: Floats
+    lines: tuple[Lines, ...]
+    faces: dict[str, Ints]
+    held: NDArray[np.bool_]
+    loads: Floats
+    reactions: Floats
+    units: Units
+
+    @classmethod
+    def of(cls, result: Result, system: System | None = None) -> Structure:
+        """The structure of a result, and of its compiled scene if that is at hand."""
+        assert result.scene is not None
+        system = system or compile(result.scene)
+        state = system.start()
+        state.x = np.array(result.particles)
+        reactions = np.zeros(state.x.shape)
+        reactions[np.asarray(result.reactions["particles"], dtype=np.int64)] = np.asarray(
+            result.reactions["force"]
+        ).reshape(-1, 3)
+        faces = {name: system.places.faces(name) for name in system.scene.meshes}
+        return cls(
+            state.x,
+            state.x - system.x,
+            tuple(_lines(system, result)),
+            {name: found[(found >= 0).all(axis=1)] for name, found in faces.items()},
+            state.free == 0,
+            system.evaluate(state, only="load")[0],
+            reactions,
+            result.units,
+        )
+
+    @property
+    def pairs(self) -> Ints:
+        """The pairs (m, 2) of all lines."""
+        return np.concatenate([np.zeros((0, 2), np.int64), *(group.pairs for group in self.lines)])
+
+
+def _lines(system: System, result: Result) -> list[Lines]:
+    found = []
+    for force, entry in zip(system.scene.forces, result.forces, strict=True):
+        pairs = np.asarray(entry.get("particles", ()))
+        if type(force).role != "internal" or pairs.ndim != 2 or pairs.shape[1] != 2:
+            continue
+        columns = {n: np.asarray(entry[n], dtype=float) for n in type(force).outputs if np.ndim(entry.get(n, 0.0)) == 1}
+        stiffness = np.zeros(len(pairs))
+        if isinstance(force, Springs) and {"length", "strain"} <= set(columns):
+            rest = columns["length"] / (1.0 + columns["strain"])
+            given = np.asarray(force.stiffness)
+            if given.ndim == 0 or len(given) == len(pairs):
+                stiffness = given * rest * np.ones(len(pairs))
+        name = force.name or force.kind_name
+        found.append(Lines(name, force.kind_name, pairs, columns, dict(type(force).outputs), stiffness))
+    return found
+
+
+def plain_names(names: list[str], longest: int = 80) -> list[str]:
+    """Names of letters, digits and underscores that begin with a letter, each once."""
+    found: list[str] = []
+    for name in names:
+        plain = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_") or "group"
+        plain = (plain if plain[0].isalpha() else f"G_{plain}")[: longest - 4].upper()
+        several = sum(other == plain or other.startswith(f"{plain}_") for other in found)
+        found.append(plain if plain not in found else f"{plain}_{several + 1}")
+    return found

@@ -1,0 +1,36 @@
+"""Which file is written by what, for other programs."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hookean.atomic_write import check_target
+
+if TYPE_CHECKING:
+    from hookean.running.result import Result
+    from hookean.system.system import System
+
+EXCHANGED = {".dxf": "model_dxf", ".vtu": "vtu", ".inp": "abaqus", ".ifc": "ifc", ".compas.json": "compas_graph"}
+"""Files for other programs by their ending, and the modules that write them."""
+
+
+def ending_of(target: Path) -> str:
+    """The ending of a file by which it is written, in lower case."""
+    name = target.name.lower()
+    return ".compas.json" if name.endswith(".compas.json") else target.suffix.lower()
+
+
+def exchange(result: Result, target: Path, system: System | None = None) -> list[str]:
+    """Write a result for another program, by the ending of a file; a sentence on what such a file does not hold.
+
+    `system` is the result's scene compiled. Raises InputError where a package is missing, the file cannot be written or
+    cannot hold the result.
+    """
+    from hookean.files.exchange.structure import Structure
+
+    check_target(target)
+    ending = ending_of(target)
+    import_module(f"hookean.files.exchange.{EXCHANGED[ending]}").write(Structure.of(result, system), target)
+    return [f"A {ending} file stores the shape, its lines and results, not the model; save the scene, too."]

@@ -1,0 +1,232 @@
+"""A report of a scene as one HTML file: its form, loads, cases, maxima and where they are, with pictures; to print."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from hookean.analysis.applied import applied
+from hookean.analysis.envelope import Envelope, Extremes
+from hookean.analysis.load_cases import CaseResult, LoadCases, load_cases
+from hookean.files import tables
+from hookean.forces import KINDS
+from hookean.pictures.picture import picture
+from hookean.running.result import Result
+from hookean.running.run import relax
+from hookean.scene.scene import Scene
+from hookean.system.state import State
+from hookean.system.system import System, compile
+
+SIZE = (1000, 750)  # pixels of a picture
+MOST = 60  # rows of a table
+
+STYLE = """
+body { font: 10.5pt/1.4 Arial, Helvetica, sans-serif; color: #111; }
+body { max-width: 190mm; margin: 10mm auto; padding: 0 5mm; }
+h1 { font-size: 20pt; margin: 0 0 4mm; } h2 { font-size: 14pt; margin: 9mm 0 2mm; border-bottom: 1px solid #999; }
+h3 { font-size: 11.5pt; margin: 5mm 0 1mm; }
+table { border-collapse: collapse; width: 100%; margin: 2mm 0; font-size: 9pt; }
+th, td { border-bottom: 1px solid #ccc; padding: 1mm 2mm; text-align: right; vertical-align: top; }
+th:first-child, td:first-child { text-align: left; } th { background: #f0f0f0; }
+img { width: 100%; border: 1px solid #ddd; } .failed { color: #b00000; font-weight: bold; }
+figure { margin: 2mm 0; break-inside: avoid; } figcaption { font-size: 9pt; color: #555; }
+tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
+@page { size: A4; margin: 15mm; } @media print { body { margin: 0; max-width: none; padding: 0; } }
+"""
+
+
+def report(
+    scene: Scene, *, title: str = "Report", limits: Mapping[str, Any] | None = None, pictures: bool = True
+) -> str:
+    """The report of a scene as the text of an HTML file.
+
+    With load cases the form is found and frozen, and all cases and combinations are solved; else the scene is relaxed.
+    `limits`, as `tables.read_limits` gives them, are checked in each case. The same scene gives the same text.
+    Raises InputError where the scene cannot be relaxed or frozen, or a limit names what it does not have.
+    """
+    cases = load_cases(scene) if scene.load_cases or scene.combinations else None
+    form = cases.form if cases is not None else relax(scene)
+    parts = [f"<h1>{escape(title)}</h1>", *_scene(scene, form), *_form(scene, form, pictures)]
+    if cases is not None:
+        parts += [*_cases(scene, cases), *_envelope(cases.envelope, form), *_reactions(cases.envelope, form)]
+        for case in cases.cases.values():
+            parts += _case(case, cases, limits, pictures)
+    elif limits is not None:
+        parts += _checks(_exceeded(limits, compile(scene), form))
+    body = "\n".join(parts)
+    head = f'<meta charset="utf-8"><title>{escape(title)}</title><style>{STYLE}</style>'
+    return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head><body>\n{body}\n</body></html>\n'
+
+
+def _scene(scene: Scene, form: Result) -> Iterator[str]:
+    units = scene.units
+    yield "<h2>Model</h2>"
+    used = f"Lengths in {units.length}, forces in {units.force}, times in {units.time}."
+    yield f"<p>{used} Digest {scene.digest[:16]}.</p>"
+    rows = []
+    for force, entry in zip(scene.forces, form.forces, strict=True):
+        count = len(np.asarray(entry["particles"])) if "particles" in entry else 0
+        role = {"internal": "element", "load": "load", "support": "support"}[KINDS[force.kind_name].role]
+        when = "" if count or role != "load" else "in load cases"
+        rows.append((force.name or force.kind_name, force.kind_name, role, count or when))
+    yield _table(("force", "kind", "role", "elements"), rows)
+
+
+def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
+    yield "<h2>Form</h2>"
+    yield f"<p>{escape(form.message)} Stability: {form.stability}.</p>"
+    if pictures:
+        yield _picture(form, "Form and forces in it")
+    system = compile(scene)
+    state = system.start()
+    state.x = np.array(form.particles)
+    yield from _loads(system, state, "Loads that act on the form")
+    yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(form))
+
+
+def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
+    for entry in result.forces:
+        for name, dimension in KINDS[entry["kind"]].outputs.items():
+            values = np.asarray(entry.get(name, ()), dtype=float)
+            sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+            if sizes.size:
+                unit = result.units.of(dimension) or "-"
+                yield entry["name"] or entry["kind"], name, float(sizes.min()), float(sizes.max()), unit
+
+
+def _loads(system: System, state: State, title: str) -> Iterator[str]:
+    found = applied(system, state)
+    if not found:
+        return
+    length, force = system.scene.units.length, system.scene.units.force
+    yield f"<h3>{escape(title)}</h3>"
+    heads = ("load", "kind", "particles", f"resultant x, y, z [{force}]", f"centre x, y, z [{length}]")
+    rows = [(a.name, a.kind, a.particles, _vector(a.resultant), _vector(a.centre)) for a in found]
+    total = sum((a.resultant for a in found), np.zeros(3))
+    yield _table(heads, [*rows, ("together", "", "", _vector(total), "")])
+
+
+def _cases(scene: Scene, cases: LoadCases) -> Iterator[str]:
+    yield "<h2>Load cases and combinations</h2>"
+    rows = []
+    for name, case in scene.load_cases.items():
+        rows.append((name, f"{case.factor:g} x ({', '.join(case.forces)})"))
+    for name, factors in scene.combinations.items():
+        rows.append((name, " + ".join(f"{factor:g} x {key}" for key, factor in factors.items())))
+    yield _table(("case", "loads"), rows)
+    if cases.frozen.notes:
+        yield "".join(f"<p>{escape(note)}</p>" for note in cases.frozen.notes)
+    unit = scene.units.length
+    heads = ("case", "status", "stability", f"largest displacement [{unit}]", "at particle", "slack elements")
+    found = []
+    for name, solved in cases.cases.items():
+        far = np.linalg.norm(solved.displacements, axis=1)
+        at = int(far.argmax()) if len(far) else 0
+        result = solved.result
+        found.append((name, result.status, result.stability, float(far.max(initial=0.0)), at, solved.slack_count))
+    yield _table(heads, found)
+
+
+def _envelope(found: Envelope, form: Result) -> Iterator[str]:
+    yield "<h2>Maxima of all cases, and where they are</h2>"
+    unit, rows = found.units, list[tuple[Any, ...]]()
+    x, y, z = form.particles[int(found.displacement.largest.argmax())].tolist()
+    at = int(found.displacement.largest.argmax())
+    rows.append(("displacement", "largest", *_extreme(found, found.displacement, at, "largest"), unit.length,
+                 f"particle {at}", _vector((x, y, z))))  # fmt: skip
+    for entry, columns in zip(form.forces, found.forces, strict=True):
+        for name, extremes in columns["columns"].items():
+            if KINDS[columns["kind"]].role == "load" or not len(extremes.largest):
+                continue
+            called = f"{columns['name'] or columns['kind']} {name}"
+            dimension = unit.of(KINDS[columns["kind"]].outputs[name]) or "-"
+            spots = {"largest": int(extremes.largest.argmax()), "smallest": int(extremes.smallest.argmin())}
+            for which, spot in spots.items():
+                value = _extreme(found, extremes, spot, which)
+                rows.append((called, which, *value, dimension, f"element {spot}", _middle(entry, spot, form)))
+    heads = ("quantity", "extreme", "value", "in case", "unit", "at", f"x, y, z of the form [{unit.length}]")
+    yield _table(heads, rows)
+
+
+def _extreme(found: Envelope, extremes: Extremes, at: int, which: str) -> tuple[float, str]:
+    values, cases = getattr(extremes, which), getattr(extremes, f"{which}_case")
+    return float(values[at]), found.cases[int(cases[at])]
+
+
+def _middle(entry: Mapping[str, Any], element: int, form: Result) -> str:
+    particles = np.asarray(entry.get("particles", ()), dtype=np.int64)
+    if element >= len(particles):
+        return ""
+    return _vector(form.particles[np.atleast_1d(particles[element])].mean(axis=0))
+
+
+def _reactions(found: Envelope, form: Result) -> Iterator[str]:
+    if not len(found.particles):
+        return
+    length, force = found.units.length, found.units.force
+    yield "<h2>Reactions</h2>"
+    order = np.argsort(-found.reaction.largest, kind="stable")[:MOST]
+    rows = [
+        (
+            f"particle {found.particles[i]}", _vector(form.particles[found.particles[i]]),
+            float(found.reaction.largest[i]), found.cases[found.reaction.largest_case[i]],
+        )
+        for i in order.tolist()
+    ]  # fmt: skip
+    yield _table(("support", f"x, y, z [{length}]", f"largest reaction [{force}]", "in case"), rows)
+    if len(found.particles) > MOST:
+        yield f"<p>The {MOST} largest of {len(found.particles)} are shown.</p>"
+
+
+def _case(case: CaseResult, cases: LoadCases, limits: Mapping[str, Any] | None, pictures: bool) -> Iterator[str]:
+    yield f"<h2>Case {escape(case.name)}</h2>"
+    given = " + ".join(f"{factor:g} x {name}" for name, factor in case.factors.items())
+    yield f"<p>{escape(given)}. {escape(case.result.message)} Stability: {case.result.stability}.</p>"
+    assert case.result.scene is not None
+    system, state = cases.frozen.system(case.result.scene)
+    if pictures:
+        yield _picture(case.result, f"Shape and forces under {case.name}")
+    state.x = np.array(case.result.particles)
+    yield from _loads(system, state, "Loads")
+    total = np.asarray(case.result.reactions["force"]).reshape(-1, 3).sum(axis=0)
+    yield f"<p>Reactions together: {_vector(total)} {case.result.units.force}.</p>"
+    yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(case.result))
+    if limits is not None:
+        system.x = cases.frozen.particles  # displacements are those from the form
+        yield from _checks(_exceeded(limits, system, case.result))
+
+
+def _exceeded(limits: Mapping[str, Any], system: System, result: Result) -> list[str]:
+    return tables.exceeded(limits, tables.sections(system, result), system, result, source="the scene")
+
+
+def _checks(exceeded: Sequence[str]) -> Iterator[str]:
+    yield "<h3>Checks</h3>"
+    if not exceeded:
+        yield "<p>All limits are met.</p>"
+    for sentence in exceeded:
+        yield f'<p class="failed">{escape(sentence)}</p>'
+
+
+def _picture(result: Result, caption: str) -> str:
+    data = base64.b64encode(picture(result, title=caption, size=SIZE).png).decode()
+    return f'<figure><img alt="{escape(caption)}" src="data:image/png;base64,{data}"></figure>'
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+    top = "".join(f"<th>{escape(head)}</th>" for head in heads)
+    body = "".join("<tr>" + "".join(f"<td>{escape(_cell(v))}</td>" for v in row) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def _vector(values: Any) -> str:
+    size = float(np.abs(np.asarray(values)).max(initial=0.0))
+    return ", ".join(f"{0.0 if abs(v) < 1e-9 * size else v:.5g}" for v in np.asarray(values).tolist())

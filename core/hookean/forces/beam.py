@@ -1,0 +1,203 @@
+"""Beam: rods whose ends have orientations: normal force, bending about two axes, torsion, and shear if asked for."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from hookean.compiled import dispatch
+from hookean.compiled.marks import device
+from hookean.errors import InputError
+from hookean.forces.base import Block, Floats, Force, Places
+from hookean.forces.beam_element import (
+    CHORD,
+    MOMENTS,
+    NORMAL,
+    ROOM,
+    TORQUE,
+    bound,
+    element,
+    energy_of,
+)
+from hookean.forces.beam_frames import drawn_frames, straight_frames
+from hookean.values.columns import Directions, IndexRows, Lines, NonNegatives, Positives, Vectors
+from hookean.values.fields import Field, Maybe
+
+Axes = Literal["", "x", "y", "z", "xy", "xz", "yz", "xyz"]
+
+
+@device
+def take(x: Any, indices: Any, e: Any, p: Any) -> None:
+    """The rows of an element, as `beam_element` has them."""
+    for j in range(6):
+        i = np.uint64(indices[e, j])
+        p[j, 0], p[j, 1], p[j, 2] = x[i, 0], x[i, 1], x[i, 2]
+
+
+def beam_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
+    energy = 0.0
+    p, room = np.zeros((6, 3)), np.zeros(ROOM + 20)
+    q, s, g = room[ROOM : ROOM + 4], room[ROOM + 4 : ROOM + 8], room[ROOM + 8 :]
+    for e in range(indices.shape[0]):
+        take(x, indices, e, p)
+        if not element(p, parameters, e, room, q, s, g):
+            continue
+        energy += energy_of(parameters, e, room)
+        for j in range(4):
+            i = np.uint64(indices[e, j])
+            f[i, 0] -= g[3 * j]
+            f[i, 1] -= g[3 * j + 1]
+            f[i, 2] -= g[3 * j + 2]
+        bound(parameters, e, room, w, indices)
+    return energy
+
+
+def beam_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    step = 1e-40
+    p, room = np.zeros((6, 3), np.complex128), np.zeros(ROOM + 20, np.complex128)
+    q, s, g = room[ROOM : ROOM + 4], room[ROOM + 4 : ROOM + 8], room[ROOM + 8 :]
+    for e in range(indices.shape[0]):
+        take(x, indices, e, p)
+        for k in range(12):
+            p[k // 3, k % 3] += step * 1j
+            if element(p, parameters, e, room, q, s, g):
+                for j in range(12):
+                    blocks[e, j, k] = g[j].imag / step
+            p[k // 3, k % 3] = p[k // 3, k % 3].real
+        for k in range(12):
+            for j in range(k):
+                mean = 0.5 * (blocks[e, j, k] + blocks[e, k, j])
+                blocks[e, j, k], blocks[e, k, j] = mean, mean
+
+
+def beam_stresses(x, indices, parameters, found):  # type: ignore[no-untyped-def]
+    """Of each element the chord, N, torque, the four end moments y z y z, and the energy; zeros where it has none."""
+    p, room = np.zeros((6, 3)), np.zeros(ROOM + 20)
+    q, s, g = room[ROOM : ROOM + 4], room[ROOM + 4 : ROOM + 8], room[ROOM + 8 :]
+    for e in range(indices.shape[0]):
+        take(x, indices, e, p)
+        if element(p, parameters, e, room, q, s, g):
+            found[e, 0], found[e, 1], found[e, 2] = room[CHORD], room[NORMAL], room[TORQUE]
+            for i in range(4):
+                found[e, 3 + i] = room[MOMENTS + i]
+            found[e, 7] = energy_of(parameters, e, room)
+
+
+class Beam(Force):
+    """Beams between two particles with orientations: E = EA u^2/(2L) + (bending) + GJ phi^2/(2L).
+
+    Each particle at the end of a beam has an orientation, and takes moments; beams that share one are rigidly joined.
+    A beam may move and turn as far as it likes; its strains, seen from its chord, are small: u is the change of the
+    chord's length and of what bending shortens it by, L (2 a^2 - a b + 2 b^2) / 30 for the angles a, b [rad] of its
+    ends to the chord, phi the twist [rad]. Bending about each axis has the energy EI/(2L) (4 a^2 + 4 a b + 4 b^2), the
+    cubic of Euler and Bernoulli; with shear areas, that of Timoshenko. What a section feels: N (tension +) and Mt,
+    which are even along a beam, My and Mz at its start (0) and end (1), and the shear forces Vz = (My1 - My0) / l,
+    Vy = (Mz0 - Mz1) / l, as what lies behind a section acts on what lies before it, in the section's axes.
+
+    The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. In motion a
+    particle has an isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
+    Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and shortening); Bergou et al., "Discrete
+    elastic rods", 2008 (twist); Przemieniecki, Theory of matrix structural analysis, 1968, 5.6 (shear).
+    """
+
+    kind: Literal["beam"] = "beam"
+    particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles, start and end")
+    lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
+    E: Positives = Field(description="Young's modulus [force/length^2]")
+    G: Positives = Field(description="Shear modulus [force/length^2]")
+    A: Positives = Field(description="Area of the section [length^2]")
+    Iy: Positives = Field(description="Second moment of area about the section's axis y [length^4]")
+    Iz: Positives = Field(description="Second moment of area about the section's axis z [length^4]")
+    J: Positives = Field(description="Torsion constant [length^4]")
+    shear_y: NonNegatives = Field(default=0.0, description="Shear area along y [length^2]; 0: no shear deformation")
+    shear_z: NonNegatives = Field(default=0.0, description="Shear area along z [length^2]; 0: no shear deformation")
+    normal: Maybe[Directions] = Field(
+        default=None, description="Direction [-] near the section's axis z; default: z, or x for vertical beams"
+    )
+    offset_start: Vectors = Field(
+        default=np.zeros(3), description="From the first particle to where the beam starts [length]; rigid"
+    )
+    offset_end: Vectors = Field(
+        default=np.zeros(3), description="From the second particle to where the beam ends [length]; rigid"
+    )
+    release_start: Axes = Field(default="", description="Axes of the section about which the start is hinged")
+    release_end: Axes = Field(default="", description="Axes of the section about which the end is hinged")
+    curvature: Literal["drawn", "straight"] = Field(
+        default="drawn", description="Shape without stress: as drawn, or straight, so that rows of beams are bent in"
+    )
+
+    formula: ClassVar[str] = "E = EA u²/(2L) + EI (4a²+4ab+4b²)/(2L) + GJ φ²/(2L)"
+    arity: ClassVar[int] = 2
+    turns: ClassVar[bool] = True
+    shared: ClassVar[tuple[str, ...]] = ("release_start", "release_end", "curvature")
+    outputs: ClassVar[dict[str, str]] = {
+        "length": "length", "force": "force", "Vy": "force", "Vz": "force", "Mt": "moment", "My0": "moment",
+        "Mz0": "moment", "My1": "moment", "Mz1": "moment", "energy": "energy",
+    }  # fmt: skip
+    kernel: ClassVar[Any] = staticmethod(beam_kernel)
+    hessian: ClassVar[Any] = staticmethod(beam_hessian)
+
+    def compile(self, places: Places) -> Block:
+        """Arrays for the kernel, see `beam_element`. InputError for a beam without length, or along its normal."""
+        index = places.elements(self)
+        chords = places.x[index[:, 1]] + self.offset_end - places.x[index[:, 0]] - self.offset_start
+        length = np.sqrt((chords**2).sum(axis=1))
+        if (length <= 0.0).any():
+            raise InputError("", f"beam {int(np.argmin(length))} has no length; move its ends apart")
+        frames = drawn_frames(chords, self.normal)
+        if not np.isfinite(frames).all():
+            at = int(np.argmax(~np.isfinite(frames).all(axis=(1, 2))))
+            raise InputError("", f"the normal is along beam {at}; give a direction across it")
+        start, end = (frames, frames) if self.curvature == "drawn" else straight_frames(index, chords, frames)
+        bending, bowing = zip(*(self._plane(axis, length) for axis in "yz"), strict=True)
+        return Block.of(
+            index,
+            arm=np.ones((len(index), 2)),
+            length=length,
+            A=self.E * self.A / length,
+            J=self.G * self.J / length * (0.0 if "x" in self.release_start + self.release_end else 1.0),
+            Iy=bending[0],
+            Iz=bending[1],
+            bow=np.column_stack(bowing),
+            normal=np.column_stack([start.reshape(-1, 9), end.reshape(-1, 9)]),
+            offset_start=np.broadcast_to(self.offset_start, chords.shape),
+            offset_end=np.broadcast_to(self.offset_end, chords.shape),
+        )
+
+    def _plane(self, axis: str, length: Floats) -> tuple[Floats, Floats]:
+        """Bending stiffness (m, 3), aa ab bb, about an axis, and shortening likewise."""
+        inertia, area = (self.Iy, self.shear_z) if axis == "y" else (self.Iz, self.shear_y)
+        stiff, area = self.E * inertia / length, np.broadcast_to(area, length.shape)
+        soft = np.where(area > 0.0, 12.0 * stiff / (self.G * np.where(area > 0.0, area, 1.0) * length), 0.0)
+        own, other = stiff * (4.0 + soft) / (1.0 + soft), stiff * (2.0 - soft) / (1.0 + soft)
+        none, bow = np.zeros_like(length), length / 30.0
+        start, end = axis in self.release_start, axis in self.release_end
+        if start and end:
+            return np.zeros((len(length), 3)), np.zeros((len(length), 3))
+        if not (start or end):
+            return np.column_stack([own, other, own]), np.column_stack([4.0 * bow, -bow, 4.0 * bow])
+        part = other / own  # the hinged end turns by minus this part of the other one
+        left, short = own - other * part, bow * (4.0 + 2.0 * part + 4.0 * part**2)
+        columns = ([none, none, left], [none, none, short]) if start else ([left, none, none], [short, none, none])
+        return np.column_stack(columns[0]), np.column_stack(columns[1])
+
+    def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
+        """Length of the chord, forces and moments of the section, and strain energy of each beam."""
+        found = np.zeros((len(block.indices), 8))
+        dispatch.compiled(beam_stresses)(x, block.indices, block.parameters, found)
+        chord, normal, torque, start_y, start_z, end_y, end_z, energy = found.T
+        length = np.where(chord > 0.0, chord, 1.0)
+        return {
+            "length": chord, "force": normal, "Vy": -(start_z + end_z) / length, "Vz": (start_y + end_y) / length,
+            "Mt": torque, "My0": -start_y, "Mz0": -start_z, "My1": end_y, "Mz1": end_z, "energy": energy,
+        }  # fmt: skip
+
+    @classmethod
+    def example(cls) -> tuple[Beam, Floats]:
+        """Two beams that meet at an angle, and differ."""
+        x = np.array([[0.2, 0.1, 0.3], [1.3, 0.4, 0.2], [1.9, 1.3, 0.8]])
+        return cls(
+            particles=[[0, 1], [1, 2]], E=200.0, G=80.0, A=1.0, Iy=0.08, Iz=0.05, J=0.14,
+            shear_y=[0.0, 0.6], normal=[0.1, 0.0, 1.0], offset_end=[[0.0, 0.1, 0.05], [0.0, 0.0, 0.0]],
+        ), x  # fmt: skip

@@ -1,0 +1,151 @@
+"""Faults of what is given to a model: errors of pydantic as pointers and sentences."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import re
+from collections.abc import Iterator
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from hookean.errors import InputError, several
+
+
+def first_fault(error: ValidationError) -> InputError:
+    """The faults of a validation error as one; its sentence is the first one and has how many more there are."""
+    return several(faults(error))
+
+
+def faults(error: ValidationError) -> list[InputError]:
+    """Every fault of a validation error as pointer and sentence."""
+    found = []
+    kinds = {model.called for model in _models() if "kind" in model.model_fields}
+    root = next((model for model in _models() if model.__name__ == error.title), None)
+    for entry in error.errors(include_url=False):
+        context = entry.get("ctx", {})
+        # pydantic names the chosen class of a union in the location; a pointer has no such step
+        place = entry["loc"]
+        steps = [str(s) for i, s in enumerate(place) if not (s in kinds and i == 2 and place[0] in ("forces", "add"))]
+        pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
+        pointer += str(context.get("at", ""))
+        sentence = str(context.get("sentence") or _sentence(entry, root))
+        found.append(InputError(pointer or "/", sentence))
+    return found
+
+
+def _sentence(entry: Any, root: Any) -> str:
+    """An error of pydantic as a sentence: what was given, what is allowed."""
+    kind, context, given = entry["type"], entry.get("ctx", {}), _shown(entry["input"])
+    if kind in ("extra_forbidden", "missing"):
+        name, options = str(entry["loc"][-1]), _options(root, entry["loc"][:-1])
+        if len(options) != 1:
+            return f"unknown field {_shown(name)}" if kind == "extra_forbidden" else f"{name} is required"
+        owner = options[0]
+        if kind == "missing":
+            field = owner.model_fields.get(name)
+            return f"{name} is required: {field.description}" if field and field.description else f"{name} is required"
+        return f"{owner.called} has no field {_shown(name)}; {_meant(name, list(owner.model_fields), 'its fields:')}"
+    if kind == "union_tag_invalid":
+        known = re.findall(r"'([^']*)'", context["expected_tags"])
+        return f"unknown kind {_shown(context['tag'])}; {_meant(context['tag'], known, 'known:', always=True)}"
+    if kind == "union_tag_not_found":
+        return f"kind is required; known: {', '.join(option.called for option in _options(root, entry['loc']))}"
+    if kind == "literal_error":
+        allowed = re.findall(r"'([^']*)'", context["expected"])
+        return f"{given} given; {_meant(str(entry['input']), allowed, 'allowed:', always=True)}"
+    for rule, key, words in _LIMITS:
+        if kind == rule:
+            return f"{given} given; {words} {context[key]:g} allowed"
+    expected = next((words for start, words in _EXPECTED.items() if kind.startswith(start)), "")
+    if isinstance(entry["input"], str):
+        given = "a text"  # it may be anything, and long
+    return f"{given} given; {expected} expected" if expected else str(entry["msg"])
+
+
+_LIMITS = (
+    ("greater_than", "gt", "more than"),
+    ("greater_than_equal", "ge", "at least"),
+    ("less_than", "lt", "less than"),
+    ("less_than_equal", "le", "at most"),
+)
+_EXPECTED = {
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "dict_type": "an object of names and values",
+    "model_": "an object of names and values",
+    "string_type": "a text",
+    "bool_": "true or false",
+    "int_": "a whole number",
+    "float_": "a number",
+    "finite_number": "a finite number",
+}
+
+
+def _meant(given: Any, known: list[str], introduction: str, *, always: bool = False) -> str:
+    """The nearest known name as a question, or all of them; with `always` both."""
+    near = difflib.get_close_matches(str(given).lower(), {n.lower(): n for n in known}, 1)
+    nearest = next((n for n in known if near and n.lower() == near[0]), None)
+    listed = f"{introduction} {', '.join(known)}"
+    if nearest is None:
+        return listed
+    return f"did you mean {nearest}? ({listed})" if always else f"did you mean {nearest}?"
+
+
+def _shown(value: Any) -> str:
+    """A given value as JSON, if it is short; else its type."""
+    if isinstance(value, str | int | float) or value is None:
+        text = json.dumps(value if not isinstance(value, str) else value[:60])
+        return text if len(text) <= 80 else f"{text[:60]}..."
+    if isinstance(value, dict):
+        return "an object"
+    return "a list" if isinstance(value, list | tuple) else type(value).__name__
+
+
+def _models() -> Iterator[Any]:
+    """All classes of ours: those with a name for sentences, `called`."""
+    waiting: list[Any] = [BaseModel]
+    for model in waiting:
+        waiting += model.__subclasses__()
+        if hasattr(model, "called"):
+            yield model
+
+
+def _options(root: Any, place: tuple[Any, ...]) -> list[Any]:
+    """The models that may be at a location within `root`, found by the annotations of fields."""
+    hints: list[Any] = [root]
+    for step in place:
+        hints = [inner for hint in hints for inner in _inside(hint, step)]
+    return [h for hint in hints for h in _alternatives(hint) if _is_model(h)]
+
+
+def _is_model(hint: Any) -> bool:
+    return isinstance(hint, type) and issubclass(hint, BaseModel)
+
+
+def _alternatives(hint: Any) -> list[Any]:
+    """A hint without `Annotated`, and the members of a union."""
+    if get_origin(hint) is Annotated:
+        return _alternatives(get_args(hint)[0])
+    if get_origin(hint) in (Union, UnionType):
+        return [a for member in get_args(hint) for a in _alternatives(member)]
+    return [hint]
+
+
+def _inside(hint: Any, step: Any) -> list[Any]:
+    """The hints one step of a location further in."""
+    found: list[Any] = []
+    for option in _alternatives(hint):
+        origin, inner = get_origin(option), get_args(option)
+        if origin in (tuple, list):
+            found += [a for a in inner if a is not Ellipsis]
+        elif origin is dict:
+            found.append(inner[1])
+        elif _is_model(option):
+            if step in option.model_fields:
+                found.append(option.model_fields[step].annotation)
+            elif "kind" in option.model_fields and step == option.called:
+                found.append(option)
+    return found

@@ -1,0 +1,129 @@
+"""The report of a scene: its numbers are those of the results, and it needs nothing but itself."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import hookean
+from hookean import Scene
+from hookean.analysis.applied import applied
+from hookean.files.report import report
+from hookean.files.tables import read_limits
+from hookean.system.system import compile
+
+
+class Tables(HTMLParser):
+    """The headings, the rows of cells below each, and the pictures of a page; tags must nest."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.rows: dict[str, list[list[str]]] = {}
+        self.pictures: list[str] = []
+        self.text = ""
+        self.heading = ""
+        self.feed(text)
+        assert not self.open
+
+    def handle_starttag(self, tag: str, attrs: list) -> None:
+        if tag == "img":
+            self.pictures.append(dict(attrs)["src"])
+        if tag not in ("img", "meta"):
+            self.open.append(tag)
+        self.text = ""
+        if tag == "tr":
+            self.rows.setdefault(self.heading, []).append([])
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+        if tag in ("h1", "h2"):
+            self.heading = self.text
+        if tag in ("td", "th"):
+            self.rows[self.heading][-1].append(self.text)
+        self.text = ""
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    """A cable <with a name that needs escaping> under snow and its weight."""
+    return Scene.read(
+        {
+            "particles": [[0, 0, 0], [2, 0, 0], [4, 0, 0]],
+            "forces": [
+                {"kind": "constant_tension", "name": "cable <1>", "particles": [[0, 1], [1, 2]], "tension": 30},
+                {"kind": "unary", "name": "snow load", "particles": [1], "vector": [0, 0, -10]},
+                {"kind": "self_weight", "name": "weight", "particles": [0, 1, 2], "total": 0.3},
+            ],
+            "anchors": [{"particles": [0, 2]}],
+            "load_cases": {"snow": {"forces": ["snow load"]}},
+            "combinations": {"ULS 1": {"snow": 1.5, "prestress": 1.35, "permanent": 1.1}},
+            "stages": {"freeze": {"cable <1>": {"axial_stiffness": 2000}}},
+        }
+    )
+
+
+def test_the_numbers_are_those_of_the_results(scene: Scene) -> None:
+    text = report(scene, title="A & B", pictures=False)
+    found = Tables(text)
+    assert "<title>A &amp; B</title>" in text
+    cases = hookean.load_cases(scene)
+    rows = {row[0]: row for row in found.rows["Load cases and combinations"]}
+    for name, case in cases.cases.items():
+        far = float(np.linalg.norm(case.displacements, axis=1).max())
+        assert rows[name][1:5] == ["converged", "stable", f"{far:.5g}", "1"]
+    maxima = found.rows["Maxima of all cases, and where they are"]
+    largest = float(cases.cases["ULS 1"].result.force("cable <1>")["force"].max())
+    assert ["cable <1> force", "largest", f"{largest:.5g}", "ULS 1", "N"] in [row[:5] for row in maxima]
+    assert len(found.rows["Reactions"]) == 3
+    loads = {row[0]: row for row in reversed(found.rows["Case ULS 1"])}  # the first table has the loads
+    assert loads["snow load"][3] == "0, 0, -15" and loads["weight"][3] == "0, 0, -0.33"
+    assert loads["together"][3] == "0, 0, -15.33"
+
+
+def test_it_is_one_file_that_is_always_the_same(scene: Scene) -> None:
+    """With a PNG for the form and for each case, and no address of another file."""
+    text = report(scene)
+    assert text == report(scene)
+    found = Tables(text)
+    assert len(found.pictures) == 3
+    for source in found.pictures:
+        data = base64.b64decode(source.removeprefix("data:image/png;base64,"))
+        assert Image.open(io.BytesIO(data)).size == (1000, 750)
+    assert not re.search(r"https?://|<script|<link", text)
+
+
+def test_limits_are_checked_in_each_case(scene: Scene) -> None:
+    limits = read_limits("max_displacement = 0.24\n")
+    text = report(scene, limits=limits, pictures=False)
+    assert text.count("All limits are met") == 1 and text.count('class="failed"') == 1
+    assert "max displacement" in text
+
+
+def test_a_scene_without_cases_is_relaxed(scene: Scene) -> None:
+    plain = scene.model_copy(update={"load_cases": {}, "combinations": {}, "stages": None})
+    text = report(plain, limits=read_limits("max_force = 1\n"), pictures=False)
+    assert "Load cases" not in text and "max force" in text
+
+
+def test_applied_loads_have_their_resultant_moment_and_centre() -> None:
+    """Two parallel forces: statics by hand."""
+    load = hookean.Unary(name="a", particles=[0, 1], vector=[[0, 0, -1.0], [0, 0, -3.0]])
+    scene = Scene(
+        particles=[[0, 0, 0], [4, 0, 0], [9, 9, 9]], forces=[load, hookean.SelfWeight(particles=[2], total=0.0)]
+    )
+    system = compile(scene)
+    first, second = applied(system, system.start())
+    np.testing.assert_allclose(first.resultant, [0, 0, -4.0])
+    np.testing.assert_allclose(first.centre, [3.0, 0, 0])
+    np.testing.assert_allclose(first.moment, [0, 12.0, 0])
+    assert (first.particles, second.resultant.tolist(), second.centre.tolist()) == (2, [0, 0, 0], [0, 0, 0])
