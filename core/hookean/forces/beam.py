@@ -150,7 +150,7 @@ class Beam(Force):
         return self
 
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel, see `beam_element`. InputError for a beam without length, or along its normal."""
+        """Arrays for the kernel, see `beam_element`. InputError for a beam of zero length, or along its normal."""
         index = places.elements(self)
         own: Any = self.replaced(**section_columns(self, places))
         chords = places.x[index[:, 1]] + self.offset_end - places.x[index[:, 0]] - self.offset_start
