@@ -9,6 +9,8 @@ shear areas, that of Timoshenko. What a section feels: N (tension +) and Mt, whi
 beam, My and Mz at its start (0) and end (1), and the shear forces Vz = (My1 - My0) / l, Vy = (Mz0 -
 Mz1) / l, as what lies behind a section acts on what lies before it, in the section's axes.
 
+Give E, G, A, Iy, Iz and J, or the names of a material and a section of the scene.
+
 The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. In
 motion a particle has an isotropic inertia, that of a rod of its mass and of the mean length of the
 beams there. Sources: Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and
@@ -24,12 +26,14 @@ force = canvas.force(
     ghenv,
     "beam",
     lines=_connection,
-    E=_e,
-    G=_g,
-    A=_a,
-    Iy=_iy,
-    Iz=_iz,
-    J=_j,
+    E=E_,
+    G=G_,
+    A=A_,
+    Iy=Iy_,
+    Iz=Iz_,
+    J=J_,
+    material=material_,
+    section=section_,
     shear_y=_shear_y_,
     shear_z=_shear_z_,
     normal=normal_,

@@ -319,3 +319,17 @@ def test_a_shell_of_a_material_has_its_plate_stiffness() -> None:
     for given in ({"material": "steel"}, {"strength": 1.0, "thickness": 1.0}, {"strength": None}):
         with pytest.raises(InputError, match="give either strength, or both material and thickness"):
             numbers(**given)
+
+
+def test_a_beam_is_made_of_a_material_and_a_section() -> None:
+    """The same, to the bit, as with their numbers; given in one way."""
+    tube = Section(**SCENE["sections"]["tube"]).properties
+    own = {"E": 210e9, "G": 81e9, "A": tube["area"], **{name: tube[name] for name in ("Iy", "Iz", "J")}}
+    blocks = []
+    for given in (own, {"material": "steel", "section": "tube"}):
+        beam = {"kind": "beam", "particles": [[0, 1], [1, 2]], "normal": [0, 0, 1], **given}
+        blocks.append(compile(Scene.read({**SCENE, "forces": [beam]})).groups[0].block)
+    assert (blocks[0].parameters == blocks[1].parameters).all()
+    for given in ({}, {"E": 1.0}, {"material": "steel"}, {**own, "material": "steel", "section": "tube"}):
+        with pytest.raises(InputError, match="give either E, G, A, Iy, Iz, J, or both material and section"):
+            compile(Scene.read({**SCENE, "forces": [{"kind": "beam", "particles": [[0, 1]], **given}]}))

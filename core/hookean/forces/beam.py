@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from pydantic import model_validator
 
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
@@ -21,6 +22,7 @@ from hookean.forces.beam_element import (
     energy_of,
 )
 from hookean.forces.beam_frames import drawn_frames, straight_frames
+from hookean.forces.elastic import one_way, section_columns
 from hookean.values.columns import Directions, IndexRows, Lines, NonNegatives, Positives, Vectors
 from hookean.values.fields import Field, Maybe
 
@@ -95,6 +97,8 @@ class Beam(Force):
     which are even along a beam, My and Mz at its start (0) and end (1), and the shear forces Vz = (My1 - My0) / l,
     Vy = (Mz0 - Mz1) / l, as what lies behind a section acts on what lies before it, in the section's axes.
 
+    Give E, G, A, Iy, Iz and J, or the names of a material and a section of the scene.
+
     The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. In motion a
     particle has an isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
     Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and shortening); Bergou et al., "Discrete
@@ -104,12 +108,14 @@ class Beam(Force):
     kind: Literal["beam"] = "beam"
     particles: Maybe[IndexRows] = Field(default=None, description="Pairs of particles, start and end")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines; their ends become particles")
-    E: Positives = Field(description="Young's modulus [force/length^2]")
-    G: Positives = Field(description="Shear modulus [force/length^2]")
-    A: Positives = Field(description="Area of the section [length^2]")
-    Iy: Positives = Field(description="Second moment of area about the section's axis y [length^4]")
-    Iz: Positives = Field(description="Second moment of area about the section's axis z [length^4]")
-    J: Positives = Field(description="Torsion constant [length^4]")
+    E: Maybe[Positives] = Field(default=None, description="Young's modulus [force/length^2]")
+    G: Maybe[Positives] = Field(default=None, description="Shear modulus [force/length^2]")
+    A: Maybe[Positives] = Field(default=None, description="Area of the section [length^2]")
+    Iy: Maybe[Positives] = Field(default=None, description="Second moment of area about y [length^4]")
+    Iz: Maybe[Positives] = Field(default=None, description="Second moment of area about z [length^4]")
+    J: Maybe[Positives] = Field(default=None, description="Torsion constant [length^4]")
+    material: str | None = Field(default=None, description="Name of a material, with a section in their place")
+    section: str | None = Field(default=None, description="Name of a section, with a material in their place")
     shear_y: NonNegatives = Field(default=0.0, description="Shear area along y [length^2]; 0: no shear deformation")
     shear_z: NonNegatives = Field(default=0.0, description="Shear area along z [length^2]; 0: no shear deformation")
     normal: Maybe[Directions] = Field(
@@ -138,9 +144,15 @@ class Beam(Force):
     kernel: ClassVar[Any] = staticmethod(beam_kernel)
     hessian: ClassVar[Any] = staticmethod(beam_hessian)
 
+    @model_validator(mode="after")
+    def _one_way(self) -> Beam:
+        one_way(self)
+        return self
+
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel, see `beam_element`. InputError for a beam of zero length, or one along its normal."""
         index = places.elements(self)
+        own: Any = self.replaced(**section_columns(self, places))
         chords = places.x[index[:, 1]] + self.offset_end - places.x[index[:, 0]] - self.offset_start
         length = np.sqrt((chords**2).sum(axis=1))
         if (length <= 0.0).any():
@@ -150,13 +162,13 @@ class Beam(Force):
             at = int(np.argmax(~np.isfinite(frames).all(axis=(1, 2))))
             raise InputError("", f"the normal is along beam {at}; give a direction across it")
         start, end = (frames, frames) if self.curvature == "drawn" else straight_frames(index, chords, frames)
-        bending, bowing = zip(*(self._plane(axis, length) for axis in "yz"), strict=True)
+        bending, bowing = zip(*(own._plane(axis, length) for axis in "yz"), strict=True)
         return Block.of(
             index,
             arm=np.ones((len(index), 2)),
             length=length,
-            A=self.E * self.A / length,
-            J=self.G * self.J / length * (0.0 if "x" in self.release_start + self.release_end else 1.0),
+            A=own.E * own.A / length,
+            J=own.G * own.J / length * (0.0 if "x" in self.release_start + self.release_end else 1.0),
             Iy=bending[0],
             Iz=bending[1],
             bow=np.column_stack(bowing),
@@ -167,9 +179,10 @@ class Beam(Force):
 
     def _plane(self, axis: str, length: Floats) -> tuple[Floats, Floats]:
         """Bending stiffness (m, 3), aa ab bb, about an axis, and shortening likewise."""
-        inertia, area = (self.Iy, self.shear_z) if axis == "y" else (self.Iz, self.shear_y)
-        stiff, area = self.E * inertia / length, np.broadcast_to(area, length.shape)
-        soft = np.where(area > 0.0, 12.0 * stiff / (self.G * np.where(area > 0.0, area, 1.0) * length), 0.0)
+        own: Any = self
+        inertia, area = (own.Iy, own.shear_z) if axis == "y" else (own.Iz, own.shear_y)
+        stiff, area = own.E * inertia / length, np.broadcast_to(area, length.shape)
+        soft = np.where(area > 0.0, 12.0 * stiff / (own.G * np.where(area > 0.0, area, 1.0) * length), 0.0)
         own, other = stiff * (4.0 + soft) / (1.0 + soft), stiff * (2.0 - soft) / (1.0 + soft)
         none, bow = np.zeros_like(length), length / 30.0
         start, end = axis in self.release_start, axis in self.release_end

@@ -13,6 +13,7 @@ from typing import Any
 
 from hookean.errors import InputError
 from hookean.forces.base import Places
+from hookean.values.columns import fault
 
 NAMES = {"area": "A", "Iy": "Iy", "Iz": "Iz", "J": "J"}
 """Quantities of a section and the columns they become."""
@@ -45,6 +46,16 @@ def axial_stiffness(force: Any, places: Places) -> float:
 def area(force: Any, places: Places) -> float:
     """A [length^2] of a force's section; InputError if it has none."""
     return float(_quantity(force, places, "area"))
+
+
+def one_way(force: Any) -> None:
+    """A fault unless a force has either all of E, G, A, Iy, Iz and J, or both a material and a section."""
+    columns = ("E", "G", *NAMES.values())
+    own = [name for name in columns if getattr(force, name) is not None]
+    made = [name for name in ("material", "section") if getattr(force, name) is not None]
+    if bool(own) == bool(made) or len(made) == 1 or 0 < len(own) < len(columns):
+        said = f"{', '.join([*own, *made]) or 'no stiffness'} given"
+        raise fault(f"{said}; give either {', '.join(columns)}, or both material and section")
 
 
 def section_columns(force: Any, places: Places) -> dict[str, float]:
