@@ -321,9 +321,18 @@ class Crowd(Force):
 
     @classmethod
     def connected(cls, block: Block) -> Ints:
-        """All elements: any may come to rest on any other."""
-        index = block.indices.reshape(-1, 1)
-        return np.column_stack([index[:-1], index[1:]]) if len(index) > 1 else index
+        """All elements of each crowd: any may come to rest on any other of the same force."""
+        flat, names, rows = block.indices.ravel(), list(block.names), np.arange(len(block.indices))
+        if "room" in names:
+            crowd = block.parameters[:, names.index("room")]
+        else:  # by the first row of each
+            back = next((names.index(name) for name in ("crowd", "links") if name in names), None)
+            crowd = rows if back is None else rows - block.parameters[:, back]
+        crowd = np.repeat(crowd, block.indices.shape[1])
+        onward = np.flatnonzero(crowd[:-1] == crowd[1:])
+        first = flat[np.flatnonzero(np.diff(crowd, prepend=np.nan) != 0.0)]  # one alone is joined, too
+        pairs = np.concatenate([np.column_stack([flat[onward], flat[onward + 1]]), np.column_stack([first, first])])
+        return np.ascontiguousarray(pairs)
 
     @classmethod
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
