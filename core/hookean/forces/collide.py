@@ -322,12 +322,11 @@ class Crowd(Force):
     @classmethod
     def connected(cls, block: Block) -> Ints:
         """All elements of each crowd: any may come to rest on any other of the same force."""
-        flat, names, rows = block.indices.ravel(), list(block.names), np.arange(len(block.indices))
+        flat, names, rows = block.indices.ravel(), list(block.names), np.arange(len(block.indices), dtype=np.float64)
         if "room" in names:
             crowd = block.parameters[:, names.index("room")]
         else:  # by the first row of each
-            back = next((names.index(name) for name in ("crowd", "links") if name in names), None)
-            crowd = rows if back is None else rows - block.parameters[:, back]
+            crowd = rows - block.parameters[:, names.index("crowd" if "crowd" in names else "links")]
         crowd = np.repeat(crowd, block.indices.shape[1])
         onward = np.flatnonzero(crowd[:-1] == crowd[1:])
         first = flat[np.flatnonzero(np.diff(crowd, prepend=np.nan) != 0.0)]  # one alone is joined, too
@@ -374,7 +373,7 @@ class Collide(Crowd):
 
     a and b are the radii of two spheres, d is the distance of their centres. All spheres of the force can touch, of any
     radii, except those of one `collision_group`. Two pressed together with a force F overlap by F / k. Spheres with the
-    same centre have no direction in which to part: nothing pushes them, and no result with such is in equilibrium.
+    same centre have no direction in which to part: nothing pushes them.
     """
 
     kind: Literal["collide"] = "collide"

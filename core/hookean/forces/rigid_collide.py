@@ -284,8 +284,7 @@ class RigidCollide(Crowd):
     What holds starts from where they touch first: at the start itself for what touches there, and when they do not move
     in time. A solid that is not convex is made of several with one `collision_group`, on the particles of one body.
     Corners of two solids at one place, given as points, become one particle: give them as particles, or draw a joint.
-    Boxes that are flush without friction are no stable stack: each gains room by moving out. A solid inside another is
-    not pushed out: no result with one is in equilibrium.
+    Boxes that are flush without friction are no stable stack: each gains room by moving out.
     """
 
     kind: Literal["rigid_collide"] = "rigid_collide"
