@@ -9,13 +9,14 @@ import numpy as np
 
 from hookean.compiled import dispatch
 from hookean.films.endings import Endings
+from hookean.running.blame import adrift, called, overloaded, owner
 from hookean.running.heating import FAR, accept, cool, flown, gained, heated
 from hookean.running.result import Status
 from hookean.running.trial import trial
 from hookean.solvers import Solver
 from hookean.stability import time_steps
 from hookean.stability.equilibrium import Equilibrium, Stability, amiss, assess, excess, leave
-from hookean.system.balance import Balance, Floats, balance
+from hookean.system.balance import Balance, balance
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -23,7 +24,6 @@ UTMOST = 10**12  # parts of a step that is far too long
 FIRST_LOOK = 25  # iterations before the first look at the balance; later looks come at growing distances
 LEAVES = 20  # unstable equilibria that a run leaves
 TRIES = 5  # tighter tolerances that a run takes without half the position error
-BEYOND = 100.0  # sizes of the model that a load may move its particle by, before it is called too large
 PATIENCE = 20_000  # iterations without a better residual before a run counts as stalled, on top of those spent
 
 
@@ -146,7 +146,7 @@ class Watch:
         """Whether time steps are too long for the motion; else records which particle and force."""
         particle = heated(system, state, self.method, found, driven=driven) if self.method.physical else None
         if particle is not None:
-            self.fault = f"particle {particle}{_owner(system, particle)}"
+            self.fault = f"particle {particle}{owner(system, particle)}"
         return particle is not None
 
     def _noted(self, system: System, state: State) -> list[str]:
@@ -220,7 +220,7 @@ class Watch:
         particle = int(np.argmax(bad))
         others = int(np.count_nonzero(bad)) - 1
         # where many are lost at once, the forces of the first in number need not be the cause
-        also = f" and {others} other{'s' * (others > 1)}" if others else _owner(system, particle)
+        also = f" and {others} other{'s' * (others > 1)}" if others else owner(system, particle)
         self.fault = f"particle {particle}{also}"
         self.lost = particle
         return False
@@ -245,7 +245,7 @@ class Watch:
         if status is Status.TIME_LIMIT:
             most = f"{self.settings.time_limit:g} s"
             return f"Time limit ({most}) reached after {spent} iterations: {left}. Raise time_limit."
-        advice = _adrift(system, found) or "Raise max_iterations"
+        advice = adrift(system, found) or "Raise max_iterations"
         return f"Not in equilibrium after {spent} iterations: {left}. {advice}."
 
     def _advice(self, system: System) -> str:
@@ -261,12 +261,12 @@ class Watch:
         part = self.found.components.label[self.lost] if self.lost >= 0 else -1
         free = part >= 0 and not self.found.components.supported[part] and not len(self.found.planes)
         if self.flew and free:
-            return f"Nothing supports {_called(system, self.found, part)}: add anchors"
-        if said := _adrift(system, self.found):
+            return f"Nothing supports {called(system, self.found, part)}: add anchors"
+        if said := adrift(system, self.found):
             return said
         if free:
-            return f"Nothing supports {_called(system, self.found, part)}: add anchors"
-        if said := _overloaded(system, self.good, self.size):
+            return f"Nothing supports {called(system, self.found, part)}: add anchors"
+        if said := overloaded(system, self.good, self.size):
             return said
         if self.method.physical:
             return (
@@ -280,7 +280,7 @@ class Watch:
 
     def _obstacle(self, system: System) -> str:
         """Why a run stalled."""
-        if said := _adrift(system, self.found):
+        if said := adrift(system, self.found):
             return said
         if said := amiss(system, self.good):
             return f"Forces balance, but {said}"
@@ -288,7 +288,7 @@ class Watch:
             part = int(self.found.coarse[0])
             return (
                 f"Rounding alone causes a residual of {self.found.floors[part]:.1g} in "
-                f"{_called(system, self.found, part)}: stiffness or coordinates are too large for these forces. "
+                f"{called(system, self.found, part)}: stiffness or coordinates are too large for these forces. "
                 "Move the model to the origin, or lower the stiffness"
             )
         if self.rest is not None and self.rest.position_error is not None:
@@ -320,73 +320,3 @@ def _caveat(rest: Equilibrium | None) -> str:
     most = f"; particle {rest.soft_particle} moves most" if rest.soft_particle is not None else ""
     kind = "It is unstable" if rest.stability is Stability.UNSTABLE else "It is a mechanism"
     return f" {kind}: {rest.stability_reason}{most}."
-
-
-def _overloaded(system: System, state: State, size: float) -> str:
-    """Which load is too large for what holds it: one that would move its particle by many times the model's size."""
-    loads = np.sqrt((system.evaluate(state, only="load")[0] ** 2 * state.free).sum(axis=1))
-    reach = loads / np.maximum(system.evaluate(state)[1], 1e-300)
-    particle = int(np.argmax(reach))
-    if reach[particle] <= BEYOND * size:
-        return ""
-    force, units = _owner(system, particle, role="load"), system.scene.units
-    return (
-        f"The load of {loads[particle]:.3g} {units.force} on particle {particle}{force} is too large for the stiffness "
-        f"of its supports, which would stretch by {reach[particle]:.2g} {units.length}: lower the load, or raise the "
-        "stiffness"
-    )
-
-
-def _adrift(system: System, found: Balance) -> str:
-    """Which components carry loads that nothing can balance; empty where there are none."""
-    if not len(found.adrift):
-        return ""
-    part = int(found.adrift[0])
-    more = f" (and {len(found.adrift) - 1} more such parts)" if len(found.adrift) > 1 else ""
-    called, unit = _called(system, found, part), system.scene.units.force
-    count = int(np.count_nonzero(found.components.label == part))
-    carry, them = ("carries", "it") if count == 1 and not more else ("carry", "them")
-    unheld = found.unheld[part]
-    if len(found.planes):
-        return (
-            f"The floor cannot hold {called}{more}: {_load(unheld)} {unit} of the loads lift {them} off or exceed the "
-            f"friction. Anchor {them}, or raise static_friction"
-        )
-    if np.trace(found.components.loose[part]) > 2.5:
-        load = float(np.abs(unheld).max())
-        return f"Nothing supports {called}{more}, which {carry} a load of {load:.3g} {unit}: anchor {them}"
-    return (
-        f"Nothing supports {called}{more} along {_direction(unheld)}, where {them if them == 'it' else 'they'} {carry} "
-        f"a load of {_load(unheld)} {unit}: hold {them} in that direction too"
-    )
-
-
-def _load(vector: Floats) -> str:
-    return f"{float(np.sqrt(vector @ vector)):.3g}"
-
-
-def _direction(vector: Floats) -> str:
-    """A direction in words: an axis, or a unit vector."""
-    unit = vector / np.sqrt(vector @ vector)
-    axis = int(np.argmax(np.abs(unit)))
-    if np.abs(unit[axis]) > 1.0 - 1e-9:
-        return "xyz"[axis]
-    return f"({', '.join(f'{c:.3g}' for c in np.where(np.abs(unit) > 1e-9, unit, 0.0))})"
-
-
-def _called(system: System, found: Balance, part: int) -> str:
-    """A component in words."""
-    count = int(np.count_nonzero(found.components.label == part))
-    particle = int(found.components.first[part])
-    called = f"particle {particle}{_owner(system, particle)}"
-    return called if count == 1 else f"the {count} particles connected with {called}"
-
-
-def _owner(system: System, particle: int, *, role: str = "") -> str:
-    """The first force of a role, or of all but loads, with an element at a particle: " (of /forces/3, springs)"."""
-    for group in system.groups:
-        hit = (group.block.indices == particle).any(axis=1)
-        for part in group.parts:
-            if hit[part.rows].any() and (group.cls.role == role if role else group.cls.role != "load"):
-                return f" (of /forces/{part.number}, {group.cls.kind_name})"
-    return ""
