@@ -10,6 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from hookean import Result, Scene, relax
+from hookean.forces import KINDS
 from hookean.system.components import sizes
 from hookean.system.system import compile
 from serving import SOAK
@@ -411,3 +412,18 @@ def test_what_a_floor_cannot_hold_is_named(load: Any, friction: float, axes: str
     found = relax(Scene.read(a_bar(load, both, axes=axes, floor=floor, solver="relaxation")))
     assert found.converged == rests, found.message
     assert ("The floor cannot hold the 2 particles connected with particle 0" in found.message) != rests
+
+
+@pytest.mark.parametrize("kind", ["collide", "collide_lines", "collide_2d", "box_collide", "rigid_collide"])
+def test_crowds_of_two_forces_are_two_components(kind: str) -> None:
+    """Elements of one force may come to rest on one another, those of two forces may not: far apart, one held and one
+    under 1e6 times the load, they are judged apart."""
+    example, start = KINDS[kind].example()
+    x = np.concatenate([start, start + [1e3, 0.0, 0.0]])
+    n, given = len(start), {"kind": kind, **example.model_dump(exclude_unset=True)}
+    other = {**given, "particles": np.asarray(given["particles"]) + n}
+    spec = {"particles": x, "forces": [given, other], "anchors": [{"particles": [0]}]}
+    parts = compile(Scene.read(spec)).components(compile(Scene.read(spec)).start())
+    assert len(np.intersect1d(parts.label[1:n], parts.label[n:])) == 0
+    assert (parts.label[n:] == parts.label[n]).all() and parts.joined.all()
+    assert not parts.supported[parts.label[n]] and parts.supported[parts.label[n - 1]]

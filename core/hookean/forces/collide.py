@@ -243,9 +243,17 @@ class Crowd(Force):
 
     @classmethod
     def connected(cls, block: Block) -> Ints:
-        """All elements: any may come to rest on any other."""
-        index = block.indices.reshape(-1, 1)
-        return np.column_stack([index[:-1], index[1:]]) if len(index) > 1 else index
+        """All elements of each crowd: any may come to rest on any other of the same force."""
+        flat, names, rows = block.indices.ravel(), list(block.names), np.arange(len(block.indices), dtype=np.float64)
+        if "room" in names:
+            crowd = block.parameters[:, names.index("room")]
+        else:  # by the first row of each
+            crowd = rows - block.parameters[:, names.index("crowd" if "crowd" in names else "links")]
+        crowd = np.repeat(crowd, block.indices.shape[1])
+        onward = np.flatnonzero(crowd[:-1] == crowd[1:])
+        first = flat[np.flatnonzero(np.diff(crowd, prepend=np.nan) != 0.0)]  # one alone is joined, too
+        pairs = np.concatenate([np.column_stack([flat[onward], flat[onward + 1]]), np.column_stack([first, first])])
+        return np.ascontiguousarray(pairs)
 
     @classmethod
     def taken(cls, block: Block, rows: Ints) -> tuple[Ints, Block]:
@@ -283,7 +291,7 @@ class Collide(Crowd):
 
     a and b are the radii of two spheres, d is the distance of their centres. All spheres of the force can touch, of any
     radii, except those of one `collision_group`. Two pressed together with a force F overlap by F / k. Spheres with the
-    same centre have no direction in which to part: nothing pushes them, and no result with such is in equilibrium.
+    same centre have no direction in which to part: nothing pushes them.
 
     In physical time (`verlet`, `yoshida`, simulations) two that meet with the speed u part with e u: a dashpot
     c = 2 zeta sqrt(k m) acts while they overlap, m their reduced mass, zeta = -ln e / sqrt(pi^2 + ln^2 e). With

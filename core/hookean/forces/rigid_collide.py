@@ -286,8 +286,7 @@ class RigidCollide(Crowd):
     For boxes that are tilted in any way, give their eight corners as a group here and to `rigid_body`; boxes along the
     axes that may grow or shrink are `box_collide`.
     Corners of two solids at one place, given as points, become one particle: give them as particles, or draw a joint.
-    Boxes that are flush without friction are no stable stack: each gains room by moving out. A solid inside another is
-    not pushed out: no result with one is in equilibrium.
+    Boxes that are flush without friction are no stable stack: each gains room by moving out.
     """
 
     kind: Literal["rigid_collide"] = "rigid_collide"

@@ -110,8 +110,8 @@ def _certain(system: System, state: State, free: Floats, method: Solver | None) 
 
 
 def amiss(system: System, state: State) -> str:
-    """Why a shape in which forces balance is none that may rest, as a sentence without its full stop; empty where it
-    is one: films that are folded over, bodies that lie in each other."""
+    """Why a shape cannot rest although its forces balance, as a sentence without its full stop: films that are folded
+    over, bodies that lie in each other. Empty where it can."""
     if system.films is not None and len(folded := system.films.folded(state.x, state.free)):
         more = f" (and at {len(folded) - 1} more)" if len(folded) > 1 else ""
         return (
