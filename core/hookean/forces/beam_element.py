@@ -64,7 +64,7 @@ def strains(p: Any, c: Any, row: Any, r: Any, q: Any, s: Any) -> Any:
     for i in range(3):
         r[E + i] = p[1, i] - p[0, i] + (r[21 + i] - r[18 + i])
     chord = np.sqrt(r[E] * r[E] + r[E + 1] * r[E + 1] + r[E + 2] * r[E + 2])
-    if not (1e-150 < chord.real < 1e150):
+    if not (1e-20 < chord.real < 1e150):  # far above the complex step
         return False
     r[CHORD] = chord
     for i in range(3):
