@@ -3,7 +3,7 @@
 a and b are the radii of two spheres, d is the distance of their centres. All spheres of the force
 can touch, of any radii, except those of one `collision_group`. Two pressed together with a force F
 overlap by F / k. Spheres with the same centre have no direction in which to part: nothing pushes
-them, and no result with such is in equilibrium.
+them.
 
 In physical time (`verlet`, `yoshida`, simulations) two that meet with the speed u part with e u: a
 dashpot c = 2 zeta sqrt(k m) acts while they overlap, m their reduced mass, zeta = -ln e / sqrt(pi^2

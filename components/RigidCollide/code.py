@@ -15,7 +15,7 @@ there, and when they do not move in time. A solid that is not convex is made of 
 eight corners as a group here and to `rigid_body`; boxes along the axes that may grow or shrink are
 `box_collide`. Corners of two solids at one place, given as points, become one particle: give them
 as particles, or draw a joint. Boxes that are flush without friction are no stable stack: each gains
-room by moving out. A solid inside another is not pushed out: no result with one is in equilibrium.
+room by moving out.
 
 E = k V d
 """
