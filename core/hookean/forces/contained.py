@@ -9,7 +9,7 @@ import numpy as np
 from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
 from hookean.forces.convex import BODY, FACES, HEAD, PLANE, POINT, POINTS, RADIUS, TABLE, WIDTH
-from hookean.forces.rigid_collide import STRENGTH, crowd_sizes, gather
+from hookean.forces.rigid_places import STRENGTH, crowd_sizes, gather
 
 
 @device
