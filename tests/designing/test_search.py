@@ -222,6 +222,37 @@ def test_what_cannot_be_met_is_reported_with_the_nearest_shape() -> None:
             design({**problem, "constraints": [], "goals": goals})
 
 
+@pytest.mark.parametrize(
+    "part, values, pointer",
+    [
+        ("goals", {"axes": "q"}, "/goals/0/axes"),
+        ("goals", {"kind": "hight"}, "/goals/0"),
+        ("goals", {"particles": [0, -1]}, "/goals/0/particles/1"),
+        ("goals", {"target": "low"}, "/goals/0/target"),
+        ("variables", {"tie": "some"}, "/variables/0/tie"),
+        ("variables", {"lower": "a"}, "/variables/0/lower"),
+        ("settings", {"method": "magic"}, "/settings/method"),
+        (
+            "scene",
+            {"forces": [{"kind": "springs", "particles": [[0, 1]], "stiffness": -1}]},
+            "/scene/forces/0/stiffness",
+        ),
+    ],
+)
+def test_faults_point_to_what_was_given(part: str, values: dict[str, Any], pointer: str) -> None:
+    """A fault's pointer has the steps of the problem as it is written, nothing of how it is read."""
+    problem: dict[str, Any] = {
+        "scene": cable(),
+        "variables": [{"force": "string", "field": "rest_length"}],
+        "goals": [{"kind": "position", "particles": [1], "axes": "z", "target": -0.7}],
+        "settings": {},
+    }
+    (problem[part][0] if part in ("goals", "variables") else problem[part]).update(values)
+    with pytest.raises(InputError) as error:
+        design(problem)
+    assert error.value.faults[0].pointer == pointer
+
+
 def test_a_goal_beyond_the_bounds_sits_at_the_bound() -> None:
     """A sag of 3 is out of reach with rest lengths up to 1.5: the longest is best, and is at its bound."""
     found = design(

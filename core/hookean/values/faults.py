@@ -26,14 +26,21 @@ def faults(error: ValidationError) -> list[InputError]:
     root = next((model for model in _models() if model.__name__ == error.title), None)
     for entry in error.errors(include_url=False):
         context = entry.get("ctx", {})
-        # pydantic names the chosen class of a union in the location; a pointer has no such step
-        place = entry["loc"]
-        steps = [str(s) for i, s in enumerate(place) if not (s in kinds and i == 2 and place[0] in ("forces", "add"))]
+        steps = [str(step) for step in _pointed(entry["loc"], kinds)]
         pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
         pointer += str(context.get("at", ""))
         sentence = str(context.get("sentence") or _sentence(entry, root))
         found.append(InputError(pointer or "/", sentence))
     return found
+
+
+def _pointed(place: tuple[int | str, ...], kinds: set[str]) -> Iterator[int | str]:
+    """The steps of a location that a pointer has: not the class of a union that pydantic names, nor the quantity of a
+    goal, whose fields are given beside those of the goal."""
+    for i, step in enumerate(place):
+        chosen = step in kinds and i >= 2 and (place[i - 2] in ("forces", "add") or place[i - 1] == "quantity")
+        if not (chosen or step == "quantity" or str(step).startswith(("literal[", "tuple["))):
+            yield step
 
 
 def _sentence(entry: Any, root: Any) -> str:

@@ -35,7 +35,7 @@ class Quantity(Model):
     def __pydantic_init_subclass__(cls, **given: Any) -> None:
         super().__pydantic_init_subclass__(**given)
         if "kind" in cls.model_fields:
-            cls.kind_name = str(cls.model_fields["kind"].default)
+            cls.called = cls.kind_name = str(cls.model_fields["kind"].default)
 
     def values(self, found: Equilibrium, pointer: str) -> Floats:
         """Its values (k,) at an equilibrium; InputError at the pointer where it does not fit the scene."""
