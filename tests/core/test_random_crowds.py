@@ -139,8 +139,8 @@ class Judge:
             forces = [size for p, size in sizes if p >= 0 and self.label[p] == part]
             size = float(np.mean(forces)) if forces else 0.0
             self.sizes[mine] = size
-            # without loads at least a thousandth of what it was on the way, of which the start is known
-            least = 2e-3 * float(before.sizes[mine].max()) if before else 0.0
+            # without loads at least a thousandth of the largest on the way, which was up to five times the start
+            least = 5e-3 * float(before.sizes[mine].max()) if before else 0.0
             self.scale[mine] = own[own > 0.0].mean() if own.any() else max(size, least) or 1.0
             values, vectors = np.linalg.eigh(ways[mine].sum(axis=0))
             loose = vectors[:, values <= 1e-9 * max(values[-1], 1e-300)]
