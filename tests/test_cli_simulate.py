@@ -138,10 +138,10 @@ def test_a_wrong_row_says_its_line_and_leaves_the_frames_before_it(folder: Path)
         (["cable.json", "--script", "wind.toml", "--stream", "gone.csv"], "gone.csv cannot be read"),
         (["cable.json", "--csv", "cable.json"], "never overwritten"),
         (["cable.json", "--picture", "a.jpg"], "is not a .png file"),
-        (["cable.json", "-o", "a.stl"], "must end in .3dm, .json or .obj"),
+        (["cable.json", "-o", "a.stl"], "must end in .3dm, .json, .obj"),
         (["cable.json", "-o", "a.json", "--csv", "a.json"], "would be written twice"),
         (["cable.json", "--csv", "wind.csv/a.csv"], "the folder cannot be made"),
-        (["cable.json", "-o", "new/a.stl"], "must end in .3dm, .json or .obj"),
+        (["cable.json", "-o", "new/a.stl"], "must end in .3dm, .json, .obj"),
         (["cable.json", "-o", "new/../cable.json"], "never overwritten"),
     ],
 )

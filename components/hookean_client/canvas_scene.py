@@ -12,6 +12,7 @@ from . import canvas_link as link
 from .canvas_geometry import Unfit, listed, matched
 
 PLACES = ("lines", "points", "mesh", "particles")
+EVERYWHERE = ("self_weight", "impulse")  # without a place they act on all particles
 SHARED = ("control_points", "charges", "charge", "corners", "image", "path")  # rows of numbers as text
 SURFACE = ("degree_u", "degree_v", "knots_u", "knots_v", "weights")
 FIXED = PLACES + SHARED + SURFACE + ("kind", "edges", "name", "curve", "closed", "target", "vertices", "faces")
@@ -52,7 +53,7 @@ def force(source, kind, fields):
     if "lines" in place and all(geometry.is_mesh(item) for item in listed(fields["lines"])):
         fields["mesh"] = fields.pop("lines")
         place = ["mesh"]
-    if kind == "floor" or (kind == "self_weight" and not place):
+    if kind == "floor" or (kind in EVERYWHERE and not place):
         made.update((name, values[0]) for name, values in lists.items())
         return text(made)
     if len(place) > 1:

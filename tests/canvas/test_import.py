@@ -389,7 +389,7 @@ def test_a_goal_without_counterpart_keeps_its_whole_system_as_it_was() -> None:
     assert (report.solvers, report.whole, report.swapped, report.lost) == (1, 0, [], [])
     assert dict(report.stays) == {
         "Refine": "a tool for geometry; it stays with the system that it feeds",
-        "Bomb": "impulses are not here",
+        "Bomb": "Impulse takes a time, not counts of iterations; its momentum is another number than the strength",
         "EdgeLengths": "it stays with Solver",
         "Solver": "it stays with all its goals, because of Bomb",
     }

@@ -76,7 +76,9 @@ def samples() -> dict[str, dict[str, Any]]:
     held = {"_forces": forces, "anchors_": [places[0], places[-1]]}
     meshes = ("Diagonals", "MeshCorners", "MeshEdges", "NakedVertices", "WarpWeft", "Refine", "RefineStrips")
     meshes += ("Checkerboard", "Diagonalize", "HingePoints", "VertexNeighbours", "AlignQuads", "TurnQuads", "Strips")
-    meshes += ("UnrollStrips", "ReciprocalDiagram")
+    meshes += ("UnrollStrips",)
+    net = {"vertices": [[i, j, 0] for j in range(3) for i in range(3)]}
+    net["faces"] = [[i, i + 1, i + 4, i + 3] for i in (0, 1, 3, 4)]  # with inner edges about an inner vertex
     return {
         **{name: {"_mesh": [mesh]} for name in meshes},
         "CombineClean": {"_meshes": [mesh, mesh]},
@@ -88,6 +90,7 @@ def samples() -> dict[str, dict[str, Any]]:
         "FoldAngle": {"_start": row[:1], "_end": row[1:2], "_tip_1": row[2:], "_tip_2": [point(1, -1, 0)]},
         "MeshMap": {"_point": row, "_source": [mesh], "_target": [mesh]},
         "Remesh": {"_mesh": [mesh], "_length": [0.5]},
+        "ReciprocalDiagram": {"_mesh": [canvas_geometry.to_mesh(net)]},
         "RemoveDuplicatePoints": {"_points": row},
         "SplitAtCorners": {"_polyline": curve},
         "Catenary": {"_start": row[:1], "_end": row[2:], "_length": [4.0]},

@@ -291,6 +291,7 @@ def test_every_force_with_lines_or_faces_takes_part() -> None:
         if cls.solid and {"mesh", "lines"} & cls.model_fields.keys():
             solid.add(kind)
         needed = [name for name, field in cls.model_fields.items() if field.is_required()]
+        needed += ["E", "G", "A", "Iy", "Iz", "J"] if kind == "beam" else []  # or a material and a section
         other = {"kind": kind, "name": "it", **{name: getattr(cls.example()[0], name) for name in needed}}
         if "mesh" in cls.model_fields:
             other["mesh"] = "m"

@@ -65,7 +65,11 @@ def test_a_table_has_a_row_for_each_element(result: Result) -> None:
     assert list(rows[0]) == ["particle 1", "particle 2", "length [m]", "force [N]", "strain [-]"]
     assert [row["force [N]"] for row in rows] == result.force("cable")["force"].tolist()
     loads = result.table("load")
-    assert loads[3] == {"particle": 3, "force x [N]": 0.0, "force y [N]": 0.0, "force z [N]": -20.0}
+    assert loads[3] == {
+        "particle": 3,
+        **{f"force {axis} [N]": size for axis, size in (("x", 0.0), ("y", 0.0), ("z", -20.0))},
+        **{f"moment {axis} [N m]": 0.0 for axis in "xyz"},
+    }
     with pytest.raises(InputError, match="no force is called 'rope'; there are 'cable', 'load'"):
         result.table("rope")
 

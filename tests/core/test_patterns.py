@@ -11,8 +11,8 @@ import hookean
 from hookean import InputError, Scene
 from hookean.discretize.flatten import flatten, outline
 from hookean.discretize.geodesics import cut_along, geodesic
+from hookean.discretize.mesh_strips import face_rows, strips
 from hookean.discretize.outlines import offset
-from hookean.discretize.strips import face_rows, strips
 from hookean.values.mesh import Mesh
 from hookean.workshop.cables import chains
 from hookean.workshop.patterns import strains

@@ -55,7 +55,7 @@ def test_layers_say_what_is_what(draw: Callable[..., Any]) -> None:
     scene = understood.built.scene
     cables, springs, net, load, wind = scene.forces
     assert (cables.name, cables.lines.shape) == ("Cables", (2, 2, 3))
-    assert np.allclose(cables.lower_cutoff, np.sqrt(26))
+    assert cables.tension_only
     assert (springs.name, springs.rest_factor, springs.lower_cutoff) == ("Structure springs upper", 1.0, 0.0)
     assert (net.rest_factor, net.edges) == (0.0, "all")
     assert load.vector.tolist() == [0, 0, -20] and wind.vector.tolist() == [0, 4, 0]

@@ -14,6 +14,7 @@ import pytest
 from hookean_server.app import create_app
 from hookean_server.problems import CATALOGUE
 from hookean_server.settings import Settings
+from hookean_server.workers.analysis_task import ANALYSES
 from hookean_server.workers.discretize_task import OPERATIONS
 from serving import CABLE, HANG
 
@@ -36,6 +37,7 @@ PATHS = {
     "/": "GET",
     "/{function}": "GET",
     **{f"/v1/discretize/{name}": "POST" for name in OPERATIONS},
+    **{f"/v1/analysis/{name}": "POST" for name in (*ANALYSES, "load-cases")},
 }
 METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE")
 JSON = {"content-type": "application/json"}

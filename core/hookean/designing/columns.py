@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.errors import InputError
-from hookean.forces.base import PLACES, Block, Force
+from hookean.forces.base import PLACES, Block, Force, Rider
 from hookean.running.patch import changed_forces
 from hookean.scene.scene import Scene
-from hookean.system.group import Group, Part
+from hookean.system.group import Group, Part, fitted, ride
 from hookean.system.system import System
 from hookean.system.weld import element_columns
 
@@ -197,7 +197,7 @@ class Column:
         total: Any = 0.0
         for weight, way in ways:
             force = self._with(system.scene, values + way * change)
-            total = total + weight * give(force, compiled(system, self.number, force))
+            total = total + weight * give(force, compiled(system, self.group, self.number, force))
         return np.asarray(total)
 
 
@@ -206,10 +206,14 @@ def shape_of(columns: int, count: int, wide: Any) -> tuple[int, ...]:
     return (count // columns, columns) if wide and columns > 1 else (count,)
 
 
-def compiled(system: System, number: int, force: Force) -> Block:
-    """The block of a changed force, rows that met particles alone, in its own room."""
+def compiled(system: System, group: Group, number: int, force: Force) -> Block:
+    """The block of a changed force in a group, rows that met particles alone, in its own room, with its slots."""
     fresh = system.places.recompile(number, force)
-    return fresh.some(np.flatnonzero((fresh.indices >= 0).all(axis=1)))
+    fresh = fresh.some(np.flatnonzero((fresh.indices >= 0).all(axis=1)))
+    made = number, force, fresh, np.arange(len(fresh.indices))
+    if issubclass(group.cls, Rider):
+        return ride(system.slots, group.cls, made)[2]
+    return fitted(system.slots, group.cls, made)[2]
 
 
 def placed(system: System, number: int, pointer: str) -> tuple[Group, Part]:

@@ -152,7 +152,8 @@ def _pushed(found: Equilibrium, variable: Column) -> tuple[Ints, Ints, Floats]:
     system, state = found.system, found.state
     group, part = variable.group, variable.part
     memory = state.memory[system.groups.index(group)]
-    if group.cls.gathered(group.block, memory, state.x, None) is not None:
+    several = sum(part.number == variable.number for other in system.groups for part in other.parts) > 1
+    if several or group.cls.gathered(group.block, memory, state.x, None) is not None:
         return _pushed_together(found, variable)
 
     def forces(force: Force, block: Block) -> Floats:

@@ -182,8 +182,9 @@ class Beam(Force):
         own: Any = self
         inertia, area = (own.Iy, own.shear_z) if axis == "y" else (own.Iz, own.shear_y)
         stiff, area = own.E * inertia / length, np.broadcast_to(area, length.shape)
-        soft = np.where(area > 0.0, 12.0 * stiff / (own.G * np.where(area > 0.0, area, 1.0) * length), 0.0)
-        own, other = stiff * (4.0 + soft) / (1.0 + soft), stiff * (2.0 - soft) / (1.0 + soft)
+        with np.errstate(over="ignore"):  # infinitely soft: what is shorter than any beam
+            soft = np.where(area > 0.0, 12.0 * stiff / (own.G * np.where(area > 0.0, area, 1.0) * length), 0.0)
+        own, other = stiff * (1.0 + 3.0 / (1.0 + soft)), stiff * (3.0 / (1.0 + soft) - 1.0)
         none, bow = np.zeros_like(length), length / 30.0
         start, end = axis in self.release_start, axis in self.release_end
         if start and end:

@@ -58,7 +58,7 @@ class SelfWeight(Force):
 
     @model_validator(mode="after")
     def _one_way(self) -> SelfWeight:
-        if [self.total, self.per_length, self.material].count(None) != 2:
+        if sum(given is not None for given in (self.total, self.per_length, self.material)) != 1:
             raise fault("give exactly one of total, per_length, material")
         if not np.linalg.norm(self.direction) > 0:
             raise fault("the direction of gravity must not be zero", "/direction")

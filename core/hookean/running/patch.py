@@ -123,7 +123,7 @@ def _rows(system: System, group: Group, part: Part) -> Floats:
     indices, parameters = made[2].indices, made[2].parameters
     if not np.array_equal(indices, group.block.indices[part.rows]):
         raise InputError(f"/forces/{part.number}", "this field sets which particles it acts on; send a new scene")
-    if part.force.compiled_as is not group.cls:
+    if not issubclass(group.cls, Rider) and part.force.compiled_as is not group.cls:
         raise InputError(f"/forces/{part.number}", "this field sets how it acts; send a new scene")
     if fresh.rooms:  # its elements stay in the room they have
         column = fresh.names.index("room")

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from hookean.discretize.flatten import Flat, flatten, oriented, outline, turned_along
 from hookean.discretize.geodesics import cut_along
+from hookean.discretize.mesh_strips import strips
 from hookean.discretize.meshes import as_mesh
 from hookean.discretize.outlines import offset
-from hookean.discretize.strips import strips
 from hookean.errors import InputError
 from hookean.running.result import Result
 from hookean.values.mesh import Mesh

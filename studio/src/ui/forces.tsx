@@ -129,8 +129,8 @@ function Column({ session, force, number, units, field, title }: Shown & { field
       {(!vectors || measure !== "") && (
         <Slider
           session={session}
-          name={vectors ? `Size of ${title}` : name}
-          seen={vectors ? "Size" : seen}
+          name={!vectors ? name : field.name === "vector" ? `Size of ${title}` : `Size of ${name}`}
+          seen={!vectors ? seen : field.name === "vector" ? "Size" : `Size of ${seen.toLowerCase()}`}
           value={amount(told, vectors)}
           unit={measure}
           hint={field.description}
