@@ -44,7 +44,7 @@ read: Scene = Scene.read({"forces": [springs]})
 
 assert_type(scene.particles, NDArray[np.float64])
 assert_type(springs.particles, NDArray[np.int64] | None)
-assert_type(springs.stiffness, float | NDArray[np.float64])
+assert_type(springs.stiffness, float | NDArray[np.float64] | None)
 assert_type(scene.forces, tuple[Force, ...])
 assert_type(scene.anchors[0].targets, NDArray[np.float64] | None)
 assert_type(scene.meshes["m"].faces, NDArray[np.int64])

@@ -29,6 +29,9 @@ from hookean.values.fields import Field, Maybe
 Axes = Literal["", "x", "y", "z", "xy", "xz", "yz", "xyz"]
 
 
+SHORTEST = 1e-20  # length of a beam [length] that has no direction
+
+
 @device
 def take(x: Any, indices: Any, e: Any, p: Any) -> None:
     """The rows of an element, as `beam_element` has them."""
@@ -155,7 +158,7 @@ class Beam(Force):
         own: Any = self.replaced(**section_columns(self, places))
         chords = places.x[index[:, 1]] + self.offset_end - places.x[index[:, 0]] - self.offset_start
         length = np.sqrt((chords**2).sum(axis=1))
-        if (length <= 0.0).any():
+        if (length <= SHORTEST).any():
             raise InputError("", f"beam {int(np.argmin(length))} has no length; move its ends apart")
         frames = drawn_frames(chords, self.normal)
         if not np.isfinite(frames).all():
