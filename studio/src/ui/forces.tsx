@@ -129,8 +129,8 @@ function Column({ session, force, number, units, field, title }: Shown & { field
       {(!vectors || measure !== "") && (
         <Slider
           session={session}
-          name={!vectors ? name : field.name === "vector" ? `Size of ${title}` : `Size of ${name}`}
-          seen={!vectors ? seen : field.name === "vector" ? "Size" : `Size of ${seen.toLowerCase()}`}
+          name={!vectors ? name : field.name === "vector" ? `Size of ${title}` : `${name} size`}
+          seen={!vectors ? seen : field.name === "vector" ? "Size" : `${seen} size`}
           value={amount(told, vectors)}
           unit={measure}
           hint={field.description}
