@@ -226,7 +226,7 @@ def placed(system: System, number: int, pointer: str) -> tuple[Group, Part]:
 
 
 def numbered(scene: Scene, wanted: Any, pointer: str) -> int:
-    """The number of the force of a name or number; InputError where there is none."""
+    """The number of the force of a name or number; InputError if no force has it."""
     names = [i for i, force in enumerate(scene.forces) if force.name == wanted and wanted != ""]
     if len(names) == 1:
         return names[0]
