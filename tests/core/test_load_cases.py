@@ -334,3 +334,23 @@ def test_a_drawn_form_is_the_start_shape() -> None:
     spec["particles"][1] = [0.5, 0, 4]
     frozen = hookean.freeze(Scene.read(spec))
     np.testing.assert_array_equal(frozen.particles[1], [0.5, 0.0, 4.0])
+
+
+def test_beams_keep_their_form_and_their_rotations() -> None:
+    """A cantilever of beams under a load of a case: the frozen form does not move, the case bends it by P L³ / (3 E I),
+    and by nothing else: 1e-4 of it, as the sag is 0.4 % of the length."""
+    spec = {
+        "particles": [[0.5 * i, 0, 0] for i in range(5)],
+        "forces": [
+            {"kind": "beam", "particles": [[i, i + 1] for i in range(4)], "E": 2e9, "G": 1e9, "A": 1e-2,
+             "Iy": 1e-5, "Iz": 1e-5, "J": 1e-5},
+            {"kind": "unary", "name": "tip", "particles": [4], "vector": [0, 0, -60]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "load_cases": {"down": {"forces": ["tip"]}},
+        "stages": {},
+    }  # fmt: skip
+    found = hookean.load_cases(Scene.read(spec))
+    moved = found.cases["down"].displacements
+    assert moved.shape == (5, 3)
+    assert moved[4, 2] == pytest.approx(-60 * 2.0**3 / (3 * 2e9 * 1e-5), rel=1e-4)

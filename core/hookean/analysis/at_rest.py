@@ -54,10 +54,12 @@ class AtRest:
             raise InputError("result", "has no scene; give a result of relax")
         system = compile(result.scene)
         state = system.start()
-        state.x = np.array(result.particles)
-        held = np.flatnonzero((state.free == 0).any(axis=1))
-        if state.x.shape != system.x.shape or not np.array_equal(held, result.reactions["particles"]):
+        count = system.slots.count
+        held = np.flatnonzero((state.free[:count] == 0).any(axis=1))
+        fits = len(result.particles) == count and len(result.rotations["quaternions"]) == len(system.slots)
+        if not fits or not np.isin(held, result.reactions["particles"]).all():
             raise InputError("result", "holds other particles than its scene; give the Simulation that it is of")
+        system.slots.put(state, result.particles, result.rotations["quaternions"])
         system.remember(state)
         return cls.checked(system, state, result.converged, result.message)
 

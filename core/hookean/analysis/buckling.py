@@ -94,7 +94,9 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
     modes = [_scaled(unknowns.spread(vector)) for vector in vectors.T[kept]]
     names = tuple(scene.forces[i].name or scene.forces[i].kind_name for i in numbers)
     shape = (-1, len(rest.state.x), 3)
-    return Buckling(-1.0 / inverse[kept], np.array(modes).reshape(shape), rest.state.x, names, scene.units)
+    count = rest.system.slots.count
+    shapes = np.array(modes).reshape(shape)[:, :count]
+    return Buckling(-1.0 / inverse[kept], shapes, rest.state.x[:count], names, scene.units)
 
 
 def _change(unknowns: Unknowns, rest: AtRest, moved: Floats) -> Any:

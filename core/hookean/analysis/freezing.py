@@ -56,7 +56,7 @@ class Frozen:
     `scene` has the elastic elements; it keeps the start shape, meshes and load cases of the scene it comes from.
     `particles` (n, 3) [length] is the form, and `form` the result of finding it. `notes` are sentences on forces that
     stay as they were although they are not elastic. `lengths` and `tensions` (m,) are those of the elastic lines in the
-    form, by the number of their force.
+    form, by the number of their force; `rotations` (r, 4) the unit quaternions w, x, y, z of the ends of beams.
     """
 
     scene: Scene
@@ -65,12 +65,13 @@ class Frozen:
     notes: tuple[str, ...] = ()
     lengths: dict[int, Floats] = field(default_factory=dict)
     tensions: dict[int, Floats] = field(default_factory=dict)
+    rotations: Floats = field(default_factory=lambda: np.zeros((0, 4)))
 
     def system(self, scene: Scene | None = None) -> tuple[System, State]:
         """The elastic model compiled, and its state in the form."""
         system = compile(scene or self.scene)
         state = system.start()
-        state.x = self.particles.copy()
+        system.slots.put(state, self.particles, self.rotations)
         return system, state
 
 
@@ -108,7 +109,8 @@ def freeze(scene: Scene) -> Frozen:
                 name = force.name or force.kind_name
                 notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
     frozen = scene.replaced(forces=tuple(forces))
-    model = Frozen(frozen, state.x.copy(), form, tuple(notes), lengths, tensions)
+    turned = system.slots.quaternions(state.x)
+    model = Frozen(frozen, state.x[: system.slots.count].copy(), form, tuple(notes), lengths, tensions, turned)
     other = compile(frozen)
     if not np.array_equal(other.x, system.x):
         raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")

@@ -92,15 +92,16 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
     vectors = vectors / np.sqrt(own)[:, None]
     angular = np.sign(squares) * np.sqrt(np.abs(squares))
     modes = np.array([_scaled(unknowns.spread(vector)) for vector in vectors.T]).reshape(-1, len(mass), 3)
-    shaken = np.einsum("knc,n->kc", modes * rest.free, mass)
+    own_rows = rest.system.slots.count
+    shaken = np.einsum("knc,n->kc", (modes * rest.free)[:, :own_rows], mass[:own_rows])
     modal = np.einsum("knc,knc,n->k", modes, modes, mass)
     return Frequencies(
         angular / (2.0 * np.pi),
         angular,
-        modes,
+        modes[:, :own_rows],
         shaken**2 / modal[:, None],
-        np.asarray((rest.free * mass[:, None]).sum(axis=0)),
-        rest.state.x,
+        np.asarray((rest.free * mass[:, None])[:own_rows].sum(axis=0)),
+        rest.state.x[:own_rows],
         rest.system.scene.units,
     )
 

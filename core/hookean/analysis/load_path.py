@@ -119,6 +119,7 @@ def load_path(
     (rest_system, start), growing = divided(system, system.start(), numbers)
     rest = relaxed(rest_system, start, "without the loads")
     follower = Follower(rest, *growing)
+    count = rest.system.slots.count
     points, critical = [follower.first()], list[CriticalPoint]()
     reach = arc_length or follower.reach(points[0], increment)
     message = f"all {steps} steps are done"
@@ -128,7 +129,8 @@ def load_path(
             message = "no step is short enough: the path ends, or the structure has no stiffness there"
             break
         critical += [
-            CriticalPoint(kind, at.factor, len(points) - 1, at.x) for kind, at in follower.between(points[-1], step)
+            CriticalPoint(kind, at.factor, len(points) - 1, at.x[:count])
+            for kind, at in follower.between(points[-1], step)
         ]
         points.append(step)
         if largest_factor is not None and _passed(points, largest_factor):
@@ -139,7 +141,7 @@ def load_path(
     names = tuple(scene.forces[i].name or scene.forces[i].kind_name for i in numbers)
     return LoadPath(
         np.array([p.factor for p in points]),
-        np.array([p.x for p in points]),
+        np.array([p.x[:count] for p in points]),
         np.array([p.negatives == 0 for p in points]),
         tuple(critical),
         message,

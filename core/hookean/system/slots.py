@@ -102,6 +102,15 @@ class Slots:
         """Unit quaternions w, x, y, z (r, 4) of the orientations in folded rows, turned from the start."""
         return quaternions(x[self.references] / self.lengths[:, None])
 
+    def put(self, state: State, particles: Floats, quaternions: Floats) -> None:
+        """Give a state positions (n, 3) [length] and orientations (r, 4) w, x, y, z, as results have them."""
+        state.x[: self.count] = particles
+        if len(self):
+            from scipy.spatial.transform import Rotation
+
+            turned = Rotation.from_quat(np.roll(quaternions, -1, axis=1)).as_rotvec()
+            state.x[self.first], state.x[self.references] = 0.0, turned * self.lengths[:, None]
+
     def moments(self, rows: Floats, particles: Ints) -> Floats:
         """Moments (k, 3) [force length] on particles by forces on rows (folded), 0 where there is no orientation; no
         rows without slots."""

@@ -55,19 +55,20 @@ class Structure:
         assert result.scene is not None
         system = system or compile(result.scene)
         state = system.start()
-        state.x = np.array(result.particles)
-        reactions = np.zeros(state.x.shape)
+        system.slots.put(state, result.particles, result.rotations["quaternions"])
+        count = system.slots.count
+        reactions = np.zeros((count, 3))
         reactions[np.asarray(result.reactions["particles"], dtype=np.int64)] = np.asarray(
             result.reactions["force"]
         ).reshape(-1, 3)
         faces = {name: system.places.faces(name) for name in system.scene.meshes}
         return cls(
-            state.x,
-            state.x - system.x,
+            state.x[:count],
+            (state.x - system.x)[:count],
             tuple(_lines(system, result)),
             {name: found[(found >= 0).all(axis=1)] for name, found in faces.items()},
-            state.free == 0,
-            system.evaluate(state, only="load")[0],
+            state.free[:count] == 0,
+            system.evaluate(state, only="load")[0][:count],
             reactions,
             result.units,
         )
