@@ -70,7 +70,7 @@ class Follower:
         return abs(increment) * float(np.linalg.norm(point.tangent))
 
     def step(self, points: list[Point], reach: float) -> Point | None:
-        """The next point, `reach` away or less; None where there is none however short the step."""
+        """The next point, `reach` away or less; None if no step is short enough to find one."""
         for _ in range(CUTS):
             found = self.at_arc(points[-1], reach * self.shortened)
             if found is not None:

@@ -34,7 +34,7 @@ class AtRest:
 
     @classmethod
     def of(cls, model: Scene | Result | Simulation) -> AtRest:
-        """The equilibrium of a scene (which is relaxed), a result or a simulation; InputError where there is none."""
+        """The equilibrium of a scene (which is relaxed), a result or a simulation; InputError if it is not at rest."""
         if isinstance(model, Simulation):
             system, state = model.system, model.state.copy()
             return cls.checked(system, state, model.status is Status.CONVERGED, str(model.status))

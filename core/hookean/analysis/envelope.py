@@ -121,7 +121,7 @@ def _vectors(reactions: Mapping[str, Any]) -> Floats:
 
 
 def _sizes(column: Any) -> Floats | None:
-    """A column of numbers, or the sizes of vectors; None where there is none."""
+    """A column of numbers, or the sizes of vectors; None if the column is missing."""
     if column is None:
         return None
     values = np.asarray(column, dtype=float)

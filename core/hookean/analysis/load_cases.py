@@ -125,7 +125,7 @@ def load_cases(scene: Scene, names: Sequence[str] | None = None, *, executor: Ex
 
 
 def wanted(scene: Scene, names: Sequence[str] | None) -> list[str]:
-    """The names of all load cases and combinations of a scene, or those given; InputError where there are none."""
+    """The names of all load cases and combinations of a scene, or those given; InputError if the scene has none."""
     if not scene.load_cases and not scene.combinations:
         said = 'the scene has none; add them, as in "load_cases": {"snow": {"forces": ["snow load"]}}'
         raise InputError("/load_cases", said)

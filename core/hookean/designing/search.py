@@ -56,7 +56,7 @@ class Search:
         self._note(np.zeros(self.unknowns.count))
 
     def at(self, y: Floats) -> Equilibrium:
-        """The equilibrium at scaled unknowns; where there is none, the result of its run reports it."""
+        """The equilibrium at scaled unknowns; if the run found none, its result reports that."""
         if self._at is not None and np.array_equal(self._at, y) and self.found is not None:
             return self.found
         if self.cancelled is not None and self.cancelled():
