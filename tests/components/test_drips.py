@@ -106,11 +106,16 @@ SLOW: dict[str, Script] = {
 @pytest.mark.parametrize("name", SLOW)
 @pytest.mark.parametrize("method", ["GET", "POST"])
 def test_the_timeout_is_that_of_the_whole_call(server: Hostile, client: Client, name: str, method: str) -> None:
-    """It ends by the client while the server goes on: the connection is cut, whatever comes down it."""
+    """It ends by the client while the server goes on: the connection is cut, whatever comes down it. (A busy machine may
+    need longer than the first timeouts for the first drop.)"""
     server.script = SLOW[name]
-    with pytest.raises(Problem) as found:
-        client.request(method, "/v1/health", b"{}" if method == "POST" else None, timeout=0.5)
-    assert (found.value.slug, found.value.status) in (("lost", 0), ("no-answer", 0))
+    for timeout in (0.5, 5.0, HANG):
+        server.ended.clear()
+        with pytest.raises(Problem) as found:
+            client.request(method, "/v1/health", b"{}" if method == "POST" else None, timeout=timeout)
+        assert (found.value.slug, found.value.status) in (("lost", 0), ("no-answer", 0))
+        if server.dripping.is_set():
+            break
     assert server.dripping.is_set() and not server.over.is_set()
     assert server.ended.wait(HANG), "the server is left"
 
