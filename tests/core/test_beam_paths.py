@@ -1,8 +1,8 @@
 """Load-displacement paths of two frames, through both limit points, against the differential equation of the elastica.
 
 Published curves of both frames can only be read to about 1 %, so the numbers come from the extensible elastica, which
-is solved here with scipy: r' = t (1 + N / EA), theta' = M / EI, M' = -r' x n. The engine's beams reach it with the fourth
-power of their length.
+is solved here with scipy: r' = t (1 + N / EA), theta' = M / EI, M' = -r' x n. Beams reach it with the fourth power
+of their length.
 """
 
 from __future__ import annotations
