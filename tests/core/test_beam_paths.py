@@ -51,9 +51,10 @@ TOGGLE = 12.943, 0.386, 1.885e6, 9.27e3  # half of the span, rise [in], EA [lb],
 
 
 def test_williams_toggle_has_both_limit_points() -> None:
-    """Williams, An approach to the non-linear behaviour of the members of a rigid jointed plane framework with finite
-    deflections, 1964: a clamped toggle under a load on its apex, which snaps through. Half of it is an elastica whose ends keep their direction; its load is a function of
-    the sag, with a maximum and a minimum. To 1e-4 with ten beams a side."""
+    """Williams, An approach to the non-linear behaviour of the members of a rigid jointed plane framework with
+    finite deflections, 1964: a clamped toggle under a load on its apex, which snaps through. Half of it is an
+    elastica whose ends keep their direction; its load is a function of the sag, with a maximum and a minimum. To
+    1e-4 with ten beams a side."""
     half, rise, axial, bending = TOGGLE
     slope, size, count = np.arctan2(rise, half), np.hypot(half, rise), 10
     x = np.linspace([0, 0, 0], [half, 0, rise], count + 1)
@@ -83,8 +84,9 @@ LEE = 120.0, 4320.0, 1440.0  # length of both members, EA, EI; the load acts at 
 
 def test_lees_frame_has_both_limit_points() -> None:
     """Lee, Manuel and Rossow, Large deflections and stability of elastic frames, 1968: two members on hinges, which
-    snap through and back. Both are elasticas that share their corner; of the forces at the lower hinge the horizontal
-    one grows steadily along the path, so that the load is a function of it, with a maximum and a minimum. To 1e-4 with ten beams a member."""
+    snap through and back. Both are elasticas that share their corner; of the forces at the lower hinge the
+    horizontal one grows steadily along the path, so that the load is a function of it, with a maximum and a minimum.
+    To 1e-4 with ten beams a member."""
     length, axial, bending = LEE
     count, at = 10, 12
     one = np.linspace([0, 0, 0], [0, 0, length], count + 1)
