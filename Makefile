@@ -27,7 +27,8 @@ test: .venv/test
 quick: .venv/test # laws, core, files: what an edit of the engine breaks
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow" tests/laws tests/core tests/discretize tests/files
 
-soak: .venv/test
+soak: .venv/test # without the extra oracle, as where it has no wheel, its tests are skipped
+	-$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[oracle]'
 	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile --cov --cov-report term
 	$(MAKE) floors
 	$(MAKE) mutants

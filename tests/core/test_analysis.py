@@ -49,6 +49,20 @@ def test_effective_masses_add_up() -> None:
     np.testing.assert_allclose(found.mass, 8.0)
 
 
+def test_effective_masses_of_beams_add_up() -> None:
+    """Also where orientations move with the modes: over all modes of a cantilever they are the mass of its four free
+    particles (Clough and Penzien, 1993, section 12-5), and turns add none along x, y or z."""
+    beam = {"kind": "beam", "particles": chain(4), "E": 1e4, "G": 5e3, "A": 1.0, "Iy": 1e-2, "Iz": 2e-2, "J": 2e-2}
+    x = np.linspace([0, 0, 0], [2.0, 1.0, 0.5], 5)
+    held = [{"particles": [0], "rotations": "xyz"}]
+    found = hookean.frequencies(
+        Scene.read({"particles": x, "masses": 3.0, "forces": [beam], "anchors": held}), count=24
+    )
+    assert len(found.frequencies) == 24
+    np.testing.assert_allclose(found.effective_masses.sum(axis=0), [12.0, 12.0, 12.0], rtol=1e-9)
+    np.testing.assert_allclose(found.mass, 12.0)
+
+
 def test_a_hanging_chain_has_laguerres_frequencies() -> None:
     """n masses on links that keep their length a: omega^2 = (g / a) times the zeros of the Laguerre polynomial L_n.
     To 1e-6: links are 1e7 times as stiff as they are heavy, which shortens nothing at rest (their rest length allows
