@@ -56,15 +56,13 @@ class Entries:
 
 def tied(variable: Variable, rows: int, columns: Ints, width: int, pointer: str) -> Ints:
     """The unknown of each of (rows, width) numbers, those of `columns` varying."""
-    groups: list[Ints]
-    if variable.tie == "each":
-        groups = [np.array([row]) for row in range(rows)]
-    elif variable.tie == "all":
-        groups = [np.arange(rows)]
-    else:
-        groups = [np.asarray(group) for group in variable.tie]
     found = np.full((rows, width), -1)
-    for i, group in enumerate(groups):
+    if isinstance(variable.tie, str):
+        each = variable.tie == "each"
+        number = np.arange(rows) if each else np.zeros(rows, np.int64)
+        found[:, columns] = number[:, None] * len(columns) + np.arange(len(columns))
+        return found
+    for i, group in enumerate(np.asarray(group) for group in variable.tie):
         if not len(group) or group.max() >= rows:
             given = "no elements" if not len(group) else f"element {int(group.max())}"
             raise InputError(f"{pointer}/tie/{i}", f"{given} given; there are {rows}, counted from 0")

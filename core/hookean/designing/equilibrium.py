@@ -6,13 +6,14 @@ K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films move a
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.designing.factors import Factored, Orders
 from hookean.forces.base import lengths
-from hookean.linear.sparse_factors import Factor, Factors
 from hookean.running.result import Result
 from hookean.running.run import relax_state
 from hookean.solvers import solver
@@ -25,7 +26,12 @@ Floats = NDArray[np.float64]
 TIGHT = 1e-11  # residual [-] to which shapes are brought
 SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
 SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the same
+NOTHING = 1e-15  # part of the diagonal: entries of the tangent that are rounding
+ALIKE = 1e-14  # part of the largest entry by which equal tangents differ
 POLISH = 6  # exact steps after that, while each leaves less
+FOLLOWED = 12  # exact steps by which a shape is followed as variables change
+NEARBY = 0.1  # part of the model's size: the largest of these where forces are not linear
+SETTLED, FINISHED = 1e-8, 1e-13  # parts of it: steps that may be rounding, and steps that are nothing
 
 
 class Equilibrium:
@@ -34,11 +40,12 @@ class Equilibrium:
     `tangent` (3n, 3n) is sparse, of all axes; `basis` (3n, r) the motions that are free.
     """
 
-    def __init__(self, system: System, state: State, result: Result) -> None:
-        self.system, self.state, self.result = system, state, result
+    def __init__(self, system: System, state: State, result: Result | None, orders: Orders | None = None) -> None:
+        self.system, self.state, self._result = system, state, result
+        self.orders = orders or Orders()
         self.tangent = tangent(system, state)
         self.basis = _basis(system, state)
-        self._factor: Factor | Any = None
+        self._factor: Factored | None = None
         self.yielded: list[str] = []  # kinds of forces that have yielded on the way here
 
     @property
@@ -47,53 +54,104 @@ class Equilibrium:
         return self.state.x
 
     @property
+    def result(self) -> Result:
+        """The result of the run that found the shape, or of one that starts from it."""
+        if self._result is None:
+            self._result = _relaxed(self.system, self.state)
+        return self._result
+
+    @property
+    def converged(self) -> bool:
+        """Whether the shape is at rest; one without a run of its own was followed to rest."""
+        return self._result is None or self._result.converged
+
+    @property
     def symmetric(self) -> bool:
         """Whether forces come from an energy, so that the tangent is symmetric."""
         return all(group.cls.conservative or group.cls.constant for group in self.system.groups)
 
+    @cached_property
+    def reduced(self) -> Any:
+        """The tangent (r, r) on the free motions, without entries that are rounding."""
+        whole = (self.basis.T @ self.tangent @ self.basis).tocsc()
+        size = np.abs(whole.diagonal())
+        columns = np.repeat(np.arange(whole.shape[1]), np.diff(whole.indptr))
+        whole.data[np.abs(whole.data) <= NOTHING * np.minimum(size[whole.indices], size[columns])] = 0.0
+        whole.eliminate_zeros()
+        return whole
+
+    @property
+    def factor(self) -> Factored:
+        """The reduced tangent in factors."""
+        if self._factor is None:
+            axes = None if self.system.films is not None else self.basis.indices % 3
+            self._factor = Factored(self.reduced, axes, self.symmetric, self.orders)
+        return self._factor
+
+    def take_factor(self, other: Equilibrium) -> bool:
+        """Use the factors of another equilibrium if both have the same tangent; whether that was so."""
+        one, two = self.reduced, other.reduced
+        same = one.shape == two.shape and one.nnz == two.nnz and self.system.films is None
+        same = same and np.array_equal(one.indices, two.indices) and np.array_equal(one.indptr, two.indptr)
+        if same and not np.abs(one.data - two.data).max(initial=0.0) > ALIKE * np.abs(one.data).max(initial=0.0):
+            self._factor = other.factor
+            return True
+        return False
+
     def solve(self, b: Floats, *, transposed: bool = False) -> Floats:
         """K^-1 b, or K^-T b, (3n,) on the free motions; 0 on the others. NaN where K is singular."""
-        if self._factor is None:
-            self._factor = self._factored()
         right = self.basis.T @ b
         if not len(right):
             return np.zeros(len(b))
-        if isinstance(self._factor, Factor):
-            found = self._factor.solve(right)
-        elif self._factor is False:
-            found = np.full(len(right), np.nan)
-        else:
-            found = self._factor.solve(right, trans="T" if transposed else "N")
-        return np.asarray(self.basis @ found)
-
-    def _factored(self) -> Any:
-        reduced = (self.basis.T @ self.tangent @ self.basis).tocsc()
-        if not self.symmetric:
-            from scipy.sparse.linalg import splu
-
-            try:
-                return splu(reduced)
-            except RuntimeError:  # singular
-                return False
-        from scipy.sparse import tril
-
-        lower = tril(reduced, format="csc")
-        lower.sort_indices()
-        factor = Factors(lower.indices.astype(np.int32), lower.indptr.astype(np.int32)).factor(lower.data)
-        return False if factor is None else factor
+        return np.asarray(self.basis @ self.factor.solve(right, transposed=transposed))
 
 
-def settle(system: System, state: State) -> Equilibrium:
+def follow(before: Equilibrium) -> Equilibrium | None:
+    """The equilibrium near one whose variables have changed since, by Newton's method alone; None unless that leads to
+    a stable shape nearby. Forces that remember need a run of their own."""
+    system, state = before.system, before.state
+    if system.films is not None or system.contacts or system.yields:
+        return None
+    memory = [each.copy() for each in state.memory]
+    start, size, last = state.x.copy(), system.size, np.inf
+    now = Equilibrium(system, state, None, before.orders)
+    now.take_factor(before)
+    for _ in range(FOLLOWED):
+        step = now.solve(_left(system, state).ravel()).reshape(-1, 3)
+        length = float(lengths(step).max(initial=0.0))  # NaN where the tangent is singular
+        slower = length > 0.5 * last
+        if length <= (SETTLED if slower else FINISHED) * size:
+            system.remember(state)
+            if all(map(np.array_equal, memory, state.memory)):
+                return now
+            break
+        if slower or now.factor.negatives or not np.isfinite(length):
+            break
+        state.x = state.x + step
+        after = Equilibrium(system, state, None, before.orders)
+        linear = after.take_factor(now)
+        if not linear and length > NEARBY * size:
+            break
+        now, last = after, length
+    state.x, state.memory = start, memory
+    return None
+
+
+def settle(system: System, state: State, orders: Orders | None = None) -> Equilibrium:
     """Bring a state to rest with the scene's solver, and to the last digit by exact steps."""
+    before = [memory.copy() for memory in state.memory]
+    found = _polished(system, state, _relaxed(system, state), orders or Orders())
+    found.yielded = _yielded(system, state, before)
+    return found
+
+
+def _relaxed(system: System, state: State) -> Result:
     settings = system.scene.settings
     tight = settings.replaced(tolerance=min(settings.tolerance, TIGHT), position_tolerance=None)
-    before = [memory.copy() for memory in state.memory]
     system.scene = system.scene.replaced(settings=tight)
     result = relax_state(system, state, solver(settings.solver))
     system.scene = system.scene.replaced(settings=settings)
-    found = _polished(system, state, result)
-    found.yielded = _yielded(system, state, before)
-    return found
+    return result
 
 
 def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
@@ -107,24 +165,25 @@ def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
     return found
 
 
-def _polished(system: System, state: State, result: Result) -> Equilibrium:
+def _polished(system: System, state: State, result: Result, orders: Orders) -> Equilibrium:
     """Exact steps, while each leaves less out of balance."""
-    found = Equilibrium(system, state, result)
+    found = Equilibrium(system, state, result, orders)
     left = _left(system, state)
     for _ in range(POLISH):
         step = found.solve(left.ravel()).reshape(-1, 3)
         size = lengths(left).max(initial=0.0)
         if not np.isfinite(step).all() or size == 0.0:
             break
-        before = state.x.copy()
-        state.x = before + step
+        start = state.x.copy()
+        state.x = start + step
         now = _left(system, state)
         if lengths(now).max(initial=0.0) >= 0.5 * size:
-            state.x = before
+            state.x = start
             break
         left = now
         if lengths(step).max(initial=0.0) > SLIGHT * system.size:
-            found = Equilibrium(system, state, result)
+            before, found = found, Equilibrium(system, state, result, orders)
+            found.take_factor(before)
     result.particles = state.x.copy()
     return found
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.answer import DesignStatus
+from hookean.designing.levenberg import levenberg
 from hookean.designing.limits import AT_BOUND
 from hookean.designing.sensitivity import jacobian
 
@@ -46,6 +47,10 @@ def _least_squares(search: Search) -> Ended:
     )  # fmt: skip
     ended = DesignStatus.MAX_ITERATIONS if found.status == 0 else DesignStatus.CONVERGED
     return int(found.njev), ended, ""
+
+
+def _levenberg_marquardt(search: Search) -> Ended:
+    return *levenberg(search, *_bounds(search)), ""
 
 
 def _lbfgsb(search: Search) -> Ended:
@@ -120,6 +125,7 @@ def _slsqp(search: Search) -> Ended:
 
 METHODS: dict[str, Callable[[Search], Ended]] = {
     "least_squares": _least_squares,
+    "levenberg_marquardt": _levenberg_marquardt,
     "l-bfgs-b": _lbfgsb,
     "slsqp": _slsqp,
 }

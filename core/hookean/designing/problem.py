@@ -29,7 +29,7 @@ else:
     AnyQuantity = Annotated[Union[tuple(QUANTITIES.values())], Field(discriminator="kind")]  # noqa: UP007
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
-METHODS = ("auto", "least_squares", "l-bfgs-b", "slsqp")
+METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp")
 
 
 class Variable(Model):
@@ -117,8 +117,8 @@ def _split(value: Any, own: tuple[str, ...]) -> Any:
 
 
 class DesignSettings(Model):
-    """How to search. `auto` takes least squares where all goals have targets and nothing is constrained, L-BFGS-B
-    without targets, SLSQP with constraints."""
+    """How to search. `auto` takes least squares where all goals have targets and nothing is constrained (of many
+    unknowns and values by Levenberg and Marquardt, sparse), L-BFGS-B without targets, SLSQP with constraints."""
 
     method: Literal[METHODS] = Field(default="auto", description="Method; auto selects one and reports which")  # type: ignore[valid-type]
     tolerance: float = Field(default=1e-8, gt=0, le=1, description="Relative change at which the search ends [-]")

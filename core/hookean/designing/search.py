@@ -14,16 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.answer import Design, DesignStatus
-from hookean.designing.equilibrium import Equilibrium, settle
+from hookean.designing.equilibrium import Equilibrium, follow, settle
+from hookean.designing.factors import Orders
 from hookean.designing.limits import AT_BOUND, LIMIT, beyond, size
+from hookean.designing.linearised import Linearised
 from hookean.designing.methods import METHODS, Stopped
 from hookean.designing.problem import Goal, Problem
+from hookean.designing.quantities.base import Quantity
 from hookean.designing.sensitivity import gradients, jacobian, warnings
 from hookean.designing.unknowns import Moved, Unknowns
 from hookean.errors import InputError
 from hookean.system.system import System, compile
 
 Floats = NDArray[np.float64]
+MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
 
@@ -39,6 +43,7 @@ class Search:
         self.unknowns = Unknowns(problem, self.system)
         self.state = self.system.start()
         self.scale = self.unknowns.scale
+        self.orders = Orders()
         self.found: Equilibrium | None = None
         self._at: Floats | None = None
         self._resting: Floats | None = None
@@ -64,9 +69,10 @@ class Search:
         if self._resting is not None:
             self.state.x = self._resting.copy()
         self.unknowns.put(self.system, self.state, self.unknowns.start + y * self.scale)
-        self.found = settle(self.system, self.state)
+        followed = follow(self.found) if self.found is not None and self.found.converged else None
+        self.found = followed or settle(self.system, self.state, self.orders)
         self._at = y.copy()
-        if self.found.result.converged:
+        if self.found.converged:
             self._resting = self.state.x.copy()
         self.evaluations += 1
         return self.found
@@ -121,28 +127,41 @@ class Search:
         ]
         whole = np.concatenate(parts) if parts else np.zeros(0)
         self._note(y)
-        if not (found.result.converged and np.isfinite(whole).all()):
+        if not (found.converged and np.isfinite(whole).all()):
             return np.full(len(whole), 1e3 * (1.0 + np.sqrt(self.best[1] if np.isfinite(self.best[1]) else 1.0)))
         return whole
 
     def slopes(self, y: Floats) -> Floats:
         """Derivatives (k, u) of the residuals by scaled unknowns."""
-        goals = self.problem.goals
-        kept = [(g.quantity, f"/goals/{i}") for i, g in enumerate(goals) if self.targets[i] is not None]
-        found = jacobian(self.at(y), self.unknowns, kept)
-        weights = [
-            np.full(len(target), np.sqrt(g.weight))
-            for g, target in zip(goals, self.targets, strict=True)
-            if target is not None
-        ]
-        return np.nan_to_num(np.concatenate(weights)[:, None] * found * self.scale)
+        found = jacobian(self.at(y), self.unknowns, self._aimed())
+        return np.nan_to_num(self._weights()[:, None] * found * self.scale)
+
+    def linearised(self, y: Floats) -> Linearised:
+        """The same as sparse parts."""
+        return Linearised(self.at(y), self.unknowns, self._aimed(), self._weights(), self.scale, self.orders)
+
+    @property
+    def target_size(self) -> float:
+        """What residuals are measured by: the targets, or what was missed at first where these are 0."""
+        targets = [target for target in self.targets if target is not None]
+        return float(np.linalg.norm(self._weights() * np.concatenate(targets))) or 1.0
+
+    def _aimed(self) -> list[tuple[Quantity, str]]:
+        """Quantities of goals with targets."""
+        goals = enumerate(self.problem.goals)
+        return [(goal.quantity, f"/goals/{i}") for i, goal in goals if self.targets[i] is not None]
+
+    def _weights(self) -> Floats:
+        """The weight (k,) of each residual."""
+        pairs = zip(self.problem.goals, self.targets, strict=True)
+        return np.concatenate([np.full(len(t), np.sqrt(g.weight)) for g, t in pairs if t is not None])
 
     def objective(self, y: Floats) -> float:
         """The objective; where there is no equilibrium, more than any so far."""
         found = self.at(y)
         value = self._objective(found)
         self._note(y)
-        if found.result.converged and np.isfinite(value):
+        if found.converged and np.isfinite(value):
             return value
         return float(abs(self.best[1]) * 1e3 + 1e3) if np.isfinite(self.best[1]) else 1e30
 
@@ -171,7 +190,7 @@ class Search:
     def _note(self, y: Floats) -> None:
         """Remember the best shape: the one that misses its constraints least, then the one of the least objective."""
         found = self.at(y)
-        if not found.result.converged:
+        if not found.converged:
             return
         missed = self.missed(found)
         missed = 0.0 if missed <= LIMIT else missed
@@ -190,10 +209,10 @@ def design(problem: Any, *, progress: Progress | None = None, cancelled: Callabl
     """
     problem = Problem.read(problem)
     search = Search(problem, progress, cancelled)
-    method = _chosen(problem)
+    method = _chosen(search)
     ended: DesignStatus | None = None
     iterations, said = 0, ""
-    if not search.first.result.converged:
+    if not search.first.converged:
         ended, said = DesignStatus.STALLED, f"The start has no equilibrium. {search.first.result.message}"
     else:
         try:
@@ -203,16 +222,20 @@ def design(problem: Any, *, progress: Progress | None = None, cancelled: Callabl
     return _answer(search, method, iterations or search.evaluations, ended, said)
 
 
-def _chosen(problem: Problem) -> str:
+def _chosen(search: Search) -> str:
     """The method that a problem is solved with."""
+    problem = search.problem
     wanted = problem.settings.method
     aimed = all(goal.target is not None for goal in problem.goals)
     if wanted == "auto":
-        return "slsqp" if problem.constraints else "least_squares" if aimed else "l-bfgs-b"
+        if problem.constraints or not aimed:
+            return "slsqp" if problem.constraints else "l-bfgs-b"
+        values = sum(len(target) for target in search.targets if target is not None)
+        return "levenberg_marquardt" if min(values, search.unknowns.count) > MANY else "least_squares"
     if problem.constraints and wanted != "slsqp":
         raise InputError("/settings/method", f"{wanted} takes no constraints; choose slsqp or auto")
-    if wanted == "least_squares" and not aimed:
-        raise InputError("/settings/method", "least_squares needs a target for each goal; choose l-bfgs-b or auto")
+    if wanted in ("least_squares", "levenberg_marquardt") and not aimed:
+        raise InputError("/settings/method", f"{wanted} needs a target for each goal; choose l-bfgs-b or auto")
     return str(wanted)
 
 

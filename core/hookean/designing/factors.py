@@ -1,0 +1,101 @@
+"""The tangent at an equilibrium in factors, each axis by itself where axes do not act on one another."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.linear.sparse_factors import Factor, Factors
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Orders:
+    """Orders of elimination that earlier factors had, for matrices of the same pattern."""
+
+    def __init__(self) -> None:
+        self._kept: list[Factors] = []
+
+    def factor(self, matrix: Any) -> Factor | None:
+        """A symmetric matrix in factors; None where it is singular."""
+        from scipy.sparse import tril
+
+        lower = tril(matrix, format="csc")
+        lower.sort_indices()
+        rows, starts = lower.indices.astype(np.int32), lower.indptr.astype(np.int32)
+        for order in self._kept:
+            if np.array_equal(order.starts, starts) and np.array_equal(order.rows, rows):
+                return order.factor(lower.data)
+        order = Factors(rows, starts)
+        self._kept = [*self._kept[-3:], order]
+        return order.factor(lower.data)
+
+
+class Factored:
+    """A matrix that can be solved with. `sound`: it is not singular; `negatives`: how many of its eigenvalues are
+    below 0, of a symmetric matrix."""
+
+    def __init__(self, matrix: Any, axes: Ints | None, symmetric: bool, orders: Orders) -> None:
+        self.matrix, self.negatives, self.sound = matrix, 0, True
+        self._general: Any = None
+        self._parts: list[tuple[Ints, Factor]] = []
+        if not symmetric:
+            from scipy.sparse.linalg import splu
+
+            try:
+                self._general = splu(matrix)
+            except RuntimeError:  # singular
+                self.sound = False
+            return
+        for rows, alike in _blocks(matrix, axes):
+            factor = self._parts[alike][1] if alike >= 0 else orders.factor(matrix[rows][:, rows])
+            if factor is None:
+                self.sound = False
+                return
+            self._parts.append((rows, factor))
+            self.negatives += factor.negatives
+
+    def solve(self, b: Floats, *, transposed: bool = False) -> Floats:
+        """A^-1 b or A^-T b; NaN where A is singular."""
+        if not self.sound:
+            return np.full(len(b), np.nan)
+        if self._general is not None:
+            return np.asarray(self._general.solve(b, trans="T" if transposed else "N"))
+        found = np.empty(len(b))
+        for rows, factor in self._parts:
+            found[rows] = factor.solve(b[rows])
+        return found
+
+
+def _blocks(matrix: Any, axes: Ints | None) -> list[tuple[Ints, int]]:
+    """Rows of parts that do not act on one another, and the number of an earlier part of the same entries, or -1."""
+    whole = [(np.arange(matrix.shape[0]), -1)]
+    if axes is None:
+        return whole
+    entries = matrix.tocoo()
+    if (entries.data[axes[entries.row] != axes[entries.col]] != 0.0).any():
+        return whole
+    found: list[tuple[Ints, int]] = []
+    kept: list[Any] = []
+    for axis in range(3):
+        rows = np.flatnonzero(axes == axis)
+        if not len(rows):
+            continue
+        block = matrix[rows][:, rows].tocsc()
+        block.eliminate_zeros()
+        alike = next((i for i, other in enumerate(kept) if _same(block, other)), -1)
+        found.append((rows, alike))
+        kept.append(block)
+    return found
+
+
+def _same(one: Any, other: Any) -> bool:
+    return (
+        one.shape == other.shape
+        and np.array_equal(one.indptr, other.indptr)
+        and np.array_equal(one.indices, other.indices)
+        and np.array_equal(one.data, other.data)
+    )

@@ -1,0 +1,130 @@
+"""Goals and equilibrium together, made linear: steps of many unknowns towards many goals, without a dense Jacobian.
+
+At rest K dx = F du on the free motions, and goals change by G dx + D du. The damped step of Gauss and Newton,
+min |r + G dx + D du|² + m |du|² with equilibrium as a constraint, is one sparse symmetric system of the residuals, the
+motions and the multipliers of equilibrium. In units in which all parts have one size, with A = [D; -F] and s = sqrt(m):
+
+    [ -m I  G   . ]                      [ p ]   [ -s r ]
+    [ G^T   .  K^T] - A A^T on p and l,  [ d ] = [   0  ],    dx = d / s,  du = -A^T [p; l] / s.
+    [  .    K   . ]                      [ l ]   [   0  ]
+
+Unknowns that touch many rows stay in the system, so that it is sparse. Parts of the net that no goal depends on are
+left out. Source: Levenberg 1944, Marquardt 1963; the full system as in Nocedal and Wright, Numerical Optimization,
+chapter 16 (2006).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.designing.equilibrium import Equilibrium
+from hookean.designing.factors import Orders
+from hookean.designing.quantities.base import Quantity
+from hookean.designing.unknowns import Unknowns
+from hookean.linear.sparse_factors import supernodal
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+SOFT = 1e-8  # part of the largest stiffness that makes a system quasi-definite
+LEFT, IMPROVED = 1e-9, 12  # part of the right side that may be left, and in how many improvements
+DENSE = 40  # entries of an unknown in the system, above which it is not eliminated
+
+
+class Linearised:
+    """Derivatives of residuals (k,) at an equilibrium by unknowns in units of their `scale`, as sparse parts."""
+
+    def __init__(
+        self,
+        found: Equilibrium,
+        unknowns: Unknowns,
+        quantities: list[tuple[Quantity, str]],
+        weights: Floats,
+        scale: Floats,
+        orders: Orders,
+    ) -> None:
+        from scipy.sparse import diags, vstack
+
+        slopes = [quantity.slopes(found, unknowns, pointer) for quantity, pointer in quantities]
+        by_place = diags(weights) @ vstack([s[0] for s in slopes]).tocsr()
+        direct = diags(weights) @ vstack([s[1] for s in slopes]).tocsr()
+        forces, moves = unknowns.slopes(found)
+        self.found, self.orders = found, orders
+        self.goals = (by_place @ found.basis).tocsr()  # G (k, r)
+        self.direct = ((direct + by_place @ moves) @ diags(scale)).tocsc()  # D (k, u)
+        self.pushes = (found.basis.T @ (forces - found.tangent @ moves) @ diags(scale)).tocsc()  # F (r, u)
+
+    def transposed(self, r: Floats) -> Floats:
+        """The Jacobian's transpose times residuals (k,): by the adjoint."""
+        adjoint = self.found.factor.solve(self.goals.T @ r, transposed=True)
+        return np.asarray(self.direct.T @ r + self.pushes.T @ adjoint)
+
+    def forward(self, change: Floats) -> Floats:
+        """The Jacobian times a change (u,) of the unknowns."""
+        return np.asarray(self.direct @ change + self.goals @ self.found.factor.solve(self.pushes @ change))
+
+    def step(self, r: Floats, damping: float, free: Bools) -> Floats | None:
+        """The damped step (u,) of the free unknowns for residuals r (k,), None if it has none."""
+        from scipy.sparse import bmat, identity, vstack
+
+        seen = self._seen()
+        goals, tangent = self.goals[:, seen], self.found.reduced[seen][:, seen]
+        spread = vstack([self.direct, -self.pushes[seen]]).tocsc()[:, np.flatnonzero(free)]
+        wide = np.diff(spread.indptr) > DENSE
+        thin, thick = spread[:, np.flatnonzero(~wide)], spread[:, np.flatnonzero(wide)]
+        squares = -(thin @ thin.T).tocsr()
+        k, m = goals.shape
+        corner = squares[:k, :k] - damping * identity(k)
+        system = bmat(
+            [
+                [corner, goals, squares[:k, k:], thick[:k]],
+                [goals.T, None, tangent.T, None],
+                [squares[k:, :k], tangent, squares[k:, k:], thick[k:]],
+                [thick[:k].T, None, thick[k:].T, identity(thick.shape[1])],
+            ],
+            format="csc",
+        )
+        right = np.concatenate([-np.sqrt(damping) * r, np.zeros(system.shape[0] - k)])
+        signs = np.repeat([-1.0, 1.0, -1.0, 1.0], [k, m, m, thick.shape[1]])
+        solved = _solved(system, signs * (SOFT * float(np.abs(tangent.data).max(initial=0.0))), right, self.orders)
+        if solved is None:
+            return None
+        both = np.concatenate([solved[:k], solved[k + m : k + 2 * m]])
+        step = np.zeros(len(free))
+        step[np.flatnonzero(free)] = -(spread.T @ both) / np.sqrt(damping)
+        return step if np.isfinite(step).all() else None
+
+    def _seen(self) -> NDArray[np.int64]:
+        """Free motions that a goal depends on."""
+        from scipy.sparse import csr_matrix
+        from scipy.sparse.csgraph import connected_components
+
+        net = csr_matrix(self.found.reduced)
+        net.eliminate_zeros()
+        count, label = connected_components(net, directed=False)
+        read = np.zeros(count, dtype=bool)
+        read[label[np.unique(self.goals.indices)]] = True
+        return np.flatnonzero(read[label])
+
+
+def _solved(system: Any, soft: Floats, right: Floats, orders: Orders) -> Floats | None:
+    """The solution of a symmetric system that has factors in any order once `soft` is on its diagonal (Vanderbei
+    1995): by these, improved until nothing is left of it, else by factors with pivots. None if it is singular."""
+    from scipy.sparse import diags
+    from scipy.sparse.linalg import splu
+
+    factor = orders.factor(system + diags(soft)) if supernodal() is not None else None
+    if factor is not None:
+        found, left = np.zeros(len(right)), right
+        for _ in range(IMPROVED):
+            found = found + factor.solve(left)
+            left = right - system @ found
+            if not np.linalg.norm(left) > LEFT * np.linalg.norm(right):
+                return found
+    try:
+        return np.asarray(splu(system).solve(right))
+    except RuntimeError:  # singular
+        return None
