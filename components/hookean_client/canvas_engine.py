@@ -339,11 +339,25 @@ def _reactions(player, frame):
     forces = told["force"]
     if not player.exact and len(frame["reactions"]) == 3 * len(forces):
         forces = [frame["reactions"][3 * i : 3 * i + 3] for i in range(len(forces))]
-    by_name = dict(zip(told["names"], forces))
+    parts = _parts(player, dict(zip(told["particles"], forces)), dict(zip(told["names"], forces)))
     order, branches = [], {}
     for anchor in player.kept.anchors:
         if anchor["branch"] not in branches:
             order.append(anchor["branch"])
-        force = by_name.get(anchor["name"])
+        force = parts.get(anchor["name"])
         branches.setdefault(anchor["branch"], []).append(None if force is None else geometry.to_vector(force))
     return [(path, branches[path]) for path in order]
+
+
+def _parts(player, on, parts):
+    """Reactions by the names of anchors: where several hold a particle, each direction is with the last that holds
+    it, whose target it is at. `on`: by particle; `parts`: as they are where each particle has one anchor."""
+    if not player.shared:
+        return parts
+    taken, parts = set(), {}
+    for name, particle, axes in reversed(player.shared):
+        if particle in on:
+            mine = [axis for axis in axes if (particle, axis) not in taken]
+            parts[name] = [on[particle]["xyz".index(axis)] if axis in mine else 0.0 for axis in "xyz"]
+            taken.update((particle, axis) for axis in mine)
+    return parts

@@ -34,6 +34,7 @@ class Player(object):
         self.sent = self.form = self.where = self.topology = self.state = self.frames = self.task = None
         self.anchors, self.revision, self.running = {}, -1, True
         self.shown = self.seen = self.component = None
+        self.shared = None  # (name, particle, axes) of each anchor, where particles have several
         self.falls = self.hand = None  # why the form falls freely; what the mouse holds of it
         self.ended = self._watched = False
         self._branch, self._met, self._trouble = None, False, None
@@ -181,6 +182,7 @@ class Player(object):
                 self.anchors = before  # a scene that is refused gives no anchor a home
                 raise
             self.topology = dict(link.unpacked(session.read("topology", arrays="buffer")), mark=form)
+            self.shared = None
         answer = self._set_going(session, wanted, new) or answer
         self.sent, self.form, self.where = scene, form, compose.places(scene)
         self.revision = self.revision if answer is None else answer["revision"]
@@ -211,6 +213,10 @@ class Player(object):
         before = session.read()
         state = link.unpacked(session.state(arrays="buffer"))
         state["at"] = (before["revision"], state["iterations"], state["status"])
+        met = set(state["reactions"]["names"])
+        if self.shared is None and any(one["name"] not in met for one in (self.sent or {}).get("anchors") or ()):
+            held = link.unpacked(session.read("anchors"))["anchors"]
+            self.shared = [(one["name"], p, one["axes"]) for one in held for p in one["particles"]]
         self.state, self._read = state, link.now()
         self._cost = self._read - began
 

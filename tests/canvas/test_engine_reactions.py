@@ -48,3 +48,23 @@ def test_reactions_come_in_the_order_of_anchors_with_targets(order: list[int], h
     cable.run(lambda out: cable.player.settled)
     found = [xyz(v) for v in cable.out.reactions.Branch(0)]
     assert np.array(found) == pytest.approx(np.array([pulls(cable, n) for n in numbers]), abs=1e-3)
+
+
+@pytest.mark.parametrize("doubled", [["xyz", "xyz"], ["xy", "yz"], ["z", "xyz"]])
+def test_a_particle_with_two_anchors_has_its_reaction_once(doubled: list[str], home: Any) -> None:
+    """Each direction is with the last anchor that holds it, whose target it is at; the others have none of it there.
+    So all reactions add up to the loads, which sum to -110 N."""
+    cable = Cable()
+    places = [(0, 0, 0), (0, 0, 0), (10, 0, 0)]
+    cable.anchors = [
+        canvas.anchors(cable.bench.component("Anchors"), [point(*place)], None, *(axis in axes for axis in "xyz"))
+        for place, axes in zip(places, [*doubled, "xyz"], strict=True)
+    ]
+    cable.run()
+    found = np.array([xyz(v) for path in cable.out.reactions.Paths for v in cable.out.reactions.Branch(path)])
+    assert found.shape == (3, 3)
+    whole = pulls(cable, 0)
+    for number, axes in enumerate(doubled):
+        last = [axis in axes and all(axis not in later for later in doubled[number + 1 :]) for axis in "xyz"]
+        assert found[number] == pytest.approx(np.where(last, whole, 0.0), abs=1e-3)
+    assert found.sum(axis=0) == pytest.approx([0.0, 0.0, 110.0], abs=1e-3)
