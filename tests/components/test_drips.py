@@ -106,8 +106,8 @@ SLOW: dict[str, Script] = {
 @pytest.mark.parametrize("name", SLOW)
 @pytest.mark.parametrize("method", ["GET", "POST"])
 def test_the_timeout_is_that_of_the_whole_call(server: Hostile, client: Client, name: str, method: str) -> None:
-    """It ends by the client while the server goes on: the connection is cut, whatever comes down it. (A busy machine may
-    need longer than the first timeouts for the first drop.)"""
+    """It ends by the client while the server goes on: the connection is cut, whatever comes down it. (A busy
+    machine may need longer than the first timeouts for the first drop.)"""
     server.script = SLOW[name]
     for timeout in (0.5, 5.0, HANG):
         server.ended.clear()
