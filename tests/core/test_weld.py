@@ -361,3 +361,19 @@ def test_the_time_limit_counts_welding(monkeypatch: pytest.MonkeyPatch) -> None:
     }
     ended = [str(relax(Scene(**scene, settings={"time_limit": limit})).status) for limit in (30.0, 90_000.0)]
     assert ended == ["time_limit", "converged"]
+
+
+def test_a_section_that_does_not_exist_is_named():
+    beam = {"kind": "beam", "particles": [[0, 1]], "material": "S235", "section": "tube"}
+    spec = {"particles": [[0, 0, 0], [1, 0, 0]], "forces": [beam], "anchors": [{"particles": [0], "rotations": "xyz"}]}
+    with pytest.raises(InputError, match="section 'tube' does not exist") as found:
+        compile(Scene.read(spec))
+    assert found.value.pointer
+
+
+def test_only_springs_with_a_rest_length_are_warned_of_for_zero_length():
+    """A spring that shall have no length may start with none."""
+    for rest, warned in ((0.0, False), (1.0, True)):
+        spring = {"kind": "springs", "particles": [[0, 1]], "rest_length": rest}
+        spec = {"particles": [[0, 0, 0], [0, 0, 0]], "forces": [spring], "anchors": [{"particles": [0]}]}
+        assert any("zero length" in said for said in compile(Scene.read(spec)).report.warnings) is warned

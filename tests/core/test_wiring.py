@@ -219,3 +219,10 @@ def test_the_edited_scene_holds_anchors_as_they_are(name: str) -> None:
     assert np.array_equal(fresh.state.free, simulation.state.free)
     fixed = simulation.state.free == 0
     assert fixed[last, 2] and np.array_equal(fresh.state.x[fixed], simulation.state.x[fixed])
+
+
+def test_a_value_that_a_field_does_not_allow_is_named_by_its_place() -> None:
+    simulation = Simulation(Scene.read(PLACES["lines"]))
+    with pytest.raises(InputError) as found:
+        simulation.patch({"forces": {"0": {"stiffness": -1.0}}})
+    assert found.value.pointer.startswith("/forces/0/stiffness")
