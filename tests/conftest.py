@@ -41,6 +41,17 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
         def _split_scope(self, nodeid: str) -> str:
             return unit(nodeid)
 
+        def _reschedule(self, node: Any) -> None:
+            """A worker begins a test when it knows the next one or that there is none. The one that replaces a worker
+            that died is told so here; with its last test alone it would wait for ever."""
+            if node not in self.registered_collections:
+                return
+            super()._reschedule(node)
+            while self.workqueue and not node.shutting_down and self._pending_of(self.assigned_work[node]) < 2:
+                self._assign_work_unit(node)
+            if not self.workqueue and not node.shutting_down:
+                node.shutdown()
+
     return Units(config, log)
 
 

@@ -41,7 +41,7 @@ def scene(x: np.ndarray, forces: list[Spec], anchors: list[Spec] | None = None, 
 
 def rotation(result: Any, place: int) -> Rotation:
     """The orientation of a particle in a result, for scipy."""
-    return Rotation.from_quat(result.rotations["quaternions"][place], scalar_first=True)
+    return Rotation.from_quat(np.roll(result.rotations["quaternions"][place], -1))  # the real part is last
 
 
 def rod(frames: Any, length: float, curvature: np.ndarray, stiff: np.ndarray, axial: float, force: np.ndarray) -> Any:

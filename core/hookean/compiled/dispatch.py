@@ -134,14 +134,63 @@ def _address(function: Callable[..., Any], role: str) -> int:
 
 @cache
 def cache_folder(function: Callable[..., Any]) -> Path:
-    """Folder of compiled code: the user's cache, then a digest of every source a kernel may inline."""
+    """Folder of compiled code: the user's cache, then a digest of every source and constant that it can depend on."""
     digest = hashlib.sha256()
-    core = Path(__file__).parents[1]
-    sources = {Path(inspect.getfile(function))}
-    sources.update(*(core.glob(f"{room}/*.py") for room in ("compiled", "films", "forces", "linear", "solvers")))
-    for source in sorted(sources):
-        digest.update(source.read_bytes())
+    functions, constants = reached(function)
+    sources = {_source(one) for one in functions} | set(Path(__file__).parent.glob("*.py"))
+    for content in sorted(_digest(source) for source in sources):
+        digest.update(content)
+    digest.update("\n".join(sorted(constants)).encode())
     return _writable_root() / digest.hexdigest()[:16]
+
+
+def reached(function: Any) -> tuple[set[Any], set[str]]:
+    """All that machine code of a function can contain: functions and classes of the core that it names, and those that
+    these name, and the numbers that they take from modules, which are part of the code as well."""
+    found: set[Any] = set()
+    constants: set[str] = set()
+    left = [function]
+    while left:
+        one = left.pop()
+        if one in found:
+            continue
+        found.add(one)
+        for name, value in _named(one):
+            value = inspect.unwrap(value) if callable(value) else value
+            if isinstance(value, types.FunctionType | type):
+                if value.__module__.partition(".")[0] == "hookean":
+                    left.append(value)
+            elif not isinstance(value, types.ModuleType):
+                constants.add(f"{name} {value.tolist() if hasattr(value, 'tolist') else value!r}")
+    return found, constants
+
+
+def _named(function: Any) -> list[tuple[str, Any]]:
+    """What the code of a function names: in its module, in modules that are there, and in functions around it."""
+    code = getattr(function, "__code__", None)
+    if code is None:  # a class: its file counts
+        return []
+    inner, names = [code], set()
+    while inner:
+        part = inner.pop()
+        names.update(part.co_names)
+        inner += [one for one in part.co_consts if isinstance(one, types.CodeType)]
+    given = [(name, function.__globals__[name]) for name in names if name in function.__globals__]
+    for _, module in tuple(given):
+        if isinstance(module, types.ModuleType) and module.__name__.partition(".")[0] == "hookean":
+            given += [(name, vars(module)[name]) for name in names if name in vars(module)]
+    cells = zip(code.co_freevars, function.__closure__ or (), strict=False)
+    return [*given, *((name, cell.cell_contents) for name, cell in cells)]
+
+
+@cache
+def _source(function: Any) -> Path:
+    return Path(inspect.getfile(function))
+
+
+@cache
+def _digest(source: Path) -> bytes:
+    return hashlib.sha256(source.read_bytes()).digest()
 
 
 @cache
