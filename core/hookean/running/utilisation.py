@@ -77,7 +77,7 @@ def _sheets(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats
     if material.strength is None or force.thickness is None:
         return None
     most, least = columns["largest"], columns["least"]
-    return np.sqrt(most**2 - most * least + least**2) / (force.thickness * material.strength)
+    return np.asarray(np.sqrt(most**2 - most * least + least**2) / (force.thickness * material.strength))
 
 
 RULES: dict[str, Callable[[Any, Places, Mapping[str, Floats]], Floats | None]] = {
