@@ -140,5 +140,5 @@ class WindPressure(FaceLoad):
     @classmethod
     def example(cls) -> tuple[WindPressure, Floats]:
         """An irregular dome of quads and triangles (`example_faces`), pressed to windward and sucked in the lee."""
-        cp = {"coefficient": [0.8, -0.4, -1.2, -0.5], "angles": [0.0, 50.0, 100.0, 180.0]}
+        cp = {"coefficient": [0.8, -0.4, -1.2, -0.5], "angles": [10.0, 50.0, 80.0, 100.0]}
         return cls(mesh="skin", pressure=3.0, direction=[2.0, 0.5, -1.0], **cp), dome()  # type: ignore[arg-type]
