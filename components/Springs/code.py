@@ -33,6 +33,7 @@ force = canvas.force(
     axial_stiffness=axial_stiffness_,
     material=material_,
     section=section_,
+    strength=strength_,
     force=force_,
     strain=strain_,
     temperature=temperature_,

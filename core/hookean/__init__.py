@@ -120,6 +120,7 @@ if TYPE_CHECKING:
     from hookean.forces.volume import Volume as Volume
     from hookean.forces.vortex import Vortex as Vortex
     from hookean.forces.wind import Wind as Wind
+    from hookean.forces.wind_pressure import WindPressure as WindPressure
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
     from hookean.running.frame import Frame as Frame
@@ -315,6 +316,7 @@ __all__ = [
     "Volume",
     "Vortex",
     "Wind",
+    "WindPressure",
     "buckling",
     "cables",
     "cutting_patterns",

@@ -136,6 +136,13 @@ def wind(pen: Pen) -> None:
     pen.line(*bent((16.0, 2.5), (22.5, 12.0), (16.0, 21.5)), colour=BLUE, width=2.2)
 
 
+def wind_pressure(pen: Pen) -> None:
+    pen.line((2.0, 19.0), (8.0, 9.0), (16.0, 9.0), (22.0, 19.0), colour=BLUE, width=2.2)
+    pen.arrow((0.8, 9.5), (4.4, 13.4), head=3.6)
+    pen.arrow((12.0, 7.5), (12.0, 1.5), head=3.6)
+    pen.arrow((20.0, 13.0), (23.2, 9.5), head=3.2)
+
+
 def hydrostatic(pen: Pen) -> None:
     pen.line((2.0, 5.0), (16.0, 5.0), colour=BLUE, width=1.4)
     pen.line((17.0, 2.0), (17.0, 22.0), width=2.2)
@@ -149,7 +156,7 @@ DRAWINGS: dict[str, Callable[[Pen], None]] = {
     for draw in (
         *(collide, collide_lines, collide_solid, collide_curve, collide_2d, soft_collide, box_collide, rigid_collide),
         *(rigid_body, solid_plane_collide, impulse, coincident, pull_to_plane, smooth, volume, planarize, wind),
-        hydrostatic,
+        *(hydrostatic, wind_pressure),
     )
 }
 """Drawings by the name of the bundle, in small letters without blanks."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.forces import KINDS
+from hookean.running.utilisation import NAME, dimensions
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
@@ -56,9 +56,9 @@ class Envelope:
         lines = [self._line("displacement", self.displacement, spot, unit.length, f"particle {spot}")]
         for entry in self.forces:
             for name, found in entry["columns"].items():
-                if name not in ("force", "moment") or not len(found.largest):
+                if name not in ("force", "moment", NAME) or not len(found.largest):
                     continue
-                kind = unit.of(KINDS[entry["kind"]].outputs[name])
+                kind = unit.of(dimensions(entry["kind"])[name]) or "-"
                 at, low = int(found.largest.argmax()), int(found.smallest.argmin())
                 lines.append(self._line(f"{entry['name'] or entry['kind']} {name}", found, at, kind, f"element {at}"))
                 if found.smallest[low] < 0.0:
@@ -106,7 +106,7 @@ def envelope(cases: Mapping[str, Shown], units: Units) -> Envelope:
     forces = []
     for number, entry in enumerate(first):
         columns = {}
-        for name in KINDS[entry["kind"]].outputs:
+        for name in dimensions(entry["kind"]):
             found = [_sizes(own[number].get(name)) for own, _, _ in cases.values()]
             whole = [values for values in found if values is not None]
             if len(whole) == len(found) and len({len(values) for values in whole}) == 1:

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from hookean.analysis.at_rest import AtRest
 from hookean.analysis.matrices import Unknowns, factor
 from hookean.errors import InputError
-from hookean.forces import Block, Force
+from hookean.forces import Block, Force, elastic
+from hookean.forces.base import Places
 from hookean.forces.springs import Springs
 from hookean.running.result import Result, Status, gather
 from hookean.running.run import relax_state
+from hookean.running.utilisation import breaking_force
 from hookean.scene.load_cases import ElasticLine, Stages, named
 from hookean.scene.scene import Scene
 from hookean.solvers import solver
@@ -102,7 +104,7 @@ def freeze(scene: Scene) -> Frozen:
             block.memory = memory[part.rows]
             if group.cls.kind_name in FREEZERS and element_forces is not None:
                 columns = part.force.measure(block, state.x, element_forces[part.rows])
-                line = _line(scene, stages, part, block, columns)
+                line = _line(system, stages, part, block, columns)
                 forces[part.number] = FREEZERS[group.cls.kind_name](line)
                 lengths[part.number], tensions[part.number] = line.length, line.tension
             elif group.cls.role == "internal" and group.cls.kind_name not in ELASTIC:
@@ -158,12 +160,28 @@ def sharpen(system: System, state: State) -> None:
         left = after
 
 
-def _line(scene: Scene, stages: Stages, part: Part, block: Block, columns: dict[str, Floats]) -> Line:
+def _line(system: System, stages: Stages, part: Part, block: Block, columns: dict[str, Floats]) -> Line:
     wanted = ElasticLine()
     for name, given in stages.freeze.items():
-        if part.number in named(scene, name):
+        if part.number in named(system.scene, name):
             wanted = given
+    wanted = _filled(wanted, part.force, system.places, f"/forces/{part.number}")
     return Line(part.force, f"/forces/{part.number}", columns["length"], columns["force"], block, wanted)
+
+
+def _filled(wanted: ElasticLine, force: Force, places: Places, pointer: str) -> ElasticLine:
+    """What a force is to become, with the EA and the breaking force of its material and section."""
+    try:
+        if wanted.material is not None:
+            wanted = wanted.replaced(
+                axial_stiffness=elastic.axial_stiffness(wanted, places),
+                strength=breaking_force(wanted, places),
+            )
+        elif wanted.strength is None and isinstance(force, Springs):
+            wanted = wanted.replaced(strength=breaking_force(force, places))
+    except InputError as error:
+        raise InputError(pointer, error.sentence) from None
+    return wanted
 
 
 def _place(force: Force) -> dict[str, object]:
@@ -183,7 +201,7 @@ def frozen_springs(line: Line) -> Force:
             raise _missing(line, "have no rest length")
         stiffness = p[:, 0]
     else:
-        stiffness, rest = elastic(line.axial_stiffness, line.length, line.tension, line.pointer)
+        stiffness, rest = cut_to(line.axial_stiffness, line.length, line.tension, line.pointer)
     own, high, low = line.force, np.maximum(p[:, 4], 0.0), np.maximum(p[:, 5], 0.0)
     assert isinstance(own, Springs)
     lower = np.maximum(low, rest) if line.wanted.tension_only and not own.tension_only else low
@@ -198,6 +216,7 @@ def frozen_springs(line: Line) -> Force:
         tension_only=own.tension_only,
         compression_only=own.compression_only,
         yield_extension=p[:, 6],
+        strength=line.wanted.strength,
     )
 
 
@@ -205,13 +224,19 @@ def frozen_tension(line: Line) -> Force:
     """Lines of constant tension as springs with EA."""
     if line.wanted.axial_stiffness is None:
         raise _missing(line, "keep their tension at any length")
-    stiffness, rest = elastic(line.axial_stiffness, line.length, line.tension, line.pointer)
+    stiffness, rest = cut_to(line.axial_stiffness, line.length, line.tension, line.pointer)
     lower = rest if line.wanted.tension_only else 0.0
-    place = _place(line.force)
-    return Springs(name=line.force.name, **place, stiffness=stiffness, rest_length=rest, lower_cutoff=lower)  # type: ignore[arg-type]
+    return Springs(
+        name=line.force.name,
+        **_place(line.force),  # type: ignore[arg-type]
+        stiffness=stiffness,
+        rest_length=rest,
+        lower_cutoff=lower,
+        strength=line.wanted.strength,
+    )
 
 
-def elastic(given: Floats, length: Floats, tension: Floats, pointer: str) -> tuple[Floats, Floats]:
+def cut_to(given: Floats, length: Floats, tension: Floats, pointer: str) -> tuple[Floats, Floats]:
     """Stiffness [force/length] and rest length [length] of elements of EA (one, or m) [force] with a tension (m,) at
     their length (m,)."""
     count = len(tension)
@@ -250,7 +275,7 @@ def prestressed(frozen: Frozen, factor: float) -> Scene:
         force, length = forces[number], frozen.lengths[number]
         assert isinstance(force, Springs)
         ea = np.asarray(force.stiffness) * np.asarray(force.rest_length)
-        stiffness, rest = elastic(ea, length, factor * tension, f"/forces/{number}")
+        stiffness, rest = cut_to(ea, length, factor * tension, f"/forces/{number}")
         slack = np.asarray(force.lower_cutoff) >= np.asarray(force.rest_length)
         lower = np.where(slack, rest, force.lower_cutoff)
         forces[number] = force.replaced(stiffness=stiffness, rest_length=rest, lower_cutoff=lower)

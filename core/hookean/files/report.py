@@ -17,6 +17,7 @@ from hookean.forces import KINDS
 from hookean.pictures.picture import picture
 from hookean.running.result import Result
 from hookean.running.run import relax
+from hookean.running.utilisation import dimensions
 from hookean.scene.scene import Scene
 from hookean.system.state import State
 from hookean.system.system import System, compile
@@ -90,7 +91,7 @@ def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
 
 def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
     for entry in result.forces:
-        for name, dimension in KINDS[entry["kind"]].outputs.items():
+        for name, dimension in dimensions(entry["kind"]).items():
             values = np.asarray(entry.get(name, ()), dtype=float)
             sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
             if sizes.size:
@@ -143,7 +144,7 @@ def _envelope(found: Envelope, form: Result) -> Iterator[str]:
             if KINDS[columns["kind"]].role == "load" or not len(extremes.largest):
                 continue
             called = f"{columns['name'] or columns['kind']} {name}"
-            dimension = unit.of(KINDS[columns["kind"]].outputs[name]) or "-"
+            dimension = unit.of(dimensions(columns["kind"])[name]) or "-"
             spots = {"largest": int(extremes.largest.argmax()), "smallest": int(extremes.smallest.argmin())}
             for which, spot in spots.items():
                 value = _extreme(found, extremes, spot, which)

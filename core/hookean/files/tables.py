@@ -8,6 +8,7 @@ A limits file is TOML (or JSON). Limits of the whole model come first; `[force.N
     max_strain = 0.02        # of either sign
     max_displacement = 0.1   # of any particle from its start
     max_reaction = 500
+    max_utilisation = 0.5    # part of the strength of any element
     max_slack = 0            # number of tension-only elements that hang slack
     units = {length = "m", force = "kN"}   # without it those of the scene
 
@@ -33,6 +34,7 @@ from hookean.analysis.load_cases import slack_elements
 from hookean.errors import InputError
 from hookean.files import cells
 from hookean.running.result import Result
+from hookean.running.utilisation import NAME
 from hookean.system.system import System
 from hookean.values.units import Units
 
@@ -51,6 +53,7 @@ LIMITS = {
     "max_strain": "",
     "max_displacement": "length",
     "max_reaction": "force",
+    "max_utilisation": "",
     "max_slack": "",
 }
 _SCOPES = ("force", "layer", "anchor")
@@ -329,6 +332,9 @@ def _check(
             at = int(np.flatnonzero(mask)[np.argmax(values[mask])])
             if float(values[at]) > worst:
                 worst, place = float(values[at]), _spot(part, at)
+        if limit == "max_utilisation" and not place:
+            said = "no element has a known strength; give materials with strength, or strength, to the forces"
+            raise InputError(f"{where} max_utilisation", said)
         sign = -1.0 if limit == "min_force" else 1.0
         if worst * scale > sign * limits[limit]:
             unit = units.of(dimension)
@@ -360,6 +366,8 @@ def _values(part: Section, limit: str, moved: Floats) -> Floats | None:
         return np.linalg.norm(part.columns["force"], axis=1) if part.kind == "reaction" else None
     if limit == "max_strain":
         return np.abs(part.columns["strain"]) if "strain" in part.columns else None
+    if limit == "max_utilisation":
+        return part.columns.get(NAME)
     if not part.internal:
         return None
     return part.columns["force"] if limit == "max_force" else -part.columns["force"]

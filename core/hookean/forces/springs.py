@@ -12,7 +12,7 @@ from hookean.compiled.marks import device
 from hookean.forces import spring_inputs
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.elastic import without
-from hookean.values.columns import IndexRows, Lines, NonNegatives, Reals
+from hookean.values.columns import IndexRows, Lines, NonNegatives, Positives, Reals
 from hookean.values.fields import Field, Maybe
 
 Edges = Literal["all", "warp", "weft", "naked", "diagonals", "diagonals_one", "diagonals_other"]
@@ -249,6 +249,9 @@ class Springs(Force):
     axial_stiffness: Maybe[NonNegatives] = Field(default=None, description="EA, in the place of k [force]")
     material: str | None = Field(default=None, description="Name of a material, with a section in the place of k")
     section: str | None = Field(default=None, description="Name of a section, with a material in the place of k")
+    strength: Maybe[Positives] = Field(
+        default=None, description="Breaking force, for the utilisation [force]; default: that of material and section"
+    )
     damping: NonNegatives = Field(default=10.0, description="c along the spring [force time/length]")
     rest_length: Maybe[NonNegatives] = Field(default=None, description="L0 [length]; default: the start length")
     force: Maybe[Reals] = Field(default=None, description="Prestress: force at the start length [force; tension +]")

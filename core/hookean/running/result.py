@@ -14,6 +14,7 @@ from hookean.errors import InputError
 from hookean.forces import KINDS
 from hookean.forces.base import Rider
 from hookean.running.loads import applied
+from hookean.running.utilisation import NAME, dimensions, utilisation
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.stability.equilibrium import Equilibrium, Stability, unknown
@@ -107,7 +108,9 @@ class Result:
             values = np.asarray(entry[column])
             sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
             unit = self.units.of(KINDS[entry["kind"]].outputs[column])
-            lines.append(f"{title}: {len(sizes)} elements, {column} {sizes.min():.4g} to {sizes.max():.4g} {unit}")
+            line = f"{title}: {len(sizes)} elements, {column} {sizes.min():.4g} to {sizes.max():.4g} {unit}"
+            used = f", utilisation up to {100.0 * np.max(entry[NAME]):.4g} %" if np.size(entry.get(NAME, ())) else ""
+            lines.append(line + used)
         reactions = np.asarray(self.reactions["force"]).reshape(-1, 3)
         if len(reactions):
             largest = np.linalg.norm(reactions, axis=1).max()
@@ -150,9 +153,10 @@ class Result:
         particles = np.asarray(entry.get("particles", ())).reshape(-1, max(1, np.shape(entry.get("particles", ()))[-1]))
         for corner in range(particles.shape[1]):
             columns["particle" if particles.shape[1] == 1 else f"particle {corner + 1}"] = particles[:, corner]
-        for column, dimension in KINDS[entry["kind"]].outputs.items():
+        for column, dimension in dimensions(entry["kind"]).items():
             unit = self.units.of(dimension) if dimension else "-"
-            columns.update(_named(column, unit, np.asarray(entry.get(column, ()))))
+            if column in entry or column in KINDS[entry["kind"]].outputs:
+                columns.update(_named(column, unit, np.asarray(entry.get(column, ()))))
         rows = zip(*(values.tolist() for values in columns.values()), strict=True)
         return [dict(zip(columns, row, strict=True)) for row in rows]
 
@@ -323,6 +327,9 @@ def _measures(system: System, state: State) -> list[dict[str, Any]]:
                 continue
             columns = part.force.measure(block, state.x, forces[part.rows])
             entries[part.number].update(particles=group.particles[part.rows], **columns)
+            used = utilisation(part.force, system.places, columns)
+            if used is not None:
+                entries[part.number][NAME] = used
     return entries
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
+from pydantic import model_validator
+
 from hookean.forces import KINDS
 from hookean.values.columns import Model, Positives, fault
 from hookean.values.fields import Field, Maybe, Named
@@ -29,7 +31,21 @@ class ElasticLine(Model):
     axial_stiffness: Maybe[Positives] = Field(
         default=None, description="EA [force], one or one for each element; default: stiffness x rest length"
     )
+    material: str | None = Field(default=None, description="Name of a material, with a section in the place of EA")
+    section: str | None = Field(default=None, description="Name of a section, with a material in the place of EA")
+    strength: Maybe[Positives] = Field(
+        default=None, description="Breaking force, for the utilisation [force]; default: that of material and section"
+    )
     tension_only: bool = Field(default=False, description="Whether it goes slack instead of into compression")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ElasticLine:
+        if (self.material is None) != (self.section is None):
+            alone, other = ("material", "section") if self.section is None else ("section", "material")
+            raise fault(f"{alone} given without a {other}; give both, or axial_stiffness", f"/{alone}")
+        if self.material is not None and self.axial_stiffness is not None:
+            raise fault("axial_stiffness and material given; give one of them", "/axial_stiffness")
+        return self
 
 
 class Stages(Model):

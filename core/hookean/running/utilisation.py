@@ -1,0 +1,89 @@
+"""Utilisation: the part of its strength that each element uses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.forces import KINDS, elastic
+from hookean.forces.base import Places
+
+Floats = NDArray[np.float64]
+
+NAME = "utilisation"
+"""The column of results that has it."""
+
+
+def dimensions(kind: str) -> dict[str, str]:
+    """The columns that a result may have of a force of this kind, with their dimensions."""
+    return {**KINDS[kind].outputs, NAME: ""}
+
+
+def utilisation(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
+    """Utilisation (m,) [-] of the elements of a force with these columns of a result; None where no strength is known.
+
+    1 is the strength itself: cables and bars |T| / T0, T0 their `strength` or strength x area; beams |N| / (A f) +
+    |My| / (Wy f) + |Mz| / (Wz f), the larger of both ends; cloth the larger of warp and weft over their strengths;
+    solid sheets the stress of von Mises over f. Safety factors are yours: put them into combinations or limits.
+    """
+    rule = RULES.get(force.kind_name)
+    return rule(force, places, columns) if rule is not None else None
+
+
+def breaking_force(force: Any, places: Places) -> Floats | None:
+    """The force [force] at which the elements of springs break, one or one for each; None where it is not known."""
+    if getattr(force, "strength", None) is not None:
+        return np.asarray(force.strength, dtype=np.float64)
+    strength = _strength(force, places)
+    return None if strength is None else np.asarray(strength * elastic.area(force, places))
+
+
+def _strength(force: Any, places: Places) -> float | None:
+    """The strength [force/length^2] of a force's material; None where it has neither."""
+    return None if force.material is None else places.material(force.material).strength
+
+
+def _lines(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
+    whole = breaking_force(force, places)
+    return None if whole is None else np.asarray(np.abs(columns["force"]) / whole)
+
+
+def _beams(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
+    strength = _strength(force, places)
+    if strength is None:
+        return None
+    known = places.section(force.section).properties
+    used = np.abs(columns["force"]) / known["area"]
+    for axis in "yz":
+        most = np.maximum(np.abs(columns[f"M{axis}0"]), np.abs(columns[f"M{axis}1"]))
+        if f"W{axis}" not in known:
+            if most.any():
+                return None  # it bends by an unknown section modulus
+            continue
+        used = used + most / known[f"W{axis}"]
+    return np.asarray(used / strength)
+
+
+def _sheets(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
+    if force.material is None:
+        return None
+    material = places.material(force.material)
+    if material.warp_strength is not None:
+        weft = material.weft_strength or material.warp_strength
+        return np.maximum(columns["warp"] / material.warp_strength, columns["weft"] / weft).clip(0.0)
+    if material.strength is None or force.thickness is None:
+        return None
+    most, least = columns["largest"], columns["least"]
+    return np.asarray(np.sqrt(most**2 - most * least + least**2) / (force.thickness * material.strength))
+
+
+RULES: dict[str, Callable[[Any, Places, Mapping[str, Floats]], Floats | None]] = {
+    "springs": _lines,
+    "sliding_cable": _lines,
+    "beam": _beams,
+    "membrane": _sheets,
+}
+"""By the kind of a force: how its elements use their strength."""

@@ -1,0 +1,119 @@
+"""Utilisation of cables, beams and cloth: closed forms; of frozen cables, limits and envelopes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import hookean
+from hookean import InputError, Scene, relax
+from hookean.files import tables
+from hookean.system.system import compile
+
+ROPE = {"shape": "rope", "diameter": 0.02, "fill_factor": 0.75}
+BREAKS = 0.75 * np.pi * 0.02**2 / 4.0 * 1570e3  # kN: fill factor x circle x 1570 MPa
+
+
+def cable(**stage: Any) -> dict[str, Any]:
+    """A straight cable of constant tension [kN] and what it is frozen to, with snow on its middle."""
+    return {
+        "units": {"force": "kN"},
+        "particles": [[0, 0, 0], [2, 0, 0], [4, 0, 0]],
+        "sections": {"rope": ROPE},
+        "forces": [
+            {"kind": "constant_tension", "name": "cable", "particles": [[0, 1], [1, 2]], "tension": 30},
+            {"kind": "unary", "name": "snow load", "particles": [1], "vector": [0, 0, -10.0]},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+        "load_cases": {"snow": {"forces": ["snow load"]}},
+        "stages": {"freeze": {"cable": stage}},
+    }
+
+
+@pytest.mark.parametrize(
+    ("stage", "breaks"),
+    [
+        ({"material": "spiral strand 1570", "section": "rope"}, BREAKS),
+        ({"axial_stiffness": 35e3, "strength": 400.0}, 400.0),
+    ],
+)
+def test_a_frozen_cable_has_its_tension_over_its_breaking_force(stage: Any, breaks: float) -> None:
+    found = hookean.load_cases(Scene.read(cable(**stage)))
+    own = found.cases["snow"].result.force("cable")
+    assert own["force"].min() > 30.0
+    np.testing.assert_allclose(own["utilisation"], own["force"] / breaks, rtol=1e-14)
+    extremes = found.envelope.forces[0]["columns"]["utilisation"]
+    np.testing.assert_array_equal(extremes.largest, own["utilisation"])
+    assert f"utilisation up to {100 * own['utilisation'].max():.4g} %" in "\n".join(found.summary())
+    assert own["utilisation"][0] == found.cases["snow"].result.table("cable")[0]["utilisation [-]"]
+
+
+def test_a_material_gives_the_frozen_cable_its_stiffness() -> None:
+    frozen = hookean.freeze(Scene.read(cable(material="spiral strand 1570", section="rope")))
+    force: Any = frozen.scene.forces[0]
+    np.testing.assert_allclose(force.stiffness * force.rest_length, 150e6 * BREAKS / 1570e3, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("stage", "said"),
+    [
+        ({"material": "S355"}, "material given without a section"),
+        ({"section": "rope"}, "section given without a material"),
+        ({"material": "S355", "section": "rope", "axial_stiffness": 1.0}, "axial_stiffness and material given"),
+        ({"material": "S35", "section": "rope"}, 'material "S35" does not exist; did you mean S355'),
+        ({"material": "S355", "section": "bar"}, "section 'bar' does not exist"),
+    ],
+)
+def test_stages_that_cannot_be_are_refused(stage: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        hookean.freeze(Scene.read(cable(**stage)))
+
+
+def test_a_cantilever_uses_axial_force_and_bending() -> None:
+    """N / (A f) + M / (W f), M = P l at the clamp, of a small deflection (EN 1993-1-1, 6.2.1(7), linear summation)."""
+    diameter, thickness, f, load = 0.1, 0.005, 355e6, 10.0
+    scene = Scene.read({
+        "particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
+        "sections": {"tube": {"shape": "tube", "diameter": diameter, "thickness": thickness}},
+        "forces": [
+            {"kind": "beam", "particles": [[0, 1], [1, 2]], "material": "S355", "section": "tube"},
+            {"kind": "unary", "particles": [2], "vector": [50.0, 0, -load]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+    })  # fmt: skip
+    area = np.pi * thickness * (diameter - thickness)
+    modulus = np.pi / 64 * (diameter**4 - (diameter - 2 * thickness) ** 4) / (diameter / 2)
+    expected = [50.0 / area + 2.0 * load / modulus, 50.0 / area + 1.0 * load / modulus]
+    # the tip falls by P l^3 / 3EI = 7e-5 m, so that 50 N have a moment of 4e-3 N m of 20 N m
+    np.testing.assert_allclose(relax(scene).force("beam")["utilisation"], np.array(expected) / f, rtol=5e-4)
+
+
+def test_cloth_uses_its_warp_or_its_weft() -> None:
+    """Held all round, cloth has its prestress: 3 of 88 kN/m along the warp, 4 of 79 kN/m along the weft."""
+    scene = Scene.read({
+        "particles": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
+        "meshes": {"m": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "faces": [[0, 1, 2, 3]]}},
+        "forces": [{"kind": "membrane", "mesh": "m", "material": "PVC-polyester II", "warp": [1, 0, 0],
+                    "prestress": [3e3, 4e3, 0]}],
+        "anchors": [{"particles": [0, 1, 2, 3]}],
+    })  # fmt: skip
+    np.testing.assert_allclose(relax(scene).force("membrane")["utilisation"], 4.0 / 79.0, rtol=1e-12)
+
+
+def test_a_limit_on_utilisation_names_the_element_or_what_is_missing() -> None:
+    case = hookean.load_cases(Scene.read(cable(material="spiral strand 1570", section="rope"))).cases["snow"].result
+    assert case.scene is not None
+    system = compile(case.scene)
+    parts, used = tables.sections(system, case), case.force("cable")["utilisation"].max().item()
+
+    def exceeded(most: float) -> list[str]:
+        limits = tables.read_limits(f"[force.cable]\nmax_utilisation = {most!r}")
+        return tables.exceeded(limits, parts, system, case)
+
+    assert exceeded(used * 1.001) == []
+    said = f"force cable: max utilisation {used:.6g} at element 0 of cable exceeds the limit {used / 2:g}"
+    assert exceeded(used / 2) == [said]
+    with pytest.raises(InputError, match="no element has a known strength"):
+        tables.exceeded(tables.read_limits('[force."snow load"]\nmax_utilisation = 1.0'), parts, system, case)
