@@ -73,3 +73,24 @@ def test_bad_cases_get_one_sentence(client: httpx.Client) -> None:
     scene = {**CASES_EXAMPLE["scene"], "load_cases": {}, "combinations": {}}
     found = problem(client.post("/v1/analysis/load-cases", json={"scene": scene}), 422, "invalid-input")
     assert found["errors"][0]["pointer"] == "/scene/load_cases"
+
+
+def test_load_cases_of_a_bent_beam_start_from_its_rotations(client: httpx.Client) -> None:
+    """A cantilever that is bent in its form is, over HTTP, the one of the function: its ends are turned there too."""
+    beam = {"kind": "beam", "particles": [[0, 1], [1, 2]], "E": 1e4, "G": 5e3, "A": 1.0, "Iy": 0.01, "Iz": 0.01}
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
+        "forces": [
+            {**beam, "J": 0.02, "normal": [0, 1, 0]},
+            {"kind": "unary", "name": "dead", "particles": [2], "vector": [0, 0, -20]},
+            {"kind": "unary", "name": "snow", "particles": [2], "vector": [0, 0, -5]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "load_cases": {"snow": {"forces": ["snow"]}},
+        "combinations": {"ULS": {"snow": 1.5}},
+    }
+    answer = client.post("/v1/analysis/load-cases", json={"scene": scene})
+    assert answer.status_code == 200, answer.text
+    wanted = hookean.load_cases(hookean.Scene.read(scene)).to_dict()
+    assert abs(wanted["form"]["particles"][2][2]) > 0.3
+    assert answer.json() == json.loads(json.dumps(wanted))

@@ -44,6 +44,7 @@ def freeze_form(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> D
     model = {
         "scene": frozen.scene.model_dump(mode="json"),
         "particles": frozen.particles,
+        "rotations": frozen.rotations,
         "lines": [
             {"force": number, "length": frozen.lengths[number], "tension": tension}
             for number, tension in frozen.tensions.items()
@@ -63,6 +64,7 @@ def solve_one(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Don
         np.array(value["particles"], dtype=float).reshape(-1, 3),
         lengths={line["force"]: np.array(line["length"], dtype=float) for line in lines},
         tensions={line["force"]: np.array(line["tension"], dtype=float) for line in lines},
+        rotations=np.array(value["rotations"], dtype=float).reshape(-1, 4),
     )
     try:
         found = solve_case(frozen, options["name"])
