@@ -132,7 +132,7 @@ def test_arrays_may_come_as_buffers(points: list[tuple[float, float, float]]):
         ("/particles", {"dtype": [], "shape": [], "base64": ""}, "/particles/dtype", "must be one of"),
         ("/particles", {"dtype": "<f8", "shape": [0] * 99, "base64": ""}, "/particles/shape", "at most three"),
         ("/forces/0/kind", "sprngs", "/forces/0", 'unknown kind "sprngs"; did you mean springs? (known: align'),
-        ("/forces/0/kind", "sprngs", "/forces/0", "wind)"),
+        ("/forces/0/kind", "sprngs", "/forces/0", "wind_pressure)"),
         ("/forces/0/stifness", 10, "/forces/0/stifness", 'springs has no field "stifness"; did you mean stiffness?'),
         ("/forces/0/qqq", 10, "/forces/0/qqq", 'springs has no field "qqq"; its fields: name, '),
         (
