@@ -42,8 +42,8 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
             return unit(nodeid)
 
         def _reschedule(self, node: Any) -> None:
-            """A worker begins a test when it knows the next one or that there is none. The one that replaces a worker
-            that died is told so here; with its last test alone it would wait for ever."""
+            """Give a worker two tests or, where no more come, its end: it begins one only when it knows what follows.
+            A worker that replaces one that died would otherwise wait for ever with its last test."""
             if node not in self.registered_collections:
                 return
             super()._reschedule(node)

@@ -20,6 +20,7 @@ from hookean_canvas.run.checking import check, number, shown
 from hookean_canvas.run.evaluate import Canvas, Outcome
 from hookean_canvas.run.natives import BY_NAME, Unfit, as_kind
 from hookean_canvas.run.trees import FLATTEN, GRAFT, ITEM, LIST, TREE, Tree, modified, path_of, runs, text_of
+from serving import HANG
 
 paths = st.lists(st.integers(0, 5), min_size=1, max_size=3).map(tuple)
 trees = st.dictionaries(paths, st.lists(st.integers(), max_size=5), max_size=6).map(Tree)
@@ -27,7 +28,7 @@ trees = st.dictionaries(paths, st.lists(st.integers(), max_size=5), max_size=6).
 
 def ran(d: Definition, **settings: str) -> Outcome:
     """What a definition comes to."""
-    return Canvas(graph.of(d.archive()), settings).run(20.0)
+    return Canvas(graph.of(d.archive()), settings).run(HANG)
 
 
 def values(outcome: Outcome, panel: str) -> dict[str, list[Any]]:

@@ -18,7 +18,7 @@ from hookean_canvas.archive import Type
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas, Outcome
-from serving import Home
+from serving import HANG, Home
 
 SOFT = UUID("3c30b1a1-4473-4ad4-a700-ea9770726c03")
 """The Anchor with a target."""
@@ -41,7 +41,7 @@ def ran(d: Kangaroo, tmp_path: Path) -> Outcome:
     root, _ = kangaroo.translate(d.archive())
     found = graph.of(root)
     found.file = tmp_path / f"{d.key}.ghx"
-    outcome = Canvas(found).run(60.0)
+    outcome = Canvas(found).run(HANG)
     assert [m for m in outcome.messages if m.level == "error"] == [], outcome.messages
     assert outcome.at_rest
     return outcome

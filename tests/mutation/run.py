@@ -112,7 +112,7 @@ def mutants(module: str, count: int) -> Iterator[Mutant]:
 
 
 def reached(module: str) -> set[str]:
-    """Names of the modules whose machine code may hold something of a module, by their imports (see `cache_folder`)."""
+    """Names of the modules whose machine code may hold something of a module: those that import it."""
     found: set[str] = set()
     new = {_dotted(CORE / module)}
     inlined = [path for folder in ("films", "forces", "linear", "solvers") for path in (CORE / folder).glob("*.py")]

@@ -29,7 +29,7 @@ class DesignStatus(StrEnum):
 class Design:
     """The best that a search found: values of `variables`, of `goals` and `constraints`, and the `result` of the scene
     with them. The objective is the sum of weight (value - target)² over goals with a target and of weight x value over
-    the others. `gain` of a bound or constraint is by how much the objective falls for each unit that it is eased."""
+    the others."""
 
     status: DesignStatus
     message: str
