@@ -168,7 +168,7 @@ def solve_case(frozen: Frozen, name: str) -> CaseResult:
     """The elastic model under one load case or combination, from the form."""
     scene = case_scene(frozen, name)
     system, state = frozen.system(scene)
-    result = relax_state(system, state, solver(scene.settings.solver))
+    result = relax_state(system, state, solver(scene.settings.solver), near=True)
     for i, force in enumerate(frozen.scene.forces):
         result.forces[i]["name"] = force.name  # idle loads have another one meanwhile
     rows = {i: slack_elements(force, result.forces[i]) for i, force in enumerate(scene.forces)}

@@ -41,9 +41,11 @@ def relax_state(
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
     began: float | None = None,
+    *,
+    near: bool = False,
 ) -> Result:
     """`relax` from a state; `state` is left at the last good shape. `time_limit` counts from `began`, a time of
-    `time.monotonic` [s], or from now."""
+    `time.monotonic` [s], or from now. `near`: an equilibrium is near, such as the form that a load case starts from."""
     began = time.monotonic() if began is None else began
     refusal = method.refuse(system)
     if refusal:
@@ -53,6 +55,8 @@ def relax_state(
     if not method.physical:
         system.report.warnings += [said for said in ignored(system) if said not in system.report.warnings]
     method.start(system, state)
+    if near:
+        method.sharpen(state)
     state.force_scale = np.zeros(0)  # of this run alone
     watch = Watch(system, state, method)
     watch.started = began

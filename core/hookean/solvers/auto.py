@@ -3,7 +3,8 @@
 Linear scenes take one force-density solve, cables and nets of chains Newton steps in the force densities, soap films
 Newton steps across them, large nets of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose
 shape by those steps may not be the lowest, unless they are too large to wait for relaxation; where relaxation is slow
-or the tolerance tight, Newton steps finish, and where those do not help, relaxation goes on. Beams begin with them.
+or the tolerance tight, Newton steps finish, and where those do not help, relaxation goes on. Beams begin with them, and
+so do linear nets under weights that follow their shape.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 # a tangent larger than this costs more to factor than the relaxation it saves
 LARGEST_NEWTON = 60_000  # unknowns
 LARGEST_FILM = 1_000_000  # particles, of some five gigabytes
-LARGEST_BLOCKS = 3_000_000  # entries of all element blocks; a shell's have 36 x 36 each
+LARGEST_BLOCKS = 8_000_000  # entries of all element blocks; a shell's have 36 x 36 each
 LEAST_MULTILEVEL = 4_000  # particles from which on multigrid is quicker than relaxation
 MANY = 30_000  # particles from which on relaxation takes minutes, and creases as well
 CREASED = "Some springs are in compression and may wrinkle the net; other equilibrium shapes may exist."
@@ -127,7 +128,7 @@ class Method(Solver):
         due, pause, steps = state.scratch["next_newton"]
         if state.iteration < due or not self._small:
             self._use(self._relaxation)
-            most = min(count, max(int(due) - state.iteration, 1))
+            most = min(count, max(int(due) - state.iteration, 1)) if self._small else count
             done = self._relaxation.advance(system, state, most, goal)
             self.work += done
             return done
@@ -138,7 +139,8 @@ class Method(Solver):
     def _relax_from_here(self, system: System, state: State) -> None:
         self._relaxation.start(system, state)
         first, steps = (state.iteration + FIRST_NEWTON, NEWTON_STEPS)
-        if len(system.slots):  # beams are so much stiffer along than across that relaxation takes long
+        # beams are so much stiffer along than across that relaxation takes long
+        if len(system.slots) or not force_density.nonlinear(system, weights=True):
             first, steps = state.iteration, SHARP_STEPS
         state.scratch["next_newton"] = np.array([first, FIRST_NEWTON, steps])
 

@@ -31,6 +31,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 QUICK = 5_000  # multiplications for each particle up to which a front is quicker than conjugate gradients
+WEIGHTS = ("area_weight", "line_weight")  # whose direction stays, while their size follows the shape
 MOST = 1e11  # beyond which it would take half a minute, and more than a gigabyte
 
 
@@ -42,24 +43,7 @@ class Method(Solver):
 
     def refuse(self, system: System) -> str:
         """A sentence unless every internal force is linear."""
-        if system.contacts:
-            return "a floor is not linear; force_density supports springs of rest length 0 only"
-        linear = False
-        for group in system.groups:
-            if group.cls.role == "load" and group.cls.conservative:
-                continue
-            if group.cls is AnchorSpring:
-                if slides(group.block):
-                    return "an anchor spring may slide; force_density supports linear forces only"
-                linear = True
-                continue
-            if group.cls is not Springs:
-                return f"it has {group.cls.kind_name}; force_density supports loads and springs of rest length 0 only"
-            p = group.block.parameters
-            if (p[:, 2] * p[:, 3] != 0).any() or (p[:, 4:] != 0).any():
-                return "a spring has a rest length, a cutoff or plasticity; force_density supports rest length 0 only"
-            linear = linear or bool(len(p))
-        return "" if linear else "there is no spring"
+        return nonlinear(system)
 
     def __init__(self) -> None:
         self._solved: list[Solved] = []
@@ -99,6 +83,29 @@ class Method(Solver):
         for solved in self._solved:
             solved.correct(found.forces, moved)
         return moved if self.certain else None
+
+
+def nonlinear(system: System, *, weights: bool = False) -> str:
+    """Why a system is not linear, as a sentence; empty if it is. With `weights` those per area or length of a shape
+    may act, which change with it."""
+    if system.contacts:
+        return "a floor is not linear; force_density supports springs of rest length 0 only"
+    linear = False
+    for group in system.groups:
+        if group.cls.role == "load" and (group.cls.conservative or (weights and group.cls.kind_name in WEIGHTS)):
+            continue
+        if group.cls is AnchorSpring:
+            if slides(group.block):
+                return "an anchor spring may slide; force_density supports linear forces only"
+            linear = True
+            continue
+        if group.cls is not Springs:
+            return f"it has {group.cls.kind_name}; force_density supports loads and springs of rest length 0 only"
+        p = group.block.parameters
+        if (p[:, 2] * p[:, 3] != 0).any() or (p[:, 4:] != 0).any():
+            return "a spring has a rest length, a cutoff or plasticity; force_density supports rest length 0 only"
+        linear = linear or bool(len(p))
+    return "" if linear else "there is no spring"
 
 
 class Solved:

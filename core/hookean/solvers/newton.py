@@ -69,7 +69,7 @@ class Method(Solver):
                 continue
             done += 1
             state.iteration += 1
-            helped |= after.energy < now.energy or after.largest < 0.99 * now.largest
+            helped |= after.fallen > 0.0 or after.largest < 0.99 * now.largest
             # beside what is much stiffer, or has much more energy, a full step is all that shows
             helped |= length == 1.0 and shift == 0.0 and np.abs(step).max() > ROUNDING * system.size
             now = after
@@ -89,6 +89,7 @@ class Judged:
 
     def __init__(self, energy: float, noise: float, left: Floats) -> None:
         self.energy, self.noise, self.left = energy, noise, left
+        self.fallen = 0.0  # by how much the energy fell to here, or by the work of forces that have none
         self.largest = float(np.sqrt((left**2).sum(axis=1).max(initial=0.0)))
 
     @classmethod
@@ -116,13 +117,20 @@ def _step(pattern: Pattern, system: System, state: State, left: Floats, shift: f
 
 
 def _search(system: System, state: State, step: Floats, before: Judged) -> tuple[float, Judged]:
-    """Shorten the step until energy falls enough, or the largest force halves; zero length if nothing helps."""
+    """Shorten the step until energy falls enough, or the largest force halves; zero length if nothing helps.
+
+    Where some force has no energy of its own, the mean of what is out of balance at both ends tells what fell as well.
+    """
     start, length = state.x.copy(), 1.0
     slope = float((before.left * step).sum())
+    potential = all(group.conservative for group in system.groups)
     for _ in range(12):
         state.x = start + length * step
         now = Judged.of(system, state)
-        falls = now.energy <= before.energy - 1e-4 * length * slope + before.noise
+        now.fallen = before.energy - now.energy
+        if not potential:
+            now.fallen = max(now.fallen, 0.5 * length * (slope + float((now.left * step).sum())))
+        falls = now.fallen >= 1e-4 * length * slope - before.noise
         if np.isfinite(now.energy) and (falls or now.largest < 0.5 * before.largest):
             return length, now
         length *= 0.5
