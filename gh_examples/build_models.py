@@ -233,6 +233,12 @@ def wind() -> None:
     (HERE / "wind" / "wind.csv").write_text(text, encoding="utf-8", newline="\n")
 
 
+def hypar_roof() -> None:
+    """The roof between its four masts: the hyperbolic paraboloid on straight edges."""
+    controls = figure("hypar-roof").scene(divisions=1).particles.reshape(2, 2, 3)
+    write("hypar-roof", {"roof": BLUE}, [("roof", "roof", surface(controls))])
+
+
 def hanging_vault() -> None:
     """The flat net, its nine columns, and the chain as an arc that hangs down, 5 m in front of the net."""
     vault = figure("hanging-vault")
@@ -272,7 +278,21 @@ def basento() -> None:
 
 if __name__ == "__main__":
     chosen = sys.argv[1:]
-    models = (cables, arcs, frames, membranes, hypar, diagonals, ribbon, sphere, sail, wind, hanging_vault, basento)
+    models = (
+        cables,
+        arcs,
+        frames,
+        membranes,
+        hypar,
+        diagonals,
+        ribbon,
+        sphere,
+        sail,
+        wind,
+        hypar_roof,
+        hanging_vault,
+        basento,
+    )
     for model in models:
         if not chosen or model.__name__ in chosen:
             model()

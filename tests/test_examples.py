@@ -115,6 +115,7 @@ DRAWN: dict[str, tuple[str, dict[str, Any]]] = {
     "9.31-diagonal-patterns/recipe-c": ("warp_and_weft", {}),
     "hanging-vault/recipe-chain": ("chain", {}),
     "sphere/recipe-springs": ("scene", {"shell": 0.0}),
+    "hypar-roof/recipe": ("scene", {}),
     "wind/recipe": ("scene", {"speed": 0.0}),
 }
 

@@ -2,11 +2,29 @@
 
 from __future__ import annotations
 
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+
+import ezdxf
 import numpy as np
+import pytest
 
 import hookean
+from hookean.commands.examples import figure, home
 
-from .hypar_roof import drawn, scene
+ROOF = figure("hypar-roof")
+scene, drawn = ROOF.scene, ROOF.drawn
+
+
+@pytest.fixture(scope="module")
+def page() -> ModuleType:
+    """The Python page of the example."""
+    spec = importlib.util.spec_from_file_location("hypar_page", home() / "hypar-roof" / "page.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def test_snow_on_a_roof_weighs_its_plan_and_is_carried_by_the_masts() -> None:
@@ -34,3 +52,32 @@ def test_snow_on_a_roof_weighs_its_plan_and_is_carried_by_the_masts() -> None:
 def test_the_roof_is_drawn_as_a_hypar() -> None:
     mesh = drawn(4, 10.0, 3.0)
     assert mesh.vertices[[0, 4, 20, 24], 2].tolist() == [0.0, 3.0, 3.0, 0.0]
+
+
+def test_one_page_takes_the_roof_from_form_to_workshop(
+    page: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Four combinations from the form by Newton steps, wind without an energy as well; all limits are met, and the
+    files hold as many strips and cables as there are: four rows of two, and four edges."""
+    cases = page.design(scene(divisions=8), tmp_path)
+    assert list(cases.cases) == list(scene().combinations)
+    for case in cases.cases.values():
+        assert case.result.solver == "auto: newton" and case.result.iterations < 40
+        assert case.result.converged and str(case.result.stability) == "stable"
+    report = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert report.count("All limits are met") == 4 and "ULS snow and wind" in report
+    labels = {text.dxf.text for text in ezdxf.readfile(tmp_path / "strips.dxf").modelspace().query("TEXT")}
+    assert {"S1", "S2", "S3", "S4"} <= labels and "S5" not in labels
+    assert len((tmp_path / "cables.csv").read_text(encoding="utf-8").splitlines()) == 1 + len(
+        hookean.cables(cases.frozen).table()
+    )
+    assert "displacement: largest" in capsys.readouterr().out
+
+
+def test_cases_side_by_side_have_the_same_bits() -> None:
+    roof = scene(divisions=4)
+    one, two = (hookean.load_cases(roof, ["ULS wind", "SLS snow and wind"], processes=n) for n in (1, 2))
+    for name, case in one.cases.items():
+        assert np.array_equal(case.result.particles, two.cases[name].result.particles)
+    with pytest.raises(hookean.InputError, match=r"processes: 0 given; a whole number from 1 is expected"):
+        hookean.load_cases(roof, processes=0)

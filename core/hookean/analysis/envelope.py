@@ -33,7 +33,7 @@ class Extremes:
         return cls(values[low, row], low, values[high, row], high)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Envelope:
     """The extremes of several cases, whose names are `cases`; extremes have the numbers of their cases.
 
@@ -48,6 +48,9 @@ class Envelope:
     particles: Ints
     reaction: Extremes
     units: Units
+
+    def __repr__(self) -> str:
+        return "\n".join(["Envelope", *(f"  {line}" for line in self.summary())])
 
     def summary(self) -> list[str]:
         """The largest displacement, forces and reaction, where they are and in which case."""

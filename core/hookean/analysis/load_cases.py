@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import multiprocessing
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -106,21 +107,32 @@ class LoadCases:
         }
 
 
-def load_cases(scene: Scene, names: Sequence[str] | None = None, *, executor: Executor | None = None) -> LoadCases:
+def load_cases(
+    scene: Scene, names: Sequence[str] | None = None, *, processes: int = 1, executor: Executor | None = None
+) -> LoadCases:
     """Find the form of a scene, freeze it, and put the elastic model under its load cases and combinations.
 
     Each case starts from the form and depends on nothing else: the same bits in any order, and on any executor.
 
     - `scene`: A scene with `load_cases`, and if wanted `combinations` and `stages`.
     - `names`: Which load cases and combinations; default: all.
-    - `executor`: Where the cases are solved side by side, such as a ProcessPoolExecutor; default: one after another.
+    - `processes`: How many of them solve cases side by side; default: one after another. A script that asks for more
+      has its own work behind `if __name__ == "__main__":`.
+    - `executor`: Where the cases are solved instead, such as an executor that is kept.
 
     Raises InputError for an unknown name, a scene without load cases, or a form that cannot be frozen.
     """
     chosen = wanted(scene, names)
+    if processes < 1:
+        raise InputError("processes", f"{processes} given; a whole number from 1 is expected")
     frozen = freeze(scene)
     solve = partial(solve_case, frozen)
-    found = executor.map(solve, chosen) if executor is not None else map(solve, chosen)
+    if executor is None and min(processes, len(chosen)) > 1:
+        new = multiprocessing.get_context("spawn")  # others would inherit locks of threads that they do not have
+        with ProcessPoolExecutor(min(processes, len(chosen)), mp_context=new) as pool:
+            found = list(pool.map(solve, chosen))
+    else:
+        found = list((map if executor is None else executor.map)(solve, chosen))
     return LoadCases(frozen, dict(zip(chosen, found, strict=True)))
 
 

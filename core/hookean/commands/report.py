@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -11,6 +12,8 @@ import typer
 from hookean.commands import analyse, outputs, relax
 from hookean.commands.command import taking
 from hookean.errors import InputError
+
+MANY = 2_000  # particles from which on cases take longer than processes need to start
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,8 @@ def run(options: Options) -> int:
         limits = None if options.check is None else read_limits(relax.text_of(options.check), options.check.name)
         scene = analyse.scene_of(options.source, options.recipe)
         with outputs.folders([target]):
-            text = report(scene, title=options.title or options.source.stem, limits=limits)
+            processes = (os.cpu_count() or 1) if len(scene.particles) >= MANY else 1
+            text = report(scene, title=options.title or options.source.stem, limits=limits, processes=processes)
             put(target, text.encode(), lambda back: None)
     except InputError as error:
         return relax.bad(error)

@@ -41,15 +41,23 @@ tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
 
 
 def report(
-    scene: Scene, *, title: str = "Report", limits: Mapping[str, Any] | None = None, pictures: bool = True
+    scene: Scene,
+    *,
+    title: str = "Report",
+    limits: Mapping[str, Any] | None = None,
+    pictures: bool = True,
+    cases: LoadCases | None = None,
+    processes: int = 1,
 ) -> str:
     """The report of a scene as the text of an HTML file.
 
     With load cases the form is found and frozen, and all cases and combinations are solved; else the scene is relaxed.
-    `limits`, as `tables.read_limits` gives them, are checked in each case. The same scene gives the same text.
+    `limits`, as `tables.read_limits` gives them, are checked in each case. The same scene gives the same text. `cases`
+    of this scene that are solved already are not solved again; else `processes` solve them side by side.
     Raises InputError where the scene cannot be relaxed or frozen, or a limit names what it does not have.
     """
-    cases = load_cases(scene) if scene.load_cases or scene.combinations else None
+    if cases is None and (scene.load_cases or scene.combinations):
+        cases = load_cases(scene, processes=processes)
     form = cases.form if cases is not None else relax(scene)
     parts = [f"<h1>{escape(title)}</h1>", *_scene(scene, form), *_form(scene, form, pictures)]
     if cases is not None:

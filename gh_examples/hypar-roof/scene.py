@@ -10,7 +10,7 @@ WARP, WEFT, STRENGTH = 800.0, 600.0, 79.0  # kN/m: stiffnesses of PVC-polyester 
 
 
 def scene(
-    divisions: int = 8, side: float = 10.0, rise: float = 3.0, prestress: float = 2.5, edge_density: float = 8.0,
+    divisions: int = 16, side: float = 10.0, rise: float = 3.0, prestress: float = 2.5, edge_density: float = 8.0,
     snow: float = 0.6, wind: float = 0.5, gravity: float = 0.0088,
 ) -> Scene:  # fmt: skip
     """A square of a `side` [m] whose corners are in turn at 0 and at `rise` [m], in `divisions` by as many faces.

@@ -1,0 +1,39 @@
+"""A hypar roof on one page: form, cases, checks, cable lengths, cutting patterns and report, from the model and recipe
+beside this file: `python page.py [FOLDER]`."""
+
+import sys
+from pathlib import Path
+
+import hookean
+from hookean.files.relax_file import read_scene
+from hookean.files.report import report
+from hookean.files.sheets import write_sheets
+from hookean.files.tables import csv_text, read_limits
+from hookean.scene.scene import Scene
+from hookean.workshop.patterns import strains
+
+HERE = Path(__file__).parent
+PRESTRESS, STIFFNESS, POISSON = (3.0, 3.0), (800.0, 600.0), 0.3  # kN/m, of the cloth along warp and weft
+ALLOWANCE = 0.04  # m
+
+
+def design(scene: Scene, folder: Path, processes: int = 1) -> hookean.LoadCases:
+    """Take a roof from its form to what the workshop needs; the files are written to `folder`."""
+    cases = hookean.load_cases(scene, list(scene.combinations), processes=processes)
+    limits = read_limits((HERE / "limits.toml").read_text(encoding="utf-8"))
+    page = report(scene, title="Hypar roof", limits=limits, cases=cases)
+    compensation = strains(PRESTRESS, STIFFNESS, POISSON)
+    strips = hookean.cutting_patterns(cases.form, compensation=compensation, allowance=ALLOWANCE, rows=2)
+    ropes = hookean.cables(cases.frozen)
+    (folder / "report.html").write_text(page, encoding="utf-8")
+    write_sheets(strips, folder / "strips.dxf")
+    (folder / "strips.csv").write_text(csv_text(strips.table()), encoding="utf-8")
+    (folder / "cables.csv").write_text(csv_text(ropes.table()), encoding="utf-8")
+    print(cases.envelope)
+    print("\n".join(strips.summary()))
+    return cases
+
+
+if __name__ == "__main__":
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else Path.cwd()
+    design(read_scene(HERE / "model.3dm", HERE / "recipe.toml"), target)
