@@ -23,6 +23,7 @@ CUTS = 30  # times a step is halved
 BALANCED = 1e-11  # out of balance, as a part of the largest force
 SETTLED = 1e-14  # a Newton step that moves nothing any more, as a part of the model's size
 HALVINGS = 40  # of a bracket
+LEVEL = 1e-3  # of the rates about it: that of the load factor at a limit point, as near as halving comes
 
 
 @dataclass(frozen=True)
@@ -116,14 +117,18 @@ class Follower:
         """Critical points between two points of the path."""
         found: list[tuple[str, Point]] = []
         ahead = np.copysign(1.0, self._rate_out(before, after))
-        if ahead * after.rate() < 0.0:
+        turns = ahead * after.rate() < 0.0
+        if turns:
             limit = self._root(before, after, Point.rate, first=self._rate_out(before, after))
             if limit is not None:
                 found.append(("limit", limit))
         crossed = abs(after.negatives - before.negatives)
         if crossed and not (found and crossed == 1):
             point = self._crossing(before, after)
-            if point is not None:
+            level = abs(point.rate()) <= LEVEL * max(abs(before.rate()), abs(after.rate()))
+            if crossed == 1 and turns:
+                found.append(("limit", point))  # bracketed, where its root could not be approached
+            elif crossed > 1 or not level:  # else the limit point of a step beside this one
                 found.append(("bifurcation", point))
         return sorted(found, key=lambda item: float(np.linalg.norm(item[1].moved)))
 
@@ -146,6 +151,9 @@ class Follower:
             if not min(low, high) < middle < max(low, high):
                 break
             point = self.at_arc(before, middle)
+            if point is None:  # the tangent is singular to the last bit: beside it
+                middle = 0.5 * (low + high)
+                point = self.at_arc(before, middle)
             if point is None:
                 return None
             found, best = value(point), point
@@ -158,7 +166,7 @@ class Follower:
             high, at_high = middle, found
         return best
 
-    def _crossing(self, before: Point, after: Point) -> Point | None:
+    def _crossing(self, before: Point, after: Point) -> Point:
         """Where the number of negative eigenvalues changes between two points, by halving."""
         low, high = 0.0, float(np.linalg.norm(after.moved))
         found = after
