@@ -126,4 +126,4 @@ def test_applied_loads_have_their_resultant_moment_and_centre() -> None:
     np.testing.assert_allclose(first.resultant, [0, 0, -4.0])
     np.testing.assert_allclose(first.centre, [3.0, 0, 0])
     np.testing.assert_allclose(first.moment, [0, 12.0, 0])
-    assert (first.particles, second.resultant.tolist(), second.centre.tolist()) == (2, [0, 0, 0], [0, 0, 0])
+    assert (first.particles, second.resultant.tolist(), second.centre.tolist()) == (2, [0, 0, 0], [9, 9, 9])

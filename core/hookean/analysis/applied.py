@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.running.loads import resultant
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -16,7 +17,7 @@ Floats = NDArray[np.float64]
 @dataclass(frozen=True)
 class Applied:
     """One load on a shape: its `resultant` (3,) and `moment` (3,) about the origin [force, force length], the `centre`
-    (3,) [length] of its forces weighted by their sizes, and how many `particles` it acts on."""
+    (3,) [length] of its forces as `running.loads.resultant` finds it, and how many `particles` it acts on."""
 
     number: int
     name: str
@@ -37,10 +38,8 @@ def applied(system: System, state: State) -> list[Applied]:
         for part in group.parts:
             index, own = group.block.indices[part.rows], forces[part.rows]
             x, f = state.x[index].reshape(-1, 3), own.reshape(-1, 3)
-            size = np.linalg.norm(f, axis=1)
-            total = float(size.sum())
-            centre = (size[:, None] * x).sum(axis=0) / total if total > 0.0 else np.zeros(3)
+            total, centre, _ = resultant(f, x)
             name = part.force.name or part.force.kind_name
             moment, count = np.cross(x, f).sum(axis=0), len(np.unique(index))
-            found.append(Applied(part.number, name, part.force.kind_name, f.sum(axis=0), moment, centre, count))
+            found.append(Applied(part.number, name, part.force.kind_name, total, moment, centre, count))
     return sorted(found, key=lambda load: load.number)

@@ -71,8 +71,9 @@ class Cables:
 def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0) -> Cables:
     """Unstressed lengths of the cables of a form, compensated for the workshop.
 
-    Elements of one force that continue each other, straight on where several meet, are a cable. Its unstressed length
-    is the sum of l EA / (EA + T); cut it to unstressed length / (1 + stretch) - 2 fitting.
+    Elements of one force that continue each other, straight on where several meet, are a cable; at a support where they
+    turn by 45 degrees or more it ends. Its unstressed length is the sum of l EA / (EA + T); cut it to unstressed
+    length / (1 + stretch) - 2 fitting.
 
     - `model`: A scene whose form is found and frozen (see `freeze`), or a frozen one.
     - `stretch`: The construction stretch of new rope, which stays after its first loading [-].
@@ -85,6 +86,7 @@ def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0)
             raise InputError(place, f"{value!r} given; a number of at least 0 is expected")
     frozen = freeze(model) if isinstance(model, Scene) else model
     system, state = frozen.system()
+    held = np.flatnonzero((state.free == 0.0).all(axis=1))
     found: list[Cable] = []
     for group in system.groups:
         if group.cls is not Springs:
@@ -93,7 +95,7 @@ def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0)
             pairs, rest = group.block.indices[part.rows], np.asarray(part.force.rest_length)  # type: ignore[attr-defined]
             rest = np.broadcast_to(rest, (len(pairs),))
             name = part.force.name or part.force.kind_name
-            for rows, particles in chains(state.x, pairs):
+            for rows, particles in chains(state.x, pairs, held):
                 length, tension = frozen.lengths[part.number][rows], frozen.tensions[part.number][rows]
                 cut = float(rest[rows].sum()) / (1.0 + stretch) - 2.0 * fitting
                 called = f"{name} {1 + sum(cable.force == name for cable in found)}"
@@ -105,12 +107,13 @@ def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0)
     return Cables(tuple(found), frozen.scene.units)
 
 
-def chains(x: Floats, pairs: Ints) -> list[tuple[Ints, Ints]]:
+def chains(x: Floats, pairs: Ints, held: Ints | None = None) -> list[tuple[Ints, Ints]]:
     """Elements (m, 2) that continue each other: of each chain the rows (k,) in order, and its particles (k + 1,).
 
     At a particle the two elements that are most nearly in line continue each other, if they turn by less than 45
-    degrees, then the next two; two that are alone there always do.
+    degrees, then the next two; two that are alone there always do, but for a particle that is `held`, such as a mast.
     """
+    corners = set() if held is None else set(held.tolist())
     at: dict[int, list[int]] = {}
     for row, pair in enumerate(pairs.tolist()):
         for particle in pair:
@@ -119,7 +122,7 @@ def chains(x: Floats, pairs: Ints) -> list[tuple[Ints, Ints]]:
     along = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
     following: dict[tuple[int, int], int] = {}
     for particle, rows in at.items():
-        for a, b in _in_line(particle, rows, pairs, along):
+        for a, b in _in_line(particle, rows, pairs, along, corner=particle in corners):
             following[a, particle], following[b, particle] = b, a
     left, found = dict.fromkeys(range(len(pairs))), list[tuple[Ints, Ints]]()
     ends = [(row, p) for row in left for p in pairs[row].tolist() if (row, p) not in following]
@@ -138,10 +141,10 @@ def chains(x: Floats, pairs: Ints) -> list[tuple[Ints, Ints]]:
     return found
 
 
-def _in_line(particle: int, rows: list[int], pairs: Ints, along: Floats) -> list[tuple[int, int]]:
+def _in_line(particle: int, rows: list[int], pairs: Ints, along: Floats, *, corner: bool) -> list[tuple[int, int]]:
     """Pairs of elements at a particle that continue each other."""
     out = {row: along[row] * (1.0 if pairs[row, 0] == particle else -1.0) for row in rows}
-    if len(rows) == 2:
+    if len(rows) == 2 and not corner:
         return [(rows[0], rows[1])]
     turns = [(-float(out[a] @ out[b]), a, b) for i, a in enumerate(rows) for b in rows[i + 1 :]]
     used: set[int] = set()
