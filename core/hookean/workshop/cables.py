@@ -47,6 +47,14 @@ class Cables:
     cables: tuple[Cable, ...]
     units: Units = field(default_factory=Units)
 
+    def to_dict(self) -> dict[str, Any]:
+        """As plain lists and numbers, by the names of the HTTP answer."""
+        found = [
+            {"name": cable.name, "particles": cable.particles.tolist(), "clamps": cable.clamps.tolist()}
+            for cable in self.cables
+        ]
+        return {"cables": found, "table": self.table(), "units": self.units.model_dump()}
+
     def table(self) -> list[dict[str, Any]]:
         """A row for each cable: lengths, compensation and forces, with their units in their names."""
         length, force = self.units.length, self.units.force

@@ -16,6 +16,8 @@ from hookean.discretize.meshes import as_mesh
 from hookean.discretize.outlines import offset
 from hookean.errors import InputError
 from hookean.running.result import Result
+from hookean.running.run import relax
+from hookean.scene.scene import Scene
 from hookean.values.mesh import Mesh
 from hookean.values.units import Units
 
@@ -71,6 +73,19 @@ class Strip:
         x, y = self.points[self.seam].T
         return 0.5 * float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
 
+    def to_dict(self) -> dict[str, Any]:
+        """As plain lists and numbers, by the names of the HTTP answer."""
+        return {
+            "name": self.name,
+            "vertices": self.vertices.tolist(),
+            "points": self.points.tolist(),
+            "faces": self.faces.tolist(),
+            "seam": self.seam.tolist(),
+            "beside": self.beside.tolist(),
+            "cut": self.cut.tolist(),
+            "marks": [{"name": mark.name, "point": mark.point.tolist()} for mark in self.marks],
+        }
+
 
 @dataclass(frozen=True)
 class Patterns:
@@ -104,6 +119,16 @@ class Patterns:
             )
         return rows
 
+    def to_dict(self) -> dict[str, Any]:
+        """As plain lists and numbers, by the names of the HTTP answer."""
+        return {
+            "strips": [strip.to_dict() for strip in self.strips],
+            "seams": [{"strips": list(pair), "lengths": list(sides)} for pair, sides in self.seams.items()],
+            "compensation": list(self.compensation),
+            "table": self.table(),
+            "units": self.units.model_dump(),
+        }
+
     def summary(self) -> list[str]:
         """A few lines for a person."""
         unit = self.units.length
@@ -132,7 +157,8 @@ def cutting_patterns(
 ) -> Patterns:
     """Cut a surface into strips and lay them flat with the least distortion.
 
-    - `surface`: A mesh, or a result with `mesh`, the name of one of its scene's meshes (default: the only one).
+    - `surface`: A mesh; a result, or a scene, which is relaxed, with `mesh`, the name of one of the scene's meshes
+      (default: the only one).
     - `along`: The direction of the strips by the rows of a quad mesh; the warp of the cloth lies along the strip.
     - `rows`: Rows of faces to a strip.
     - `labels`: The strip of each face instead, numbered from 0; each strip must be a disc.
@@ -175,6 +201,10 @@ def strains(
 
 
 def _surface(surface: Any, name: str | None) -> tuple[Mesh, Units]:
+    if isinstance(surface, Scene):
+        surface = relax(surface)
+        if not surface.converged:
+            raise InputError("model", f"no form was found: {surface.message}")
     if not isinstance(surface, Result):
         return as_mesh(surface), Units()
     if surface.scene is None or not surface.scene.meshes:

@@ -18,11 +18,20 @@ _TRUSS: dict[str, Any] = {
     ],
     "anchors": [{"particles": [0, 2]}, {"particles": [1], "axes": "y"}],
 }
+_CORNERS = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.4], [2.0, 0.0, 0.0], [0.0, 1.0, 0.4], [1.0, 1.0, 0.0], [2.0, 1.0, 0.4]]
+_ROOF: dict[str, Any] = {
+    "particles": _CORNERS,
+    "meshes": {"roof": {"vertices": _CORNERS, "faces": [[0, 1, 4, 3], [1, 2, 5, 4]]}},
+    "forces": [{"kind": "springs", "name": "net", "mesh": "roof", "stiffness": 5.0, "rest_factor": 0.0}],
+    "anchors": [{"particles": [0, 2, 3, 5]}],
+}
 ANALYSIS_EXAMPLES: dict[str, dict[str, Any]] = {
     "frequencies": {"scene": _NET, "count": 2},
     "buckling": {"scene": _TRUSS, "count": 1, "loads": ["load"]},
     "load-path": {"scene": _TRUSS, "steps": 10},
     "mechanisms": {"scene": _TRUSS},
+    "patterns": {"scene": _ROOF, "compensation": [0.01, 0.005], "allowance": 0.05},
+    "cables": {"scene": {**_ROOF, "stages": {"freeze": {"net": {"axial_stiffness": 100.0}}}}, "stretch": 0.001},
 }
 CASES_EXAMPLE = {
     "scene": {

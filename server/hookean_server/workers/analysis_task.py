@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from pydantic import ValidationError
 
@@ -48,6 +48,23 @@ class LoadPath(Model):
     arc_length: float | None = Field(default=None, gt=0, description="Length of a step [length]; null: by increment")
 
 
+class Patterns(Model):
+    """How a surface is cut."""
+
+    mesh: str | None = Field(default=None, description="Name of the mesh to cut; null: the only one")
+    along: Literal["warp", "weft"] = Field(default="warp", description="Direction of the strips by the rows of a mesh")
+    rows: int = Field(default=1, ge=1, description="Rows of faces to a strip")
+    compensation: tuple[float, float] = Field(default=(0.0, 0.0), description="Strains along warp and weft [-]")
+    allowance: float = Field(default=0.0, ge=0, description="Width of cloth beyond seams and edges [length]")
+
+
+class Cables(Model):
+    """What the workshop adds to the length of a cable."""
+
+    stretch: float = Field(default=0.0, ge=0, description="Construction stretch of new rope [-]")
+    fitting: float = Field(default=0.0, ge=0, description="Length of a fitting at each end [length]")
+
+
 class Nothing(Model):
     """No options."""
 
@@ -77,6 +94,8 @@ ANALYSES: dict[str, Analysis] = {
     "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units")),
     "load-path": Analysis(hookean.load_path, LoadPath, ("factors", "particles", "stable", "critical_points", "units")),
     "mechanisms": Analysis(hookean.mechanisms, Nothing, ("mechanisms", "self_stress_states", "modes", "units")),
+    "patterns": Analysis(hookean.cutting_patterns, Patterns, ("strips", "seams", "compensation", "table", "units")),
+    "cables": Analysis(hookean.cables, Cables, ("cables", "table", "units")),
 }
 """Every analysis by the last part of its address; routes, description and tests walk this table."""
 
