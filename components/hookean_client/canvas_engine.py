@@ -18,7 +18,8 @@ from .canvas_player import Player
 
 FRAME, POLL = 30, 100  # milliseconds to the next solution: while it runs, while it waits
 MANY = 8  # sentences on forces and anchors with points that met nothing
-OUTPUTS = ("iterations", "particles", "geometry", "forces", "reactions", "residual", "energy", "status", "report")
+OUTPUTS = ("iterations", "particles", "geometry", "forces", "reactions", "residual", "energy", "status", "report",
+           "results")  # fmt: skip
 _players, _keys = {}, {}  # by session; the session of a component in an open document
 
 
@@ -287,6 +288,7 @@ def _outputs(player):
     made.geometry = _moved(player, places)
     made.forces = geometry.to_tree(_forces(player, frame))
     made.reactions = geometry.to_tree(_reactions(player, frame))
+    made.results = _results(player, places)
     made.energy = state["energy"]["total"]
     running = "Running: iteration %d, residual %.3g." % (frame["iteration"], frame["residual"])
     made.status = state["message"] if player.exact else running
@@ -331,6 +333,26 @@ def _forces(player, frame):
         items = [geometry.to_vector(item) if isinstance(item, (list, tuple)) else item for item in column]
         branches.setdefault(owner, []).extend(items)
     return [("{%d}" % i, branches[owner]) for i, owner in enumerate(order)]
+
+
+def _results(player, places):
+    """All that the elements of each force report, as JSON text for scripts, in the order of the forces; at rest only,
+    as it needs the whole state. `points` and `start`: where the particles of each element are, and were."""
+    if not player.exact:
+        return []
+    turns = player.state.get("rotations") or {"particles": [], "quaternions": []}
+    turned = dict(zip(turns["particles"], turns["quaternions"]))
+    made = []
+    for one, found in zip(player.kept.forces, player.state["forces"]):
+        rows = [row if isinstance(row, (list, tuple)) else [row] for row in found.get("particles", [])]
+        told = {name: column for name, column in found.items() if name != "particles"}
+        told["units"], told["source"] = player.topology["units"], one["source"]
+        told["points"] = [[list(places[p]) for p in row] for row in rows]
+        told["start"] = [[player.topology["start"][p] for p in row] for row in rows]
+        if turned:
+            told["rotations"] = [[list(turned.get(p, (1.0, 0.0, 0.0, 0.0))) for p in row] for row in rows]
+        made.append(compose.text(told))
+    return made
 
 
 def _reactions(player, frame):

@@ -121,10 +121,19 @@ class Importing:
         for part in self.streams.parts:
             known = self.known[id(part.chunk)]
             if known and role(known) is Role.TOOL and id(part.chunk) not in self.stays:
-                if part.id in kept and isinstance(self._swap(part, known), Swap):
+                if self._reads_what_stays(part, known):
+                    self.stays[id(part.chunk)] = "it reads a solver that stays"
+                elif part.id in kept and isinstance(self._swap(part, known), Swap):
                     self.stays[id(part.chunk)] = "a tool for geometry; it stays with the system that it feeds"
                 else:
                     self._plan(part)
+
+    def _reads_what_stays(self, part: Part, known: Known) -> bool:
+        """Whether it takes outputs of goals from a solver that is not translated."""
+        if known.generation != "engineering" or not key(known.name).endswith("output"):
+            return False
+        above = self.streams.all_above(part)
+        return any(solver.id in above for system in self.systems.found if system.blocks for solver in system.solvers)
 
     def _because(self, part: Part, system: System, name: str) -> str:
         """Why a component of a system stays: a reason of its own, or that of the system."""
