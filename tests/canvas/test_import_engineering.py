@@ -210,7 +210,7 @@ def test_what_calculates_gives_the_numbers_of_its_formulas(tmp_path: Path) -> No
         d.panel(name, source)
     outcome = ran(d, tmp_path)
     area, inertia = math.pi * (50.0**2 - 40.0**2), math.pi / 4 * (50.0**4 - 40.0**4)
-    expected = {
+    expected: dict[str, Any] = {
         "I": [inertia], "It": [2 * inertia], "z": [50.0], "lengths": [3.5, 1.5, 2.0], "y": [-2.0],
         "weight": [[0, 0, -9.82 * 7850e-6 * area * half / 1] for half in (3.5, 1.5, 2.0)],
         "snow": [[0, 0, -1000.0], [0, 0, 0]], "wind": [[0, 0, -1000.0], [0, 0, -1000.0]], "tension": [150.0, 300.0],

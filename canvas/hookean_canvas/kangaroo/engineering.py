@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from hookean_canvas.kangaroo import engineering_goals, engineering_tools
 from hookean_canvas.kangaroo.pieces import Piece, Swap
 
 _TOLD = "results are not rounded"
 
 
-def _goal(helper: str, output: str, differs: str = "", without: Mapping[str, str] | None = None, **inputs: str) -> Swap:
+def _goal(helper: str, output: str, differs: str = "", /, exact: str = "", **inputs: str) -> Swap:
     """A script that makes our force; inputs of theirs that differ from ours by `e_modulus="e-modulus|e"` and so on."""
     given = {old: ours for ours, names in inputs.items() for old in names.split("|")}
-    return Swap(
-        (Piece(helper, given, {"force": output}),), differs, without or {}, {"strength": None} if without else {}
-    )
+    without = {"strength": exact} if exact else {}
+    return Swap((Piece(helper, given, {"force": output}),), differs, without, dict.fromkeys(without))
 
 
 def _tool(helper: str, outputs: str, differs: str = "", **inputs: str) -> Swap:
@@ -69,7 +66,7 @@ ENGINEERING: dict[str, Swap] = {
         "*support",
         "simplesupportgoal|s",
         "anchors, which hold exactly",
-        {"strength": "anchors hold exactly here, so they have no strength"},
+        exact="anchors hold exactly here, so they have no strength",
         point="pinnedsupportpt|supportpt|pt",
         **_HELD,
     ),

@@ -6,7 +6,7 @@ their variables without underscores. Sources of the differences: docs/from-kanga
 
 from __future__ import annotations
 
-from hookean_canvas.kangaroo import classic, engineering, engines, goals, scripts, tools
+from hookean_canvas.kangaroo import classic, engineering, engines, goals, scripts, six, tools
 from hookean_canvas.kangaroo.ids import COMPONENTS, Generation, Known, key
 from hookean_canvas.kangaroo.pieces import Swap
 from hookean_canvas.kangaroo.reasons import REASONS
@@ -61,4 +61,5 @@ _HELPER = {
     "*plane": "a script for planes",
     **scripts.TOLD,
     **engineering.TOLD,
+    **six.TOLD,
 }
