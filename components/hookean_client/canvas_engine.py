@@ -65,7 +65,7 @@ def solve(ghenv, forces, anchors, settings, rides, reset, on=True):
             break
     _tell(ghenv, player)
     if player.kept is wanted and player.frame() and player.state:
-        player.shown = _outputs(player)
+        player.shown = _outputs(player, _asked(ghenv))
         _warn(ghenv, player)
         drawing.draw(ghenv, player)
     return player.shown or Outputs()
@@ -274,7 +274,16 @@ def _warn(ghenv, player):
 # outputs
 
 
-def _outputs(player):
+def _asked(ghenv):
+    """Whether a wire leaves the output `results`: its texts are long."""
+    for port in ghenv.Component.Params.Output:
+        if port.Name == "results":
+            takers = getattr(port, "Recipients", None)
+            return takers is None or any(True for _ in takers)
+    return False
+
+
+def _outputs(player, asked):
     """The newest frame as outputs; with all digits where the state is that of the frame."""
     frame, state, units = player.frame(), player.state, player.topology["units"]
     flat = frame["particles"]
@@ -288,7 +297,7 @@ def _outputs(player):
     made.geometry = _moved(player, places)
     made.forces = geometry.to_tree(_forces(player, frame))
     made.reactions = geometry.to_tree(_reactions(player, frame))
-    made.results = _results(player, places)
+    made.results = _results(player, places) if asked and player.exact else []
     made.energy = state["energy"]["total"]
     running = "Running: iteration %d, residual %.3g." % (frame["iteration"], frame["residual"])
     made.status = state["message"] if player.exact else running
@@ -336,10 +345,8 @@ def _forces(player, frame):
 
 
 def _results(player, places):
-    """All that the elements of each force report, as JSON text for scripts, in the order of the forces; at rest only,
-    as it needs the whole state. `points` and `start`: where the particles of each element are, and were."""
-    if not player.exact:
-        return []
+    """All that the elements of each force report, as JSON text for scripts, in the order of the forces. It needs
+    the whole state, so it is for rest only. `points` and `start`: where the particles of each element are, and were."""
     turns = player.state.get("rotations") or {"particles": [], "quaternions": []}
     turned = dict(zip(turns["particles"], turns["quaternions"]))
     made = []
