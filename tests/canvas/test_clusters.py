@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from uuid import UUID
 
 import pytest
 
-from canvas.kangaroo_samples import Kangaroo
+from canvas.kangaroo_samples import ANCHOR, Kangaroo
 from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.archive import Type
+from hookean_canvas.archive.guids import CLUSTER
 from hookean_canvas.definitions.write import Made
+from hookean_canvas.kangaroo import translate as kangaroo
+from hookean_canvas.run import graph
 from hookean_canvas.run.checking import check
 
 
@@ -74,3 +78,46 @@ def test_a_cluster_in_itself_without_end_is_refused(tmp_path: Path) -> None:
     archive.write(outer(document).archive(), path)
     with pytest.raises(InputError):
         check(path)
+
+
+def goals(held: str) -> bytes:
+    """A cluster of two goals: springs of its lines, and soft anchors at its points."""
+    d = Kangaroo(f"goals {held}", "Goals", "A cluster with goals.")
+    lines, ends = hook(d, "Input", "Lines"), hook(d, "Input", "Ends")
+    springs = d.kangaroo("Length(Line)", (("Line", None), ("Length", None), ("Strength", 100.0)), ["S"], line=lines)
+    held_ = d.kangaroo("Anchor", ANCHOR, ["A"], guid=UUID("3c30b1a1-4473-4ad4-a700-ea9770726c03"), p=ends)
+    hook(d, "Output", "Goals", d.parameter("Data", "Both", source=[springs, held_]))
+    return archive.to_bytes(d.archive())
+
+
+def test_a_cluster_of_goals_is_opened_and_its_system_is_translated() -> None:
+    """Twice the same cluster, each with its own wires: nothing is left of Kangaroo."""
+    d = Kangaroo("roof", "Roof", "Goals in clusters.")
+    made = []
+    for y in (0, 5):
+        ends = [d.point(0, y, 0), d.point(2, y, 0)]
+        middle = d.point(1, y, 0)
+        lines = [d.native("Line", start_point=end, end_point=middle) for end in ends]
+        cluster = d.kangaroo(
+            f"Goals {y}", (("Lines", None), ("Ends", None)), ["Goals"], guid=CLUSTER, lines=lines, ends=ends
+        )
+        cluster.library = None
+        cluster.container.put("ClusterDocument", Type.BYTEARRAY, goals("both"))
+        made.append(cluster)
+    solver = d.solved(*made)
+    d.panel("particles", solver["V"])
+    after, report = kangaroo.translate(d.archive())
+    assert report.complete and report.whole == report.solvers == 1, report.text()
+    assert (
+        sum("was opened; it is a cluster that holds Length(Line), Anchor of Kangaroo" in note for note in report.notes)
+        == 2
+    )
+    found = graph.of(after)
+    assert not found.damage and not any(node.guid == CLUSTER for node in found.nodes)
+    springs = [node for node in found.nodes if node.name == "Springs From Line"]
+    assert len(springs) == 2
+    owners = found.owners()
+    for node in springs:
+        [source] = node.inputs[0].sources
+        hook_, _ = owners[source]
+        assert sorted(owners[one][0].name for one in hook_.inputs[0].sources) == ["Line", "Line"]
