@@ -14,6 +14,7 @@ import pytest
 from canvas.canvasing import let_go
 from canvas.kangaroo_samples import SOLVER, Kangaroo
 from canvas.test_import_run import ran
+from hookean_canvas.archive.parts import parts
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.kangaroo.engineering import ENGINEERING, REASONS
 from hookean_canvas.kangaroo.ids import COMPONENTS, key
@@ -86,8 +87,10 @@ def test_a_truss_has_the_forces_stresses_and_reactions_of_statics_in_kn_and_mpa(
     d.panel("force", output["AxialForce"])
     d.panel("stress", output["AxialStress"])
     d.panel("reaction", held["ReactionForce"])
-    _, report = kangaroo.translate(d.archive())
-    assert not report.stays, report.text()
+    root, report = kangaroo.translate(d.archive())
+    assert not report.stays and not report.lost, report.text()
+    held_values = [part.container.value("UserText") for part in parts(root) if part.label == "Length unit"]
+    assert held_values == ["m"]  # whatever the unit of the document
     outcome = ran(d, tmp_path)
     np.testing.assert_allclose(shown(outcome, "force"), [6.25, 6.25], rtol=1e-4)
     np.testing.assert_allclose(shown(outcome, "stress"), [6.25, 6.25], rtol=1e-4)

@@ -176,6 +176,7 @@ REASONS: dict[str, str] = {
         ),
         _DRAWS,
     ),
+    "loadoutput": "the load is the vector that is wired into Load",
     "meshvertexarea": _MESHES,
     "meshselfweight": _MESHES,
     "shear": "it finds the rods of a line by rounded coordinates; Beam reports Vy and Vz",
