@@ -14,7 +14,7 @@ from hookean.workshop.patterns import strains
 
 HERE = Path(__file__).parent
 PRESTRESS, STIFFNESS, POISSON = (3.0, 3.0), (800.0, 600.0), 0.3  # kN/m, of the cloth along warp and weft
-ALLOWANCE = 0.04  # m
+SIDE, WIDTH, ALLOWANCE = 10.0, 1.2, 0.04  # m, of the roof, of a strip of cloth, and for its seams
 
 
 def design(scene: Scene, folder: Path, processes: int = 1) -> hookean.LoadCases:
@@ -23,7 +23,10 @@ def design(scene: Scene, folder: Path, processes: int = 1) -> hookean.LoadCases:
     limits = read_limits((HERE / "limits.toml").read_text(encoding="utf-8"))
     page = report(scene, title="Hypar roof", limits=limits, cases=cases)
     compensation = strains(PRESTRESS, STIFFNESS, POISSON)
-    strips = hookean.cutting_patterns(cases.form, compensation=compensation, allowance=ALLOWANCE, rows=2)
+    rows = round(len(cases.form.particles) ** 0.5 * WIDTH / SIDE)  # of the mesh, to a strip
+    strips = hookean.cutting_patterns(
+        cases.form, compensation=compensation, allowance=ALLOWANCE, rows=rows, mark_every=rows
+    )
     ropes = hookean.cables(cases.frozen)
     (folder / "report.html").write_text(page, encoding="utf-8")
     write_sheets(strips, folder / "strips.dxf")
