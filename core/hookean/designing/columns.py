@@ -66,6 +66,11 @@ def tied(variable: Variable, rows: int, columns: Ints, width: int, pointer: str)
         if not len(group) or group.max() >= rows:
             given = "no elements" if not len(group) else f"element {int(group.max())}"
             raise InputError(f"{pointer}/tie/{i}", f"{given} given; there are {rows}, counted from 0")
+        if (found[np.ix_(group, columns)] >= 0).any():
+            twice = int(group[(found[np.ix_(group, columns)] >= 0).any(axis=1)][0])
+            raise InputError(
+                f"{pointer}/tie/{i}", f"element {twice} is in an earlier list, too; give each element once"
+            )
         found[np.ix_(group, columns)] = i * len(columns) + np.arange(len(columns))
     return found
 

@@ -30,17 +30,29 @@ Floats = NDArray[np.float64]
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
+Keep = Callable[[Floats], None]
+"""Called with the values (u,) of all unknowns each time they are the best so far."""
 
 
 class Search:
     """The functions that methods ask for, of unknowns in units of their scale, and the best shape so far."""
 
-    def __init__(self, problem: Problem, progress: Progress | None, cancelled: Callable[[], bool] | None) -> None:
-        self.problem, self.progress, self.cancelled = problem, progress, cancelled
+    def __init__(
+        self,
+        problem: Problem,
+        progress: Progress | None = None,
+        cancelled: Callable[[], bool] | None = None,
+        *,
+        start: Any = None,
+        keep: Keep | None = None,
+    ) -> None:
+        self.problem, self.progress, self.cancelled, self.keep = problem, progress, cancelled, keep
         self.system: System = compile(problem.scene)
         if missing := self.system.no_tangent(sparse=False):
             raise InputError("/scene/forces", f"{missing}, so nothing can be differentiated through its equilibrium")
         self.unknowns = Unknowns(problem, self.system)
+        if start is not None:
+            self.unknowns.begin(start)
         self.state = self.system.start()
         self.scale = self.unknowns.scale
         self.orders = Orders()
@@ -197,19 +209,30 @@ class Search:
         value = self._objective(found)
         if np.isfinite(value) and (missed, value) < self.best[:2]:
             self.best = (missed, value, y.copy())
+            if self.keep is not None:
+                self.keep(self.unknowns.start + y * self.scale)
         if self.progress is not None:
             self.progress(self.evaluations, self.best[1])
 
 
-def design(problem: Any, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Design:
+def design(
+    problem: Any,
+    *,
+    progress: Progress | None = None,
+    cancelled: Callable[[], bool] | None = None,
+    start: Any = None,
+    keep: Keep | None = None,
+) -> Design:
     """Find values of a problem's variables for which its equilibrium meets the goals best and the constraints at all.
 
-    `problem` is a Problem, or a dict or JSON text of one. Always returns the best shape so far; failure is the status
-    and the message. Raises InputError where the problem does not fit its scene.
+    `problem` is a Problem, or a dict or JSON text of one. The search starts from the values of the scene, or from
+    `start`: values (u,) of all unknowns in the order of the variables, as `keep` was called with. Always returns the
+    best shape so far; failure is the status and the message. Raises InputError where the problem does not fit its
+    scene.
     """
     problem = Problem.read(problem)
-    search = Search(problem, progress, cancelled)
-    method = _chosen(search)
+    search = Search(problem, progress, cancelled, start=start, keep=keep)
+    method = chosen(search)
     ended: DesignStatus | None = None
     iterations, said = 0, ""
     if not search.first.converged:
@@ -222,7 +245,7 @@ def design(problem: Any, *, progress: Progress | None = None, cancelled: Callabl
     return _answer(search, method, iterations or search.evaluations, ended, said)
 
 
-def _chosen(search: Search) -> str:
+def chosen(search: Search) -> str:
     """The method that a problem is solved with."""
     problem = search.problem
     wanted = problem.settings.method

@@ -77,6 +77,13 @@ class Unknowns:
             upper[part] = np.inf if given.upper is None else given.upper
         return lower, upper
 
+    def begin(self, values: Any) -> None:
+        """Start from these values (u,), within the bounds; InputError unless they are one finite number for each."""
+        given = np.asarray(values, dtype=np.float64).ravel()
+        if given.shape != (self.count,) or not np.isfinite(given).all():
+            raise InputError("start", f"{self.count} finite numbers are expected, one for each unknown")
+        self.start = np.clip(given, self.lower, self.upper)
+
     @property
     def scale(self) -> Floats:
         """The size (u,) of each unknown: of its value, of its bounds, or of the mean of its variable."""

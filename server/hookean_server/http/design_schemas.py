@@ -1,0 +1,104 @@
+"""Schemas and examples of design problems, from the models of the core; the tests run every example."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hookean.designing.problem import Constraint, DesignSettings, Goal, Variable
+from hookean.designing.quantities import QUANTITIES
+from hookean.values.columns import Model
+
+PROBLEM: dict[str, Any] = {
+    "scene": {
+        "particles": [[-1.0, 0.0, 0.0], [0.0, 0.0, -0.2], [1.0, 0.0, 0.0]],
+        "forces": [
+            {
+                "kind": "springs",
+                "name": "string",
+                "particles": [[0, 1], [1, 2]],
+                "stiffness": 100.0,
+                "rest_length": 1.0,
+            },
+            {"kind": "unary", "name": "load", "particles": [1], "vector": [0.0, 0.0, -5.0]},
+        ],
+        "anchors": [{"name": "ends", "particles": [0, 2]}],
+    },
+    "variables": [{"force": "string", "field": "rest_length", "tie": "all", "lower": 0.5, "upper": 2.0}],
+    "goals": [{"kind": "position", "particles": [1], "axes": "z", "target": -0.7}],
+}
+SLOPES = {
+    "scene": PROBLEM["scene"],
+    "variables": [{"force": "string", "field": "stiffness"}],
+    "goals": [{"kind": "position", "particles": [1], "axes": "z"}],
+}
+
+
+def _fields(model: type[Model]) -> dict[str, Any]:
+    schema = model.model_json_schema()
+    if "$defs" in schema:
+        raise ValueError(f"{model.__name__} has parts of its own")
+    return schema
+
+
+def _measured(model: type[Model]) -> dict[str, Any]:
+    """A goal or a constraint: the fields of one kind of quantity beside its own."""
+    own = model.model_json_schema()["properties"]
+    own.pop("quantity")
+    kinds = []
+    for kind, cls in QUANTITIES.items():
+        schema = _fields(cls)
+        properties = {**schema["properties"], "kind": {"const": kind}, **own}
+        required = ["kind", *(name for name in schema.get("required", []) if name != "kind")]
+        kinds.append(
+            {"type": "object", "properties": properties, "required": required, "additionalProperties": False,
+             "title": kind, "description": schema.get("description", kind)}
+        )  # fmt: skip
+    return {"oneOf": kinds, "description": model.__doc__}
+
+
+def design_schemas() -> dict[str, Any]:
+    """The schemas by name."""
+    variables = {"type": "array", "items": {"$ref": "#/components/schemas/DesignVariable"}, "minItems": 1}
+    goals = {"type": "array", "items": {"$ref": "#/components/schemas/DesignGoal"}}
+    parts = {
+        "variables": variables,
+        "goals": goals,
+        "constraints": {"type": "array", "items": {"$ref": "#/components/schemas/DesignConstraint"}},
+        "settings": {"$ref": "#/components/schemas/DesignSettings"},
+    }
+    scene = {"$ref": "#/components/schemas/Scene"}
+    kind = {"type": "object", "additionalProperties": False}
+    return {
+        "DesignVariable": _fields(Variable),
+        "DesignGoal": _measured(Goal),
+        "DesignConstraint": _measured(Constraint),
+        "DesignSettings": _fields(DesignSettings),
+        "Design": {
+            **kind,
+            "properties": parts,
+            "required": ["variables"],
+            "description": "What varies, and to what end",
+        },
+        "DesignProblem": {
+            **kind,
+            "properties": {"scene": scene, **parts},
+            "required": ["scene", "variables"],
+            "examples": [PROBLEM],
+        },
+        "SensitivityRequest": {
+            **kind,
+            "properties": {"scene": scene, "variables": variables, "goals": {**goals, "minItems": 1}},
+            "required": ["scene", "variables", "goals"],
+        },
+        "Sensitivity": {
+            "type": "object",
+            "properties": {
+                "value": {"type": ["number", "null"], "description": "Sum of weight x value of all goals"},
+                "gradient": {"type": "array", "description": "Of each variable an array [unit of goal by of variable]"},
+                "values": {"type": "array", "description": "Values of each goal"},
+                "variables": {"type": "array", "items": {"type": "string"}},
+                "warnings": {"type": "array", "items": {"type": "string"}},
+            },
+            "required": ["value", "gradient", "values", "variables", "warnings"],
+        },
+    }
