@@ -164,6 +164,10 @@ WRONG: list[tuple[Any, str]] = [
     *((changed("/settings", v), "/settings") for v in (
         {"method": "newton"}, {"tolerance": 0}, {"tolerance": -1}, {"max_iterations": 0}, {"speed": 1}, [], None)),
     (changed("/extra", 1), "/extra"),
+    *((changed("/start", v), "/start") for v in ([], [1, 2], "low", {}, [[1]], [1e999], 3, [None])),
+    *((changed("/goals/0", {"kind": "position", "points": v}), "/goals/0") for v in (
+        [], 5, [[0, 0]], [[9, 9, 9]], [["x", 0, 0]], None, [[1e999, 0, 0]])),
+    (changed("/goals/0", {"kind": "position", "points": [[0, 0, -0.2]], "particles": [1]}), "/goals/0"),
     ({**changed("/goals/0/target", ...), "settings": {"method": "least_squares"}}, "/settings/method"),
     (changed("/goals/0/kind", "\ud800"), "/"),
 ]  # fmt: skip

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
 from pydantic import StrictInt, StrictStr, model_validator
 
+from hookean.designing.located import located
 from hookean.designing.quantities import QUANTITIES
 from hookean.designing.quantities.base import Quantity
 from hookean.scene.scene import Scene
@@ -145,4 +146,4 @@ class Problem(Model):
     @classmethod
     def read(cls, value: Any) -> Self:
         """A problem from a dict, or from JSON text or bytes; InputError with a pointer and one sentence."""
-        return super().read(parse(value) if isinstance(value, str | bytes | bytearray) else value)
+        return super().read(located(parse(value) if isinstance(value, str | bytes | bytearray) else value))

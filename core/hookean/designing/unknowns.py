@@ -79,9 +79,12 @@ class Unknowns:
 
     def begin(self, values: Any) -> None:
         """Start from these values (u,), within the bounds; InputError unless they are one finite number for each."""
-        given = np.asarray(values, dtype=np.float64).ravel()
+        try:
+            given = np.asarray(values, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            given = np.zeros(0)
         if given.shape != (self.count,) or not np.isfinite(given).all():
-            raise InputError("start", f"{self.count} finite numbers are expected, one for each unknown")
+            raise InputError("/start", f"{self.count} finite numbers are expected, one for each unknown")
         self.start = np.clip(given, self.lower, self.upper)
 
     @property

@@ -48,12 +48,23 @@ def _measured(model: type[Model]) -> dict[str, Any]:
     for kind, cls in QUANTITIES.items():
         schema = _fields(cls)
         properties = {**schema["properties"], "kind": {"const": kind}, **own}
-        required = ["kind", *(name for name in schema.get("required", []) if name != "kind")]
+        _accept_points(properties)
+        required = ["kind", *(name for name in schema.get("required", []) if name not in ("kind", "particles"))]
         kinds.append(
             {"type": "object", "properties": properties, "required": required, "additionalProperties": False,
              "title": kind, "description": schema.get("description", kind)}
         )  # fmt: skip
     return {"oneOf": kinds, "description": model.__doc__}
+
+
+def _accept_points(properties: dict[str, Any]) -> None:
+    """Particles may be named by the points where they are drawn."""
+    if "particles" in properties:
+        properties["points"] = {
+            "type": "array",
+            "items": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+            "description": "Points where the particles are drawn, in the place of their numbers [length]",
+        }
 
 
 def design_schemas() -> dict[str, Any]:
@@ -65,6 +76,11 @@ def design_schemas() -> dict[str, Any]:
         "goals": goals,
         "constraints": {"type": "array", "items": {"$ref": "#/components/schemas/DesignConstraint"}},
         "settings": {"$ref": "#/components/schemas/DesignSettings"},
+        "start": {
+            "type": "array",
+            "items": {"type": "number"},
+            "description": "Values of all variables in their order to start from; default: those of the scene",
+        },
     }
     scene = {"$ref": "#/components/schemas/Scene"}
     kind = {"type": "object", "additionalProperties": False}

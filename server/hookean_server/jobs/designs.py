@@ -30,7 +30,7 @@ from hookean_server.workers.analysis_task import read_scene
 from hookean_server.workers.task import Cancelled, Clock, Done
 
 OFTEN, KEEP = 0.2, 1.0  # seconds between words on a search, and between its checkpoints
-FIELDS = ("scene", "variables", "goals", "constraints", "settings")
+FIELDS = ("scene", "variables", "goals", "constraints", "settings", "start")
 LARGEST = 5_000_000  # numbers in an answer
 
 
@@ -53,7 +53,9 @@ def about(scene: Scene, given: Any, prefix: str) -> dict[str, Any]:
     if "scene" in given:
         raise InputError(f"{prefix}/scene", "the scene belongs beside the design")
     try:
-        search = checked({**given, "scene": scene})
+        search = checked({**{name: part for name, part in given.items() if name != "start"}, "scene": scene})
+        if given.get("start") is not None:
+            search.unknowns.begin(given["start"])
     except InputError as error:
         raise faulty(
             "invalid-input", [InputError(_under(prefix, f.pointer), f.sentence) for f in error.faults]
@@ -117,7 +119,7 @@ def differentiate(options: dict[str, Any], body: bytes, cancelled: Cancelled) ->
     scene = bounded(read_scene(request["scene"]), options["seconds"])
     clock.lap("decode")
     given = request["design"]
-    unused = [name for name in ("constraints", "settings") if name in given]
+    unused = [name for name in ("constraints", "settings", "start") if name in given]
     if unused:
         raise InputError(f"/{unused[0]}", "a sensitivity has goals and variables only")
     found = sensitivity({"variables": (), **given, "scene": scene})
@@ -134,7 +136,10 @@ def _problem(body: bytes, options: dict[str, Any]) -> tuple[dict[str, Any], Sett
     request = parse(body[: options["size"]])
     given = Scene.model_validate(request["scene"])
     scene = bounded(given, min(options["seconds"], options["longest"]))
-    return {**request["design"], "scene": scene}, given.settings, body[options["size"] :]
+    problem = {**request["design"], "scene": scene}
+    start = problem.pop("start", None)
+    kept = body[options["size"] :]
+    return problem, given.settings, kept or (b"" if start is None else _packed(0, np.asarray(start, dtype=np.float64)))
 
 
 class _Teller:
