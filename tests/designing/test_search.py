@@ -254,7 +254,8 @@ def test_faults_point_to_what_was_given(part: str, values: dict[str, Any], point
 
 
 def test_a_goal_beyond_the_bounds_sits_at_the_bound() -> None:
-    """A sag of 3 is out of reach with rest lengths up to 1.5: the longest is best, and is at its bound."""
+    """A sag of 3 is out of reach with rest lengths up to 1.5: the longest is best, is at its bound, and the gain is the
+    slope of the closed form's (d - 3)²."""
     found = design(
         {
             "scene": cable(),
@@ -262,8 +263,11 @@ def test_a_goal_beyond_the_bounds_sits_at_the_bound() -> None:
             "goals": [{"kind": "position", "particles": [1], "axes": "z", "target": -3.0}],
         }
     )
-    assert found.variables[0] | {"value": 0} == {"name": "string.rest_length", "value": 0, "at_bound": True}
-    assert found.variables[0]["value"] == pytest.approx(1.5)
+    assert found.variables[0]["at_bound"] and found.variables[0]["value"] == pytest.approx(1.5)
+    better = [(sag(100.0, 1.5 + way * 1e-4, 5.0) - 3.0) ** 2 for way in (-1, 1)]
+    gain = (better[0] - better[1]) / 2e-4  # by which the objective falls as the bound gives way
+    assert found.variables[0]["gain"] == pytest.approx(gain, rel=TOLERANCE)
+    assert found.goals[0]["gains"] == {"string.rest_length": pytest.approx(gain, rel=TOLERANCE)}
 
 
 def test_the_caller_may_stop_it() -> None:

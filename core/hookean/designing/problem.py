@@ -71,21 +71,35 @@ class Variable(Model):
 
 
 class Goal(Model):
-    """What the equilibrium should be like: a quantity and its target; without a target the quantity is minimised.
+    """What the equilibrium should be like: a quantity and its target, or the range in which it should be; without them
+    the quantity is minimised.
 
     The objective is the sum of weight (value - target)² over all values of goals with a target, and of weight x value
-    over those of goals without.
+    over those of goals without. The target of a range is the value itself within it, and the nearest limit without.
     """
 
     quantity: AnyQuantity
     target: Maybe[Table] = Field(default=None, description="Target, one or one for each value [unit of the quantity]")
+    lower: Maybe[Reals] = Field(default=None, description="Least value of a range [unit of the quantity]")
+    upper: Maybe[Reals] = Field(default=None, description="Largest value of a range [unit of the quantity]")
     weight: float = Field(default=1.0, gt=0, description="Weight in the objective [-]")
     name: str = Field(default="", description="Name in the answer; default: the kind")
 
     @model_validator(mode="before")
     @classmethod
     def _flat(cls, value: Any) -> Any:
-        return _split(value, ("target", "weight", "name"))
+        return _split(value, ("target", "lower", "upper", "weight", "name"))
+
+    @model_validator(mode="after")
+    def _one_aim(self) -> Self:
+        if self.target is not None and not (self.lower is None and self.upper is None):
+            raise fault("give a target or a range from lower to upper, not both", "/target")
+        return self
+
+    @property
+    def aimed(self) -> bool:
+        """Whether it has a target or a range."""
+        return not (self.target is None and self.lower is None and self.upper is None)
 
 
 class Constraint(Model):
