@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
+ROUNDING = 1e-13  # part of the objective: less is no change
 
 
 class Stopped(Exception):
@@ -119,7 +120,7 @@ def _slsqp(search: Search) -> Ended:
             lambda y, size=size: search.objective(y) / size, start,
             jac=lambda y, size=size: search.gradient(y) / size, method="SLSQP", bounds=bounds,
             constraints=Margins(search).given() if search.aims.limits else [],
-            options={"maxiter": settings.max_iterations - iterations, "ftol": settings.tolerance * 1e-3},
+            options={"maxiter": settings.max_iterations - iterations, "ftol": max(settings.tolerance * 1e-3, ROUNDING)},
         )  # fmt: skip
         iterations += int(found.nit)
         if found.status == 9 or iterations >= settings.max_iterations:

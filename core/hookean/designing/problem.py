@@ -32,11 +32,20 @@ Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp")
 
 
+class Drive(Model):
+    """A column of a force that follows a variable: factor x the variable's value, element by element."""
+
+    force: StrictStr | StrictInt = Field(description="Name or number of a force")
+    field: str = Field(description="Column of the force")
+    factor: float = Field(default=1.0, description="Factor on the value [unit of the column by that of the variable]")
+
+
 class Variable(Model):
     """What may vary: a column of a force, or where an anchor holds its particles. Values have the scene's units.
 
     `tie` makes one unknown of all elements (`all`), of each list of elements, or one of each element (`each`); elements
-    in no list keep their values. An anchor that is tied moves as a whole: its value is the shift.
+    in no list keep their values. An anchor that is tied moves as a whole: its value is the shift. What a variable
+    `drives` follows it: the area of a bar its stiffness, with E as factor, and its weight.
     """
 
     name: str = Field(default="", description="Name in the answer; default: what varies")
@@ -49,6 +58,7 @@ class Variable(Model):
     )
     lower: float | None = Field(default=None, description="Least value [unit of the column]")
     upper: float | None = Field(default=None, description="Largest value [unit of the column]")
+    drives: Parts[Drive] = Field(default=(), description="Columns of forces that follow it, each by a factor")
 
     @model_validator(mode="after")
     def _one_thing(self) -> Self:
@@ -58,6 +68,8 @@ class Variable(Model):
             raise fault("a variable of a force needs a field, the name of a column", "/field")
         if self.anchor is not None and self.field:
             raise fault("an anchor has no field that varies; give axes", "/field")
+        if self.anchor is not None and self.drives:
+            raise fault("an anchor drives no columns", "/drives")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise fault(f"lower is {self.lower:g}, more than upper, {self.upper:g}", "/lower")
         return self

@@ -47,7 +47,7 @@ class StrainEnergy(Quantity):
         def give(_: Any, block: Block) -> Floats:
             return _energies(own, block)
 
-        for variable, part in zip(unknowns.variables, unknowns.slices, strict=True):
+        for variable, part in unknowns.parts:
             if isinstance(variable, Column) and variable.number == own.number:
                 for unknown, slope in variable.differences(found.system, give):
                     kept = unknown >= 0

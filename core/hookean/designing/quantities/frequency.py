@@ -44,7 +44,7 @@ class Frequency(Quantity):
         for group, memory in zip(found.system.groups, found.state.memory, strict=True):
             if not group.cls.constant and len(group.block.indices):
                 _add_moved(found, group, memory, motion, by_place)
-        for variable, part in zip(unknowns.variables, unknowns.slices, strict=True):
+        for variable, part in unknowns.parts:
             if isinstance(variable, Column) and not variable.group.cls.constant:
                 by_unknown[part] += _by_column(found, variable, motion, part.stop - part.start)
         size = 1.0 / (8.0 * np.pi**2 * abs(frequency)) if frequency else 0.0
