@@ -33,10 +33,10 @@ def levenberg(search: Search, lower: Floats, upper: Floats) -> tuple[int, Design
     settings = search.problem.settings
     y = np.clip(np.zeros(search.unknowns.count), lower, upper)
     r, factor, unit = search.residuals(y), 1.0, 0.0
-    nothing = (settings.tolerance * 1e-2 * search.target_size) ** 2
+    nothing = (settings.tolerance * 1e-2 * search.aims.size) ** 2
     for iteration in range(settings.max_iterations):
         cost = float(r @ r)
-        if cost <= max(nothing, (ROUNDING * search.target_size) ** 2):
+        if cost <= max(nothing, (ROUNDING * search.aims.size) ** 2):
             return iteration, DesignStatus.CONVERGED
         model = search.linearised(y)
         slope = model.transposed(r)
