@@ -35,9 +35,19 @@ SLOPES = {
 
 def _fields(model: type[Model]) -> dict[str, Any]:
     schema = model.model_json_schema()
-    if "$defs" in schema:
-        raise ValueError(f"{model.__name__} has parts of its own")
-    return schema
+    parts = schema.pop("$defs", {})
+    whole: dict[str, Any] = _inlined(schema, parts)
+    return whole
+
+
+def _inlined(value: Any, parts: dict[str, Any]) -> Any:
+    """A schema with its parts in the place of references to them."""
+    if isinstance(value, dict):
+        name = str(value.get("$ref", "")).removeprefix("#/$defs/")
+        if name in parts:
+            return {**_inlined(parts[name], parts), **{k: v for k, v in value.items() if k != "$ref"}}
+        return {key: _inlined(one, parts) for key, one in value.items()}
+    return [_inlined(one, parts) for one in value] if isinstance(value, list) else value
 
 
 def _measured(model: type[Model]) -> dict[str, Any]:
