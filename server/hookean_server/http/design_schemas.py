@@ -6,6 +6,7 @@ from typing import Any
 
 from hookean.designing.problem import Constraint, DesignSettings, Goal, Variable
 from hookean.designing.quantities import QUANTITIES
+from hookean.scene.catalogue import PlainSchema
 from hookean.values.columns import Model
 
 PROBLEM: dict[str, Any] = {
@@ -34,7 +35,7 @@ SLOPES = {
 
 
 def _fields(model: type[Model]) -> dict[str, Any]:
-    schema = model.model_json_schema()
+    schema = model.model_json_schema(schema_generator=PlainSchema)
     parts = schema.pop("$defs", {})
     whole: dict[str, Any] = _inlined(schema, parts)
     return whole
@@ -52,7 +53,7 @@ def _inlined(value: Any, parts: dict[str, Any]) -> Any:
 
 def _measured(model: type[Model]) -> dict[str, Any]:
     """A goal or a constraint: the fields of one kind of quantity beside its own."""
-    own = model.model_json_schema()["properties"]
+    own = _fields(model)["properties"]
     own.pop("quantity")
     kinds = []
     for kind, cls in QUANTITIES.items():
