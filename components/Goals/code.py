@@ -20,5 +20,7 @@ goals = canvas_design.goals(
     size=size_,
     name=name_,
     target=target_,
+    lower=lower_,
+    upper=upper_,
     weight=_weight_,
 )

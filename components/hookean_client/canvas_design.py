@@ -14,7 +14,22 @@ from . import canvas_tools as tools
 from .canvas_geometry import TEXT, Unfit, listed
 
 LOOK = 120  # milliseconds to the next look at a search that runs
-KINDS = ("position", "length", "force", "force_density", "load_path", "output", "reaction", "area", "volume")
+KINDS = (
+    "position",
+    "length",
+    "force",
+    "force_density",
+    "load_path",
+    "output",
+    "reaction",
+    "area",
+    "volume",
+    "planarity",
+    "fairness",
+    "offset",
+    "strain_energy",
+    "frequency",
+)
 AXES = ("x", "y", "z", "xy", "xz", "yz", "xyz")
 METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp")
 TIES = ("each", "all")
@@ -24,7 +39,9 @@ _searches = {}  # by component in an open document
 class Outputs(object):
     """What the component puts out; None where nothing is known yet."""
 
-    values = names = goals = constraints = objective = geometry = particles = scene = status = report = None
+    values = names = goals = constraints = objective = geometry = particles = forces = reactions = scene = status = (
+        report
+    ) = None
 
 
 # texts
@@ -40,7 +57,7 @@ def variables(ghenv, forces, field, anchors, axes, tie, lower, upper, name):
             raise Unfit("forces and anchors are connected; connect one of them")
         if not owners and not held:
             raise compose.missing("_force is missing; give the name of a force, or points of anchors")
-        own = {"tie": tools.word(tie, TIES, "tie") if listed(tie) else "each"}
+        own = {"tie": _tie(tie)}
         if owners:
             own["field"] = _text(field)
             if not own["field"]:
@@ -55,8 +72,8 @@ def variables(ghenv, forces, field, anchors, axes, tie, lower, upper, name):
 
 
 def goals(ghenv, kind, places, **given):
-    """Goals as text: `target` (none: minimised), `weight`."""
-    return canvas._told(ghenv, lambda: _measured("goal", kind, places, given, ("target", "weight")))
+    """Goals as text: `target`, or a range from `lower` to `upper` (neither: minimised), and `weight`."""
+    return canvas._told(ghenv, lambda: _measured("goal", kind, places, given, ("target", "lower", "upper", "weight")))
 
 
 def constraints(ghenv, kind, places, **given):
@@ -110,6 +127,19 @@ def mesh_name(plain):
 
 def _item(what, entry):
     return compose.text({"kind": what, what: entry})
+
+
+def _tie(given):
+    """A word, or lists of elements that have one value each."""
+    rows = [items for _, items in geometry.branches(given) if items]
+    if not rows:
+        return "each"
+    if len(rows) == 1 and len(rows[0]) == 1:
+        return tools.word(rows[0], TIES, "tie")
+    try:
+        return [[int(geometry.number(item)) for item in row] for row in rows]
+    except Unfit as unfit:
+        raise Unfit("tie: %s" % unfit)
 
 
 def _some(**values):
@@ -324,6 +354,9 @@ def _show(ghenv, made, found, wanted):
         setattr(made, name, geometry.to_tree(entries))
     made.objective, made.status = answer["objective"], answer["status"]
     made.particles = [geometry.to_point(place) for place in result["particles"]]
+    pulls = [canvas_sweep._shown(one.get("force") or one.get("moment") or []) for one in result["forces"]]
+    made.forces = geometry.to_tree([("{%d}" % i, row) for i, row in enumerate(pulls)])
+    made.reactions = canvas_sweep._shown(result["reactions"]["force"])
     if len(result["geometry"]) == len(wanted.makers):
         from .canvas_moments import places
 
