@@ -42,7 +42,13 @@ def graphs(found: Exploration) -> list[Graph]:
     return [
         Graph(
             f"{len(found.points)} samples", x_label, y_label,
+            x_log=_wide(x[right]), y_log=_wide(y[right]),
             dots={"samples": (x[right], y[right]), "front": (x[found.front], y[found.front])},
         )
         for x, y, x_label, y_label in pairs
     ]  # fmt: skip
+
+
+def _wide(values: np.ndarray) -> bool:
+    """Whether values need a logarithmic axis."""
+    return bool((values > 0.0).all() and values.max(initial=0.0) > 1000.0 * values.min(initial=np.inf))
