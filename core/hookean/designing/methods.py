@@ -20,12 +20,17 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+NO_STEP = "The search found no step that leads further; this is the best so far."
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
 ROUNDING = 1e-13  # part of the objective: less is no change
 
 
 class Stopped(Exception):
     """The caller ended the search."""
+
+
+class Unbounded(Exception):
+    """The objective falls without end; the text is the variable that grows."""
 
 
 Ended = tuple[int, DesignStatus, str]
@@ -63,8 +68,9 @@ def _lbfgsb(search: Search) -> Ended:
         options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12, "maxcor": 30,
                  "maxfun": 20 * settings.max_iterations},
     )  # fmt: skip
-    ended = DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED
-    return int(found.nit), ended, ""
+    if found.status == 2 and not at_minimum(search):  # no step along the slope leads further
+        return int(found.nit), DesignStatus.STALLED, NO_STEP
+    return int(found.nit), DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED, ""
 
 
 class Margins:
@@ -134,7 +140,7 @@ def _slsqp(search: Search) -> Ended:
         start = search.best[2].copy()
     if at_minimum(search):
         return iterations, DesignStatus.CONVERGED, ""
-    return iterations, DesignStatus.STALLED, "The search found no step that leads further; this is the best so far."
+    return iterations, DesignStatus.STALLED, NO_STEP
 
 
 METHODS: dict[str, Callable[[Search], Ended]] = {

@@ -17,9 +17,10 @@ from hookean.designing.aims import Aims
 from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.equilibrium import Equilibrium, follow, settle
 from hookean.designing.factors import Orders
+from hookean.designing.gains import at_minimum
 from hookean.designing.limits import LIMIT, beyond, size
 from hookean.designing.linearised import Linearised
-from hookean.designing.methods import METHODS, Stopped
+from hookean.designing.methods import METHODS, Stopped, Unbounded
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity
 from hookean.designing.sensitivity import gradients, jacobian
@@ -29,6 +30,7 @@ from hookean.errors import InputError
 from hookean.system.system import System, compile
 
 Floats = NDArray[np.float64]
+FAR = 1e3  # of its size: an unknown there that is no minimum has no end
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
@@ -115,6 +117,16 @@ class Search:
     def _objective(self, found: Equilibrium) -> float:
         return float(sum(self.aims.objectives(found)))
 
+    def check_end(self) -> None:
+        """Raise Unbounded where the best so far is no minimum and a variable has left all sizes."""
+        missed, _, y = self.best
+        if missed == 0.0 and np.abs(y).max() > FAR and not at_minimum(self):
+            number = int(np.argmax(np.abs(y)))
+            parts = zip(self.unknowns.variables, self.unknowns.slices, strict=True)
+            name = next(v.variable.title for v, part in parts if part.start <= number < part.stop)
+            way = "grows" if y[number] > 0.0 else "falls"
+            raise Unbounded(f"{name} {way} beyond {FAR:g} times its size; give it bounds, or the goals targets")
+
     def gradient(self, y: Floats) -> Floats:
         """Its derivatives by scaled unknowns."""
         found = self.at(y)
@@ -162,8 +174,12 @@ def design(problem: Any, *, progress: Progress | None = None, cancelled: Callabl
     else:
         try:
             iterations, ended, said = METHODS[method](search)
+            if method in ("l-bfgs-b", "slsqp"):
+                search.check_end()
         except Stopped:
             ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
+        except Unbounded as error:
+            ended, said = DesignStatus.UNBOUNDED, f"The objective falls without end: {error}."
     return answer(search, method, iterations or search.evaluations, ended, said)
 
 
