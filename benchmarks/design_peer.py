@@ -7,7 +7,7 @@ import sys
 import time
 from typing import Any
 
-import jax  # noqa: E402
+import jax
 
 jax.config.update("jax_enable_x64", True)
 
