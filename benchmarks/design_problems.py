@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -185,4 +186,4 @@ def recovery(m: int) -> Problem:
 
 
 PROBLEMS: dict[str, Callable[[], Problem]] = {"arch": arch, "pringle": pringle, "dome": dome, "vault": vault}
-PROBLEMS |= {f"heights-{(m + 1) ** 2}": lambda m=m: recovery(m) for m in (12, 30, 100)}
+PROBLEMS |= {f"heights-{(m + 1) ** 2}": partial(recovery, m) for m in (12, 30, 100)}

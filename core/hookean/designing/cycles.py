@@ -42,7 +42,7 @@ class Cycles:
         from hookean.linear.tangent import Tangent
 
         self._tangent = Tangent(system, state)
-        return self._tangent.take_up(system, state, 0.0)
+        return bool(self._tangent.take_up(system, state, 0.0))
 
     def _scalars(self) -> bool:
         """A hierarchy for each set of axes on which the same particles are free."""
