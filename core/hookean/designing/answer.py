@@ -20,6 +20,7 @@ class DesignStatus(StrEnum):
 
     CONVERGED = "converged"
     INFEASIBLE = "infeasible"
+    UNBOUNDED = "unbounded"
     MAX_ITERATIONS = "max_iterations"
     STALLED = "stalled"
     CANCELLED = "cancelled"

@@ -49,11 +49,11 @@ def gains(search: Search, found: Equilibrium, y: Floats) -> Gains | None:
     rows, sides = _limiting(search, found)
     if len(rows) > MOST or not np.isfinite(slopes).all():
         return None
-    by = np.zeros((0, len(y)))
-    shares = np.zeros((len(slopes), 0))
+    by: Floats = np.zeros((0, len(y)))
+    shares: Floats = np.zeros((len(slopes), 0))
     if len(rows):
         by = _constraint_slopes(search, found)[rows]
-        shares = np.linalg.lstsq(by[:, ~held].T, slopes[:, ~held].T, rcond=1e-10)[0].T
+        shares = np.asarray(np.linalg.lstsq(by[:, ~held].T, slopes[:, ~held].T, rcond=1e-10)[0].T, np.float64)
     left = slopes - shares @ by
     side = np.where(lower == upper, 0.0, np.where(upper, 1.0, -1.0))
     constraints = np.zeros((len(slopes), sum(len(limit[0]) for limit in search.aims.limits)))

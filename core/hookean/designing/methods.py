@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.answer import DesignStatus
+from hookean.designing.augmented import augmented
 from hookean.designing.feasible import nearer
 from hookean.designing.gains import at_minimum
 from hookean.designing.levenberg import levenberg
@@ -20,12 +21,17 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+NO_STEP = "The search found no step that leads further; this is the best so far."
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
 ROUNDING = 1e-13  # part of the objective: less is no change
 
 
 class Stopped(Exception):
     """The caller ended the search."""
+
+
+class Unbounded(Exception):
+    """The objective falls without end; the text is the variable that grows."""
 
 
 Ended = tuple[int, DesignStatus, str]
@@ -50,7 +56,14 @@ def _least_squares(search: Search) -> Ended:
 
 
 def _levenberg_marquardt(search: Search) -> Ended:
-    return *levenberg(search, *search.bounds), ""
+    start, most = np.zeros(search.unknowns.count), search.problem.settings.max_iterations
+    iterations, ended, _ = levenberg(search, *search.bounds, start, most)
+    return iterations, ended, ""
+
+
+def _augmented_lagrangian(search: Search) -> Ended:
+    iterations, ended = augmented(search)
+    return iterations, ended, NO_STEP if ended is DesignStatus.STALLED and search.best[0] == 0.0 else ""
 
 
 def _lbfgsb(search: Search) -> Ended:
@@ -63,8 +76,9 @@ def _lbfgsb(search: Search) -> Ended:
         options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12, "maxcor": 30,
                  "maxfun": 20 * settings.max_iterations},
     )  # fmt: skip
-    ended = DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED
-    return int(found.nit), ended, ""
+    if found.status == 2 and not at_minimum(search):  # no step along the slope leads further
+        return int(found.nit), DesignStatus.STALLED, NO_STEP
+    return int(found.nit), DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED, ""
 
 
 class Margins:
@@ -134,7 +148,7 @@ def _slsqp(search: Search) -> Ended:
         start = search.best[2].copy()
     if at_minimum(search):
         return iterations, DesignStatus.CONVERGED, ""
-    return iterations, DesignStatus.STALLED, "The search found no step that leads further; this is the best so far."
+    return iterations, DesignStatus.STALLED, NO_STEP
 
 
 METHODS: dict[str, Callable[[Search], Ended]] = {
@@ -142,4 +156,5 @@ METHODS: dict[str, Callable[[Search], Ended]] = {
     "levenberg_marquardt": _levenberg_marquardt,
     "l-bfgs-b": _lbfgsb,
     "slsqp": _slsqp,
+    "augmented_lagrangian": _augmented_lagrangian,
 }

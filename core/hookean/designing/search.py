@@ -17,9 +17,10 @@ from hookean.designing.aims import Aims
 from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.equilibrium import Equilibrium, follow, settle
 from hookean.designing.factors import Orders
+from hookean.designing.gains import at_minimum
 from hookean.designing.limits import LIMIT, beyond, size
 from hookean.designing.linearised import Linearised
-from hookean.designing.methods import METHODS, Stopped
+from hookean.designing.methods import METHODS, Stopped, Unbounded
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity
 from hookean.designing.sensitivity import gradients, jacobian
@@ -29,7 +30,9 @@ from hookean.errors import InputError
 from hookean.system.system import System, compile
 
 Floats = NDArray[np.float64]
+FAR = 1e3  # of its size: an unknown there that is no minimum has no end
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
+LARGE = 300  # unknowns and values of constraints, above which dense quadratic programming takes too long
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
 Keep = Callable[[Floats], None]
@@ -127,6 +130,16 @@ class Search:
     def _objective(self, found: Equilibrium) -> float:
         return float(sum(self.aims.objectives(found)))
 
+    def check_end(self) -> None:
+        """Raise Unbounded where the best so far is no minimum and a variable has left all sizes."""
+        missed, _, y = self.best
+        if missed == 0.0 and np.abs(y).max() > FAR and not at_minimum(self):
+            number = int(np.argmax(np.abs(y)))
+            parts = zip(self.unknowns.variables, self.unknowns.slices, strict=True)
+            name = next(v.variable.title for v, part in parts if part.start <= number < part.stop)
+            way = "grows" if y[number] > 0.0 else "falls"
+            raise Unbounded(f"{name} {way} beyond {FAR:g} times its size; give it bounds, or the goals targets")
+
     def gradient(self, y: Floats) -> Floats:
         """Its derivatives by scaled unknowns."""
         found = self.at(y)
@@ -185,8 +198,12 @@ def design(
     else:
         try:
             iterations, ended, said = METHODS[method](search)
+            if method in ("l-bfgs-b", "slsqp"):
+                search.check_end()
         except Stopped:
             ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
+        except Unbounded as error:
+            ended, said = DesignStatus.UNBOUNDED, f"The objective falls without end: {error}."
     return answer(search, method, iterations or search.evaluations, ended, said)
 
 
@@ -197,11 +214,17 @@ def chosen(search: Search) -> str:
     aimed = all(goal.aimed for goal in problem.goals)
     if wanted == "auto":
         if problem.constraints or not aimed:
-            return "slsqp" if problem.constraints else "l-bfgs-b"
+            limited = sum(len(low) for low, _ in search.aims.limits)
+            many = min(limited, search.unknowns.count) > LARGE
+            constrained = "augmented_lagrangian" if many else "slsqp"
+            return constrained if problem.constraints else "l-bfgs-b"
         values = len(search.aims.weights(search.first))
         return "levenberg_marquardt" if min(values, search.unknowns.count) > MANY else "least_squares"
-    if problem.constraints and wanted != "slsqp":
-        raise InputError("/settings/method", f"{wanted} takes no constraints; choose slsqp or auto")
+    if problem.constraints and wanted not in ("slsqp", "augmented_lagrangian"):
+        said = f"{wanted} takes no constraints; choose slsqp, augmented_lagrangian or auto"
+        raise InputError("/settings/method", said)
+    if wanted == "augmented_lagrangian" and not problem.constraints:
+        raise InputError("/settings/method", f"{wanted} needs constraints; choose auto")
     if wanted in ("least_squares", "levenberg_marquardt") and not aimed:
         raise InputError("/settings/method", f"{wanted} needs a target for each goal; choose l-bfgs-b or auto")
     return str(wanted)

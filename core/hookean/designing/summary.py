@@ -112,7 +112,7 @@ def _goals(search: Search, found: Equilibrium, gained: Gains | None) -> Entries:
     for i, (goal, own, among, missed, name) in enumerate(parts):
         entry = {"name": name, "kind": goal.quantity.kind_name, "value": _single(own), "target": None}
         size = float(np.abs(own).max(initial=0.0))
-        if among is not None:
+        if among is not None and missed is not None:
             entry["target"] = _single(own - missed if (among[0] < among[1]).any() else among[0])
             size = max(size, float(np.abs(np.asarray(entry["target"])).max(initial=0.0)), search.sized(goal.quantity))
         entry["met"] = None if missed is None else bool(np.abs(missed).max(initial=0.0) <= LIMIT * (size or 1.0))

@@ -53,7 +53,7 @@ class Planarity(Quantity):
         quads = faces[faces[:, 2] != faces[:, 3]]
         if not len(quads):
             raise InputError(f"{pointer}/mesh", f"mesh {self.mesh!r} has triangles alone, which are flat")
-        return quads
+        return np.asarray(quads)
 
 
 def _normals(p: Floats, q: Floats) -> tuple[Floats, Floats]:
