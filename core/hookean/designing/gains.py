@@ -2,7 +2,7 @@
 
 At a minimum the slope of the objective is a sum of those of what limits it: each limit's multiplier is the rate at
 which the objective falls as the limit gives way (the envelope theorem). The same sums, made for the slope of each goal
-by itself, tell how much of it each goal gains; what they leave is what goals pull against one another.
+by itself, give how much of it each goal gains; what they leave is what goals pull against one another.
 Source: Nocedal and Wright, Numerical Optimization, 2006, chapter 12.
 """
 
