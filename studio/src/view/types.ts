@@ -53,6 +53,14 @@ export const options = (): Options => ({
   dark: signal(false),
 });
 
+/** How a model was looked at, in its file. */
+export interface Kept {
+  /** Target and direction to the eye (x y z each), height seen [length], angle [degrees]. */
+  eye: number[];
+  colouring: Colouring;
+  layers: Partial<Record<Layer, boolean>>;
+}
+
 export interface View {
   readonly legend: Signal<Legend | null>;
   /** The longest arrows of loads and of reactions [force]; 0 for none. */
@@ -66,6 +74,8 @@ export interface View {
   look(from: Look): void;
   /** Bring particles into view. */
   show(particles: number[]): void;
+  /** How it is looked at now: what a saved model keeps. */
+  kept(): Kept;
   /** What is seen now, in full quality. */
   png(): Promise<Blob>;
   /** Where a particle is drawn [CSS pixels of the page]; null behind the eye. */

@@ -14,12 +14,12 @@ import { form } from "./form";
 import { Guide } from "./guide";
 import { Highlights } from "./highlights";
 import { Keys } from "./keys";
-import { remember, remembered } from "./memory";
+import { numbers, remember, remembered } from "./memory";
 import { Picker } from "./picking";
 import { Picture } from "./picture";
 import { Stage } from "./stage";
 import { Triad } from "./triad";
-import type { Legend, Look, Options, Picked, View } from "./types";
+import type { Kept, Legend, Look, Options, Picked, View } from "./types";
 
 const REST = 220;
 
@@ -91,6 +91,11 @@ class Drawing implements View {
     const { positions } = this.drawn ?? { positions: [] };
     if (particles.length)
       this.eye.fit(particles.flatMap((i) => [positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!]));
+  }
+
+  kept(): Kept {
+    const { colouring, layers } = this.options;
+    return { eye: numbers(this.eye.place), colouring: colouring.value, layers: layers.value };
   }
 
   async png(): Promise<Blob> {
