@@ -212,6 +212,12 @@ def _project(data: bytes, called: str, recipe: Recipe | None) -> Source:
     return source
 
 
+def _is_project(begins: bytes) -> bool:
+    from hookean.files import project
+
+    return project.begins(begins)
+
+
 def _plain(scene: Scene, called: str, what: str, warnings: tuple[str, ...], unheld: str) -> Source:
     forces = ", ".join(f.kind_name for f in scene.forces) or "no force"
     units = scene.units
@@ -233,7 +239,12 @@ READERS = (
         _obj,
     ),
     Reader("a JSON file", ".json", lambda begins: begins.startswith((b"{", b"[")), _json),
-    Reader("a model with its state", ".hookean", lambda begins: begins[30:42] == b"hookean.json", _project),
-    Reader("a saved simulation", ".npz", lambda begins: begins.startswith(b"PK\x03\x04"), _saved),
+    Reader(
+        "a saved simulation",
+        ".npz",
+        lambda begins: begins.startswith(b"PK\x03\x04") and not _is_project(begins),
+        _saved,
+    ),
+    Reader("a model with its state", ".hookean", lambda begins: _is_project(begins), _project),
 )
 """Every kind of file that is read; for an unknown ending the first that knows its bytes."""

@@ -61,7 +61,8 @@ def save(result: Result | Simulation, path: str | os.PathLike[str]) -> list[str]
 
 def open(path: str | os.PathLike[str], recipe: str | os.PathLike[str] | Mapping[str, Any] | None = None) -> Scene:
     """The scene in a .3dm, .obj, .json, .npz or .hookean file; of a .3dm by a recipe: a file, its text
-    (TOML or JSON) or its tables; without one by layer names. Raises InputError where the file or the recipe has a fault."""
+    (TOML or JSON) or its tables; without one by layer names. Raises InputError where the file or
+    the recipe has a fault."""
     from hookean.files.readers import read_path
 
     if isinstance(recipe, Mapping):

@@ -186,7 +186,8 @@ async def state(
 ) -> Response:
     """A result as JSON; or a file: .hookean with scene, state and view, .npz of Simulation.save, .3dm, .obj,
     COMPAS Mesh or Graph, CSV with a row for each element and each reaction, units in its first line. Files of .hookean,
-    .npz, .3dm and COMPAS open again as the same model; what a file does not store is in the header `hookean-warnings`, a JSON list of sentences."""
+    .npz, .3dm and COMPAS open again as the same model; what a file does not store is in the header
+    `hookean-warnings`, a JSON list of sentences."""
     live = manager(request).find(key)
     answer = await _exported(request, live, when, form, arrays, _view(view))
     if form != "json":

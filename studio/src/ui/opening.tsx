@@ -10,7 +10,7 @@ const over = signal(false);
 /** What is being opened; "" for nothing. */
 export const opening = signal("");
 
-const KINDS = ".hookean,.3dm,.obj,.json,.npz";
+const KINDS = ".3dm,.obj,.json,.npz,.hookean";
 
 /** Open a file as a new session and go there. */
 async function openFile(file: File): Promise<void> {

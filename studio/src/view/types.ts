@@ -17,6 +17,10 @@ export interface Legend {
   unit: string;
   low: number;
   high: number;
+  /** How many values lie beyond the ends; they have the colours of the ends. */
+  beyond: number;
+  /** The value that all have, where they have one. */
+  equal: number | null;
   /** CSS colours from low to high, evenly spaced. */
   colours: string[];
 }
@@ -74,6 +78,8 @@ export interface View {
   look(from: Look): void;
   /** Bring particles into view. */
   show(particles: number[]): void;
+  /** Particles of the springs whose values lie beyond the scale. */
+  beyond(): number[];
   /** How it is looked at now: what a saved model keeps. */
   kept(): Kept;
   /** What is seen now, in full quality. */
