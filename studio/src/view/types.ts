@@ -71,6 +71,8 @@ export interface View {
   readonly arrows: Signal<{ load: number; reaction: number }>;
   /** What the keyboard has just done, in a sentence, to be read out. */
   readonly announcement: Signal<string>;
+  /** Whether the form has left the view. */
+  readonly away: Signal<boolean>;
   /** Frames drawn in the last second. */
   readonly rate: Signal<number>;
   /** All of the form into view. */

@@ -32,6 +32,7 @@ class Drawing implements View {
   readonly legend = signal<Legend | null>(null);
   readonly arrows = signal({ load: 0, reaction: 0 });
   readonly announcement = signal("");
+  readonly away = signal(false);
   readonly rate = signal(0);
   private readonly stage: Stage;
   private readonly eye: Eye;
@@ -303,6 +304,7 @@ class Drawing implements View {
   /** Nothing has moved for a moment. */
   private readonly settle = (): void => {
     this.draw(true);
+    this.away.value = this.drawn !== null && !this.eye.sees(this.drawn.positions);
     remember(this.session.key, this.eye.place);
   };
 
