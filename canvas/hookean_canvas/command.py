@@ -114,7 +114,7 @@ def draw(
     from hookean_canvas.inspect import drawing
     from hookean_canvas.run import graph
 
-    left = _printed(lambda: drawing.draw(graph.read(file), output))
+    left = _printed(lambda: drawing.draw(graph.read(file, decode=False), output))
     if left:
         typer.echo(f"{output}: drawn without {', '.join(left)}; the file gives them no place on the canvas", err=True)
 

@@ -20,3 +20,4 @@ residual = found.residual
 energy = found.energy
 status = found.status
 report = found.report
+results = found.results

@@ -18,7 +18,8 @@ from .canvas_player import Player
 
 FRAME, POLL = 30, 100  # milliseconds to the next solution: while it runs, while it waits
 MANY = 8  # sentences on forces and anchors with points that met nothing
-OUTPUTS = ("iterations", "particles", "geometry", "forces", "reactions", "residual", "energy", "status", "report")
+OUTPUTS = ("iterations", "particles", "geometry", "forces", "reactions", "residual", "energy", "status", "report",
+           "results")  # fmt: skip
 _players, _keys = {}, {}  # by session; the session of a component in an open document
 
 
@@ -64,7 +65,7 @@ def solve(ghenv, forces, anchors, settings, rides, reset, on=True):
             break
     _tell(ghenv, player)
     if player.kept is wanted and player.frame() and player.state:
-        player.shown = _outputs(player)
+        player.shown = _outputs(player, _asked(ghenv))
         _warn(ghenv, player)
         drawing.draw(ghenv, player)
     return player.shown or Outputs()
@@ -273,7 +274,16 @@ def _warn(ghenv, player):
 # outputs
 
 
-def _outputs(player):
+def _asked(ghenv):
+    """Whether a wire leaves the output `results`: its texts are long."""
+    for port in ghenv.Component.Params.Output:
+        if port.Name == "results":
+            takers = getattr(port, "Recipients", None)
+            return takers is None or any(True for _ in takers)
+    return False
+
+
+def _outputs(player, asked):
     """The newest frame as outputs; with all digits where the state is that of the frame."""
     frame, state, units = player.frame(), player.state, player.topology["units"]
     flat = frame["particles"]
@@ -287,6 +297,7 @@ def _outputs(player):
     made.geometry = _moved(player, places)
     made.forces = geometry.to_tree(_forces(player, frame))
     made.reactions = geometry.to_tree(_reactions(player, frame))
+    made.results = _results(player, places) if asked and player.exact else []
     made.energy = state["energy"]["total"]
     running = "Running: iteration %d, residual %.3g." % (frame["iteration"], frame["residual"])
     made.status = state["message"] if player.exact else running
@@ -331,6 +342,24 @@ def _forces(player, frame):
         items = [geometry.to_vector(item) if isinstance(item, (list, tuple)) else item for item in column]
         branches.setdefault(owner, []).extend(items)
     return [("{%d}" % i, branches[owner]) for i, owner in enumerate(order)]
+
+
+def _results(player, places):
+    """All that the elements of each force report, as JSON text for scripts, in the order of the forces. It needs
+    the whole state, so it is for rest only. `points` and `start`: where the particles of each element are, and were."""
+    turns = player.state.get("rotations") or {"particles": [], "quaternions": []}
+    turned = dict(zip(turns["particles"], turns["quaternions"]))
+    made = []
+    for one, found in zip(player.kept.forces, player.state["forces"]):
+        rows = [row if isinstance(row, (list, tuple)) else [row] for row in found.get("particles", [])]
+        told = {name: column for name, column in found.items() if name != "particles"}
+        told["units"], told["source"] = player.topology["units"], one["source"]
+        told["points"] = [[list(places[p]) for p in row] for row in rows]
+        told["start"] = [[player.topology["start"][p] for p in row] for row in rows]
+        if turned:
+            told["rotations"] = [[list(turned.get(p, (1.0, 0.0, 0.0, 0.0))) for p in row] for row in rows]
+        made.append(compose.text(told))
+    return made
 
 
 def _reactions(player, frame):

@@ -16,8 +16,10 @@ from typer.testing import CliRunner
 from canvas.archives import SHARED
 from canvas.kangaroo_samples import Kangaroo, cable, star, tent
 from hookean_canvas import archive
+from hookean_canvas.archive import Type
 from hookean_canvas.archive.binary import deflate, to_plain
 from hookean_canvas.command import app
+from hookean_canvas.kangaroo.ids import COMPONENTS
 from soak import SOAK
 
 CASES = 2000 if SOAK else 60
@@ -40,7 +42,26 @@ def meshes() -> Kangaroo:
     return d
 
 
-SAMPLES: list[Callable[[], Kangaroo]] = [cable, star, tent, meshes]
+def inside() -> Kangaroo:
+    """A cluster with a bar of K2Engineering, whose output is taken apart behind the solver."""
+    inner = Kangaroo("inner", "Inner", "A bar.")
+    hooks = [inner.parameter("Data", "Lines")]
+    named = {known.name: guid for guid, known in COMPONENTS.items() if known.generation == "engineering"}
+    typed = (("Line", None), ("E-Modulus", 210000.0), ("Area", 100.0))
+    bar = inner.kangaroo("Bar", typed, ["B"], guid=named["Bar"], line=hooks[0])
+    hooks.append(inner.parameter("Data", "Bars", source=bar))
+    for made, side in zip(hooks, ("Input", "Output"), strict=True):
+        made.container.items = [item for item in made.container.items if item.name != "Name"]
+        made.container.put("Name", Type.STRING, f"Cluster {side}")
+    d = Kangaroo("outer", "Outer", "A bar in a cluster.")
+    cluster = d.cluster("Bars", archive.to_bytes(inner.archive()), d.parameter("Line", "Line"))
+    solver = d.solved(cluster)
+    given = (("BarData", None),)
+    d.kangaroo("BarOutput", given, ["Line", "AxialForce"], guid=named["BarOutput"], bardata=solver["O"])
+    return d
+
+
+SAMPLES: list[Callable[[], Kangaroo]] = [cable, star, tent, meshes, inside]
 FORMS = ("xml", "packed", "plain")
 
 

@@ -275,3 +275,32 @@ def test_a_net_made_by_grasshoppers_own_components_comes_to_the_shape_of_the_sam
     pull = 10.0 * (expected[1] + expected[5] - 2.0 * expected[0]) + [0, 0, -2]
     yielding = float(np.abs(pull).max()) / 1e4
     np.testing.assert_allclose(found[order[0]], expected[order[1]], atol=1.001 * yielding)
+
+
+def test_a_beam_on_rigid_arms_bends_as_beam_theory_has_it(tmp_path: Path) -> None:
+    """Frames 2 apart, nodes 0.5 outside of them, P at the outer node: w = P (8 / 3 + 1 + 1 / 2 (2 + 1)) / EI.
+
+    EI = 1e5 and P = 1 give w / L = 2e-5, so what is not linear is below 1e-8 of it; the support, 1e9, below 1e-3.
+    """
+    d = Kangaroo("arms", "Arms", "A beam of Kangaroo 2.")
+    frames = [d.native("YZ Plane", f"x{i}", origin=d.point(x, 0, 0)) for i, x in enumerate((0.0, 2.0, -0.5, 2.5))]
+    stiff = (("E", 1000.0), ("A", 100.0), ("Ix", 100.0), ("Iy", 50.0), ("GJ", 1e5))
+    places = [("StartFrame", None), ("EndFrame", None), ("StartNode", None), ("EndNode", None)]
+    beam = d.kangaroo(
+        "Beam", [*places, *stiff], ["Beam"], guid=UUID("3f8b0f83-6e8e-4a9d-b0ff-9474cc9eb89b"),
+        startframe=frames[0], endframe=frames[1], startnode=frames[2], endnode=frames[3],
+    )  # fmt: skip
+    flags = [(name, True) for name in ("X", "Y", "Z", "XX", "YY", "ZZ")]
+    guid = UUID("c41696fc-e8e8-42c9-89b2-a5a6aac030b0")
+    support = d.kangaroo(
+        "Support", [("Frame", None), *flags, ("Strength", 1e9)], ["Support"], guid=guid, frame=frames[2]
+    )
+    load = d.kangaroo("Load", (("P", None), ("FV", (0.0, 0.0, -1.0))), ["U"], p=d.point(2.5, 0, 0))
+    solver = d.kangaroo(
+        "Solver", SOLVER, ["I", "V", "O"], goalobjects=[beam, support, load], reset=d.toggle("Reset", False)
+    )
+    d.panel("particles", solver["V"])
+    _, report = kangaroo.translate(d.archive())
+    assert not report.stays and not report.lost, report.text()
+    tip = min(ran(d, tmp_path).panels["particles"].values_in_order(), key=lambda p: p.Z)
+    assert pytest.approx(-(8 / 3 + 1 + 1.5) / 1e5, rel=1e-3) == tip.Z

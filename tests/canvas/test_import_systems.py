@@ -218,7 +218,7 @@ def test_a_solver_fed_by_the_shapes_of_another_is_a_system_of_its_own() -> None:
     assert kinds[last.id] == kinds[ends.id] == PYTHON3_SCRIPT and kinds[first.id] == first.guid
 
 
-@pytest.mark.parametrize("name", ["Stripper", "MultiPipe", "Unroller"])
+@pytest.mark.parametrize("name", ["Stripper", "TangentCircles", "Unroller"])
 def test_tools_that_make_geometry_stay_on_and_stand_in_no_way(name: str) -> None:
     """The ids are those of public definitions; each tool stands between a line and a goal, and after the solver."""
     d, line = start()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from hookean_canvas.kangaroo import six
 from hookean_canvas.kangaroo.pieces import HALF, Piece, Swap, corners, fed, force, halved, pairs
 
 _EXACT = "anchors hold exactly here, so they have no strength"
@@ -93,6 +94,7 @@ _POLYGONS = Swap(
 )
 
 GOALS: dict[str, Swap] = {
+    **six.GOALS,
     "length(line)": force("Springs", "s", line="connection", length="rest_length", strength="stiffness"),
     "edgelengths": force("Springs", "el", mesh="connection", lengthfactor="rest_factor", strength="stiffness"),
     "anchor": replace(

@@ -19,9 +19,13 @@ from hookean_canvas.archive.guids import CLUSTER, PANEL, SCRIBBLE
 
 CLASSIC_LIBRARY = UUID("6bb8ff08-9dd5-cccd-7191-72c85ccf8b6a")
 SECOND_LIBRARY = UUID("c2ea695e-1a09-6f42-266d-113498879f60")
-Generation = Literal["classic", "second"]
+Generation = Literal["classic", "second", "engineering"]
 
-GENERATIONS: dict[Generation, str] = {"classic": "Kangaroo 0.099", "second": "Kangaroo 2"}
+GENERATIONS: dict[Generation, str] = {
+    "classic": "Kangaroo 0.099",
+    "second": "Kangaroo 2",
+    "engineering": "K2Engineering",
+}
 
 _CLASSIC = """
 0db23e16-f91a-4105-3067-8d7ab0c60e4f KangarooPhysics
@@ -165,10 +169,43 @@ f1b75016-5818-4ece-be56-065253a2357d MultiPipe
 5b882297-9063-439e-82b9-70961f743c5d removeDuplicateLines
 """
 
+_ENGINEERING = """
+7ecb0b99-b4b4-4655-bded-5595997e820a Materials
+c2bd6c3c-314b-47c2-b716-5b0f2f532e7f AxialVisualisation
+64e19caa-a444-4ac4-bbc1-5bf4d62dd406 Load
+d18d48d0-d9ed-4f1f-9712-70fd08a395c1 Displacements
+a2896665-2ab3-4dd6-b660-a69395cdf868 BarSelfweight
+40f42bcb-17c5-463b-bbe7-39aea9f7a2d6 CircularCS
+2672a780-8cb4-4da5-bd5f-67ddcbeed60b Support
+84466009-1456-467c-8f43-8a13b1161b5a BarLength
+ab0bb292-8e4a-46d3-8890-955f0c00bc9b SupportOutput
+95d2e6d6-399c-4ec4-843f-fc6335ced616 BarOutput
+f76cfabb-06ab-4869-a60d-c6c4865320ea Beam
+098b1b46-32dd-4f90-b4ac-c05d6609ea64 BeamOrientation
+3e9e7e8a-5f44-4409-93d6-4750f4bb954a Support6DOF
+b2c01d87-2e99-4bdd-82af-247158b8d19a RectangularCS
+000e9754-d494-431d-8f4a-5760b976d0bb Support6DOFOutput
+d64e3058-838d-4eec-8163-5e65a33f090c BeamOutput
+ed49e8dd-2c0f-444c-947a-c582a1676b1e BendingVisualisation6DOF
+c0cc73f2-a542-44de-98d4-05a828cde909 DisplacementVisualisation
+ccf6dc32-7c3c-4836-94c2-e43e1e3c4f0d Bar
+efc6c913-9056-4825-b417-01083d2316bc Cable
+824f9e75-7bda-4760-bb73-ae2b40c1754b Rod
+280510b1-3f9e-42a0-a30d-2282ebae97b5 RodOutput
+d9f0db2c-973c-4516-8fd4-34719d5a6b0e BendingVisualisation
+058fb304-139f-4a9c-ac05-d8a7506fb3b6 TransformMoment
+81e1fe0e-6f4d-4539-898a-5549eec9f351 Pretension
+9881eebc-de15-4d78-a45f-3375efbeb5a9 MeshVertexArea
+a8003bae-380e-4ddd-aefe-85384e84d79c MeshSnowLoad
+4f5d8b78-cd64-42e5-9e42-9bdb884ccd3e MeshWindLoad
+92f22337-5926-4e02-9c9d-a853eb62f980 Shear
+d488d4b0-242c-4aeb-bace-6c65ab059d5a ShearVisualisation
+"""
+
 
 @dataclass(frozen=True)
 class Known:
-    """A component of Kangaroo: of which generation, and its name."""
+    """A component of Kangaroo, or of K2Engineering, its plug-in: of which generation, and its name."""
 
     generation: Generation
     name: str
@@ -184,7 +221,9 @@ def key(name: str) -> str:
     return "".join(name.lower().split())
 
 
-COMPONENTS: dict[UUID, Known] = _table("classic", _CLASSIC) | _table("second", _SECOND)
+COMPONENTS: dict[UUID, Known] = (
+    _table("classic", _CLASSIC) | _table("second", _SECOND) | _table("engineering", _ENGINEERING)
+)
 
 
 def libraries(definition: Chunk) -> dict[UUID, Generation]:
@@ -193,6 +232,8 @@ def libraries(definition: Chunk) -> dict[UUID, Generation]:
     listed = definition.chunk("GHALibraries")
     for library in listed.chunks if listed is not None else ():
         name = str(library.value("Name", default=""))
+        if "k2eng" in name.lower():
+            found[library.value("Id")] = "engineering"
         if "kangaroo" in name.lower() and library.value("Id") not in found:
             found[library.value("Id")] = "second" if "2" in name else "classic"
     return found

@@ -10,7 +10,8 @@ from hookean_canvas.archive import Chunk
 from hookean_canvas.archive.guids import CLUSTER
 from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, parts, sources
 from hookean_canvas.kangaroo import make
-from hookean_canvas.kangaroo.ids import Known, hidden, key, libraries, recognised
+from hookean_canvas.kangaroo.ids import Generation, Known, hidden, key, libraries, recognised
+from hookean_canvas.kangaroo.opening import open_clusters
 from hookean_canvas.kangaroo.pieces import Swap
 from hookean_canvas.kangaroo.report import Report
 from hookean_canvas.kangaroo.roles import Role, called, reason, role
@@ -31,9 +32,10 @@ class Importing:
         if definition is None or objects is None:
             raise InputError(report.name, "this is not a Grasshopper definition; give a .gh or .ghx file")
         sound(root, report.name)
+        report.notes += open_clusters(root, lambda part: self._recognised(part, libraries(definition)) is not None)
         self.root, self.objects, self.report = root, objects, report
         self.libraries = libraries(definition)
-        self.known = {id(part.chunk): self._recognised(part) for part in parts(root)}
+        self.known = {id(part.chunk): self._recognised(part, self.libraries) for part in parts(root)}
         self.streams = Streams(root)
         self.points: list[UUID] = []  # inputs Points of solvers, for those who pick from them
         self.numbered = self._numbered()
@@ -45,12 +47,13 @@ class Importing:
         self.because: dict[UUID, str] = {}  # why wires into an input, or out of an output, are gone
         self.doubles: list[tuple[UUID, UUID]] = []  # an output of Kangaroo's, and a second one that goes with it
 
-    def _recognised(self, part: Part) -> Known | None:
+    @staticmethod
+    def _recognised(part: Part, of: dict[UUID, Generation]) -> Known | None:
         """What of Kangaroo an object is; some classic components are clusters of others."""
-        known = recognised(part.chunk, self.libraries)
+        known = recognised(part.chunk, of)
         if known is None and part.guid == CLUSTER and part.container is not None:
             named = Known("classic", str(part.container.value("Name", default="")))
-            inside = hidden(part.chunk, self.libraries) or ""
+            inside = hidden(part.chunk, of) or ""
             return named if swap_of(named) and "holds" in inside else None
         return known
 
@@ -121,10 +124,19 @@ class Importing:
         for part in self.streams.parts:
             known = self.known[id(part.chunk)]
             if known and role(known) is Role.TOOL and id(part.chunk) not in self.stays:
-                if part.id in kept and isinstance(self._swap(part, known), Swap):
+                if self._reads_what_stays(part, known):
+                    self.stays[id(part.chunk)] = "it reads a solver that stays"
+                elif part.id in kept and isinstance(self._swap(part, known), Swap):
                     self.stays[id(part.chunk)] = "a tool for geometry; it stays with the system that it feeds"
                 else:
                     self._plan(part)
+
+    def _reads_what_stays(self, part: Part, known: Known) -> bool:
+        """Whether it takes outputs of goals from a solver that is not translated."""
+        if known.generation != "engineering" or not key(known.name).endswith("output"):
+            return False
+        above = self.streams.all_above(part)
+        return any(solver.id in above for system in self.systems.found if system.blocks for solver in system.solvers)
 
     def _because(self, part: Part, system: System, name: str) -> str:
         """Why a component of a system stays: a reason of its own, or that of the system."""

@@ -8,7 +8,7 @@ _LINE = (
     "forces between lines, or points and lines, by a power of their distance are not here; Collide Lines is a contact"
 )
 _REASONS = {
-    _PURE: "g2 cpmesh reciprocalstructure rheotomicsurface",
+    _PURE: "cpmesh reciprocalstructure rheotomicsurface",
     _SOLID: "triangularelement tetrahedralelement",
     _LINE: "lineline pointline",
 }
@@ -16,7 +16,8 @@ REASONS: dict[str, str] = {
     "soapfilm": "warp and weft are families of a mesh's edges here; connect a mesh to SoapFilm",
     "bomb": "Impulse takes a time, not counts of iterations; its momentum is another number than the strength",
     "gstring": "Geodesic Strip takes a mesh and the vertices of its lines",
-    "imagecircles": "Circle Image takes an image as numbers",
+    "imagecircles": "its image is the colours of a mesh; Circle Image takes an image as rows of numbers",
+    "g2": "curves have no elements here whose curvature could be made equal; Smooth and Bend act on polylines",
     "boxcollide": "Box Collide takes the diagonals of all boxes",
     "soft&hardsolver": "goals are not of two ranks here; anchors, locks and floors are exact",
     "livesoap": "Live Film makes the mesh of a film again while it relaxes, without a solver on the canvas",
@@ -26,8 +27,6 @@ REASONS: dict[str, str] = {
     "origami": "Hinge takes edges with their tips, rest angles and an angle factor",
     "gravity": "Unary takes points and a vector",
     "particle": "masses and first velocities are fields of a scene; the canvas has no component for them",
-    "beam": "Beam takes lines and a section; its ends are particles, not planes",
-    "support": "Support takes points and stiffness along and about axes",
     **{name: why for why, names in _REASONS.items() for name in names.split()},
 }
 """The reason by the name in lower case without spaces."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 from hookean_canvas.archive.parts import Part
+from hookean_canvas.kangaroo import engineering
 from hookean_canvas.kangaroo.ids import COMPONENTS, Known, key
 from hookean_canvas.kangaroo.reasons import REASONS
 from hookean_canvas.kangaroo.table import CLASSIC, SECOND
@@ -28,12 +29,18 @@ unroller vertexneighbours warpweft counter sequence trail wave
 """
 _SOLVERS, _TOOLS = frozenset(_SOLVER_NAMES.split()), frozenset(_TOOL_NAMES.split())
 
-_KNOWN = {key(known.name) for known in COMPONENTS.values()} | {*CLASSIC, *SECOND, *REASONS}
+_KNOWN = {key(known.name) for known in COMPONENTS.values() if known.generation != "engineering"} | {
+    *CLASSIC,
+    *SECOND,
+    *REASONS,
+}
 
 
 def role(known: Known, stream: bool = False) -> Role:
     """What a component is for; one that no table knows is a goal where goals come from (`stream`), else a tool."""
     name = key(known.name)
+    if known.generation == "engineering":
+        return Role.GOAL if name in engineering.GOALS else Role.TOOL
     if name in _SOLVERS:
         return Role.SOLVER
     if name in _TOOLS:
@@ -43,6 +50,9 @@ def role(known: Known, stream: bool = False) -> Role:
 
 def reason(known: Known) -> str:
     """Why a component of Kangaroo stays as it is."""
+    if known.generation == "engineering":
+        why = engineering.REASONS.get(key(known.name), "it has no counterpart")
+        return f"{why}; it stays on" if role(known) is Role.TOOL else why
     if key(known.name) not in _TOOLS:
         return REASONS.get(key(known.name), "it has no counterpart")
     why = REASONS.get(key(known.name), "a tool for geometry")

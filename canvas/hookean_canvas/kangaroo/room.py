@@ -36,7 +36,7 @@ def make_room(root: Chunk, larger: Mapping[int, tuple[float, float]]) -> int:
     for one in containers:
         before, after = start.get(id(one)), boxes.get(id(one))
         if before and after and before[:2] != after[:2]:
-            _move(one, after[0] - before[0], after[1] - before[1])
+            move(one, after[0] - before[0], after[1] - before[1])
             moved += 1
     return moved
 
@@ -58,7 +58,7 @@ def _open(boxes: dict[int, Rectangle], key: int, size: tuple[float, float], axis
             boxes[one] = (x + far, y, width, height) if axis == 0 else (x, y + far, width, height)
 
 
-def _move(container: Chunk, right: float, down: float) -> None:
+def move(container: Chunk, right: float, down: float) -> None:
     """Move an object with its inputs and outputs; a definition within it stays as it is."""
     for chunk in container.walk():
         for item in chunk.items:

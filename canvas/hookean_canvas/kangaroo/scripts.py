@@ -6,22 +6,8 @@ branch; those that take whole trees make a branch for each goal.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from hookean_canvas.definitions.containers import Slot
-
-
-@dataclass(frozen=True)
-class Recipe:
-    """What a component needs to be made: words, code, and its inputs and outputs."""
-
-    name: str
-    nickname: str
-    description: str
-    code: str
-    inputs: tuple[Slot, ...]
-    outputs: tuple[Slot, ...]
-
+from hookean_canvas.kangaroo.recipe import Recipe
 
 _POINTS = tuple(Slot(f"point_{i}", f"Point {i} of each pair") for i in (1, 2, 3, 4))
 _PAIR = (Slot("_lines", "Lines A", 1), Slot("_others", "Lines B, one for each", 1))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 from uuid import UUID, uuid5
 
@@ -14,8 +15,8 @@ from hookean_canvas.definitions.containers import Slot, wire
 from hookean_canvas.kangaroo import make
 from hookean_canvas.kangaroo.ids import Known, key
 from hookean_canvas.kangaroo.pieces import Piece, Swap
-from hookean_canvas.kangaroo.roles import called, usual
-from hookean_canvas.kangaroo.scripts import Recipe
+from hookean_canvas.kangaroo.recipe import Recipe
+from hookean_canvas.kangaroo.roles import Role, called, role, usual
 from hookean_canvas.kangaroo.space import size
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ class Swapping:
     def run(self) -> None:
         """Make the pieces, then say what found no place."""
         whole = self.whole
+        self._in_metres()
         if self.swap.pieces[0].bundle in FLOATING:
             self._parameter()
         else:
@@ -56,6 +58,23 @@ class Swapping:
         self._left()
         words = " and ".join(recipe.name for recipe in self.recipes) or FLOATING[self.swap.pieces[0].bundle]
         whole.report.swapped.append((called(self.part, self.known), words, self.swap.differs))
+
+    def _in_metres(self) -> None:
+        """K2Engineering's models are in metres, whatever the unit of the document."""
+        if not self._has_data():
+            return
+        pieces = [
+            replace(piece, values={**piece.values, "length_unit": "m"}) if piece.bundle == "Settings" else piece
+            for piece in self.swap.pieces
+        ]
+        self.swap = replace(self.swap, pieces=tuple(pieces))
+
+    def _has_data(self) -> bool:
+        """Whether it is a solver of goals that give data out, not geometry."""
+        if role(self.known) is not Role.SOLVER or self.known.generation != "second":
+            return False
+        above = [self.whole.known[id(part.chunk)] for part in self.whole.systems.goals_of(self.part)]
+        return any(known.generation == "engineering" for known in above if known)
 
     def _parameter(self) -> None:
         """A floating parameter instead of a component that only hands on, or makes nothing here; the wires out of it
@@ -216,10 +235,12 @@ class Swapping:
         whole = self.whole
         above = whole.systems.goals_of(self.part)
         shown = list(whole.swapped("*geometry", above))
-        if shown or any(whole.swapped("Anchors", above)):
+        if self._has_data():
+            self._outputs()
+        if shown or any(whole.swapped("Anchors", above)) or any(whole.swapped("*support", above)):
             self._sort()
         result = self.results.get("o")
-        if shown or result is None or not whole.streams.taken(result.value("InstanceGuid")):
+        if shown or self._has_data() or result is None or not whole.streams.taken(result.value("InstanceGuid")):
             return
         carried = [
             source
@@ -230,6 +251,28 @@ class Swapping:
             for source in sources(port)
         ]
         connect(_input_of(self.made[0], "geometry"), carried)
+
+    def _outputs(self) -> None:
+        """A script that gives the outputs of goals in their tree; it takes over the id of the solver's output."""
+        result = self.results.get("o")
+        if result is None or not self.whole.streams.taken(result.value("InstanceGuid")):
+            return
+        forces, engine = _input_of(self.made[0], "forces"), self.made[0]
+        given = next(port for port in outputs(engine) if port.value("InstanceGuid") == result.value("InstanceGuid"))
+        recipe = make.recipe("*outputs")
+        id_ = uuid5(self.id, "hookean outputs")
+        ids = [uuid5(id_, slot.name) for slot in recipe.inputs]
+        chunk = make.component(recipe, id_, "", ids, [result.value("InstanceGuid")])
+        given.put("InstanceGuid", Type.GUID, uuid5(id_, "geometry"))
+        of = {port.value("Name"): port.value("InstanceGuid") for port in outputs(engine)}
+        goals, results, reactions, geometry = inputs(chunk)
+        connect(goals, sources(forces))
+        _copy_modifiers(forces, goals)
+        for port, name in ((results, "results"), (reactions, "reactions"), (geometry, "geometry")):
+            connect(port, [of[name]])
+        box = size([slot.name for slot in recipe.inputs], [slot.name for slot in recipe.outputs])
+        x, y, wide, _ = bounds_of(engine) or (0.0, 0.0, 0.0, 0.0)
+        self._add(PYTHON3_SCRIPT, chunk, (x + wide + 40.0, y), box)
 
     def _sort(self) -> None:
         forces = _input_of(self.made[0], "forces")

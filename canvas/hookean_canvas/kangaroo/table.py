@@ -6,24 +6,30 @@ their variables without underscores. Sources of the differences: docs/from-kanga
 
 from __future__ import annotations
 
-from hookean_canvas.kangaroo import classic, engines, goals, scripts, tools
-from hookean_canvas.kangaroo.ids import COMPONENTS, Known, key
+from hookean_canvas.kangaroo import classic, engineering, engines, goals, scripts, six, tools
+from hookean_canvas.kangaroo.ids import COMPONENTS, Generation, Known, key
 from hookean_canvas.kangaroo.pieces import Swap
 from hookean_canvas.kangaroo.reasons import REASONS
 
 CLASSIC: dict[str, Swap] = {**engines.CLASSIC, **classic.FORCES, **tools.CLASSIC}
 SECOND: dict[str, Swap] = {**engines.SECOND, **goals.GOALS, **tools.SECOND}
 
+TABLES: dict[Generation, dict[str, Swap]] = {
+    "classic": CLASSIC,
+    "second": SECOND,
+    "engineering": engineering.ENGINEERING,
+}
+
 
 def swap_of(known: Known) -> Swap | None:
     """What a component of Kangaroo is swapped for; None where it stays."""
-    return (CLASSIC if known.generation == "classic" else SECOND).get(key(known.name))
+    return TABLES[known.generation].get(key(known.name))
 
 
 def markdown() -> str:
     """The table for docs/canvas.md: every component that is known, what stands for it, and what differs or why none."""
     lines = ["| Kangaroo | component | here | what differs |", "| --- | --- | --- | --- |"]
-    for generation, table in (("0.099", CLASSIC), ("2", SECOND)):
+    for generation, table in zip(("0.099", "2", "K2Engineering"), TABLES.values(), strict=True):
         for name, swap in table.items():
             by = ", ".join(_HELPER.get(piece.bundle, piece.bundle) for piece in swap.pieces)
             told = "; ".join(
@@ -34,11 +40,13 @@ def markdown() -> str:
                 ]
             )
             lines.append(f"| {generation} | {name} | {by} | {told.strip('; ')} |")
-    there = {key(known.name): known.generation for known in COMPONENTS.values()}
+    there = {key(known.name): known.generation for known in COMPONENTS.values() if known.generation != "engineering"}
     for name in dict.fromkeys([*there, *REASONS]):
         if name not in CLASSIC and name not in SECOND:
             number = "0.099" if there.get(name) == "classic" else "2" if name in there else "0.099, 2"
             lines.append(f"| {number} | {name} | stays | {REASONS.get(name, _TOOL)} |")
+    for name, why in engineering.REASONS.items():
+        lines.append(f"| K2Engineering | {name} | stays | {why} |")
     return "\n".join(lines) + "\n"
 
 
@@ -52,4 +60,6 @@ _HELPER = {
     "*half": "a script for halves",
     "*plane": "a script for planes",
     **scripts.TOLD,
+    **engineering.TOLD,
+    **six.TOLD,
 }

@@ -173,6 +173,27 @@ SECOND: dict[str, Swap] = {
         },
         {"iterations": 25, "sharp": None},
     ),
+    "meshdirection": _tool("AlignQuads", _MESH, {"mesh": "mesh|m"}, "a mesh in which no directions agree is an error"),
+    "meshturn": _tool("TurnQuads", _MESH, {"mesh": "mesh|m"}, "by a right angle, unless `_turns_` is another number"),
+    "multipipe": _tool(
+        "Pipes",
+        {"curves": "lines", "nodesize": "radius"},
+        {"mesh": "pipe"},
+        "a mesh of flat faces round straight lines, with one radius; there a SubD",
+        {
+            **dict.fromkeys(("sizepoints", "strutsize"), "pipes have one radius"),
+            **dict.fromkeys(("endoffset", "segment", "kinkangle", "cubefit", "caps"), "its faces are made otherwise"),
+        },
+        {
+            "endoffset": 1.0,
+            "strutsize": 1.0,
+            "segment": 0.0,
+            "kinkangle": 0.6,
+            "cubefit": 0.0,
+            "caps": 1,
+            "sizepoints": None,
+        },
+    ),
     "splitatcorners": _tool(
         "SplitAtCorners", {"poly": "polyline", "angle": "angle"}, {"corners": "corners", "parts": "parts"}
     ),

@@ -15,6 +15,7 @@ from hookean.commands.examples import Example, Expected
 from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.run import graph
+from hookean_canvas.run.clusters import opened
 from hookean_canvas.run.evaluate import Canvas, Outcome
 from hookean_canvas.run.trees import Tree, text_of
 from hookean_canvas.run.trust import require
@@ -79,7 +80,7 @@ def check(
     `trust.require`); None: the caller has checked them. InputError where it cannot be read or run.
     """
     data = archive.read_bytes(path)
-    definition = graph.parse(data, path)
+    definition = opened(graph.parse(data, path))
     canvas = Canvas(definition, settings)
     if trust is not None:
         require(definition, data, path, trust)

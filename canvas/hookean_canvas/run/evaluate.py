@@ -118,6 +118,10 @@ class Canvas:
     def _connect(self) -> None:
         """Give each stand-in component the objects behind its wires, as ghenv.Component.Params shows them."""
         owners = self.graph.owners()
+        for start, output, _, taker in self.graph.wires():
+            if start.id in self._scripts:
+                of = self._scripts[start.id].component.Params.Output
+                of[start.outputs.index(output)].Recipients.append(taker)
         for script in self._scripts.values():
             for given, port in zip(script.component.Params.Input, script.node.inputs, strict=True):
                 given.InstanceGuid = str(port.id)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from uuid import UUID
@@ -14,7 +14,8 @@ from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.archive import parts as chunks
 from hookean_canvas.archive.guids import GROUP, SCRIBBLE
 from hookean_canvas.archive.parts import SCRIPTS, Part, Rectangle, bounds_of, given, sources
-from hookean_canvas.run.stored import Unread, stored
+from hookean_canvas.run.internalised import unreadable
+from hookean_canvas.run.stored import NOTHING, Unread, internalised_in, stored
 from hookean_canvas.run.trees import Tree, path_of
 
 
@@ -131,20 +132,25 @@ class Graph:
         return [often[node.id] for node in self.nodes]
 
 
-def read(path: Path) -> Graph:
-    """The definition in a .ghx or .gh file; InputError if it is not a definition."""
-    return parse(archive.read_bytes(path), path)
+def read(path: Path, decode: bool = True) -> Graph:
+    """The definition in a .ghx or .gh file, `decode`: with its geometry; InputError if it is not a definition."""
+    return parse(archive.read_bytes(path), path, decode)
 
 
-def parse(data: bytes, path: Path) -> Graph:
-    """The definition in the bytes of the file `path`; InputError if it is not a definition."""
-    found = of(archive.parse(data, str(path)), str(path))
+def parse(data: bytes, path: Path, decode: bool = True) -> Graph:
+    """The definition in the bytes of the file `path`; InputError if it is not a definition.
+
+    Its geometry is decoded in another process first, as damaged bytes can hold up rhino3dm or end it.
+    """
+    root = archive.parse(data, str(path))
+    held = internalised_in(root)
+    found = of(root, str(path), unreadable(held) if decode else dict.fromkeys(held, "it was not asked for"))
     found.file = Path(path).resolve()
     return found
 
 
-def of(root: Chunk, where: str = "definition") -> Graph:
-    """The definition in an archive."""
+def of(root: Chunk, where: str = "definition", refused: Mapping[bytes, str] = NOTHING) -> Graph:
+    """The definition in an archive; `refused`: bytes of geometry that are not decoded, and why."""
     definition = root.chunk("Definition")
     objects = definition.chunk("DefinitionObjects") if definition is not None else None
     if definition is None or objects is None:
@@ -165,7 +171,7 @@ def of(root: Chunk, where: str = "definition") -> Graph:
         elif part.guid == GROUP:
             graph.groups.append(_group(part.container))
         elif part.guid != SCRIBBLE:
-            node = _node(part.guid, part, part.container, UUID(int=number))
+            node = _node(part.guid, part, part.container, UUID(int=number), refused)
             graph.nodes.append(node)
             if part.id is None:
                 graph.damage.append(f"{told} has no InstanceGuid")
@@ -182,11 +188,11 @@ def _group(container: Chunk) -> Group:
     return Group(given(container, "InstanceGuid", UUID(int=0)), given(container, "NickName", ""), members, rgb)
 
 
-def _node(guid: UUID, part: Part, container: Chunk, instead: UUID) -> Node:
+def _node(guid: UUID, part: Part, container: Chunk, instead: UUID, refused: Mapping[bytes, str]) -> Node:
     """An object; one without inputs and outputs that is no script is a parameter, such as a timer."""
-    inputs, outputs = ([port(one) for one in side(container)] for side in (chunks.inputs, chunks.outputs))
+    inputs, outputs = ([port(one, refused) for one in side(container)] for side in (chunks.inputs, chunks.outputs))
     if chunks.is_floating(container) or not (inputs or outputs or guid in SCRIPTS):
-        inputs = outputs = [port(container)]
+        inputs = outputs = [port(container, refused)]
         inputs[0].id = part.id or instead
     return Node(
         id=part.id or instead,
@@ -202,7 +208,7 @@ def _node(guid: UUID, part: Part, container: Chunk, instead: UUID) -> Node:
     )
 
 
-def port(chunk: Chunk) -> Port:
+def port(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Port:
     """The parameter that a chunk describes; what is missing, or of another type, is as if never set."""
     access, mapping = given(chunk, "ScriptParamAccess", given(chunk, "Access", 0)), given(chunk, "Mapping", 0)
     data, hint = chunk.chunk("PersistentData"), chunk.value("TypeHintID")
@@ -217,16 +223,16 @@ def port(chunk: Chunk) -> Port:
         reverse=given(chunk, "ReverseData", False),
         simplify=given(chunk, "SimplifyData", False),
         hint=hint if isinstance(hint, UUID) else None,
-        data=_persistent(data) if data is not None else None,
+        data=_persistent(data, refused) if data is not None else None,
         faint=given(chunk, "WireDisplay", 0) != 0,
         expression=given(chunk, "InternalExpression", ""),
     )
 
 
-def _persistent(chunk: Chunk) -> Tree:
+def _persistent(chunk: Chunk, refused: Mapping[bytes, str]) -> Tree:
     tree = Tree()
     for branch in chunk.chunks:
-        values = [stored(item) for item in branch.chunks]
+        values = [stored(item, refused) for item in branch.chunks]
         try:
             tree.add(path_of(given(branch, "Path", "{0}")), values)
         except ValueError:

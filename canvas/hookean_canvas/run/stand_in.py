@@ -459,7 +459,7 @@ class Parameter(object):
 
     def __init__(self, name, sources=()):
         self.Name = self.NickName = name
-        self.Sources = list(sources)
+        self.Sources, self.Recipients = list(sources), []
         self.InstanceGuid = uuid.uuid4()
         self.VolatileData = None
 

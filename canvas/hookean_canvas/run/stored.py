@@ -6,20 +6,19 @@ one object, of which the members version, archive3dm, opennurbs and data are tho
 
 from __future__ import annotations
 
-import base64
-import struct
-import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from hookean_canvas.archive import Chunk, Item, Type
-from hookean_canvas.archive.chunk import MOST_BYTES
 from hookean_canvas.run import stand_in as untyped
+from hookean_canvas.run.internalised import decoded
 from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.rhino import rhino3dm
 
 stand_in: Any = untyped
+NOTHING: Mapping[bytes, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -30,8 +29,9 @@ class Unread:
     why: str = ""
 
 
-def stored(chunk: Chunk) -> Any:
-    """A stored value; None for a null, Unread for what cannot be read here."""
+def stored(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Any:
+    """A stored value; None for a null, Unread for what cannot be read here; `refused`: bytes that are not decoded, and
+    why."""
     found = _with_plane(chunk)
     if found is not None:
         return found
@@ -41,9 +41,9 @@ def stored(chunk: Chunk) -> Any:
             return read(item)
     data = chunk.item("ON_Data")
     if data is not None and data.type is Type.BYTEARRAY:
-        return _geometry(data.value)
+        return _geometry(data.value, refused)
     for inner in chunk.chunks:  # data of any kind: its type's name, and the value in a chunk of its own
-        found = stored(inner)
+        found = stored(inner, refused)
         if not isinstance(found, Unread):
             return found
     if not chunk.items and not chunk.chunks:
@@ -104,126 +104,20 @@ _KINDS: dict[str, tuple[tuple[Type, ...], Callable[[Item], Any]]] = {
 """Under which names values are stored, as which types, and how they are read."""
 
 
-def _geometry(data: bytes) -> Any:
+def _geometry(data: bytes, refused: Mapping[bytes, str]) -> Any:
     """The object of rhino3dm in internalised bytes."""
     try:
-        members = _members(_inflated(data))
-        found = rhino3dm.CommonObject.Decode(
-            {
-                "version": members["version"],
-                "archive3dm": members["archive3dm"],
-                "opennurbs": members["opennurbs"],
-                "data": base64.b64encode(members["data"]).decode("ascii"),
-            }
-        )
-    except (KeyError, ValueError, TypeError, IndexError, struct.error, zlib.error, RuntimeError) as error:
-        return Unread(["ON_Data"], f"its bytes cannot be read ({type(error).__name__})")
+        if data in refused:
+            raise ValueError(refused[data])
+        found = decoded(data)
+    except ValueError as error:
+        return Unread(["ON_Data"], str(error))
     if found is None:
         return Unread(["ON_Data"], "rhino3dm does not know its version")
     return found.Location if isinstance(found, rhino3dm.Point) else found
 
 
-def _inflated(data: bytes) -> bytes:
-    """Bytes without their compression, a raw deflate stream or none; ValueError where they are too many."""
-    if data[:1] == b"\x00" and data[1:5] == b"\x01\x00\x00\x00":  # the header of a stream that is not compressed
-        return data
-    unpack = zlib.decompressobj(-15)
-    found = unpack.decompress(data, MOST_BYTES)
-    if unpack.unconsumed_tail:
-        raise ValueError("too large")
-    return found
-
-
-# records and types of MS-NRBF, sections 2.1.2 and 2.3
-_LIBRARY, _CLASSES, _OBJECT_STRING, _BYTES, _REFERENCE, _NULL, _END = 12, (4, 5), 6, 15, 9, 10, 11
-_MOST_RECORDS = 100  # records of a stream and members of its object; geometry has four members in five records
-_WIDTHS = {1: "?", 2: "B", 6: "d", 7: "h", 8: "i", 9: "q", 11: "f", 14: "H", 15: "I", 16: "Q"}
-
-
-class _Reader:
-    """A stream of .NET's binary serialisation, read from its start."""
-
-    def __init__(self, data: bytes) -> None:
-        self.data, self.at = data, 17  # after the header: a record type and four numbers
-
-    def number(self, form: str = "i") -> Any:
-        (found,) = struct.unpack_from("<" + form, self.data, self.at)
-        self.at += struct.calcsize("<" + form)
-        return found
-
-    def text(self) -> str:
-        """A text with its length before it, 7 bits a byte."""
-        length, shift = 0, 0
-        while True:
-            byte = self.number("B")
-            length |= (byte & 127) << shift
-            shift += 7
-            if byte < 128:
-                break
-            if shift > 28:
-                raise ValueError("text without end")
-        if length > len(self.data) - self.at:
-            raise ValueError("text beyond the end")
-        self.at += length
-        return self.data[self.at - length : self.at].decode("utf-8")
-
-    def array(self) -> tuple[int, bytes]:
-        """The id and the bytes of an array of bytes."""
-        number, length, kind = self.number(), self.number(), self.number("B")
-        if kind != 2 or not 0 <= length <= len(self.data) - self.at:
-            raise ValueError("not an array of bytes")
-        self.at += length
-        return number, self.data[self.at - length : self.at]
-
-
-def _members(data: bytes) -> dict[str, Any]:
-    """Numbers and bytes of the one object in a stream, by the names of its members."""
-    reader = _Reader(data)
-    members: dict[str, Any] = {}
-    later: dict[int, str] = {}
-    records = 0
-    while reader.at < len(data):
-        record, records = reader.number("B"), records + 1
-        if records > _MOST_RECORDS:
-            raise ValueError("too many records")
-        if record == _LIBRARY:
-            reader.number()
-            reader.text()
-        elif record in _CLASSES and not members:
-            _object(reader, record, members, later)
-        elif record == _BYTES:
-            number, found = reader.array()
-            members[later[number]] = found
-        elif record == _END:
-            break
-        else:
-            raise ValueError(f"record {record}")
-    return members
-
-
-def _object(reader: _Reader, record: int, members: dict[str, Any], later: dict[int, str]) -> None:
-    """The values of an object; `later` gets the ids of arrays that follow it."""
-    reader.number()
-    reader.text()
-    count = reader.number()
-    if count > _MOST_RECORDS:
-        raise ValueError("too many members")
-    names = [reader.text() for _ in range(count)]
-    kinds = [reader.number("B") for _ in names]
-    more = [reader.number("B") if kind in (0, 7) else reader.text() if kind == 3 else None for kind in kinds]
-    if record == 5:
-        reader.number()
-    for name, kind, primitive in zip(names, kinds, more, strict=True):
-        if kind == 0:
-            members[name] = reader.number(_WIDTHS[int(primitive or 0)])
-            continue
-        inner = reader.number("B")
-        if inner == _REFERENCE:
-            later[reader.number()] = name
-        elif inner == _BYTES:
-            members[name] = reader.array()[1]
-        elif inner == _OBJECT_STRING:
-            reader.number()
-            members[name] = reader.text()
-        elif inner != _NULL:
-            raise ValueError(f"record {inner}")
+def internalised_in(root: Chunk) -> list[bytes]:
+    """The bytes of all geometry that an archive holds."""
+    items = (chunk.item("ON_Data") for chunk in root.walk())
+    return [item.value for item in items if item is not None and item.type is Type.BYTEARRAY]

@@ -8,6 +8,7 @@ from uuid import UUID
 
 from hookean.errors import InputError
 from hookean_canvas.archive import guids
+from hookean_canvas.run.clusters import why_closed
 from hookean_canvas.run.components import inputs_of, native_for, outputs_of
 from hookean_canvas.run.graph import Graph, Node
 from hookean_canvas.run.natives import INERT, PARAMETERS
@@ -96,4 +97,6 @@ def _strange(node: Node) -> str:
         return f"it has {held}, not {usual}"
     if node.guid in PARAMETERS or node.guid in VALUES:
         return "" if node.floating else "it has inputs or outputs of its own"
+    if node.guid == guids.CLUSTER:
+        return why_closed(node)
     return f"{node.guid} has no stand-in"

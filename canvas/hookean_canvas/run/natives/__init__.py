@@ -11,6 +11,7 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     curves,
     curves_at,
     datatrees,
+    edges,
     expressions,
     lists,
     logic,

@@ -15,7 +15,7 @@ SUBJECTS = {
     "primitives": "Curves", "curves": "On curves", "meshes": "Meshes", "meshes_made": "Making meshes",
     "subdivision": "Weaverbird, by name", "measures": "Measures and boxes", "surfaces": "Surfaces",
     "curves_at": "Along curves", "surfaces_at": "On surfaces", "sets": "Sets", "tools": "Tools of Kangaroo",
-    "chance": "By chance",
+    "chance": "By chance", "edges": "Edges and control points",
 }  # fmt: skip
 """Headings by the modules that declare natives."""
 
