@@ -72,7 +72,11 @@ export async function open(file: File): Promise<Summary & { warnings?: string[] 
 export type Format = "hookean" | "scene" | "3dm" | "obj" | "compas" | "csv" | "npz";
 
 /** The session as a file, and sentences on what that does not hold. */
-export async function exported(key: string, format: Format, view: unknown = {}): Promise<{ blob: Blob; notes: string[] }> {
+export async function exported(
+  key: string,
+  format: Format,
+  view: unknown = {},
+): Promise<{ blob: Blob; notes: string[] }> {
   const looked = format === "hookean" ? `&view=${encodeURIComponent(JSON.stringify(view))}` : "";
   const answer = await ask(format === "scene" ? `${at(key)}/scene` : `${at(key)}/state?format=${format}${looked}`);
   const notes = JSON.parse(answer.headers.get("hookean-warnings") ?? "[]") as string[];

@@ -74,7 +74,11 @@ export function AddForce({ studio }: { studio: Studio }) {
         {open.length > 0 && (
           <label class="field">
             <span>On</span>
-            <select aria-label="On" value={where} onChange={(event) => (chosen.value = event.currentTarget.value as Where)}>
+            <select
+              aria-label="On"
+              value={where}
+              onChange={(event) => (chosen.value = event.currentTarget.value as Where)}
+            >
               {open.map(([place, seen]) => (
                 <option key={place} value={place}>
                   {seen}

@@ -1,4 +1,5 @@
-// From where it is looked at: one camera, z up, whose named views look from so far away that they are orthographic to half a pixel.
+// From where it is looked at: one camera, z up, whose named views look from so far away that they are
+// orthographic to half a pixel.
 import { Box3, MathUtils, Matrix4, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Look } from "./types";
