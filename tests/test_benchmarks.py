@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 HERE = Path(__file__).parents[1] / "benchmarks"
-NAMES = ("problems", "peers", "page", "stepping", "startup", "bench")
+NAMES = ("problems", "peers", "page", "stepping", "startup", "bench", "design_problems", "design")
 
 
 @pytest.fixture(scope="module")
@@ -109,3 +109,17 @@ def test_the_readme_gets_the_pages_figures_between_its_marks(parts: dict[str, Mo
     with pytest.raises(ValueError, match="no place"):
         page.put(readme, text)
     assert page.BEGIN in (HERE.parent / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["arch", "pringle"])
+def test_design_problems_are_the_same_for_both_programs(parts: dict[str, ModuleType], name: str) -> None:
+    """The bench's own evaluation of force densities and hookean's search give one objective at the start, and the
+    search's is lower."""
+    import hookean
+
+    problem = parts["design_problems"].PROBLEMS[name]()
+    given = parts["design"].given(problem) | {"settings": {"max_iterations": 5}}
+    found = hookean.design(given)
+    value = problem.objective(np.asarray(found.variables[0]["value"]))
+    assert value == pytest.approx(found.objective, rel=1e-9)
+    assert value < 0.5 * problem.objective(problem.start)

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from hookean.analysis.mechanisms import Mechanisms as Mechanisms
     from hookean.analysis.mechanisms import mechanisms as mechanisms
     from hookean.designing.answer import Design as Design
+    from hookean.designing.exploring import Exploration as Exploration
+    from hookean.designing.exploring import explore as explore
     from hookean.designing.problem import Problem as Problem
     from hookean.designing.search import design as design
     from hookean.designing.sensitivity import Sensitivity as Sensitivity
@@ -177,6 +179,8 @@ _HOMES = {
     "Problem": "designing.problem",
     "Design": "designing.answer",
     "design": "designing.search",
+    "Exploration": "designing.exploring",
+    "explore": "designing.exploring",
     "Sensitivity": "designing.sensitivity",
     "sensitivity": "designing.sensitivity",
     "Cables": "workshop.cables",
@@ -243,6 +247,7 @@ __all__ = [
     "ElasticLine",
     "EqualAngle",
     "EqualLength",
+    "Exploration",
     "Floor",
     "Force",
     "Frame",
@@ -321,6 +326,7 @@ __all__ = [
     "cables",
     "cutting_patterns",
     "design",
+    "explore",
     "freeze",
     "frequencies",
     "load_cases",

@@ -74,6 +74,9 @@ SAMPLES: dict[str, dict[str, Any]] = {
     **{cls.__name__: wired.inputs(kind) for kind, cls in KINDS.items()},
     "AlignQuads": {"_mesh": [MESH]},
     "Anchors": {"_point": ROW, "_x_": [True, False]},
+    "Variables": {"_force": ["Springs"], "_field": ["stiffness"], "_tie_": ["all"], "lower_": [1.0]},
+    "Goals": {"_kind": ["position"], "points_": [point(5, 0, 0)], "axes_": ["z"], "target_": [-1.5]},
+    "Constraints": {"_kind": ["force"], "forces_": ["Springs"], "upper_": [500.0]},
     "Bipartite": {"_lines": [line((0, 0, 0), (1, 0, 0)), line((1, 0, 0), (2, 0, 1))]},
     "Checkerboard": {"_mesh": [MESH]},
     "CombineClean": {"_meshes": [MESH, MESH]},
@@ -172,9 +175,12 @@ def chain(version: str) -> list[dict[str, Any]]:
     moments = step(version, "Moments", {**given, "_times": [0.1, 0.2]})
     table = {"_file": [str(MODEL.parents[1] / "wind" / "wind.csv")], "_column": ["speed [m/s]"], "_force": ["Unary"]}
     driven = step(version, "Stream", {**given, **table, "_scale": [{"Vector3d": [0, 0, -1.0]}], "_every_": [4.0]})
+    problem = {f"_{name.lower()}": {"output": [at[name], name.lower()]} for name in ("Variables", "Goals")}
+    problem["constraints_"] = {"output": [at["Constraints"], "constraints"]}
+    designed = step(version, "Design", {**given, **problem})
     held = step(version, "Engine", {**given, "_reset": True})
     runs = step(version, "Engine", {**given, "_reset": False}, solutions=4000)
-    return [*steps, swept, moments, driven, held, runs]
+    return [*steps, swept, moments, driven, designed, held, runs]
 
 
 @cache
@@ -249,4 +255,4 @@ def test_with_nothing_connected_there_is_at_most_one_sentence(version: str, tmp_
 
 
 def test_every_component_has_a_sample() -> None:
-    assert [name for name in NAMES if name not in {*SAMPLES, "Engine", "Moments", "Stream", "Sweep"}] == []
+    assert [name for name in NAMES if name not in {*SAMPLES, "Design", "Engine", "Moments", "Stream", "Sweep"}] == []

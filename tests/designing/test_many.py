@@ -7,8 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.problem import Problem
 from hookean.designing.search import Search, design
+from hookean.designing.sensitivity import gradients
+from hookean.designing.unknowns import Unknowns
+from hookean.system.system import compile
 
 from .test_search import heights, net
 
@@ -98,3 +102,24 @@ def test_springs_with_rest_lengths_reach_a_form_that_others_gave() -> None:
     )
     assert found.method == "levenberg_marquardt" and found.status == "converged"
     assert np.abs(found.result.particles[inside, 2] - wanted).max() <= 1e-6 * np.abs(wanted).max()
+
+
+@pytest.mark.parametrize("rest", [0.0, 0.8])
+def test_one_gradient_of_a_large_net_needs_no_factors(rest: float) -> None:
+    """By conjugate gradients to 1e-12 of the right side, as the forward solve has them: times the tangent's condition,
+    about 1e4, 1e-8 of what factors give."""
+    scene = net(56, 30.0)
+    scene["forces"][0]["rest_length"] = rest
+    inside = scene["forces"][1]["particles"]
+    goal = {"kind": "position", "particles": inside, "axes": "z"}
+    variables = [{"force": "net", "field": "stiffness"}, {"anchor": 0, "axes": "z", "tie": "all"}]
+    problem = Problem.read({"scene": scene, "variables": variables, "goals": [goal]})
+    system = compile(problem.scene)
+    unknowns, state = Unknowns(problem, system), system.start()
+    unknowns.put(system, state, unknowns.start)
+    found = settle(system, state, once=True)
+    quantities, weights = [(problem.goals[0].quantity, "")], [np.ones(len(inside))]
+    own = gradients(found, unknowns, quantities, weights)
+    assert found._factor is None  # it was not needed
+    factored = gradients(Equilibrium(system, state, found.result), unknowns, quantities, weights)
+    assert own == pytest.approx(factored, abs=1e-8 * np.abs(factored).max())

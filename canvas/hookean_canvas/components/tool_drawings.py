@@ -201,6 +201,31 @@ def trail(pen: Pen) -> None:
     pen.dot(path[-1], 2.8, ORANGE)
 
 
+def variables(pen: Pen) -> None:
+    for y, x in ((5.5, 8.0), (12.0, 16.5), (18.5, 11.0)):
+        pen.line((2.5, y), (21.5, y), width=1.5)
+        pen.dot((x, y), 2.6, ORANGE)
+
+
+def goals(pen: Pen) -> None:
+    for radius in (9.0, 5.2):
+        pen.ring((12.0, 12.0), radius, BLUE, 1.7)
+    pen.dot((12.0, 12.0), 2.4, ORANGE)
+
+
+def constraints(pen: Pen) -> None:
+    pen.line((2.5, 4.0), (21.5, 4.0), colour=BLUE, width=1.8)
+    pen.line((2.5, 20.0), (21.5, 20.0), colour=BLUE, width=1.8)
+    pen.line(*[(2.5 + 19 * i / 40, 12.0 - 5.6 * math.sin(i / 5.0)) for i in range(41)], colour=ORANGE, width=1.8)
+
+
+def design(pen: Pen) -> None:
+    for control, colour in ((14.0, PALE), (22.0, PALE), (31.0, BLUE)):
+        pen.line(*bent((3.0, 4.0), (12.0, control), (21.0, 4.0)), colour=colour, width=1.7)
+    pen.ring((12.0, 17.6), 3.6, ORANGE, 1.6)
+    pen.dot((12.0, 17.6), 1.4, ORANGE)
+
+
 DRAWINGS: dict[str, Callable[[Pen], None]] = {
     draw.__name__.replace("_", ""): draw
     for draw in (
@@ -208,6 +233,7 @@ DRAWINGS: dict[str, Callable[[Pen], None]] = {
         *(fold_angle, vertex_neighbours, mesh_map, split_at_corners, remesh, counter, sequence, trail),
         *(interconnect_points, bipartite, moebius_transformation, pipes, align_quads, turn_quads, strips),
         *(unroll_strips, reciprocal_diagram, live_film),
+        *(variables, goals, constraints, design),
     )
 }
 """Drawings by the name of the bundle, in small letters without blanks."""

@@ -88,7 +88,7 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
     unknowns = Unknowns.of(rest.system, rest.state, rest.free)
     stiffness = unknowns.tangent(rest.system, rest.state)
     own = mass[unknowns.dofs // 3]
-    squares, vectors = _lowest(stiffness, own, min(count, len(own)))
+    squares, vectors = lowest(stiffness, own, min(count, len(own)))
     vectors = vectors / np.sqrt(own)[:, None]
     angular = np.sign(squares) * np.sqrt(np.abs(squares))
     modes = np.array([_scaled(unknowns.spread(vector)) for vector in vectors.T]).reshape(-1, len(mass), 3)
@@ -121,7 +121,7 @@ def _masses(rest: AtRest, given: Any) -> Floats:
     return mass
 
 
-def _lowest(stiffness: Any, mass: Floats, count: int) -> tuple[Floats, Floats]:
+def lowest(stiffness: Any, mass: Floats, count: int) -> tuple[Floats, Floats]:
     """The lowest eigenvalues of M^-1/2 K M^-1/2 and their vectors (unknowns, count), what rounding leaves of zero as
     zero."""
     import scipy.sparse as sparse

@@ -20,6 +20,7 @@ class DesignStatus(StrEnum):
 
     CONVERGED = "converged"
     INFEASIBLE = "infeasible"
+    UNBOUNDED = "unbounded"
     MAX_ITERATIONS = "max_iterations"
     STALLED = "stalled"
     CANCELLED = "cancelled"
@@ -29,7 +30,11 @@ class DesignStatus(StrEnum):
 class Design:
     """The best that a search found: values of `variables`, of `goals` and `constraints`, and the `result` of the scene
     with them. The objective is the sum of weight (value - target)² over goals with a target and of weight x value over
-    the others."""
+    the others.
+
+    `gain` of a variable or constraint is the rate at which the objective falls as the bound or limit that it is at
+    gives way by 1, in its unit; `gains` of a goal that is not met are its own parts of them by name, `conflicts` the
+    names of goals that pull against it. They are None or empty where the constraints are not met."""
 
     status: DesignStatus
     message: str

@@ -66,6 +66,11 @@ def tied(variable: Variable, rows: int, columns: Ints, width: int, pointer: str)
         if not len(group) or group.max() >= rows:
             given = "no elements" if not len(group) else f"element {int(group.max())}"
             raise InputError(f"{pointer}/tie/{i}", f"{given} given; there are {rows}, counted from 0")
+        if (found[np.ix_(group, columns)] >= 0).any():
+            twice = int(group[(found[np.ix_(group, columns)] >= 0).any(axis=1)][0])
+            raise InputError(
+                f"{pointer}/tie/{i}", f"element {twice} is in an earlier list, too; give each element once"
+            )
         found[np.ix_(group, columns)] = i * len(columns) + np.arange(len(columns))
     return found
 
@@ -74,8 +79,8 @@ class Column:
     """A variable that is a column of a force: `entries` with a row for each element, or with all numbers of a column
     that the force has as a whole in one row."""
 
-    def __init__(self, variable: Variable, system: System, pointer: str) -> None:
-        self.variable, self.pointer = variable, pointer
+    def __init__(self, variable: Variable, system: System, pointer: str, factor: float = 1.0) -> None:
+        self.variable, self.pointer, self.factor = variable, pointer, factor
         self.number = numbered(system.scene, variable.force, f"{pointer}/force")
         self.group, self.part = placed(system, self.number, f"{pointer}/force")
         given = self._given(system)
@@ -156,7 +161,11 @@ class Column:
 
     def changed(self, scene: Scene, unknowns: Floats) -> Force:
         """The force with these values."""
-        return self._with(scene, self.entries.with_values(unknowns))
+        return self._with(scene, self.numbers(unknowns))
+
+    def numbers(self, unknowns: Floats) -> Floats:
+        """All numbers (m, c) of the column with these values of its unknowns."""
+        return self.entries.with_values(self.factor * unknowns)
 
     def _with(self, scene: Scene, values: Floats) -> Force:
         force: Force = changed_forces(scene, {str(self.number): {self.variable.field: self._field(values)}})[
@@ -175,11 +184,11 @@ class Column:
                 change[:, column] = steps
                 slope, unknown = self.slope(system, change, give), np.broadcast_to(tie[:, column], self.elements)
                 by = np.broadcast_to(steps, self.elements)[self.part.inputs]
-                yield unknown[self.part.inputs], slope / by.reshape(-1, *[1] * (slope.ndim - 1))
+                yield unknown[self.part.inputs], self.factor * slope / by.reshape(-1, *[1] * (slope.ndim - 1))
         for number in range(self.entries.count) if not self.by_element else ():
             step = self.step(number)
             slope = self.slope(system, np.where(tie == number, step, 0.0), give)
-            yield np.full(len(slope), number), slope / step
+            yield np.full(len(slope), number), self.factor * slope / step
 
     def step(self, unknown: int) -> float:
         """A change of one unknown, small for derivatives."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.designing.cycles import Cycles
 from hookean.designing.factors import Factored, Orders
 from hookean.forces.base import lengths
 from hookean.running.result import Result
@@ -37,13 +38,16 @@ SETTLED, FINISHED = 1e-8, 1e-13  # parts of it: steps that may be rounding, and 
 class Equilibrium:
     """A shape at rest: its state, the result of the run that found it, and its tangent stiffness.
 
-    `tangent` (3n, 3n) is sparse, of all axes; `basis` (3n, r) the motions that are free.
+    `tangent` (3n, 3n) is sparse, of all axes; `basis` (3n, r) the motions that are free. With `once` it is solved with
+    once or twice, and the system does not change before that: then large nets need no factors.
     """
 
-    def __init__(self, system: System, state: State, result: Result | None, orders: Orders | None = None) -> None:
-        self.system, self.state, self._result = system, state, result
+    def __init__(
+        self, system: System, state: State, result: Result | None, orders: Orders | None = None, *, once: bool = False
+    ) -> None:
+        self.system, self.state, self._result, self.once = system, state, result, once
         self.orders = orders or Orders()
-        self.tangent = tangent(system, state)
+        self._tangent = None if once else tangent(system, state)  # later the system has other values
         self.basis = _basis(system, state)
         self._factor: Factored | None = None
         self.yielded: list[str] = []  # kinds of forces that have yielded on the way here
@@ -64,6 +68,21 @@ class Equilibrium:
     def converged(self) -> bool:
         """Whether the shape is at rest; one without a run of its own was followed to rest."""
         return self._result is None or self._result.converged
+
+    @property
+    def tangent(self) -> Any:
+        """The tangent stiffness of all axes."""
+        if self._tangent is None:
+            self._tangent = tangent(self.system, self.state)
+        return self._tangent
+
+    @cached_property
+    def _cycles(self) -> Cycles | None:
+        """What solves without factors."""
+        if not self.once or len(self.basis.indices) < np.count_nonzero(self.state.free):
+            return None
+        cycles = Cycles(self.system, self.state)
+        return cycles if cycles.usable else None
 
     @property
     def symmetric(self) -> bool:
@@ -100,6 +119,10 @@ class Equilibrium:
 
     def solve(self, b: Floats, *, transposed: bool = False) -> Floats:
         """K^-1 b, or K^-T b, (3n,) on the free motions; 0 on the others. NaN where K is singular."""
+        if self._factor is None and self._cycles is not None:
+            found = self._cycles.solve(b)
+            if found is not None:
+                return found.ravel()
         right = self.basis.T @ b
         if not len(right):
             return np.zeros(len(b))
@@ -137,10 +160,10 @@ def follow(before: Equilibrium) -> Equilibrium | None:
     return None
 
 
-def settle(system: System, state: State, orders: Orders | None = None) -> Equilibrium:
-    """Bring a state to rest with the scene's solver, and to the last digit by exact steps."""
+def settle(system: System, state: State, orders: Orders | None = None, *, once: bool = False) -> Equilibrium:
+    """Bring a state to rest with the scene's solver, and to the last digit by exact steps; `once`: see Equilibrium."""
     before = [memory.copy() for memory in state.memory]
-    found = _polished(system, state, _relaxed(system, state), orders or Orders())
+    found = _polished(system, state, _relaxed(system, state), orders or Orders(), once)
     found.yielded = _yielded(system, state, before)
     return found
 
@@ -165,9 +188,9 @@ def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
     return found
 
 
-def _polished(system: System, state: State, result: Result, orders: Orders) -> Equilibrium:
+def _polished(system: System, state: State, result: Result, orders: Orders, once: bool) -> Equilibrium:
     """Exact steps, while each leaves less out of balance."""
-    found = Equilibrium(system, state, result, orders)
+    found = Equilibrium(system, state, result, orders, once=once)
     left = _left(system, state)
     for _ in range(POLISH):
         step = found.solve(left.ravel()).reshape(-1, 3)
@@ -182,8 +205,9 @@ def _polished(system: System, state: State, result: Result, orders: Orders) -> E
             break
         left = now
         if lengths(step).max(initial=0.0) > SLIGHT * system.size:
-            before, found = found, Equilibrium(system, state, result, orders)
-            found.take_factor(before)
+            before, found = found, Equilibrium(system, state, result, orders, once=once)
+            if not once:
+                found.take_factor(before)
     result.particles = state.x.copy()
     return found
 

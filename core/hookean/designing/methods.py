@@ -9,6 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.answer import DesignStatus
+from hookean.designing.augmented import augmented
+from hookean.designing.feasible import nearer
+from hookean.designing.gains import at_minimum
 from hookean.designing.levenberg import levenberg
 from hookean.designing.limits import AT_BOUND
 from hookean.designing.sensitivity import jacobian
@@ -18,24 +21,27 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+NO_STEP = "The search found no step that leads further; this is the best so far."
+ATTEMPTS = 4  # of a search with constraints, each from the best so far
+ROUNDING = 1e-13  # part of the objective: less is no change
+
 
 class Stopped(Exception):
     """The caller ended the search."""
+
+
+class Unbounded(Exception):
+    """The objective falls without end; the text is the variable that grows."""
 
 
 Ended = tuple[int, DesignStatus, str]
 """Iterations, how it ended, and a sentence where there is more to say."""
 
 
-def _bounds(search: Search) -> tuple[Floats, Floats]:
-    unknowns = search.unknowns
-    return (unknowns.lower - unknowns.start) / search.scale, (unknowns.upper - unknowns.start) / search.scale
-
-
 def _least_squares(search: Search) -> Ended:
     from scipy.optimize import least_squares
 
-    settings, (lower, upper) = search.problem.settings, _bounds(search)
+    settings, (lower, upper) = search.problem.settings, search.bounds
     wide = lower < upper
     if not wide.all():  # what cannot vary is left out
         upper = np.where(wide, upper, lower + AT_BOUND)
@@ -50,7 +56,14 @@ def _least_squares(search: Search) -> Ended:
 
 
 def _levenberg_marquardt(search: Search) -> Ended:
-    return *levenberg(search, *_bounds(search)), ""
+    start, most = np.zeros(search.unknowns.count), search.problem.settings.max_iterations
+    iterations, ended, _ = levenberg(search, *search.bounds, start, most)
+    return iterations, ended, ""
+
+
+def _augmented_lagrangian(search: Search) -> Ended:
+    iterations, ended = augmented(search)
+    return iterations, ended, NO_STEP if ended is DesignStatus.STALLED and search.best[0] == 0.0 else ""
 
 
 def _lbfgsb(search: Search) -> Ended:
@@ -59,12 +72,13 @@ def _lbfgsb(search: Search) -> Ended:
     settings = search.problem.settings
     found = minimize(
         search.objective, np.zeros(search.unknowns.count), jac=search.gradient, method="L-BFGS-B",
-        bounds=list(zip(*_bounds(search), strict=True)),
+        bounds=list(zip(*search.bounds, strict=True)),
         options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12, "maxcor": 30,
                  "maxfun": 20 * settings.max_iterations},
     )  # fmt: skip
-    ended = DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED
-    return int(found.nit), ended, ""
+    if found.status == 2 and not at_minimum(search):  # no step along the slope leads further
+        return int(found.nit), DesignStatus.STALLED, NO_STEP
+    return int(found.nit), DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED, ""
 
 
 class Margins:
@@ -72,8 +86,8 @@ class Margins:
 
     def __init__(self, search: Search) -> None:
         self.search = search
-        lower, upper = (np.concatenate(side) for side in zip(*search.limits, strict=True))
-        first = search.constraint_values(search.first)
+        lower, upper = (np.concatenate(side) for side in zip(*search.aims.limits, strict=True))
+        first = search.aims.constraint_values(search.first)
         size = np.concatenate([np.full(len(v), by) for v, by in zip(first, search.sizes, strict=True)])
         equal = lower == upper
         low, high = np.flatnonzero(np.isfinite(lower)), np.flatnonzero(np.isfinite(upper) & ~equal)
@@ -89,7 +103,7 @@ class Margins:
 
     def values(self, y: Floats) -> Floats:
         """How far values are within their limits."""
-        values = np.concatenate(self.search.constraint_values(self.search.at(y)))
+        values = np.concatenate(self.search.aims.constraint_values(self.search.at(y)))
         return np.asarray(self.scales * (values[self.rows] - self.limits))
 
     def slopes(self, y: Floats) -> Floats:
@@ -112,15 +126,29 @@ class Margins:
 def _slsqp(search: Search) -> Ended:
     from scipy.optimize import minimize
 
-    settings, start = search.problem.settings, np.zeros(search.unknowns.count)
-    size = abs(search.objective(start)) or 1.0
-    found = minimize(
-        lambda y: search.objective(y) / size, start, jac=lambda y: search.gradient(y) / size, method="SLSQP",
-        bounds=list(zip(*_bounds(search), strict=True)), constraints=Margins(search).given() if search.limits else [],
-        options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3},
-    )  # fmt: skip
-    ended = DesignStatus.MAX_ITERATIONS if found.status == 9 else DesignStatus.CONVERGED
-    return int(found.nit), ended, ""
+    settings, start, iterations = search.problem.settings, np.zeros(search.unknowns.count), 0
+    bounds = list(zip(*search.bounds, strict=True))
+    for _ in range(ATTEMPTS):
+        size = abs(search.objective(start)) or 1.0
+        found = minimize(
+            lambda y, size=size: search.objective(y) / size, start,
+            jac=lambda y, size=size: search.gradient(y) / size, method="SLSQP", bounds=bounds,
+            constraints=Margins(search).given() if search.aims.limits else [],
+            options={"maxiter": settings.max_iterations - iterations, "ftol": max(settings.tolerance * 1e-3, ROUNDING)},
+        )  # fmt: skip
+        iterations += int(found.nit)
+        if found.status == 9 or iterations >= settings.max_iterations:
+            return iterations, DesignStatus.MAX_ITERATIONS, ""
+        if search.best[0] > 0.0:
+            iterations += nearer(search)
+            if search.best[0] > 0.0:
+                return iterations, DesignStatus.INFEASIBLE, ""
+        elif found.status == 0:
+            return iterations, DesignStatus.CONVERGED, ""
+        start = search.best[2].copy()
+    if at_minimum(search):
+        return iterations, DesignStatus.CONVERGED, ""
+    return iterations, DesignStatus.STALLED, NO_STEP
 
 
 METHODS: dict[str, Callable[[Search], Ended]] = {
@@ -128,4 +156,5 @@ METHODS: dict[str, Callable[[Search], Ended]] = {
     "levenberg_marquardt": _levenberg_marquardt,
     "l-bfgs-b": _lbfgsb,
     "slsqp": _slsqp,
+    "augmented_lagrangian": _augmented_lagrangian,
 }

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
 from pydantic import StrictInt, StrictStr, model_validator
 
+from hookean.designing.located import located
 from hookean.designing.quantities import QUANTITIES
 from hookean.designing.quantities.base import Quantity
 from hookean.scene.scene import Scene
@@ -29,14 +30,23 @@ else:
     AnyQuantity = Annotated[Union[tuple(QUANTITIES.values())], Field(discriminator="kind")]  # noqa: UP007
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
-METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp")
+METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp", "augmented_lagrangian")
+
+
+class Drive(Model):
+    """A column of a force that follows a variable: factor x the variable's value, element by element."""
+
+    force: StrictStr | StrictInt = Field(description="Name or number of a force")
+    field: str = Field(description="Column of the force")
+    factor: float = Field(default=1.0, description="Factor on the value [unit of the column by that of the variable]")
 
 
 class Variable(Model):
     """What may vary: a column of a force, or where an anchor holds its particles. Values have the scene's units.
 
     `tie` makes one unknown of all elements (`all`), of each list of elements, or one of each element (`each`); elements
-    in no list keep their values. An anchor that is tied moves as a whole: its value is the shift.
+    in no list keep their values. An anchor that is tied moves as a whole: its value is the shift. What a variable
+    `drives` follows it: the area of a bar its stiffness, with E as factor, and its weight.
     """
 
     name: str = Field(default="", description="Name in the answer; default: what varies")
@@ -49,6 +59,7 @@ class Variable(Model):
     )
     lower: float | None = Field(default=None, description="Least value [unit of the column]")
     upper: float | None = Field(default=None, description="Largest value [unit of the column]")
+    drives: Parts[Drive] = Field(default=(), description="Columns of forces that follow it, each by a factor")
 
     @model_validator(mode="after")
     def _one_thing(self) -> Self:
@@ -58,6 +69,8 @@ class Variable(Model):
             raise fault("a variable of a force needs a field, the name of a column", "/field")
         if self.anchor is not None and self.field:
             raise fault("an anchor has no field that varies; give axes", "/field")
+        if self.anchor is not None and self.drives:
+            raise fault("an anchor drives no columns", "/drives")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise fault(f"lower is {self.lower:g}, more than upper, {self.upper:g}", "/lower")
         return self
@@ -71,21 +84,35 @@ class Variable(Model):
 
 
 class Goal(Model):
-    """What the equilibrium should be like: a quantity and its target; without a target the quantity is minimised.
+    """What the equilibrium should be like: a quantity and its target, or the range in which it should be; without them
+    the quantity is minimised.
 
     The objective is the sum of weight (value - target)² over all values of goals with a target, and of weight x value
-    over those of goals without.
+    over those of goals without. The target of a range is the value itself within it, and the nearest limit without.
     """
 
     quantity: AnyQuantity
     target: Maybe[Table] = Field(default=None, description="Target, one or one for each value [unit of the quantity]")
+    lower: Maybe[Reals] = Field(default=None, description="Least value of a range [unit of the quantity]")
+    upper: Maybe[Reals] = Field(default=None, description="Largest value of a range [unit of the quantity]")
     weight: float = Field(default=1.0, gt=0, description="Weight in the objective [-]")
     name: str = Field(default="", description="Name in the answer; default: the kind")
 
     @model_validator(mode="before")
     @classmethod
     def _flat(cls, value: Any) -> Any:
-        return _split(value, ("target", "weight", "name"))
+        return _split(value, ("target", "lower", "upper", "weight", "name"))
+
+    @model_validator(mode="after")
+    def _one_aim(self) -> Self:
+        if self.target is not None and not (self.lower is None and self.upper is None):
+            raise fault("give a target or a range from lower to upper, not both", "/target")
+        return self
+
+    @property
+    def aimed(self) -> bool:
+        """Whether it has a target or a range."""
+        return not (self.target is None and self.lower is None and self.upper is None)
 
 
 class Constraint(Model):
@@ -145,4 +172,4 @@ class Problem(Model):
     @classmethod
     def read(cls, value: Any) -> Self:
         """A problem from a dict, or from JSON text or bytes; InputError with a pointer and one sentence."""
-        return super().read(parse(value) if isinstance(value, str | bytes | bytearray) else value)
+        return super().read(located(parse(value) if isinstance(value, str | bytes | bytearray) else value))

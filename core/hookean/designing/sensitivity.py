@@ -66,7 +66,7 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
     unknowns = Unknowns(problem, system)
     state = system.start()
     unknowns.put(system, state, unknowns.start)
-    found = settle(system, state)
+    found = settle(system, state, once=True)
     values = [g.quantity.values(found, f"/goals/{i}") for i, g in enumerate(problem.goals)]
     total = sum(g.weight * each.sum() for g, each in zip(problem.goals, values, strict=True))
     weights = [np.full(len(each), g.weight) for g, each in zip(problem.goals, values, strict=True)]
@@ -89,8 +89,9 @@ def gradients(
         by_unknown += direct.T @ weight
     forces, moves = unknowns.slopes(found)
     adjoint = found.solve(by_place, transposed=True)
-    led = moves.T @ (by_place - found.tangent.T @ adjoint)
-    return np.asarray(forces.T @ adjoint + led + by_unknown)
+    if moves.nnz:
+        by_unknown += moves.T @ (by_place - found.tangent.T @ adjoint)
+    return np.asarray(forces.T @ adjoint + by_unknown)
 
 
 def jacobian(found: Equilibrium, unknowns: Unknowns, quantities: list[tuple[Quantity, str]]) -> Floats:

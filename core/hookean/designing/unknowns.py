@@ -60,6 +60,8 @@ class Unknowns:
             self.variables.append(cls(variable, system, f"/variables/{i}"))
         ends = np.cumsum([v.entries.count for v in self.variables])
         self.slices = [slice(int(e) - v.entries.count, int(e)) for v, e in zip(self.variables, ends, strict=True)]
+        self.parts = [*zip(self.variables, self.slices, strict=True), *self._driven(system)]
+        """All columns and anchors that vary, each with its part of the unknowns: variables, and what they drive."""
         self.count = int(ends[-1])
         if not self.count:
             raise InputError("/variables", "nothing varies: the forces have no elements")
@@ -69,13 +71,41 @@ class Unknowns:
         self.start = np.clip(self.start, self.lower, self.upper)
         self.clipped = int(outside.sum())
 
+    def _driven(self, system: System) -> list[tuple[Column | Moved, slice]]:
+        """The columns that follow variables."""
+        found: list[tuple[Column | Moved, slice]] = []
+        for i, (variable, part) in enumerate(zip(self.variables, self.slices, strict=True)):
+            for j, drive in enumerate(variable.variable.drives):
+                pointer = f"/variables/{i}/drives/{j}"
+                own = variable.variable.replaced(force=drive.force, field=drive.field, drives=())
+                column = Column(own, system, pointer, drive.factor)
+                if column.entries.count != variable.entries.count:
+                    said = f"it has {column.entries.count} values, the variable {variable.entries.count}; use tie"
+                    raise InputError(pointer, said)
+                found.append((column, part))
+        return found
+
     def _bounds(self) -> tuple[Floats, Floats]:
         lower, upper = np.full(self.count, -np.inf), np.full(self.count, np.inf)
         for variable, part in zip(self.variables, self.slices, strict=True):
             given = variable.variable
             lower[part] = variable.lower if given.lower is None else max(variable.lower, given.lower)
             upper[part] = np.inf if given.upper is None else given.upper
+        for column, part in self.parts[len(self.variables) :]:
+            if column.lower == 0.0 and isinstance(column, Column):
+                end, to = (lower, np.maximum) if column.factor > 0.0 else (upper, np.minimum)
+                end[part] = to(end[part], 0.0)
         return lower, upper
+
+    def begin(self, values: Any) -> None:
+        """Start from these values (u,), within the bounds; InputError unless they are one finite number for each."""
+        try:
+            given = np.asarray(values, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            given = np.zeros(0)
+        if given.shape != (self.count,) or not np.isfinite(given).all():
+            raise InputError("/start", f"{self.count} finite numbers are expected, one for each unknown")
+        self.start = np.clip(given, self.lower, self.upper)
 
     @property
     def scale(self) -> Floats:
@@ -94,7 +124,7 @@ class Unknowns:
         """Give a system and its state these values (u,)."""
         forces: dict[int, Force] = {}
         scene = system.scene
-        for variable, part in zip(self.variables, self.slices, strict=True):
+        for variable, part in self.parts:
             own = values[part]
             if isinstance(variable, Moved):
                 variable.anchor.targets = np.ascontiguousarray(variable.targets(own))
@@ -104,9 +134,9 @@ class Unknowns:
             )
         if forces:
             lead_forces(system, forces)
-        for variable, part in zip(self.variables, self.slices, strict=True):
+        for variable, part in self.parts:
             if isinstance(variable, Column):
-                variable.entries = replace(variable.entries, values=variable.entries.with_values(values[part]))
+                variable.entries = replace(variable.entries, values=variable.numbers(values[part]))
         for anchor in system.held:
             hold(state, anchor, system.slots)
 
@@ -127,7 +157,7 @@ class Unknowns:
 
         pushes: list[tuple[Ints, Ints, Floats]] = []
         moves: list[tuple[Ints, Ints, Floats]] = []
-        for variable, part in zip(self.variables, self.slices, strict=True):
+        for variable, part in self.parts:
             rows = _pushed(found, variable) if isinstance(variable, Column) else _led(variable)
             (pushes if isinstance(variable, Column) else moves).append((rows[0], rows[1] + part.start, rows[2]))
         shape = (found.x.size, self.count)
@@ -181,7 +211,8 @@ def _pushed_together(found: Equilibrium, variable: Column) -> tuple[Ints, Ints, 
     rows, columns, values = [NOTHING], [NOTHING], [np.zeros(0)]
     for unknown in range(variable.entries.count):
         step = variable.step(unknown)
-        slope = variable.slope(system, np.where(variable.entries.tie == unknown, step, 0.0), forces).ravel() / step
+        change = np.where(variable.entries.tie == unknown, step, 0.0)
+        slope = variable.factor * variable.slope(system, change, forces).ravel() / step
         place = np.flatnonzero(slope)
         rows.append(place)
         columns.append(np.full(len(place), unknown))

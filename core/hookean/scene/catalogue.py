@@ -60,7 +60,7 @@ def entry(cls: type[Force], described: dict[str, Any] | None = None) -> dict[str
 
 def schema() -> dict[str, Any]:
     """JSON schema of a scene; a force is identified by its `kind`."""
-    return Scene.model_json_schema(schema_generator=_Schema)
+    return Scene.model_json_schema(schema_generator=PlainSchema)
 
 
 def page() -> str:
@@ -112,7 +112,7 @@ def markdown() -> str:
     return "\n".join(lines) + "\n"
 
 
-class _Schema(GenerateJsonSchema):
+class PlainSchema(GenerateJsonSchema):
     """JSON schema with arrays as defaults."""
 
     def encode_default(self, dft: Any) -> Any:

@@ -12,6 +12,7 @@ import hookean
 from hookean_server.http import claimed
 from hookean_server.http.access import Access
 from hookean_server.http.analysis_schemas import ANALYSIS_EXAMPLES, CASES_EXAMPLE, analysis_schema, cases_schema
+from hookean_server.http.design_schemas import SLOPES, design_schemas
 from hookean_server.http.schemas import EXAMPLES, SCHEMAS, operation_schema
 from hookean_server.http.tokens import cookie_name
 from hookean_server.problems import CATALOGUE, MEDIA_TYPE
@@ -33,7 +34,7 @@ MADE = {
         ("/v1/sessions/{key}", "put"),
         ("/v1/sessions/{key}/branches", "post"),
     ),
-    ("/v1/jobs/{job}", "$response.body#/id"): (("/v1/jobs", "post"),),
+    ("/v1/jobs/{job}", "$response.body#/id"): (("/v1/jobs", "post"), ("/v1/design", "post")),
 }
 """By the address of what is made, and where its name is in the answer: the operations that make it."""
 
@@ -143,6 +144,13 @@ def load_cases() -> dict[str, Any]:
         "responses": problems({"application/json": {"schema": gives}}, computed=True),
         "openapi_extra": _takes(takes, {"small": CASES_EXAMPLE}),
     }
+
+
+def sensitivity() -> dict[str, Any]:
+    """Description of the route of derivatives."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Sensitivity"}}}
+    takes = {"$ref": "#/components/schemas/SensitivityRequest"}
+    return {"responses": problems(success, computed=True), "openapi_extra": _takes(takes, {"small": SLOPES})}
 
 
 def session_body(*codes: int) -> dict[str, Any]:
@@ -265,7 +273,7 @@ def _build(app: FastAPI) -> dict[str, Any]:
                 del operation["responses"]["422"]
     found = document.setdefault("components", {}).setdefault("schemas", {})
     found.clear()  # the framework's own forms of validation errors are not ours
-    found.update(sorted({**schemas, **SCHEMAS}.items()))
+    found.update(sorted({**schemas, **SCHEMAS, **design_schemas()}.items()))
     return document
 
 

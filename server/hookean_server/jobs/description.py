@@ -17,9 +17,17 @@ _PROGRESS = {
     "properties": {"iteration": _COUNT, "residual": _NUMBER, "time": _NUMBER},
     "required": ["iteration", "residual", "time"],
 }
+_SEARCHED = {
+    "type": "object",
+    "properties": {
+        "iteration": {**_COUNT, "description": "Equilibria so far"},
+        "objective": {**_NUMBER, "description": "The least so far"},
+    },
+    "required": ["iteration", "objective"],
+}
 _JOB = {
     "id": _TEXT,
-    "kind": {"enum": ["relaxation", "sweep"]},
+    "kind": {"enum": ["relaxation", "sweep", "design"]},
     "status": {"enum": STATUSES},
     "message": {"type": "string", "description": "One sentence on its status"},
     "total": {"type": "integer", "minimum": 1, "description": "Items"},
@@ -33,6 +41,7 @@ _ROW: dict[str, Any] = {
     "properties": {
         "number": {"type": "integer", "minimum": 0, "description": "Place in the sweep"},
         "parameters": {"type": "object", "description": "Its values, such as net.rest_factor"},
+        "objective": {"type": ["number", "null"], "description": "Of a design"},
         "status": _TEXT,
         "message": _TEXT,
         "iterations": _COUNT,
@@ -50,7 +59,7 @@ _ROW: dict[str, Any] = {
 }
 SCHEMAS["Job"] = {
     "type": "object",
-    "properties": {**_JOB, "progress": {"anyOf": [_PROGRESS, {"type": "null"}]}},
+    "properties": {**_JOB, "progress": {"anyOf": [_PROGRESS, _SEARCHED, {"type": "null"}]}},
     "required": list(_JOB),
 }
 SCHEMAS["Jobs"] = {
@@ -87,7 +96,11 @@ SCHEMAS["JobEvent"] = {
             "type": "string",
             "contentMediaType": "application/json",
             "contentSchema": {
-                "anyOf": [_PROGRESS, *({"$ref": f"#/components/schemas/{name}"} for name in ("JobRow", "Job"))]
+                "anyOf": [
+                    _PROGRESS,
+                    _SEARCHED,
+                    *({"$ref": f"#/components/schemas/{name}"} for name in ("JobRow", "Job")),
+                ]
             },
         },
     },
@@ -99,6 +112,7 @@ SCHEMAS["JobRequest"] = {
     "properties": {
         "scene": {"$ref": "#/components/schemas/Scene"},
         "sweep": {"anyOf": [{"$ref": "#/components/schemas/Sweep"}, {"type": "null"}]},
+        "design": {"anyOf": [{"$ref": "#/components/schemas/Design"}, {"type": "null"}]},
     },
     "required": ["scene"],
     "additionalProperties": False,
@@ -118,6 +132,15 @@ def _json(name: str) -> dict[str, Any]:
 
 def created() -> dict[str, Any]:
     """Description of the route that creates jobs."""
+    return _created("JobRequest")
+
+
+def designed() -> dict[str, Any]:
+    """Description of the route that creates jobs of design."""
+    return _created("DesignProblem")
+
+
+def _created(request: str) -> dict[str, Any]:
     headers = {
         "Location": {"description": "Address of the job", "schema": _TEXT},
         "Idempotency-Replayed": {
@@ -126,7 +149,7 @@ def created() -> dict[str, Any]:
         },
     }
     accepted = {202: {"description": "It is stored and will run", "content": _json("Job"), "headers": headers}}
-    body = {"requestBody": {"required": True, "content": _json("JobRequest")}}
+    body = {"requestBody": {"required": True, "content": _json(request)}}
     return {"responses": {**problems(None, live=True), **accepted}, "openapi_extra": body}
 
 

@@ -46,7 +46,7 @@ class Jobs:
         for kept in await self.store.run(rows.listed()):
             live = Live(kept, event=kept.event, ended=kept.status in FINAL, cancelled=kept.status == "cancelled")
             self.jobs[kept.id] = live
-            if kept.kind == "relaxation" and not live.ended:
+            if kept.kind != "sweep" and not live.ended:
                 await self._recall(live)
             if not live.ended:
                 live.task = asyncio.create_task(self._run(live))
@@ -84,17 +84,18 @@ class Jobs:
         """Whether any job is not at its end. From any thread."""
         return any(not live.ended for live in list(self.jobs.values()))
 
-    async def add(self, body: bytes, key: str) -> tuple[str, bytes, bool]:
-        """A job of a request: its address, its description and whether both were given before, to the same request
-        under the same Idempotency-Key. It is in the store when this returns. Raises Problem."""
+    async def add(self, body: bytes, key: str, kind: str = "") -> tuple[str, bytes, bool]:
+        """A job of a request, of kind `design` if its body is a problem: its address, its description and whether both
+        were given before, to the same request under the same Idempotency-Key. It is in the store when this returns.
+        Raises Problem."""
         if not key:
-            return *(await self._add(body, "", "")), False
-        key = hashlib.sha256(f"POST /v1/jobs\n{key}".encode()).hexdigest()
+            return *(await self._add(body, kind, "", "")), False
+        key = hashlib.sha256(f"POST /v1/{kind or 'jobs'}\n{key}".encode()).hexdigest()
         digest = await asyncio.to_thread(lambda: hashlib.sha256(body).hexdigest())
         async with self._alone(key):
             before: rows.Answer | None = await self.store.run(rows.answered(key))
             if before is None:
-                return *(await self._add(body, key, digest)), False
+                return *(await self._add(body, kind, key, digest)), False
             if before.digest != digest:
                 said = "This Idempotency-Key was used with another body before; use another key for another request."
                 raise Problem("key-reused", said)
@@ -137,14 +138,14 @@ class Jobs:
 
     # inside
 
-    async def _add(self, body: bytes, key: str, digest: str) -> tuple[str, bytes]:
+    async def _add(self, body: bytes, kind: str, key: str, digest: str) -> tuple[str, bytes]:
         unfinished = sum(not live.ended for live in self.jobs.values()) + self.coming
         if unfinished >= self.settings.jobs:
             said = f"{unfinished} jobs are waiting or running, the most allowed; cancel one, or retry later."
             raise Problem("job-limit", said, headers={"retry-after": "10"})
         self.coming += 1
         try:
-            task = Job("job", {"items": self.settings.items}, body, self.settings.file_seconds)
+            task = Job("job", {"items": self.settings.items, "kind": kind}, body, self.settings.file_seconds)
             reply = await self.pool.run(task)
             about = json.loads(reply.head["headers"]["about"])
             kept = rows.Kept(secrets.token_hex(16), about["kind"], about["total"], "waiting", "Waiting.", time.time())
@@ -212,7 +213,7 @@ class Jobs:
         live.tell()
 
     async def _recall(self, live: Live) -> None:
-        """The progress of a relaxation, as its last checkpoint has it."""
+        """The progress of a relaxation or design, as its last checkpoint has it."""
         found: rows.Row | None = await self.store.run(rows.item(live.kept.id, 0))
         if found is not None and found.status == rows.PARTIAL:
             said = json.loads(found.body.partition(b"\n")[0])
@@ -239,6 +240,6 @@ def summary(live: Live) -> dict[str, Any]:
     status = "cancelling" if live.cancelled and not live.ended else kept.status
     found = {"id": kept.id, "kind": kept.kind, "status": status, "message": kept.message, "total": kept.total}
     found.update(done=kept.done, failed=kept.failed, created=kept.created)
-    if kept.kind == "relaxation":
+    if kept.kind != "sweep":
         found["progress"] = live.progress[-1][1] if live.progress else None
     return found

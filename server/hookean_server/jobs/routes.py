@@ -1,4 +1,4 @@
-"""Jobs over HTTP: long relaxations and sweeps, their progress as events, their results as a table."""
+"""Jobs over HTTP: long relaxations, sweeps and designs, their progress as events, their results as a table."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from hookean_server.workers.pool import Job, Reply
 
 router = APIRouter(tags=["jobs"])
 
+Key = Annotated[str | None, Header(description="For a day, the same key with the same body is the same job")]
 Id = Annotated[str, Path(max_length=64, description="Id of a job")]
 LARGEST = 2**31
 _KEEP = {"cache-control": "no-store"}
@@ -28,21 +29,29 @@ def _jobs(request: Request) -> Jobs:
     return found
 
 
-@router.post("/v1/jobs", status_code=202, summary="Relax in the background, or sweep", **description.created())
-async def create(
-    request: Request,
-    idempotency_key: Annotated[
-        str | None, Header(description="For a day, the same key with the same body is the same job")
-    ] = None,
-) -> Response:
-    """A scene is relaxed in the background, for as long as it takes; with a `sweep` once for each of its items. It is
-    stored before this is answered, and continues after a restart."""
+@router.post("/v1/jobs", status_code=202, summary="Relax in the background, sweep or design", **description.created())
+async def create(request: Request, idempotency_key: Key = None) -> Response:
+    """A scene is relaxed in the background, for as long as it takes; with a `sweep` once for each of its items; with a
+    `design` the values are searched for which it meets goals. It is stored before this is answered, and continues after
+    a restart."""
+    return await _created(request, idempotency_key)
+
+
+@router.post("/v1/design", status_code=202, summary="Search values that meet goals", **description.designed())
+async def create_design(request: Request, idempotency_key: Key = None) -> Response:
+    """A design problem as a job: the values of its variables for which the scene's equilibrium meets goals and
+    constraints are searched in the background. Events report equilibria and the best objective; the result of item 0 is
+    the answer with the best values so far. The same as `POST /v1/jobs` with a `design` beside the scene."""
+    return await _created(request, idempotency_key, "design")
+
+
+async def _created(request: Request, idempotency_key: str | None, kind: str = "") -> Response:
     key = idempotency_key or ""
     if idempotency_key is not None and not re.fullmatch(r"[\x21-\x7e]{1,255}", key):
         said = "1 to 255 visible ASCII characters are expected"
         raise Problem("invalid-input", f"Idempotency-Key: {said}", [("/Idempotency-Key", said)])
     with request.app.state.pool.place():
-        location, body, before = await _jobs(request).add(await read_json(request), key)
+        location, body, before = await _jobs(request).add(await read_json(request), key, kind)
     replayed = {"idempotency-replayed": "true"} if before else {}
     return Response(body, 202, {"location": location, **replayed, **_KEEP}, "application/json")
 
@@ -55,7 +64,7 @@ async def listing(request: Request) -> dict[str, Any]:
 
 @router.get("/v1/jobs/{job}", summary="Status of a job", responses=description.told("Job"))
 async def read(request: Request, job: Id) -> dict[str, Any]:
-    """How many items are done; of a relaxation also how far it is."""
+    """How many items are done; of a relaxation or design also how far it is."""
     return summary(_jobs(request).find(job))
 
 
@@ -80,9 +89,9 @@ async def events(
         str | None, Header(description="Only events after this one are sent; default: all")
     ] = None,
 ) -> Response:
-    """`progress` of a relaxation (iteration, residual), `item` with the row of each item that is done, and once `done`,
-    `failed` or `cancelled` with the job; a comment each 15 s. After the last one it answers 204, which ends an
-    EventSource."""
+    """`progress` of a relaxation (iteration, residual) or a design (iteration, objective), `item` with the row of each
+    item that is done, and once `done`, `failed` or `cancelled` with the job; a comment each 15 s. After the last one it
+    answers 204, which ends an EventSource."""
     jobs = _jobs(request)
     live = jobs.find(job)
     given = (last_event_id or "").strip()
@@ -124,8 +133,9 @@ async def result(
     job: Id,
     number: Annotated[int, Path(ge=0, le=LARGEST, description="Place in the sweep, from 0")],
 ) -> Response:
-    """The result as `POST /v1/relax` gives it. An item of a sweep is solved once more for this, to the same bits; a
-    relaxation that runs, or was stopped, is shown as it was within the last second or two."""
+    """The result as `POST /v1/relax` gives it; of a design values, goals and constraints with the result. An item of a
+    sweep is solved once more for this, to the same bits; a relaxation or design that runs, or was stopped, is shown as
+    it was within the last second or two."""
     jobs = _jobs(request)
     live = jobs.find(job)
     row: rows.Row | None = await jobs.store.run(rows.item(job, number))
@@ -133,9 +143,9 @@ async def result(
         raise Problem("not-found", f"Item {number} is not done; there are {live.kept.total}, counted from 0.")
     if row.status == "failed":
         return Response(tables.line_of(row), headers=_KEEP, media_type="application/json")
-    if row.status in (rows.PARTIAL, rows.STOPPED):
+    if row.status == rows.PARTIAL or (row.status == rows.STOPPED and live.kept.kind == "relaxation"):
         return Response(await _partial(request, live, row), headers=_KEEP, media_type="application/json")
-    if live.kept.kind == "relaxation":
+    if live.kept.kind != "sweep":
         return Response(row.body.partition(b"\n")[2], headers=_KEEP, media_type="application/json")
     settings = request.app.state.settings
     _, body = await jobs.about(live)
@@ -151,8 +161,10 @@ async def _partial(request: Request, live: Live, row: rows.Row) -> bytes:
     values = json.loads(said)
     status = "cancelled" if live.cancelled else "running" if not live.ended else "stalled"
     message = values.get("message") or f"The shape after {values['iteration']} iterations."
-    options = {"size": len(body), "status": status, "message": message}
-    reply = await _worked(request, Job("shape", options, body + state, request.app.state.settings.solve_seconds))
+    seconds = request.app.state.settings.solve_seconds
+    options = {"size": len(body), "status": status, "message": message, "seconds": seconds, "longest": seconds}
+    task = "shape" if live.kept.kind == "relaxation" else "design shape"
+    reply = await _worked(request, Job(task, options, body + state, seconds))
     return reply.body.partition(b"\n")[2]
 
 

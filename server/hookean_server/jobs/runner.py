@@ -1,5 +1,5 @@
-"""Running jobs: the items of a sweep in batches, a relaxation with its progress. What is done is stored before it is
-shown; a lost worker is replaced, and its unfinished items are done again."""
+"""Running jobs: the items of a sweep in batches, a relaxation or a design with its progress. What is done is stored
+before it is shown; a lost worker is replaced, and its unfinished items are done again."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ class Runner:
         live.kept.message = f"{live.kept.done + live.kept.failed} of {live.kept.total} items are done."
         live.tell()
 
-    # relaxations
+    # relaxations and designs
 
     async def _relaxation(self, live: Live) -> tuple[str, str]:
         kept = live.kept
@@ -179,7 +179,8 @@ class Runner:
             if tries > TRIES:
                 return "failed", f"Stopped after {TRIES} tries; the last shape is kept."
             options = {"size": len(request), "seconds": self.settings.job_seconds}
-            job = Job("relaxation", options, request + state, self.settings.solve_seconds, notice=NOTICE)
+            options["longest"] = self.settings.solve_seconds
+            job = Job(kept.kind, options, request + state, self.settings.solve_seconds, notice=NOTICE)
             try:
                 async with self.relaxing:
                     await self._begun(live)
@@ -215,7 +216,10 @@ class Runner:
             return
         live.event += 1
         live.progress.append((live.event, said))
-        live.kept.message = f"Running: {said['iteration']} iterations, residual {said['residual']:.3g}."
+        if "objective" in said:
+            live.kept.message = f"Running: {said['iteration']} equilibria, objective {said['objective']:.4g}."
+        else:
+            live.kept.message = f"Running: {said['iteration']} iterations, residual {said['residual']:.3g}."
         live.tell()
         if state and self.store.budget.allows(live.kept.id):
             self.store.budget.spend(len(state))

@@ -62,8 +62,8 @@ def _lines(table: list[list[Any]]) -> bytes:
 
 
 async def events(jobs: Jobs, live: Live, after: int) -> AsyncIterator[bytes]:
-    """Server-sent events after a number: `progress` of a relaxation, `item` for each that is done, and once, at the
-    end, `done`, `failed` or `cancelled`. A comment each 15 s shows that it is alive."""
+    """Server-sent events after a number: `progress` of a relaxation or design, `item` for each that is done, and once,
+    at the end, `done`, `failed` or `cancelled`. A comment each 15 s shows that it is alive."""
     yield b"retry: 1000\n\n"
     while not jobs.pool.stopping.is_set():
         news, ended, last = live.news, live.ended, live.event

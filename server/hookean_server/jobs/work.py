@@ -1,6 +1,7 @@
 """What workers do for jobs: check one, solve items of a sweep, relax for as long as it takes. Pure functions of bytes.
 
-A request, as it is kept, is JSON: {"scene": ..., "sweep": ... or null}. A row is one line of JSON.
+A request, as it is kept, is JSON: {"scene": ..., "sweep": ... or null}, or as `designs` has it. A row is one line of
+JSON.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from hookean.system.state import State
 from hookean.system.system import System, compile
 from hookean.values.faults import faults
 from hookean_server.http import answers
+from hookean_server.jobs import designs
 from hookean_server.problems import faulty
 from hookean_server.workers.task import Cancelled, Done
 
@@ -47,13 +49,19 @@ _local = threading.local()
 def check(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
     """A request as it is kept, checked up to its first item; the header `about` describes its table."""
     value = parse(body)
+    if options.get("kind") == "design":
+        return _design(designs.split(value), "")
     if not isinstance(value, dict):
-        raise InputError("/", "an object with a scene, and optionally a sweep, is expected")
+        raise InputError("/", "an object with a scene, and optionally a sweep or a design, is expected")
     for name in value:
-        if name not in ("scene", "sweep"):
-            raise InputError(f"/{name}", "unknown field; known: scene, sweep")
+        if name not in ("scene", "sweep", "design"):
+            raise InputError(f"/{name}", "unknown field; known: scene, sweep, design")
     if "scene" not in value:
         raise InputError("/scene", "this is required")
+    if value.get("design") is not None:
+        if value.get("sweep") is not None:
+            raise InputError("/sweep", "give either a sweep or a design")
+        return _design(value, "/design")
     system, plain = _scene(value["scene"])
     scene = system.scene
     total, names = 1, []
@@ -67,6 +75,15 @@ def check(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
     about["columns"] = columns(scene)
     about["warnings"] = [*system.report.left_out(), *system.report.warnings]
     kept = answers.dump({"scene": plain, "sweep": value.get("sweep")}, "list")
+    return Done(kept, headers={"about": json.dumps(about)})
+
+
+def _design(value: dict[str, Any], prefix: str) -> Done:
+    """A request of a design, checked at the drawn shape; its faults are behind `prefix`."""
+    system, plain = _scene(value["scene"])
+    about = designs.about(system.scene, value["design"], prefix)
+    about["warnings"] = [*system.report.left_out(), *system.report.warnings]
+    kept = answers.dump({"scene": plain, "design": value["design"]}, "list")
     return Done(kept, headers={"about": json.dumps(about)})
 
 

@@ -107,7 +107,7 @@ def request(body: bytes, options: type[Given], seconds: float) -> tuple[Scene, G
     if "scene" not in value:
         raise InputError("/scene", "this is required")
     given = options.model_validate({name: v for name, v in value.items() if name != "scene"})
-    return bounded(_scene(value["scene"]), seconds), given
+    return bounded(read_scene(value["scene"]), seconds), given
 
 
 def placed(pointer: str) -> str:
@@ -117,7 +117,7 @@ def placed(pointer: str) -> str:
     return "/scene" if pointer in ("model", "result", "scene") else f"/{pointer}"
 
 
-def _scene(value: Any) -> Scene:
+def read_scene(value: Any) -> Scene:
     """The scene in a body; its faults are those of an invalid scene, under /scene."""
     try:
         read = plain(value)

@@ -25,7 +25,7 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
 
 def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
     from hookean_server.hops import functions
-    from hookean_server.jobs import work
+    from hookean_server.jobs import designs, work
     from hookean_server.workers import analysis_task, case_tasks, discretize_task, example_task, file_tasks, relax_task
 
     return {
@@ -45,4 +45,7 @@ def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
         "item": work.item,
         "relaxation": work.relaxation,
         "shape": work.shape,
+        "design": designs.search,
+        "design shape": designs.shape,
+        "sensitivity": designs.differentiate,
     }

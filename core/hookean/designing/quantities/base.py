@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.errors import InputError
 from hookean.values.columns import Model
 
 if TYPE_CHECKING:
@@ -44,6 +45,23 @@ class Quantity(Model):
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """Their derivatives."""
         raise TypeError(f"{type(self).__name__} does not define slopes()")
+
+
+def particle_places(found: Equilibrium, particles: Ints, pointer: str) -> Ints:
+    """The coordinates (k, 3) of particles among all; InputError where one does not exist."""
+    n = len(found.x)
+    if len(particles) and particles.max() >= n:
+        given = int(particles.max())
+        raise InputError(f"{pointer}/particles", f"particle {given} does not exist; there are {n}, counted from 0")
+    return np.asarray(3 * particles[:, None] + np.arange(3))
+
+
+def across(direction: Any) -> Floats:
+    """Two directions (2, 3) at right angles to one and to each other."""
+    along = direction / np.linalg.norm(direction)
+    first = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(along, first)])
 
 
 def nothing(rows: int, columns: int) -> Any:

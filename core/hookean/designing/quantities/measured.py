@@ -72,7 +72,7 @@ class Measured:
         rows = np.repeat(np.arange(m), 3 * arity)
         by_place = matrix(rows, places, by_corner, (m, self.found.x.size))
         by_unknown = nothing(m, unknowns.count)
-        for variable, part in zip(unknowns.variables, unknowns.slices, strict=True):
+        for variable, part in unknowns.parts:
             if isinstance(variable, Column) and variable.number == self.number:
                 by_unknown = by_unknown + self._by_column(variable, column, part.start, unknowns.count)
         return by_place, by_unknown

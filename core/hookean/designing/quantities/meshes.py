@@ -61,6 +61,13 @@ class Area(Quantity):
 
 def _triangles(found: Equilibrium, mesh: str, pointer: str) -> Ints:
     """The triangles (m, 3) of a mesh, in particles."""
+    faces = mesh_faces(found, mesh, pointer)
+    both = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
+    return np.asarray(both[(both[:, 0] != both[:, 1]) & (both[:, 1] != both[:, 2]) & (both[:, 2] != both[:, 0])])
+
+
+def mesh_faces(found: Equilibrium, mesh: str, pointer: str) -> Ints:
+    """The faces (m, 4) of a mesh, in particles; a triangle repeats its last corner."""
     system = found.system
     if mesh not in system.scene.meshes:
         known = ", ".join(repr(name) for name in system.scene.meshes) or "none"
@@ -68,8 +75,7 @@ def _triangles(found: Equilibrium, mesh: str, pointer: str) -> Ints:
     faces = system.places.faces(mesh)
     if (faces < 0).any():
         raise InputError(f"{pointer}/mesh", f"vertices of mesh {mesh!r} meet no particle; let a force act on it")
-    both = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
-    return np.asarray(both[(both[:, 0] != both[:, 1]) & (both[:, 1] != both[:, 2]) & (both[:, 2] != both[:, 0])])
+    return np.asarray(faces)
 
 
 def _of_corners(found: Equilibrium, unknowns: Unknowns, corners: Ints, vectors: Floats) -> Slopes:

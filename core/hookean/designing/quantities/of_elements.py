@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import StrictInt, StrictStr
+from pydantic import StrictInt, StrictStr, model_validator
 
 from hookean.designing.quantities.base import (
     Floats,
@@ -20,7 +20,7 @@ from hookean.designing.quantities.base import (
 )
 from hookean.designing.quantities.measured import Measured
 from hookean.errors import InputError
-from hookean.values.columns import Indices
+from hookean.values.columns import Indices, fault
 from hookean.values.fields import Field, Maybe
 
 if TYPE_CHECKING:
@@ -29,11 +29,20 @@ if TYPE_CHECKING:
 
 
 class OfElements(Quantity):
-    """Base of quantities of a force's elements; `equal`: minus the mean of all."""
+    """Base of quantities of a force's elements. `equal`: minus the mean of all; `smooth`: minus the mean of those that
+    meet them; `total`: the sum."""
 
     force: StrictStr | StrictInt = Field(description="Name or number of a force")
     elements: Maybe[Indices] = Field(default=None, description="Elements; default: all")
     equal: bool = Field(default=False, description="Values minus their mean, which are 0 if all are equal")
+    smooth: bool = Field(default=False, description="Values minus the mean of those of elements that share a particle")
+    total: bool = Field(default=False, description="The sum of the values")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        if self.equal + self.smooth + self.total > 1:
+            raise fault("give at most one of equal, smooth, total")
+        return self
 
     def _column(self, outputs: dict[str, str], pointer: str) -> str:
         """Which column of the result it is."""
@@ -42,7 +51,12 @@ class OfElements(Quantity):
     def values(self, found: Equilibrium, pointer: str) -> Floats:
         """The column."""
         whole = self._whole(found, pointer)
-        chosen = whole[self._rows(whole, pointer)]
+        rows = self._rows(whole, pointer)
+        chosen = whole[rows]
+        if self.total:
+            return np.array([chosen.sum()])
+        if self.smooth:
+            return np.asarray(self._joints(found, rows, pointer) @ chosen)
         return np.asarray(chosen - chosen.mean() if self.equal and len(chosen) else chosen)
 
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
@@ -52,7 +66,27 @@ class OfElements(Quantity):
         by_place, by_unknown = by_place[rows], by_unknown[rows]
         if self.equal and len(rows):
             by_place, by_unknown = less_mean(by_place), less_mean(by_unknown)
+        if self.total:
+            by_place, by_unknown = summed(by_place), summed(by_unknown)
+        if self.smooth:
+            joints = self._joints(found, rows, pointer)
+            by_place, by_unknown = joints @ by_place, joints @ by_unknown
         return by_place, by_unknown
+
+    def _joints(self, found: Equilibrium, rows: Ints, pointer: str) -> Any:
+        """Weights (k, k): 1 for an element, -1 / count for those that share a particle with it."""
+        from scipy.sparse import diags, identity
+
+        index = Measured(found, self.force, pointer).index[rows]
+        k, wide = index.shape
+        at = matrix(np.repeat(np.arange(k), wide), index.ravel(), np.ones(index.size), (k, len(found.x)))
+        near = (at @ at.T).tolil()
+        near.setdiag(0.0)
+        near = near.tocsr()
+        near.eliminate_zeros()
+        near.data[:] = 1.0
+        count = np.diff(near.indptr)
+        return (diags((count > 0).astype(float)) @ identity(k) - diags(1.0 / np.maximum(count, 1)) @ near).tocsr()
 
     def _rows(self, whole: Floats, pointer: str) -> Ints:
         if self.elements is None:
@@ -150,6 +184,7 @@ class LoadPath(OfElements):
     """The sum of |force| x length over elements between two particles [force length]."""
 
     kind: Literal["load_path"] = "load_path"
+    total: bool = Field(default=True, description="The sum of the values")
     unit: ClassVar[str] = "force length"
 
     def _whole(self, found: Equilibrium, pointer: str) -> Floats:
@@ -161,12 +196,3 @@ class LoadPath(OfElements):
         force, length = (part._whole(found, pointer) for part in parts)
         slopes = [part._whole_slopes(found, unknowns, pointer) for part in parts]
         return combined(slopes, [np.sign(force) * length, np.abs(force)])
-
-    def values(self, found: Equilibrium, pointer: str) -> Floats:
-        """The sum."""
-        return np.array([super().values(found, pointer).sum()])
-
-    def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
-        """Sums of derivatives."""
-        by_place, by_unknown = super().slopes(found, unknowns, pointer)
-        return summed(by_place), summed(by_unknown)

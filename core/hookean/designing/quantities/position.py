@@ -6,8 +6,17 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from hookean.designing.quantities.base import AXES, Axes, Floats, Ints, Quantity, Slopes, matrix, nothing
-from hookean.errors import InputError
+from hookean.designing.quantities.base import (
+    AXES,
+    Axes,
+    Floats,
+    Ints,
+    Quantity,
+    Slopes,
+    matrix,
+    nothing,
+    particle_places,
+)
 from hookean.values.columns import Indices
 from hookean.values.fields import Field
 
@@ -25,11 +34,7 @@ class Position(Quantity):
     unit: ClassVar[str] = "length"
 
     def _places(self, found: Equilibrium, pointer: str) -> Ints:
-        n = len(found.x)
-        if len(self.particles) and self.particles.max() >= n:
-            given = int(self.particles.max())
-            raise InputError(f"{pointer}/particles", f"particle {given} does not exist; there are {n}, counted from 0")
-        return np.asarray(3 * self.particles[:, None] + np.array([AXES[a] for a in self.axes])).ravel()
+        return particle_places(found, self.particles, pointer)[:, [AXES[a] for a in self.axes]].ravel()
 
     def values(self, found: Equilibrium, pointer: str) -> Floats:
         """The coordinates."""

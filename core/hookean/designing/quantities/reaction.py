@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import StrictInt, StrictStr
+from pydantic import StrictInt, StrictStr, model_validator
 
-from hookean.designing.quantities.base import AXES, Axes, Floats, Ints, Quantity, Slopes, matrix
+from hookean.designing.quantities.base import AXES, Axes, Floats, Ints, Quantity, Slopes, across, matrix
 from hookean.errors import InputError
 from hookean.running.patch import named
-from hookean.values.fields import Field
+from hookean.values.columns import Direction, fault
+from hookean.values.fields import Field, Maybe
 
 if TYPE_CHECKING:
     from hookean.designing.equilibrium import Equilibrium
@@ -18,14 +19,25 @@ if TYPE_CHECKING:
 
 
 class Reaction(Quantity):
-    """Forces of an anchor on its particles [force], along axes; `total`: their sums, `size`: their sizes."""
+    """Forces of an anchor on its particles [force], along axes; `total`: their sums, `size`: their sizes.
+
+    With a `direction` the two components across it: a target of 0 turns the forces along it. A horizontal thrust is
+    `axes` "xy".
+    """
 
     kind: Literal["reaction"] = "reaction"
     anchor: StrictStr | StrictInt = Field(description="Name or number of an anchor")
     axes: Axes = Field(default="xyz", description="Which components")
     total: bool = Field(default=False, description="The sum over the particles")
     size: bool = Field(default=False, description="Sizes of the forces along the axes, in the place of components")
+    direction: Maybe[Direction] = Field(default=None, description="Components across this direction instead [-]")
     unit: ClassVar[str] = "force"
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        if self.direction is not None and (self.size or self.axes != "xyz"):
+            raise fault("a direction takes all three axes, and no size")
+        return self
 
     def _parts(self, found: Equilibrium, pointer: str) -> tuple[Ints, Floats]:
         """Places (k, axes) among all coordinates, and the forces there."""
@@ -40,6 +52,8 @@ class Reaction(Quantity):
         """The forces."""
         _, forces = self._parts(found, pointer)
         forces = forces.sum(axis=0, keepdims=True) if self.total else forces
+        if self.direction is not None:
+            forces = forces @ across(self.direction).T
         return np.asarray(np.linalg.norm(forces, axis=1) if self.size else forces.ravel())
 
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
@@ -55,5 +69,10 @@ class Reaction(Quantity):
             sizes = np.linalg.norm(forces, axis=1)[:, None]
             along = np.divide(forces, sizes, out=np.zeros_like(forces), where=sizes > 0.0)
             turn = matrix(np.repeat(np.arange(k), wide), np.arange(k * wide), along, (k, k * wide))
+            by_place, by_unknown = turn @ by_place, turn @ by_unknown
+        if self.direction is not None:
+            from scipy.sparse import identity, kron
+
+            turn = kron(identity(k), across(self.direction)).tocsr()
             by_place, by_unknown = turn @ by_place, turn @ by_unknown
         return by_place, by_unknown

@@ -1,0 +1,112 @@
+"""Design problems of jax_fdm's examples by hookean and by jax_fdm: objective, seconds from process start, and warm.
+
+    python benchmarks/design.py --peer PYTHON     # a Python that has jax_fdm (pip install jax_fdm)
+
+Both get the same arrays and start, one thread, double precision. The objective is that of an evaluation of its own.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from design_problems import PROBLEMS, Problem
+
+HERE = Path(__file__).parent
+
+
+def given(p: Problem) -> dict[str, Any]:
+    """The problem as hookean takes it."""
+    free = p.free
+    forces = [
+        {"kind": "springs", "name": "net", "particles": p.edges, "stiffness": p.start, "rest_length": 0.0},
+        {"kind": "unary", "particles": free, "vector": p.loads[free]},
+    ]
+    goals: list[dict[str, Any]] = []
+    for kind, which, target, weight in p.goals:
+        if kind in ("z", "plane", "point"):
+            axes = {"z": "z", "plane": "x", "point": "xyz"}[kind]
+            goals.append({"kind": "position", "particles": which, "axes": axes, "target": target, "weight": weight})
+        elif kind == "reaction":
+            order = np.argsort(which)  # as the anchor has its particles
+            wanted = np.asarray(target)[order]
+            goals.append({"kind": "reaction", "anchor": "rim", "size": True, "target": wanted, "weight": weight})
+        else:
+            goals.append({"kind": kind, "force": "net", "elements": which, "target": target, "weight": weight})
+    lower, upper = p.bounds
+    anchors = [{"name": "rim", "particles": p.supports}]
+    return {
+        "scene": {"particles": p.points, "forces": forces, "anchors": anchors},
+        "variables": [{"force": "net", "field": "stiffness", "lower": lower, "upper": upper}],
+        "goals": goals,
+    }
+
+
+def own(name: str) -> None:
+    """Solve twice."""
+    import hookean
+
+    seconds = []
+    for _ in range(2):
+        start = time.perf_counter()
+        found = hookean.design(given(PROBLEMS[name]()))
+        seconds.append(time.perf_counter() - start)
+    q = np.asarray(found.variables[0]["value"]).tolist()
+    print("ANSWER" + json.dumps({"q": q, "seconds": seconds, "status": str(found.status), "steps": found.iterations}))
+
+
+def run(command: list[str]) -> tuple[dict[str, Any] | None, float]:
+    """What a program answered, and the seconds of the whole process."""
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1",
+                   "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"}  # fmt: skip
+    start = time.perf_counter()
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=HERE, check=False)
+    seconds = time.perf_counter() - start
+    lines = [line for line in done.stdout.splitlines() if line.startswith("ANSWER")]
+    if not lines:
+        print(done.stderr[-2000:], file=sys.stderr)
+        return None, seconds
+    return json.loads(lines[0].removeprefix("ANSWER")), seconds
+
+
+def row(name: str, who: str, answer: dict[str, Any] | None, whole: float) -> str:
+    """A line of the table."""
+    if answer is None:
+        return f"| {name} | {who} | failed | | |"
+    p, q = PROBLEMS[name](), np.asarray(answer["q"])
+    low, high = p.bounds
+    inside = bool((q >= low - 1e-9).all() and (q <= high + 1e-9).all())
+    value = f"{p.objective(q):.6g}" if inside else "out of bounds"
+    _, again = answer["seconds"]
+    return f"| {name} | {who} | {value} | {whole - again:.2f} | {again:.2f} |"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--peer", help="a Python that has jax_fdm")
+    parser.add_argument("--most", type=int, default=2000, help="largest net [nodes] that the peer gets (default 2000)")
+    parser.add_argument("--run", help=argparse.SUPPRESS)
+    parser.add_argument("names", nargs="*", default=list(PROBLEMS))
+    args = parser.parse_args()
+    if args.run:
+        own(args.run)
+        return
+    print("| problem | program | objective | from process start [s] | warm [s] |\n| --- | --- | --- | --- | --- |")
+    for name in args.names:
+        print(row(name, "hookean", *run([sys.executable, "design.py", "--run", name])), flush=True)
+        if args.peer and len(PROBLEMS[name]().points) <= args.most:
+            peer = str(Path(args.peer).absolute())
+            print(row(name, "jax_fdm", *run([peer, "design_peer.py", name])), flush=True)
+
+
+if __name__ == "__main__":
+    main()

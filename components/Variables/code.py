@@ -1,0 +1,11 @@
+"""What may vary in a design problem: a column of a force, or where anchors hold their particles.
+
+A column is a field of a force component, such as stiffness, rest_length, tension or vector. With
+tie all there is one value for all elements, else each has its own; an anchor moves as a whole.
+
+lower <= u <= upper
+"""
+
+from hookean_client import canvas_design
+
+variables = canvas_design.variables(ghenv, _force, _field, anchors_, _axes_, _tie_, lower_, upper_, name_)

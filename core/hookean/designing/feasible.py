@@ -1,0 +1,47 @@
+"""The values within the bounds that miss a problem's constraints least, whatever its goals."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.designing.limits import AT_BOUND
+from hookean.designing.sensitivity import jacobian
+
+if TYPE_CHECKING:
+    from hookean.designing.search import Search
+
+Floats = NDArray[np.float64]
+
+
+def nearer(search: Search) -> int:
+    """Search from the best so far for what meets the constraints, by least squares of what they miss; how often their
+    derivatives were asked for. The search keeps what is best."""
+    from scipy.optimize import least_squares
+
+    lower, upper = search.bounds
+    upper = np.where(lower < upper, upper, lower + AT_BOUND)
+    quantities = [(c.quantity, f"/constraints/{i}") for i, c in enumerate(search.problem.constraints)]
+    low, high = (np.concatenate(side) for side in zip(*search.aims.limits, strict=True))
+    sizes = np.concatenate([np.full(len(one[0]), by) for one, by in zip(search.aims.limits, search.sizes, strict=True)])
+
+    def values(y: Floats) -> Floats:
+        found = search.at(y)
+        search.note(y)
+        own = np.concatenate(search.aims.constraint_values(found)) if found.converged else np.full(len(low), np.nan)
+        missed = (own - np.clip(own, low, high)) / sizes
+        return missed if np.isfinite(missed).all() else np.full(len(low), 1e6)
+
+    def slopes(y: Floats) -> Floats:
+        own = np.concatenate(search.aims.constraint_values(search.at(y)))
+        by = jacobian(search.at(y), search.unknowns, quantities) * search.scale / sizes[:, None]
+        return np.nan_to_num(np.where(((own < low) | (own > high))[:, None], by, 0.0))
+
+    tolerance = search.problem.settings.tolerance
+    found = least_squares(
+        values, np.clip(search.best[2], lower, upper), slopes, bounds=(lower, upper), method="trf",
+        ftol=tolerance, xtol=tolerance, gtol=tolerance * 1e-4, max_nfev=search.problem.settings.max_iterations,
+    )  # fmt: skip
+    return int(found.njev)

@@ -1,0 +1,111 @@
+"""What goals would gain from bounds and constraints, and which goals conflict: multipliers at the end of a search.
+
+At a minimum the slope of the objective is a sum of those of what limits it: each limit's multiplier is the rate at
+which the objective falls as the limit gives way (the envelope theorem). The same sums, made for the slope of each goal
+by itself, give how much of it each goal gains; what they leave is what goals pull against one another.
+Source: Nocedal and Wright, Numerical Optimization, 2006, chapter 12.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.designing.limits import AT_BOUND
+from hookean.designing.sensitivity import gradients, jacobian
+
+if TYPE_CHECKING:
+    from hookean.designing.equilibrium import Equilibrium
+    from hookean.designing.search import Search
+
+Floats = NDArray[np.float64]
+
+NEAR = 1e-5  # part of the size of a constraint's values: nearer to its limit it limits
+SLIGHT = 1e-4  # part of a goal by which it would fall with unknowns of twice their size: less is rounding
+AGAINST = -0.5  # cosine between slopes from which on goals conflict
+MOST = 400  # constraints that limit, above which no multipliers are worked out
+
+
+@dataclass
+class Gains:
+    """Of each goal a row: `bounds` (goals, u) and `constraints` (goals, k), by how much its part of the objective falls
+    as a bound or limit gives way by 1, in its unit; `conflicts`: numbers of the goals that pull against it."""
+
+    bounds: Floats
+    constraints: Floats
+    conflicts: list[list[int]]
+    left: Floats  # slopes (goals, u) by scaled unknowns that no limit holds
+
+
+def gains(search: Search, found: Equilibrium, y: Floats) -> Gains | None:
+    """What would be gained at an equilibrium; None where derivatives do not exist or too many constraints limit."""
+    slopes = _goal_slopes(search, found)
+    low, high = search.bounds
+    lower, upper = y <= low + AT_BOUND, y >= high - AT_BOUND
+    held = lower | upper
+    rows, sides = _limiting(search, found)
+    if len(rows) > MOST or not np.isfinite(slopes).all():
+        return None
+    by: Floats = np.zeros((0, len(y)))
+    shares: Floats = np.zeros((len(slopes), 0))
+    if len(rows):
+        by = _constraint_slopes(search, found)[rows]
+        shares = np.asarray(np.linalg.lstsq(by[:, ~held].T, slopes[:, ~held].T, rcond=1e-10)[0].T, np.float64)
+    left = slopes - shares @ by
+    side = np.where(lower == upper, 0.0, np.where(upper, 1.0, -1.0))
+    constraints = np.zeros((len(slopes), sum(len(limit[0]) for limit in search.aims.limits)))
+    constraints[:, rows] = -shares * sides
+    inner = np.where(held, 0.0, left)
+    return Gains(-left * side / search.scale, constraints, _conflicts(search, found, inner), inner)
+
+
+def at_minimum(search: Search) -> bool:
+    """Whether the best so far is a minimum of first order: nothing but bounds and constraints has a slope left."""
+    y = search.best[2]
+    found = search.at(y)
+    gained = gains(search, found, y) if found.converged else None
+    if gained is None:
+        return False
+    whole, bounds = gained.left.sum(axis=0), gained.bounds.sum(axis=0)
+    slight = np.sqrt(search.problem.settings.tolerance) * max(1e-3, float(np.abs(_goal_slopes(search, found)).max()))
+    return bool(np.abs(whole).max(initial=0.0) <= slight and (bounds * search.scale >= -slight).all())
+
+
+def _goal_slopes(search: Search, found: Equilibrium) -> Floats:
+    """Derivatives (goals, u) of each goal's part of the objective by scaled unknowns."""
+    parts = enumerate(zip(search.problem.goals, search.aims.slopes(found), strict=True))
+    rows = [
+        gradients(found, search.unknowns, [(g.quantity, f"/goals/{i}")], [by]) * search.scale for i, (g, by) in parts
+    ]
+    return np.array(rows).reshape(-1, search.unknowns.count)
+
+
+def _limiting(search: Search, found: Equilibrium) -> tuple[NDArray[np.int64], Floats]:
+    """Values of constraints at their limits, among all, and on which side: 1 at the upper one, -1 at the lower one.
+    Where both are the same the value is taken to be at its upper one."""
+    rows, sides, first = [np.zeros(0, np.int64)], [np.zeros(0)], 0
+    values = search.aims.constraint_values(found)
+    for own, (low, high), size in zip(values, search.aims.limits, search.sizes, strict=True):
+        side = np.where(own >= high - NEAR * size, 1.0, np.where(own <= low + NEAR * size, -1.0, 0.0))
+        rows.append(first + np.flatnonzero(side))
+        sides.append(side[side != 0.0])
+        first += len(own)
+    return np.concatenate(rows), np.concatenate(sides)
+
+
+def _constraint_slopes(search: Search, found: Equilibrium) -> Floats:
+    quantities = [(c.quantity, f"/constraints/{i}") for i, c in enumerate(search.problem.constraints)]
+    return jacobian(found, search.unknowns, quantities) * search.scale
+
+
+def _conflicts(search: Search, found: Equilibrium, left: Floats) -> list[list[int]]:
+    """Of each goal the goals whose slopes point the other way."""
+    objectives = np.abs(search.aims.objectives(found))
+    sizes = np.linalg.norm(left, axis=1)
+    pulling = sizes > SLIGHT * np.maximum(objectives, np.finfo(float).tiny)
+    unit = left / np.where(sizes > 0.0, sizes, 1.0)[:, None]
+    against = (unit @ unit.T < AGAINST) & pulling[:, None] & pulling
+    return [np.flatnonzero(row).tolist() for row in against]

@@ -1,0 +1,167 @@
+"""Problems that cannot be met, have no end, contradict themselves or are badly scaled; and random ones, whose status is
+re-checked by an evaluation of its own."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hookean.designing.search import design
+from soak import SOAK
+
+from .test_gradients import cable, sag
+
+FREE = {"force": "string", "field": "rest_length", "tie": "all", "lower": 0.5, "upper": 3.0}
+
+
+def level(**more: Any) -> dict[str, Any]:
+    """The height of the string's middle."""
+    return {"kind": "position", "particles": [1], "axes": "z", **more}
+
+
+def test_an_objective_without_end_is_reported() -> None:
+    """The longer the string the lower it hangs: no lowest shape. The variable is named and the shape is at rest."""
+    variable = {"force": "string", "field": "rest_length", "tie": "all"}
+    found = design({"scene": cable(), "variables": [variable], "goals": [level()]})
+    assert found.status == "unbounded" and "string.rest_length grows" in found.message
+    assert np.isfinite(found.result.particles).all() and np.isfinite(found.objective)
+
+
+def test_constraints_that_contradict_one_another_are_named() -> None:
+    """Two heights of one particle: least squares of what is missed leave both halfway, and the sentence names both."""
+    constraints = [level(lower=z, upper=z, name=name) for z, name in ((-0.5, "high"), (-0.9, "low"))]
+    found = design({"scene": cable(), "variables": [FREE], "goals": [], "constraints": constraints})
+    assert found.status == "infeasible" and "high, low" in found.message
+    assert found.constraints[0]["value"] == pytest.approx(-0.7, rel=1e-6)
+    assert found.result.converged and found.constraints[0]["gain"] is None
+
+
+def test_badly_scaled_variables_reach_their_goals() -> None:
+    """A stiffness of 1e8 N/m and a load of 1e-2 N from starts a million times off: the sag of the closed form."""
+    scene = cable()
+    scene["forces"][0]["stiffness"] = 1e2
+    scene["forces"][1]["vector"] = [0, 0, -5e-6]
+    found = design(
+        {
+            "scene": scene,
+            "variables": [
+                {"force": "string", "field": "rest_length", "tie": "all", "lower": 1e-3},
+                {"force": "load", "field": "vector", "axes": "z", "tie": "all"},
+            ],
+            "goals": [
+                level(target=-0.4, weight=1e6),
+                {"kind": "reaction", "anchor": "left", "axes": "z", "target": 20.0, "weight": 1e-6},
+            ],
+        }
+    )
+    rest, load = found.variables[0]["value"], float(np.ravel(found.variables[1]["value"])[0])
+    assert load == pytest.approx(-40.0, rel=1e-6) and sag(100.0, rest, 40.0) == pytest.approx(0.4, rel=1e-6)
+
+
+def test_a_start_without_an_equilibrium_is_reported() -> None:
+    """A weight that nothing holds falls: the search says so and returns the start."""
+    scene = cable()
+    scene["anchors"] = []
+    found = design({"scene": scene, "variables": [FREE], "goals": [level(target=-1.0)]})
+    assert found.status == "stalled" and found.message.startswith("The start has no equilibrium")
+    assert np.isfinite(found.objective)
+
+
+class Chain:
+    """A funicular chain of force densities between two ends, by numpy: what a problem asks of it."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng = rng = np.random.default_rng(seed)
+        self.n = int(rng.integers(2, 6))
+        self.end = np.array([rng.uniform(2.0, 6.0), 0.0, rng.uniform(-1.0, 1.0)])
+        self.loads = np.array([[rng.uniform(-0.3, 0.3), 0.0, -rng.uniform(0.5, 2.0)] for _ in range(self.n - 1)])
+        self.low, self.high = rng.uniform(0.2, 0.8), rng.uniform(3.0, 9.0)
+        self.start = rng.uniform(1.0, 3.0, self.n)
+
+    def shape(self, q: np.ndarray) -> np.ndarray:
+        """Places (n + 1, 3): C^T Q C x = p."""
+        k = np.diag(q[:-1] + q[1:]) - np.diag(q[1:-1], 1) - np.diag(q[1:-1], -1)
+        right = self.loads.copy()
+        right[-1] += q[-1] * self.end
+        return np.vstack([np.zeros(3), np.linalg.solve(k, right), self.end])
+
+    def measure(self, part: dict[str, Any], q: np.ndarray) -> np.ndarray:
+        """Values of a goal or constraint."""
+        x = self.shape(q)
+        length = np.linalg.norm(np.diff(x, axis=0), axis=1)
+        if part["kind"] == "position":
+            return x[part["particles"], 2]
+        return {"length": length, "force": q * length, "load_path": np.array([(q * length**2).sum()])}[part["kind"]]
+
+    def part(self) -> dict[str, Any]:
+        """A random quantity."""
+        kind = self.rng.choice(["position", "length", "force", "load_path"])
+        if kind == "position":
+            return {"kind": "position", "axes": "z", "particles": [int(self.rng.integers(1, self.n))]}
+        return {"kind": str(kind), "force": "chain"}
+
+    def problem(self) -> dict[str, Any]:
+        """One or two goals, and up to two constraints near what other densities give."""
+        rng, goals, constraints = self.rng, [], []
+        for _ in range(rng.integers(1, 3)):
+            part, other = self.part(), rng.uniform(self.low, self.high, self.n)
+            goals.append({**part, "target": self.measure(part, other).tolist()} if rng.random() < 0.7 else part)
+        for _ in range(rng.integers(0, 3)):
+            part = self.part()
+            values = self.measure(part, rng.uniform(self.low, self.high, self.n))
+            limit = float(values.max() * rng.uniform(0.8, 1.2)) if rng.random() < 0.5 else float(values.min())
+            constraints.append({**part, str(rng.choice(["lower", "upper"])): limit})
+        links = [[i, i + 1] for i in range(self.n)]
+        forces = [
+            {"kind": "springs", "name": "chain", "particles": links, "stiffness": self.start.tolist(),
+             "rest_length": 0.0},
+            {"kind": "unary", "particles": list(range(1, self.n)), "vector": self.loads.tolist()},
+        ]  # fmt: skip
+        points = [(self.end * i / self.n).tolist() for i in range(self.n + 1)]
+        variable = {"force": "chain", "field": "stiffness", "lower": self.low, "upper": self.high}
+        scene = {"particles": points, "forces": forces, "anchors": [{"particles": [0, self.n]}]}
+        return {"scene": scene, "variables": [variable], "goals": goals, "constraints": constraints}
+
+    def judged(self, problem: dict[str, Any], q: np.ndarray) -> tuple[float, float]:
+        """The most by which a constraint is missed, in parts of its values, and the objective."""
+        missed = objective = 0.0
+        for goal in problem["goals"]:
+            values = self.measure(goal, q)
+            objective += float(((values - goal["target"]) ** 2).sum() if "target" in goal else values.sum())
+        for part in problem["constraints"]:
+            values = self.measure(part, q)
+            over = max(
+                float((part.get("lower", -np.inf) - values).max()), float((values - part.get("upper", np.inf)).max())
+            )
+            missed = max(missed, over / max(np.abs(values).max(), 1.0))
+        return missed, objective
+
+
+@settings(max_examples=200 if SOAK else 12)
+@given(seed=st.integers(0, 10**6))
+def test_the_status_of_random_problems_is_true(seed: int) -> None:
+    """`converged`: the values meet bounds and constraints to 1e-5 by another evaluation, and no small step that does is
+    better by 1e-4 of the objective. `infeasible`: constraints are missed there, and at each of 200 random values."""
+    chain = Chain(seed)
+    problem = chain.problem()
+    found = design(problem)
+    q = np.asarray(found.variables[0]["value"])
+    assert (q >= chain.low - 1e-9).all() and (q <= chain.high + 1e-9).all()
+    missed, objective = chain.judged(problem, q)
+    assert objective == pytest.approx(found.objective, rel=1e-6, abs=1e-9)
+    assert found.status in ("converged", "infeasible", "max_iterations", "stalled")
+    if found.status == "infeasible":
+        assert missed > 1e-7
+        tries = chain.rng.uniform(chain.low, chain.high, (200, chain.n))
+        assert all(chain.judged(problem, other)[0] > 0.0 for other in tries)
+        return
+    assert missed <= 1e-5 and all(entry["met"] for entry in found.constraints)
+    for size in (1e-2, 1e-3) if found.status == "converged" else ():
+        steps = size * q * chain.rng.normal(size=(60, chain.n))
+        for other in np.clip(q + steps, chain.low, chain.high):
+            over, value = chain.judged(problem, other)
+            assert over > 0.0 or value >= objective - 1e-4 * (abs(objective) + 1e-3)

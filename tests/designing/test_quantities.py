@@ -1,0 +1,154 @@
+"""Every quantity of an equilibrium: its derivatives against differences of whole solves, and closed forms."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hookean.designing.equilibrium import settle
+from hookean.designing.problem import Problem
+from hookean.designing.quantities import QUANTITIES
+from hookean.designing.search import design
+from hookean.designing.sensitivity import jacobian
+from hookean.designing.unknowns import Unknowns
+from hookean.errors import InputError
+from hookean.system.system import compile
+
+N = 4
+POINTS = [[float(i), float(j), 0.1 * i * j] for i in range(N) for j in range(N)]
+FACES = [[N * i + j, N * i + j + N, N * i + j + N + 1, N * i + j + 1] for i in range(N - 1) for j in range(N - 1)]
+CORNERS = [0, N - 1, N * N - N, N * N - 1]
+
+
+def roof() -> dict[str, Any]:
+    """A net on a mesh of 3 x 3 faces, held at its corners, under loads; and a surface beside it."""
+    ground = [[-5, -5, -3], [8, -5, -3.5], [8, 8, -2], [-5, 8, -3]]
+    return {
+        "meshes": {
+            "roof": {"vertices": POINTS, "faces": FACES},
+            "ground": {"vertices": ground, "faces": [[0, 1, 2], [0, 2, 3]]},
+        },
+        "particles": POINTS,
+        "forces": [
+            {"kind": "springs", "name": "net", "mesh": "roof", "stiffness": 20.0, "rest_factor": 0.8},
+            {"kind": "unary", "particles": list(range(N * N)), "vector": [0.1, 0.0, -1.0]},
+        ],
+        "anchors": [{"name": "corners", "particles": CORNERS[:2]}, {"particles": CORNERS[2:]}],
+        "masses": [2.0] * (N * N),
+    }
+
+
+VARIABLES = [
+    {"force": "net", "field": "stiffness", "tie": [[0, 1, 2, 3], [9, 10]]},
+    {"force": "net", "field": "rest_factor", "tie": "all"},
+    {"anchor": "corners", "axes": "z", "tie": [[0], [1]]},
+]
+INNER = [5, 6, 9]
+KINDS: list[dict[str, Any]] = [
+    {"kind": "position", "particles": INNER, "axes": "xz"},
+    {"kind": "offset", "particles": INNER, "origin": [0, 1, -2], "direction": [1, 0.2, 0.3]},
+    {"kind": "offset", "particles": INNER, "origin": [0, 1, -2], "normal": [1, 2, 3]},
+    {"kind": "offset", "particles": INNER, "curve": [[0, 0, 0], [2, 1, -1], [3, 3, -2], [3, 9, -2]]},
+    {"kind": "offset", "particles": INNER, "mesh": "ground"},
+    {"kind": "length", "force": "net", "equal": True},
+    {"kind": "length", "force": "net", "total": True},
+    {"kind": "force", "force": "net", "elements": [0, 3, 7]},
+    {"kind": "force", "force": "net", "smooth": True},
+    {"kind": "force_density", "force": "net"},
+    {"kind": "load_path", "force": "net"},
+    {"kind": "output", "force": "net", "column": "strain"},
+    {"kind": "strain_energy", "force": "net"},
+    {"kind": "reaction", "anchor": "corners", "size": True},
+    {"kind": "reaction", "anchor": "corners", "direction": [1, 1, 1]},
+    {"kind": "reaction", "anchor": "corners", "axes": "xy", "total": True},
+    {"kind": "area", "mesh": "roof"},
+    {"kind": "volume", "mesh": "roof"},
+    {"kind": "planarity", "mesh": "roof"},
+    {"kind": "fairness", "force": "net"},
+    {"kind": "frequency", "mode": 2},
+]
+
+
+@pytest.fixture(scope="module")
+def moved() -> Any:
+    """The equilibria of the roof at its unknowns and at four others beside each."""
+
+    def at(values: np.ndarray | None) -> tuple[Any, Unknowns]:
+        problem = Problem.read({"scene": roof(), "variables": VARIABLES, "goals": KINDS[:1]})
+        system = compile(problem.scene)
+        unknowns, state = Unknowns(problem, system), system.start()
+        unknowns.put(system, state, unknowns.start if values is None else values)
+        return settle(system, state), unknowns
+
+    found, unknowns = at(None)
+    steps = 1e-3 * np.eye(unknowns.count)
+    around = [[at(unknowns.start + way * step)[0] for way in (-2, -1, 1, 2)] for step in steps]
+    return found, unknowns, around
+
+
+@pytest.mark.parametrize("given", KINDS, ids=lambda given: "-".join(map(str, list(given.values())[:3:2])))
+def test_derivatives_are_those_of_whole_solves(given: dict[str, Any], moved: Any) -> None:
+    """Differences of order 4 with steps of 1e-3 leave 1e-9; those of the kernels add 1e-7: 1e-6 of the largest."""
+    found, unknowns, around = moved
+    quantity = Problem.read({"scene": roof(), "variables": VARIABLES, "goals": [given]}).goals[0].quantity
+    own = jacobian(found, unknowns, [(quantity, "")])
+    expected = np.stack(
+        [np.array([1 / 12, -2 / 3, 2 / 3, -1 / 12]) @ [quantity.values(f, "") for f in each] / 1e-3 for each in around],
+        axis=1,
+    )
+    assert own.shape == expected.shape and np.abs(own).max() > 1e-3
+    assert own == pytest.approx(expected, abs=1e-6 * np.abs(own).max())
+
+
+def test_all_quantities_are_tried() -> None:
+    """No kind without its derivatives in the test before."""
+    assert {given["kind"] for given in KINDS} == set(QUANTITIES)
+
+
+def test_a_mass_on_a_spring_has_the_frequency_that_is_asked_for() -> None:
+    """f = sqrt(k / m) / 2 pi of one mass between two springs of rest length 0: k = 2 pi² f² m for both together."""
+    scene = {
+        "particles": [[-1, 0, 0], [0, 0, 0], [1, 0, 0]],
+        "forces": [{"kind": "springs", "name": "s", "particles": [[0, 1], [1, 2]], "stiffness": 5, "rest_length": 0}],
+        "anchors": [{"particles": [0, 2]}],
+        "masses": [3.0] * 3,
+    }
+    variables = [{"force": "s", "field": "stiffness", "tie": "all"}]
+    found = design({"scene": scene, "variables": variables, "goals": [{"kind": "frequency", "target": 2.0}]})
+    assert found.variables[0]["value"] == pytest.approx(2.0 * np.pi**2 * 2.0**2 * 3.0, rel=1e-6)
+
+
+def test_a_range_asks_for_nothing_within_it() -> None:
+    """Forces between 9 and 11: the nearest limit is the target of those outside, and the others keep their weight 0."""
+    found = design(
+        {
+            "scene": roof(),
+            "variables": [{"force": "net", "field": "rest_factor", "lower": 0.1, "upper": 2.0}],
+            "goals": [{"kind": "force", "force": "net", "lower": 2.0, "upper": 9.0}],
+        }
+    )
+    forces = np.asarray(found.goals[0]["value"])
+    assert found.goals[0]["met"] and forces.min() >= 2.0 - 1e-5 and forces.max() <= 9.0 + 1e-5
+    assert np.ptp(forces) > 0.1  # not made equal
+
+
+@pytest.mark.parametrize(
+    "given, pointer, said",
+    [
+        ({"kind": "offset", "particles": [1]}, "/goals/0", "exactly one of direction"),
+        ({"kind": "offset", "particles": [1], "mesh": "hill"}, "/goals/0/mesh", "'hill' does not exist"),
+        ({"kind": "offset", "particles": [1], "curve": [[0, 0, 0]]}, "/goals/0/curve", "at least 2 points"),
+        ({"kind": "planarity", "mesh": "ground"}, "/goals/0/mesh", "meet no particle"),
+        ({"kind": "length", "force": "net", "equal": True, "smooth": True}, "/goals/0", "at most one of"),
+        ({"kind": "frequency", "mode": 99}, "/goals/0/mode", "there are 36 free axes"),
+        ({"kind": "length", "force": "net", "target": 1, "lower": 0}, "/goals/0/target", "not both"),
+        ({"kind": "length", "force": "net", "lower": 2, "upper": 1}, "/goals/0/lower", "more than upper"),
+    ],
+)
+def test_faults_say_where_and_what(given: dict[str, Any], pointer: str, said: str) -> None:
+    """One clear sentence each."""
+    with pytest.raises(InputError) as error:
+        design({"scene": roof(), "variables": VARIABLES, "goals": [given]})
+    assert error.value.faults[0].pointer == pointer and said in error.value.sentence
