@@ -65,15 +65,20 @@ export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1
 export async function open(file: File): Promise<Summary & { warnings?: string[] }> {
   const body = new FormData();
   body.append("file", file, file.name);
-  const answer = await ask(`/v1/sessions${labelled(file.name)}`, { method: "POST", body });
+  const answer = await ask(`/v1/sessions${labelled(file.name.replace(/\.hookean$/, ""))}`, { method: "POST", body });
   return (await answer.json()) as Summary;
 }
 
-export type Format = "scene" | "3dm" | "obj" | "compas" | "csv" | "npz";
+export type Format = "hookean" | "scene" | "3dm" | "obj" | "compas" | "csv" | "npz";
 
 /** The session as a file, and sentences on what that does not hold. */
-export async function exported(key: string, format: Format): Promise<{ blob: Blob; notes: string[] }> {
-  const answer = await ask(format === "scene" ? `${at(key)}/scene` : `${at(key)}/state?format=${format}`);
+export async function exported(
+  key: string,
+  format: Format,
+  view: unknown = {},
+): Promise<{ blob: Blob; notes: string[] }> {
+  const looked = format === "hookean" ? `&view=${encodeURIComponent(JSON.stringify(view))}` : "";
+  const answer = await ask(format === "scene" ? `${at(key)}/scene` : `${at(key)}/state?format=${format}${looked}`);
   const notes = JSON.parse(answer.headers.get("hookean-warnings") ?? "[]") as string[];
   return { blob: await answer.blob(), notes };
 }

@@ -114,6 +114,9 @@ export interface Kind {
   title: string;
   summary: string;
   role: string;
+  particles_per_element: number;
+  /** Without a place it acts on all. */
+  everywhere: boolean;
   fields: Field[];
 }
 
@@ -133,6 +136,7 @@ export interface Field {
   unit: string;
   type: string;
   default: unknown;
+  required?: boolean;
   bounds?: Bounds;
   choices?: string[];
 }

@@ -123,9 +123,9 @@ def test_what_was_told_of_a_file_outlives_the_server(tmp_path: Path) -> None:
         ("a.json", "{", "/file", "not valid JSON"),
         ("a.json", "[" * 5000, "/", ""),
         ("a.json", '[{"dtype": "builtins/eval", "data": "1"}]', "/file", "no lines or faces"),
-        ("a.stl", "solid", "/file", "give a .3dm, .obj, .json or .npz file"),
+        ("a.stl", "solid", "/file", "give a .3dm, .obj, .json, .npz or .hookean file"),
         ("a.3dm", SHEET, "/file", ""),
-        ("../../etc/passwd", "root:x:0:0", "/file", "give a .3dm, .obj, .json or .npz file"),
+        ("../../etc/passwd", "root:x:0:0", "/file", "give a .3dm, .obj, .json, .npz or .hookean file"),
     ],
 )
 def test_a_fault_is_one_of_the_file(client: httpx.Client, name: str, data: str, pointer: str, said: str) -> None:

@@ -148,7 +148,7 @@ def test_commands_name_what_is_wrong_with_a_file(tmp_path: Path) -> None:
             "lid.obj: the mesh is closed",
         ),
         "cube.json": (written(CUBE), "cube.json: a closed mesh has no naked vertices, so nothing is held"),
-        "a.stl": ("solid\n", "a.stl cannot be opened; give a .3dm, .obj, .json or .npz file"),
+        "a.stl": ("solid\n", "a.stl cannot be opened; give a .3dm, .obj, .json, .npz or .hookean file"),
         "b.json": ('{"forces": [{"kind": "springs", "lines": 7}]}', "b.json /forces/0/lines"),
         "c.json": ('{"status": "converged", "particles": []}', "c.json is a result, not a scene"),
         "d.json": ("[]", "d.json has no lines or faces"),
@@ -184,7 +184,7 @@ def test_the_command_explains_what_it_reads(tmp_path: Path) -> None:
 def test_the_list_of_readers_is_the_only_one() -> None:
     """What the page lets one choose, what the help of commands names, and what sentences name follow from it."""
     suffixes = [known.suffix for known in READERS]
-    assert endings() == ".3dm, .obj, .json or .npz" == f"{', '.join(suffixes[:-1])} or {suffixes[-1]}"
+    assert endings() == ".3dm, .obj, .json, .npz or .hookean" == f"{', '.join(suffixes[:-1])} or {suffixes[-1]}"
     page = (ROOT / "studio" / "src" / "ui" / "opening.tsx").read_text(encoding="utf-8")
     assert f'"{",".join(suffixes)}"' in page
     for command in ("relax", "simulate", "studio"):

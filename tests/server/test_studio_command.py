@@ -182,7 +182,7 @@ def test_files_of_commands_that_were_killed_are_removed(home: Home) -> None:
     [
         ("bad.obj", "v 0 0\n", "bad.obj: line 1: a vertex needs three coordinates"),
         ("none.obj", None, "none.obj cannot be read"),
-        ("a.stl", "solid", "give a .3dm, .obj, .json or .npz file"),
+        ("a.stl", "solid", "give a .3dm, .obj, .json, .npz or .hookean file"),
     ],
 )
 def test_a_file_that_cannot_be_opened_is_told_in_a_sentence(

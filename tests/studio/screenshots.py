@@ -31,7 +31,7 @@ def take(studio: Studio, figure: str, picked: str) -> bytes:
     page = studio.page
     page.goto(studio.service.url)
     key = studio.choose(figure)
-    studio.press("To rest")
+    studio.press("Solve")
     studio.service.at_rest(key, 900.0)  # s: the ribbon takes its time
     studio.rests_at(studio.service.particles(key))
     studio.press("Fit")

@@ -26,7 +26,7 @@ def test_an_anchor_is_dragged_and_the_form_follows(studio: Studio):
     with that anchor moved comes to rest by the Python API."""
     key = studio.choose(CABLE)
     scene, service = studio.service.example(CABLE), studio.service
-    studio.press("To rest")
+    studio.press("Solve")
     studio.rests_at(equilibrium(scene))
     before = studio.particles()
 
@@ -128,7 +128,7 @@ def test_a_pause_holds_though_an_edit_overtakes_its_answer(cable: Studio):
 def test_the_same_picture_after_loading_anew(cable: Studio):
     """The page holds no state: what it shows is what the service has."""
     key = cable.key
-    cable.press("To rest")
+    cable.press("Solve")
     cable.until(lambda: cable.service.summary(key)["status"] == "converged")
     cable.rests_at(cable.service.particles(key))
     drawn, places = cable.particles(), []

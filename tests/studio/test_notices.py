@@ -117,7 +117,7 @@ def test_a_load_on_a_scene_of_a_mesh_is_added_undone_and_removed(open_studio: Op
 def test_to_rest_is_what_relax_finds(open_studio: Opened) -> None:
     studio = session(open_studio, CABLE, "to-rest")
     wanted = relax(Scene.read(CABLE))
-    studio.press("To rest")
+    studio.press("Solve")
     studio.page.get_by_text("In equilibrium after").wait_for()
     studio.service.at_rest("to-rest")
     assert studio.service.summary("to-rest")["iteration"] == wanted.iterations

@@ -183,7 +183,7 @@ def test_a_cable_is_opened_formed_and_edited_by_keyboard_alone(studio: Studio):
     page.keyboard.press("Enter")
     studio.drawing()
     key = studio.key
-    page.get_by_role("button", name="To rest").focus()
+    page.get_by_role("button", name="Solve").focus()
     page.keyboard.press("Enter")
     truth = equilibrium(service.example("9.4-cable"))
     studio.rests_at(truth)

@@ -159,7 +159,7 @@ def test_an_obj_and_a_scene_are_opened_from_a_file(studio: Studio, tmp_path: Pat
     studio.page.goto(studio.service.url)
     studio.page.get_by_label("File to open").set_input_files(scene)
     studio.drawing()
-    studio.press("To rest")
+    studio.press("Solve")
     studio.rests_at(equilibrium(CABLE))
 
 

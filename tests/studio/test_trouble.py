@@ -34,7 +34,7 @@ def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, morta
     studio.start()
     studio.allowed = GONE
     studio.open("cable")
-    studio.press("To rest")
+    studio.press("Solve")
     truth = equilibrium(CABLE)
     studio.rests_at(truth)
     studio.drag(0, 40, 30)
@@ -61,7 +61,7 @@ def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, morta
     studio.rests_at(mortal.particles("cable"))
     studio.press("Undo")
     studio.until(lambda: mortal.summary("cable")["undo"] == 0)
-    studio.press("To rest")
+    studio.press("Solve")
     studio.rests_at(truth)
 
 
@@ -87,7 +87,7 @@ def test_two_people_edit_one_session(open_studio: Opened):
     service.put("shared", CABLE)
     one.open("shared")
     other.open("shared")
-    one.press("To rest")
+    one.press("Solve")
     truth = equilibrium(CABLE)
     one.rests_at(truth)
     other.rests_at(truth)
@@ -98,7 +98,7 @@ def test_two_people_edit_one_session(open_studio: Opened):
     one.settled()
     held = [{"particles": a["particles"], "targets": a["targets"]} for a in service.anchors("shared")]
     rest = equilibrium(CABLE, {"pin": held})
-    one.press("To rest")
+    one.press("Solve")
     one.rests_at(rest)
     other.rests_at(rest)
 
@@ -112,7 +112,7 @@ def test_grasshopper_gives_the_session_another_scene(tab: Studio):
     longer["anchors"] = [{"particles": [0, 6]}]
     tab.service.put("redrawn", longer)
     tab.until(lambda: len(tab.particles()) == 7)
-    tab.press("To rest")
+    tab.press("Solve")
     tab.rests_at(equilibrium(longer))
 
 
@@ -123,7 +123,7 @@ def test_what_is_done_before_the_service_greets_again_is_done(tab: Studio):
     service.put("greeted", CABLE)
     tab.open("greeted")
     wire = Wire(tab)
-    tab.press("To rest")
+    tab.press("Solve")
     tab.until(lambda: service.summary("greeted")["status"] == "converged")
     tab.settled()
     revision = service.summary("greeted")["revision"]

@@ -28,7 +28,7 @@ class Options:
     units of the file. Exits with 0, or with 2 for bad input or a model that is not in equilibrium.
     """
 
-    source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json or .npz file")]
+    source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json, .npz or .hookean file")]
     recipe: Annotated[
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); default: layer names define the model")
     ] = None

@@ -28,7 +28,7 @@ class Options:
     with 0, 2 for bad input, 3 if no equilibrium was found.
     """
 
-    source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json or .npz file")]
+    source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json, .npz or .hookean file")]
     recipe: Annotated[
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); default: layer names define the model")
     ] = None

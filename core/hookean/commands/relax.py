@@ -36,7 +36,7 @@ class Options:
     a slash, an output path is a folder, and files in it are named after their input.
     """
 
-    files: Annotated[list[Path], typer.Argument(help=".3dm, .obj, .json or .npz files")]
+    files: Annotated[list[Path], typer.Argument(help=".3dm, .obj, .json, .npz or .hookean files")]
     output: Annotated[
         str | None,
         typer.Option(

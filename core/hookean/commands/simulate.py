@@ -35,7 +35,7 @@ class Options:
     rest, 130: Ctrl-C. The frames until then are written in each case.
     """
 
-    source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json or .npz file")]
+    source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json, .npz or .hookean file")]
     recipe: Annotated[
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); default: layer names define the model")
     ] = None

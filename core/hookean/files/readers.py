@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +33,8 @@ class Source:
 
     Of a .3dm file, what its objects were built into; `factor` is a length of the file in the scene's unit, `unit` the
     file's. `compas` is the Mesh or Graph that the file is; `stored` is true where the scene is the one that hookean
-    stored in a file of another format. `simulation` is the saved one, in the shape to go on from. `nothing` and
+    stored in a file of another format. `simulation` is the saved one, in the shape to go on from; `view` and `variants`
+    are those of a .hookean file. `nothing` and
     `unheld` are sentences on why it cannot be relaxed as it is: it has nothing to relax, or nothing of it is held.
     """
 
@@ -46,6 +47,8 @@ class Source:
     compas: Any = None
     stored: bool = False
     simulation: Simulation | None = None
+    view: dict[str, Any] = field(default_factory=dict)
+    variants: dict[str, Simulation] = field(default_factory=dict)
     nothing: str = ""
     unheld: str = ""
 
@@ -198,6 +201,23 @@ def _saved(data: bytes, called: str, recipe: Recipe | None) -> Source:
     return source
 
 
+def _project(data: bytes, called: str, recipe: Recipe | None) -> Source:
+    from hookean.files import project
+
+    found = project.read(data, called)
+    source = _plain(found.simulation.edited_scene(), called, "a model with its state", (), "")
+    source.simulation, source.view, source.variants = found.simulation, found.view, found.variants
+    if found.variants:
+        source.lines.append(f"variants: {', '.join(found.variants)}")
+    return source
+
+
+def _is_project(begins: bytes) -> bool:
+    from hookean.files import project
+
+    return project.begins(begins)
+
+
 def _plain(scene: Scene, called: str, what: str, warnings: tuple[str, ...], unheld: str) -> Source:
     forces = ", ".join(f.kind_name for f in scene.forces) or "no force"
     units = scene.units
@@ -219,6 +239,12 @@ READERS = (
         _obj,
     ),
     Reader("a JSON file", ".json", lambda begins: begins.startswith((b"{", b"[")), _json),
-    Reader("a saved simulation", ".npz", lambda begins: begins.startswith(b"PK\x03\x04"), _saved),
+    Reader(
+        "a saved simulation",
+        ".npz",
+        lambda begins: begins.startswith(b"PK\x03\x04") and not _is_project(begins),
+        _saved,
+    ),
+    Reader("a model with its state", ".hookean", lambda begins: _is_project(begins), _project),
 )
 """Every kind of file that is read; for an unknown ending the first that knows its bytes."""

@@ -11,14 +11,16 @@ from hookean.atomic_write import put
 from hookean.errors import InputError
 from hookean.files.exchange.write import EXCHANGED, ending_of, exchange
 from hookean.running.result import Result
+from hookean.running.simulation import Simulation
 from hookean.scene.scene import Scene
 from hookean.system.system import compile
 
 ENDINGS = ".3dm, .json, .obj, .csv, .png, .dxf, .vtu, .inp, .ifc or .compas.json"
 
 
-def save(result: Result, path: str | os.PathLike[str]) -> list[str]:
-    """Write a result to a file: .3dm and .obj with its shape, .json with everything, .csv with a row for each element
+def save(result: Result | Simulation, path: str | os.PathLike[str]) -> list[str]:
+    """Write a result to a file, or a Simulation to a .hookean file, which has its scene and its state:
+    .3dm and .obj with its shape, .json with everything, .csv with a row for each element
     and reaction, .png with a picture; for other programs .dxf, .vtu (ParaView), .inp (Abaqus), .ifc and .compas.json (a
     COMPAS Graph) with elements, forces, supports, loads, reactions. Returns sentences on what the file does not hold.
 
@@ -26,6 +28,14 @@ def save(result: Result, path: str | os.PathLike[str]) -> list[str]:
     """
     target = Path(path)
     ending = ending_of(target)
+    if isinstance(result, Simulation) != (ending == ".hookean"):
+        needed = "a .hookean file holds a Simulation" if ending == ".hookean" else "save it in a .hookean file"
+        raise InputError(target.name or str(path), f"{type(result).__name__} given; {needed}")
+    if isinstance(result, Simulation):
+        from hookean.files import project
+
+        project.save(result, target)
+        return []
     if ending not in ENDINGS.replace(",", "").replace(" or ", " ").split():
         raise InputError(target.name or str(path), f"has an unknown ending; end the name in {ENDINGS}")
     if ending == ".png":
@@ -50,8 +60,9 @@ def save(result: Result, path: str | os.PathLike[str]) -> list[str]:
 
 
 def open(path: str | os.PathLike[str], recipe: str | os.PathLike[str] | Mapping[str, Any] | None = None) -> Scene:
-    """The scene in a .3dm, .obj, .json or .npz file; of a .3dm by a recipe: a file, its text (TOML or JSON) or its
-    tables; without one by layer names. Raises InputError where the file or the recipe has a fault."""
+    """The scene in a .3dm, .obj, .json, .npz or .hookean file; of a .3dm by a recipe: a file, its text
+    (TOML or JSON) or its tables; without one by layer names. Raises InputError where the file or
+    the recipe has a fault."""
     from hookean.files.readers import read_path
 
     if isinstance(recipe, Mapping):

@@ -50,7 +50,7 @@ app = new()
 @app.command()
 def studio(
     file: Annotated[
-        Path | None, typer.Argument(help=".3dm, .obj, .json or .npz file to open; default: the start page")
+        Path | None, typer.Argument(help=".3dm, .obj, .json, .npz or .hookean file to open; default: the start page")
     ] = None,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address")] = False,
 ) -> None:

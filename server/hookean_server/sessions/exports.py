@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from hookean.files import obj
+from hookean.files import obj, project
 from hookean.running.simulation import Simulation
 from hookean.system.addressed import axes_held
 from hookean.system.two_ended import spring_ends
@@ -24,6 +24,7 @@ LACKS = {
 FORMATS = {
     "json": "application/json",
     "npz": "application/octet-stream",
+    "hookean": "application/octet-stream",
     "3dm": "model/vnd.3dm",
     "obj": "model/obj",
     "compas": "application/json",
@@ -32,15 +33,19 @@ FORMATS = {
 """Formats of a session's state, with their media types."""
 
 
-def export(simulation: Simulation, form: str, arrays: str) -> tuple[str, bytes, list[str]]:
+def export(
+    simulation: Simulation, form: str, arrays: str, view: dict[str, Any] | None = None
+) -> tuple[str, bytes, list[str]]:
     """Media type, bytes, and sentences on what is not in them. `form` is one of FORMATS, or scene, topology or
-    anchors."""
+    anchors; `view` is kept in a .hookean file."""
     if form == "scene":
         return "application/json", simulation.edited_scene().canonical.encode(), []
     if form == "topology":
         return "application/json", answers.dump(topology(simulation), arrays), []
     if form == "anchors":
         return "application/json", answers.dump({"anchors": anchors(simulation)}, arrays), []
+    if form == "hookean":
+        return FORMATS[form], project.write(project.Project(simulation, view or {})), []
     if form == "3dm":
         return FORMATS[form], *_threedm(simulation)
     made: bytes = globals()[f"_{form}"](simulation, arrays)

@@ -261,7 +261,8 @@ class Host:
         """The session as a file of some format, or its topology."""
         from hookean_server.sessions import exports
 
-        media_type, data, notes = exports.export(self._simulation(), head["format"], head.get("arrays", "list"))
+        how = head["format"], head.get("arrays", "list"), head.get("view", {})
+        media_type, data, notes = exports.export(self._simulation(), *how)
         return {**self._described(), "type": media_type, "notes": notes}, data
 
     # running

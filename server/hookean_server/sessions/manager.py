@@ -128,10 +128,12 @@ class Manager(Awake):
             live.playing = live.playing and described["playing"]
         return found
 
-    async def export(self, key: str | Live, form: str, arrays: str = "list") -> tuple[dict[str, Any], bytes]:
-        """The session in some format; its head has the media `type`."""
+    async def export(
+        self, key: str | Live, form: str, arrays: str = "list", view: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Any], bytes]:
+        """The session in some format, a .hookean file with a view; its head has the media `type`."""
         live = self.find(key)
-        _, head, body = await self._ask(live, "export", seconds=ANSWER, format=form, arrays=arrays)
+        _, head, body = await self._ask(live, "export", seconds=ANSWER, format=form, arrays=arrays, view=view or {})
         live.use()
         return head, body
 

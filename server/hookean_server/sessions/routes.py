@@ -11,6 +11,8 @@ from fastapi import APIRouter, Path, Query, Request
 from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import JSONResponse, Response
 
+from hookean.errors import InputError
+from hookean.scene.text import parse
 from hookean_server.http import claimed, openapi
 from hookean_server.http.handling import read_json, uploaded_scene
 from hookean_server.http.limits import media_type
@@ -178,17 +180,27 @@ async def state(
     request: Request,
     key: Key,
     when: When,
-    form: Annotated[Literal["json", "npz", "3dm", "obj", "compas", "csv"], Query(alias="format")] = "json",
+    form: Annotated[Literal["json", "npz", "hookean", "3dm", "obj", "compas", "csv"], Query(alias="format")] = "json",
     arrays: Arrays = "list",
+    view: Annotated[str, Query(max_length=4000, description="Of `hookean`: how it is looked at, a JSON object")] = "{}",
 ) -> Response:
-    """A result as JSON; or a file: .npz of Simulation.save, .3dm, .obj, COMPAS Mesh or Graph, CSV with a row for each
-    element and each reaction, units in its first line. Files of .npz, .3dm and COMPAS open again as the same model;
-    what a file does not store is in the header `hookean-warnings`, a JSON list of sentences."""
+    """A result as JSON; or a file: .hookean with scene, state and view, .npz of Simulation.save, .3dm, .obj,
+    COMPAS Mesh or Graph, CSV with a row for each element and each reaction, units in its first line. Files of .hookean,
+    .npz, .3dm and COMPAS open again as the same model; what a file does not store is in the header
+    `hookean-warnings`, a JSON list of sentences."""
     live = manager(request).find(key)
-    answer = await _exported(request, live, when, form, arrays)
+    answer = await _exported(request, live, when, form, arrays, _view(view))
     if form != "json":
         answer.headers["content-disposition"] = _attached(live.label or live.key, "json" if form == "compas" else form)
     return answer
+
+
+def _view(told: str) -> dict[str, Any]:
+    """How a session is looked at; InputError where that is not a JSON object."""
+    found = parse(told, "view")
+    if not isinstance(found, dict):
+        raise InputError("view", f"{told[:40]!r} given; give a JSON object")
+    return found
 
 
 def _attached(name: str, ending: str) -> str:
@@ -199,8 +211,10 @@ def _attached(name: str, ending: str) -> str:
     return f'attachment; filename="{plain}.{ending}"' + also
 
 
-async def _exported(request: Request, live: Live, when: Conditions, form: str, arrays: str = "list") -> Response:
-    head, data = await manager(request).export(live, form, arrays)
+async def _exported(
+    request: Request, live: Live, when: Conditions, form: str, arrays: str = "list", view: Any = None
+) -> Response:
+    head, data = await manager(request).export(live, form, arrays, view)
     tag = f'"{live.topology}"' if form == "topology" else live.etag(head)
     headers = {"etag": tag, "cache-control": "no-cache", **claimed.warned(head["notes"])}
     answer = Response(data, media_type=FORMATS.get(form, "application/json"), headers=headers)

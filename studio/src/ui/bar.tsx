@@ -54,7 +54,7 @@ const CONTROLS: Control[] = [
   { name: "Play", mark: "play", action: "play", hint: "Play in real time", keys: "Space" },
   { name: "Pause", mark: "pause", action: "pause", hint: "Pause", keys: "Space" },
   { name: "Step", mark: "step", action: "step", hint: "One frame forward", keys: "." },
-  { name: "To rest", mark: "rest", action: "relax", hint: "Run at full speed to equilibrium, with the scene's solver" },
+  { name: "Solve", mark: "rest", action: "relax", hint: "Solve to equilibrium; Pause keeps the shape so far" },
   { name: "Reset", mark: "reset", action: "reset", hint: "Go back to the start; edits are kept" },
   { name: "Undo", mark: "undo", action: "undo", hint: "Undo the last edit", keys: "Control+Z" },
   { name: "Redo", mark: "redo", action: "redo", hint: "Redo the last undone edit", keys: "Control+Shift+Z" },

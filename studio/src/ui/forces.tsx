@@ -5,13 +5,15 @@ import type { Session } from "../session";
 import { amount, amounts, isValue, isVector, led, type Value } from "./amounts";
 import { kinds, know } from "./catalogue";
 import { NumberField } from "./number";
+import { AddForce } from "./addforce";
 import { AddLoad, RemoveForce } from "./loads";
 import { Settings } from "./settings";
 import { Slider } from "./slider";
 import type { Studio } from "./studio";
 import { counted, said, titled, unit } from "./words";
 
-export function Forces({ studio: { session } }: { studio: Studio }) {
+export function Forces({ studio }: { studio: Studio }) {
+  const { session } = studio;
   const scene = session.scene.value;
   const live = session.connection.value === "live";
   useEffect(() => {
@@ -27,6 +29,7 @@ export function Forces({ studio: { session } }: { studio: Studio }) {
         <Force key={`${number} ${force.kind}`} session={session} force={force} number={number} units={scene.units} />
       ))}
       <AddLoad session={session} />
+      <AddForce studio={studio} />
       <Settings session={session} />
     </>
   );
@@ -50,7 +53,6 @@ function Force({ session, force, number, units }: Shown) {
     fields.filter((field) => !isSeldom(field, force)),
   ];
   const title = titleOf(force, kind, number);
-  const isLoad = session.topology.value?.forces[number]?.role === "load";
   const column = (field: Field) => (
     <Column
       key={field.name}
@@ -63,7 +65,7 @@ function Force({ session, force, number, units }: Shown) {
     />
   );
   return (
-    <fieldset class="force">
+    <fieldset class="force" data-force={force.name} tabIndex={-1}>
       <legend title={kind?.summary}>
         {title} {force.name && <span class="faint">{kind?.title}</span>}
       </legend>
@@ -75,7 +77,7 @@ function Force({ session, force, number, units }: Shown) {
         </details>
       )}
       {fields.length === 0 && <p class="faint">None of its values can change during a run.</p>}
-      {isLoad && <RemoveForce session={session} number={number} title={title} />}
+      <RemoveForce session={session} number={number} title={title} />
     </fieldset>
   );
 }

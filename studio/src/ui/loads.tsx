@@ -13,18 +13,20 @@ export function AddLoad({ session }: { session: Session }) {
   if (!scene || !topology) return null;
   const size = fitting(scene, topology);
   const unit = scene.units.force;
-  const add = (force: SceneForce, done: string) => void make({ add: [force] }, done);
+  const add = async (force: SceneForce, done: string) => {
+    if (await make({ add: [force] }, done)) choose(force.name);
+  };
   const load = () => {
     const held = new Set(session.anchors.value.flatMap((anchor) => anchor.particles));
     const particles = Array.from({ length: topology.particles }, (_, i) => i).filter((i) => !held.has(i));
     const force = { kind: "unary", name: freeName(scene, "load"), particles, vector: [0, 0, -size] };
     if (!particles.length) refuse(new Error("All particles are held, so a load would have no effect."));
-    else add(force, `A load of ${measured(size, unit)} downwards acts on every free particle.`);
+    else void add(force, `A load of ${measured(size, unit)} downwards acts on every free particle.`);
   };
   const weight = () => {
     const total = Number((size * topology.particles).toPrecision(2));
     const force = { kind: "self_weight", name: freeName(scene, "self weight"), total };
-    add(force, `Self weight of ${measured(total, unit)} in total acts on all particles.`);
+    void add(force, `Self weight of ${measured(total, unit)} in total acts on all particles.`);
   };
   const disabled = busy || session.connection.value !== "live";
   return (
@@ -58,15 +60,17 @@ export function RemoveForce({ session, number, title }: { session: Session; numb
 }
 
 /** Make an edit with a notice on it; `busy` until the session has answered. */
-function useEdit(session: Session) {
+export function useEdit(session: Session) {
   const busy = useSignal(false);
   const make = async (patch: Patch, done: string) => {
     busy.value = true;
     try {
       await session.edit(patch);
       tell(done);
+      return true;
     } catch (error) {
       refuse(error);
+      return false;
     } finally {
       busy.value = false;
     }
@@ -88,8 +92,21 @@ function fitting(scene: Scene, topology: Topology): number {
 }
 
 /** A name that no force has yet. */
-function freeName(scene: Scene, name: string): string {
+export function freeName(scene: Scene, name: string): string {
   let found = name;
   for (let n = 2; scene.forces.some((force) => force.name === found); n++) found = `${name} ${n}`;
   return found;
+}
+
+/** Bring a force's fields into view, once they are drawn, and give them the focus. */
+export function choose(name: string): void {
+  const look = (tries: number) => {
+    const found = [...document.querySelectorAll<HTMLElement>("fieldset.force")].find(
+      (set) => set.dataset["force"] === name,
+    );
+    if (!found) return void (tries && setTimeout(() => look(tries - 1), 50));
+    found.scrollIntoView({ block: "nearest" });
+    found.focus({ preventScroll: true });
+  };
+  look(100);
 }

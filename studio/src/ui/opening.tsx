@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
+import { keepView, viewOf } from "../view/kept";
 import { quiet, refuse, tell } from "./notices";
 import { go, met } from "./place";
 
@@ -9,7 +10,7 @@ const over = signal(false);
 /** What is being opened; "" for nothing. */
 export const opening = signal("");
 
-const KINDS = ".3dm,.obj,.json,.npz";
+const KINDS = ".3dm,.obj,.json,.npz,.hookean";
 
 /** Open a file as a new session and go there. */
 async function openFile(file: File): Promise<void> {
@@ -17,6 +18,7 @@ async function openFile(file: File): Promise<void> {
   quiet();
   try {
     const made = await api.open(file);
+    keepView(made.key, await viewOf(file));
     go(made.key);
     const warnings = made.warnings ?? [];
     if (warnings.length) tell(`${file.name} is open. Notes on the file:`, warnings);
@@ -34,7 +36,8 @@ export function FileButton() {
   return (
     <div class="drop">
       <p>
-        Drop a file anywhere on this page: a Rhino model (.3dm), an OBJ mesh, a COMPAS document or a scene (.json), or a
+        Drop a file anywhere on this page: a saved model (.hookean), a Rhino model (.3dm), an OBJ mesh, a COMPAS document or a scene
+        (.json), or a
         saved simulation (.npz).
       </p>
       <button type="button" disabled={opening.value !== ""} onClick={() => input.current?.click()}>

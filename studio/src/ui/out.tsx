@@ -7,6 +7,12 @@ import type { Studio } from "./studio";
 
 const FILES: { format: api.Format; seen: string; ending: string; hint: string }[] = [
   {
+    format: "hookean",
+    seen: "Save",
+    ending: ".hookean",
+    hint: "The whole model in one file: scene, present shape and view; opens here, in hookean relax and in Python",
+  },
+  {
     format: "scene",
     seen: "Scene",
     ending: ".json",
@@ -80,7 +86,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
             title={hint}
             disabled={!live || busy.value !== ""}
             aria-busy={busy.value === seen}
-            onClick={() => void take(seen, name + ending, () => api.exported(session.key, format))}
+            onClick={() => void take(seen, name + ending, () => api.exported(session.key, format, view.value?.kept()))}
           >
             {seen}
           </button>

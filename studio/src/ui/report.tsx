@@ -1,9 +1,10 @@
 // The status of the session in a sentence, the warnings of its report, and losses.
 import { useEffect } from "preact/hooks";
+import { Repairs } from "./repairs";
 import { tellReturns } from "./returns";
 import type { Studio } from "./studio";
 import { stateOf } from "./running";
-import { measured, particlesOf, said, titled } from "./words";
+import { measured, particlesOf, plain, said, titled } from "./words";
 
 export function Report({ studio }: { studio: Studio }) {
   useEffect(() => tellReturns(studio.session), [studio]);
@@ -12,6 +13,7 @@ export function Report({ studio }: { studio: Studio }) {
       <Lost studio={studio} />
       <Standing studio={studio} />
       <Warnings studio={studio} />
+      <Repairs session={studio.session} />
     </section>
   );
 }
@@ -52,7 +54,7 @@ function Standing({ studio: { session } }: { studio: Studio }) {
     <div class={stale ? "standing stale" : "standing"}>
       <p aria-live="polite">
         <strong class={`state ${summary.playing ? "playing" : summary.status}`}>{state}</strong>{" "}
-        <span class="sentence">{sentence}</span>
+        <span class="sentence">{plain(sentence)}</span>
       </p>
       {summary.playing && <Now studio={{ session }} />}
     </div>
@@ -92,10 +94,10 @@ function Warnings({ studio }: { studio: Studio }) {
           <li key={sentence}>
             {particles.length > 0 ? (
               <button type="button" onClick={choose}>
-                {sentence}
+                {plain(sentence)}
               </button>
             ) : (
-              sentence
+              plain(sentence)
             )}
           </li>
         );

@@ -3,7 +3,7 @@ import { palette } from "../view/colours";
 import type { Colouring, Layer, Legend, Lock, Look } from "../view/types";
 import type { Studio } from "./studio";
 import { dark } from "./theme";
-import { measured, said, titled } from "./words";
+import { counted, measured, said, titled } from "./words";
 
 const COLOURINGS: [Colouring, string][] = [
   ["force", "Force"],
@@ -118,14 +118,25 @@ export function LegendBox({ studio: { view, session, options } }: { studio: Stud
   if (!legend && !load && !reaction) return null;
   return (
     <div class={stale ? "legend stale" : "legend"} role="group" aria-label="Legend">
-      {legend && <Ramp legend={legend} />}
+      {legend && <Ramp legend={legend} mark={() => (options.marked.value = view.value?.beyond() ?? [])} />}
       {loads && load > 0 && <Arrow name="Load" size={load} unit={force} colour={colours.load} />}
       {reactions && reaction > 0 && <Arrow name="Reaction" size={reaction} unit={force} colour={colours.reaction} />}
     </div>
   );
 }
 
-function Ramp({ legend: { title, unit, low, high, colours } }: { legend: Legend }) {
+interface OfRamp {
+  legend: Legend;
+  mark: () => void;
+}
+
+function Ramp({ legend: { title, unit, low, high, beyond, equal, colours }, mark }: OfRamp) {
+  if (equal !== null)
+    return (
+      <p>
+        {title}: all equal, <span class="numbers">{measured(equal, unit === "-" ? "" : unit)}</span>
+      </p>
+    );
   const isEven = low < 0 && Math.abs(low + high) < 1e-9 * high;
   return (
     <div>
@@ -138,6 +149,11 @@ function Ramp({ legend: { title, unit, low, high, colours } }: { legend: Legend 
         {isEven && <span>0</span>}
         <span>{said(high, 3)}</span>
       </p>
+      {beyond > 0 && (
+        <button type="button" class="small" title="Mark the springs whose values lie beyond the scale" onClick={mark}>
+          {counted(beyond, "value")} beyond
+        </button>
+      )}
     </div>
   );
 }

@@ -48,6 +48,11 @@ export function Stage({ studio }: { studio: Studio }) {
             {fault}
           </p>
         )}
+        {studio.view.value?.away.value && (
+          <button type="button" class="back-to-form" onClick={() => studio.view.value?.fit()}>
+            The form is out of view: zoom to it
+          </button>
+        )}
         <Looks studio={studio} />
         <LegendBox studio={studio} />
       </div>

@@ -1,6 +1,7 @@
 // The start page: figures, sessions and files to open.
 import { useEffect } from "preact/hooks";
 import { Gallery } from "./gallery";
+import { New } from "./new";
 import { FileButton } from "./opening";
 import { arrive } from "./place";
 import { Running } from "./running";
@@ -22,6 +23,7 @@ export function Start() {
         <section aria-labelledby="running-title" class="running">
           <h2 id="running-title">Sessions</h2>
           <Running />
+          <New />
           <FileButton />
         </section>
         <section aria-labelledby="gallery-title">

@@ -2,6 +2,7 @@
 import { effect, type Signal, signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { Session } from "../session";
+import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
 import { Panels } from "./panels";
@@ -27,6 +28,7 @@ export function SessionPage({ name }: { name: string }) {
     const session = new Session(name);
     const chosen = options();
     chosen.layers.value = { ...chosen.layers.value, ...remembered(LAYERS, {}) };
+    takeUp(name, chosen);
     chosen.dark.value = dark.peek();
     const forget = effect(() => remember(LAYERS, chosen.layers.value));
     const readings = new Readings(session, chosen);

@@ -33,6 +33,15 @@ export const titled = (name: string) => (name.charAt(0).toUpperCase() + name.sli
 /** Counted things. */
 export const counted = (count: number, one: string) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;
 
+/** A sentence of the service without pointers: /settings/time_step is the time step, /forces/0 force 0. */
+export const plain = (sentence: string) =>
+  sentence
+    .replace(/\/settings\/(\w+)/g, (_, name: string) => `the ${name.replaceAll("_", " ")}`)
+    .replace(/\/forces\/(\d+)(?:\/(\w+))?/g, (_, number: string, field?: string) =>
+      field ? `${field.replaceAll("_", " ")} of force ${number}` : `force ${number}`,
+    )
+    .replace(/^the ([a-z])/, (_, first: string) => `The ${first}`);
+
 const NUMBERED = /\b(particle|spring)(?: (\d+)|s (\d+(?:(?:, and |, | and )\d+(?![\d.]))*))/g;
 
 /** The particles a sentence speaks of, those at the ends of its springs included. */

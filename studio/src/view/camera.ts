@@ -1,10 +1,11 @@
-// From where it is looked at: one camera, z up, whose named views look from so far away that they are nearly parallel.
+// From where it is looked at: one camera, z up, whose named views look from so far away that they are
+// orthographic to half a pixel.
 import { Box3, MathUtils, Matrix4, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Look } from "./types";
 
 const FREE = 32;
-const PARALLEL = 2.5;
+const PARALLEL = 0.03; // degrees: over the depth of a form it shifts less than half a pixel
 const GLIDE = 280;
 const MARGIN = 1.22;
 const EDGE = 0.92;
@@ -69,6 +70,16 @@ export class Eye {
 
   /** Whether all of `positions` is in view, apart from a little at the edges. */
   holds(positions: ArrayLike<number>): boolean {
+    return !this.any(positions, false);
+  }
+
+  /** Whether any of `positions` is in view. */
+  sees(positions: ArrayLike<number>): boolean {
+    return positions.length === 0 || this.any(positions, true);
+  }
+
+  /** Whether one of `positions` is inside the view, or outside. */
+  private any(positions: ArrayLike<number>, inside: boolean): boolean {
     this.camera.updateMatrixWorld();
     const { projectionMatrix, matrixWorldInverse } = this.camera;
     const m = new Matrix4().multiplyMatrices(projectionMatrix, matrixWorldInverse).elements;
@@ -77,10 +88,11 @@ export class Eye {
       const y = positions[i + 1]!;
       const z = positions[i + 2]!;
       const edge = EDGE * (m[3]! * x + m[7]! * y + m[11]! * z + m[15]!);
-      if (!(Math.abs(m[0]! * x + m[4]! * y + m[8]! * z + m[12]!) <= edge)) return false;
-      if (!(Math.abs(m[1]! * x + m[5]! * y + m[9]! * z + m[13]!) <= edge)) return false;
+      const across = Math.abs(m[0]! * x + m[4]! * y + m[8]! * z + m[12]!) <= edge;
+      const isInside = across && Math.abs(m[1]! * x + m[5]! * y + m[9]! * z + m[13]!) <= edge;
+      if (isInside === inside) return true;
     }
-    return true;
+    return false;
   }
 
   /** The view a form is first seen in: a flat upright one face on, all others at a slant. */

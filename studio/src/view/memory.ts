@@ -4,10 +4,18 @@ import type { Place } from "./camera";
 
 const name = (key: string) => `hookean-eye-${key}`;
 
+/** A place as plain numbers. */
+export const numbers = ({ target, towards, height, angle }: Place) => [
+  ...target.toArray(),
+  ...towards.toArray(),
+  height,
+  angle,
+];
+
 /** Keep the place of the eye. */
-export function remember(key: string, { target, towards, height, angle }: Place): void {
+export function remember(key: string, place: Place | number[]): void {
   try {
-    sessionStorage.setItem(name(key), JSON.stringify([...target.toArray(), ...towards.toArray(), height, angle]));
+    sessionStorage.setItem(name(key), JSON.stringify(Array.isArray(place) ? place : numbers(place)));
   } catch {
     // a browser that keeps nothing, or is full: the next sight is all of the form
   }

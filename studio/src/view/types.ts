@@ -17,6 +17,10 @@ export interface Legend {
   unit: string;
   low: number;
   high: number;
+  /** How many values lie beyond the ends; they have the colours of the ends. */
+  beyond: number;
+  /** The value that all have, where they have one. */
+  equal: number | null;
   /** CSS colours from low to high, evenly spaced. */
   colours: string[];
 }
@@ -53,12 +57,22 @@ export const options = (): Options => ({
   dark: signal(false),
 });
 
+/** How a model was looked at, in its file. */
+export interface Kept {
+  /** Target and direction to the eye (x y z each), height seen [length], angle [degrees]. */
+  eye: number[];
+  colouring: Colouring;
+  layers: Partial<Record<Layer, boolean>>;
+}
+
 export interface View {
   readonly legend: Signal<Legend | null>;
   /** The longest arrows of loads and of reactions [force]; 0 for none. */
   readonly arrows: Signal<{ load: number; reaction: number }>;
   /** What the keyboard has just done, in a sentence, to be read out. */
   readonly announcement: Signal<string>;
+  /** Whether the form has left the view. */
+  readonly away: Signal<boolean>;
   /** Frames drawn in the last second. */
   readonly rate: Signal<number>;
   /** All of the form into view. */
@@ -66,6 +80,10 @@ export interface View {
   look(from: Look): void;
   /** Bring particles into view. */
   show(particles: number[]): void;
+  /** Particles of the springs whose values lie beyond the scale. */
+  beyond(): number[];
+  /** How it is looked at now: what a saved model keeps. */
+  kept(): Kept;
   /** What is seen now, in full quality. */
   png(): Promise<Blob>;
   /** Where a particle is drawn [CSS pixels of the page]; null behind the eye. */

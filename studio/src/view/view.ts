@@ -9,17 +9,17 @@ import { acting } from "./acting";
 import { Eye } from "./camera";
 import { ramp } from "./colours";
 import { Hand, type Held } from "./dragging";
-import { Extremes, extremes } from "./extremes";
+import { Extremes, outside, spread } from "./extremes";
 import { form } from "./form";
 import { Guide } from "./guide";
 import { Highlights } from "./highlights";
 import { Keys } from "./keys";
-import { remember, remembered } from "./memory";
+import { numbers, remember, remembered } from "./memory";
 import { Picker } from "./picking";
 import { Picture } from "./picture";
 import { Stage } from "./stage";
 import { Triad } from "./triad";
-import type { Legend, Look, Options, Picked, View } from "./types";
+import type { Kept, Legend, Look, Options, Picked, View } from "./types";
 
 const REST = 220;
 
@@ -32,6 +32,7 @@ class Drawing implements View {
   readonly legend = signal<Legend | null>(null);
   readonly arrows = signal({ load: 0, reaction: 0 });
   readonly announcement = signal("");
+  readonly away = signal(false);
   readonly rate = signal(0);
   private readonly stage: Stage;
   private readonly eye: Eye;
@@ -43,6 +44,7 @@ class Drawing implements View {
   private readonly keys: Keys;
   private readonly picker = new Picker();
   private readonly scale = new Extremes();
+  private outliers = 0;
   private readonly undo: (() => void)[] = [];
   private frame: Frame | null = null;
   private drawn: Frame | null = null;
@@ -91,6 +93,18 @@ class Drawing implements View {
     const { positions } = this.drawn ?? { positions: [] };
     if (particles.length)
       this.eye.fit(particles.flatMap((i) => [positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!]));
+  }
+
+  beyond(): number[] {
+    const { low, high } = this.scale;
+    const ends = this.picture.form?.springs;
+    if (!this.drawn || !ends || !this.outliers) return [];
+    return outside(this.numbers(this.drawn), low, high).flatMap((i) => [ends[2 * i]!, ends[2 * i + 1]!]);
+  }
+
+  kept(): Kept {
+    const { colouring, layers } = this.options;
+    return { eye: numbers(this.eye.place), colouring: colouring.value, layers: layers.value };
   }
 
   async png(): Promise<Blob> {
@@ -290,6 +304,7 @@ class Drawing implements View {
   /** Nothing has moved for a moment. */
   private readonly settle = (): void => {
     this.draw(true);
+    this.away.value = this.drawn !== null && !this.eye.sees(this.drawn.positions);
     remember(this.session.key, this.eye.place);
   };
 
@@ -342,8 +357,10 @@ class Drawing implements View {
     const resting = finely || !frame.playing;
     if (!resting && !this.scale.due(now)) return;
     this.picture.survey(frame);
-    const [low, high] = extremes(this.numbers(frame));
-    if (this.scale.take(low, high, resting, now)) this.relabel();
+    const { low, high, beyond } = spread(this.numbers(frame));
+    const isOther = beyond !== this.outliers;
+    this.outliers = beyond;
+    if (this.scale.take(low, high, resting, now) || isOther) this.relabel();
     const { load, reaction } = this.picture.longest;
     const told = this.arrows.value;
     if (load !== told.load || reaction !== told.reaction) this.arrows.value = { load, reaction };
@@ -376,8 +393,10 @@ class Drawing implements View {
     const force = this.options.colouring.value === "force";
     const { colours, first, last } = ramp(low, high, this.options.dark.value);
     const unit = force ? (this.session.topology.value?.units.force ?? "") : "-";
-    this.legend.value =
-      low <= high ? { title: force ? "Force" : "Strain", unit, low: first, high: last, colours } : null;
+    const isFlat = high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high));
+    const title = force ? "Force" : "Strain";
+    const told = { title, unit, low: first, high: last, beyond: this.outliers, equal: isFlat ? high : null, colours };
+    this.legend.value = low <= high ? told : null;
   }
 
   /** Colours and sizes, where they may have changed. */

@@ -56,8 +56,9 @@ def additions(
     for part in parts:
         if part.internal and part.particles.shape[1] == 2 and not _of_mesh(system, part):
             objects += _lines(part, result, palette, unit, scale)
-    objects += _meshes(system, result, parts, built, palette, scale)
-    objects += _carried(result, built, scale)
+    meshes = _meshes(system, result, parts, built, palette, scale)
+    objects += meshes
+    objects += [item for item in _carried(result, built, scale) if not _is_drawn(item, meshes)]
     objects += _reactions(system, result, parts[-1], scale)
     objects, refused = _drawable(objects)
     used = list(dict.fromkeys(item.layer for item in objects))
@@ -179,6 +180,16 @@ def _carried(result: Result, built: Built | None, scale: float) -> list[NewObjec
             shapes = [Points(entry["points"] * scale)]
         found += [NewObject(shape, "geometry", name, None, text) for shape in shapes]
     return found
+
+
+def _is_drawn(item: NewObject, meshes: Sequence[NewObject]) -> bool:
+    """Whether a carried mesh is one that a force acts on, with the same faces at the same places."""
+    mesh = item.geometry
+    return isinstance(mesh, Mesh) and any(
+        np.array_equal(mesh.faces, other.geometry.faces) and np.array_equal(mesh.vertices, other.geometry.vertices)
+        for other in meshes
+        if isinstance(other.geometry, Mesh)
+    )
 
 
 def _curve(points: Floats, entry: dict[str, object]) -> object:

@@ -1,0 +1,92 @@
+// What can be done about a warning or a run that failed, as buttons: each is an edit, which can be undone.
+import type { Anchor, Patch, Scene, Summary, Topology } from "../model";
+import type { Session } from "../session";
+import { useEdit } from "./loads";
+import { said } from "./words";
+
+interface Repair {
+  seen: string;
+  patch: Patch;
+  done: string;
+}
+
+export function Repairs({ session }: { session: Session }) {
+  const { busy, make } = useEdit(session);
+  const [summary, scene, topology] = [session.summary.value, session.scene.value, session.topology.value];
+  if (!summary || !scene || !topology) return null;
+  const loose = isLoose(session.anchors.value, scene);
+  const found = [...ofSentences(summary, scene), ...(loose ? holds(topology) : [])];
+  if (!found.length && !loose) return null;
+  return (
+    <div class="repairs" role="group" aria-label="Repairs">
+      {loose && <p>Nothing is held: hold some particles, or pick one and pin it under Picked.</p>}
+      {found.map(({ seen, patch, done }) => (
+        <button
+          key={seen}
+          type="button"
+          class="small"
+          disabled={busy || session.connection.value !== "live"}
+          onClick={() => void make(patch, done)}
+        >
+          {seen}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+/** What the service's sentences advise. */
+function ofSentences(summary: Summary, scene: Scene): Repair[] {
+  const told = [summary.message, ...(summary.warnings ?? [])].join(" ");
+  const found: Repair[] = [];
+  const step = /Steps? (?:of|up to) ([\d.e-]+) /.exec(told)?.[1];
+  if (step && Number(step) > 0) {
+    const size = `${said(Number(step))} ${scene.units.time}`;
+    found.push({
+      seen: `Use step ${size}`,
+      patch: { settings: { time_step: Number(step) } },
+      done: `The time step is ${size}; Reset goes back to the start.`,
+    });
+  }
+  const most = scene.settings["max_iterations"];
+  if (/Raise max_iterations/.test(told) && typeof most === "number") {
+    const more = 10 * most;
+    const seen = `Allow ${more.toLocaleString("en")} iterations`;
+    found.push({ seen, patch: { settings: { max_iterations: more } }, done: `${seen}: Solve goes on from here.` });
+  }
+  if (/use auto,/.test(told))
+    found.push({ seen: "Use solver auto", patch: { settings: { solver: "auto" } }, done: "The solver is auto." });
+  return found;
+}
+
+/** Whether nothing holds the form: no anchor, no support and no floor. */
+function isLoose(anchors: Anchor[], scene: Scene): boolean {
+  const supports = ["support", "anchor_spring", "floor", "solid_plane_collide"];
+  const held = anchors.some((anchor) => anchor.particles.length && anchor.axes);
+  return !held && !scene.settings["floor"] && !scene.forces.some((force) => supports.includes(force.kind));
+}
+
+/** Ways to hold a form: the rim of its meshes, the ends of its lines. */
+function holds(topology: Topology): Repair[] {
+  const edges = new Map<string, [number, number]>();
+  for (const { faces } of Object.values(topology.meshes))
+    for (const face of faces.map((corners) => [...new Set(corners)]))
+      face.forEach((a, i) => {
+        const b = face[(i + 1) % face.length]!;
+        const key = a < b ? `${a} ${b}` : `${b} ${a}`;
+        if (!edges.delete(key)) edges.set(key, [a, b]);
+      });
+  const counts = new Map<number, number>();
+  for (const particle of topology.springs.flat()) counts.set(particle, (counts.get(particle) ?? 0) + 1);
+  const places: [string, number[]][] = [
+    ["rim", [...new Set([...edges.values()].flat())]],
+    ["ends", [...counts].filter(([, count]) => count === 1).map(([particle]) => particle)],
+  ];
+  return places
+    .filter(([, particles]) => particles.length)
+    .map(([name, particles]) => ({
+      seen: `Hold the ${name}`,
+      patch: { pin: [{ particles: particles.sort((a, b) => a - b) }] },
+      done: `The ${name} is held where it is, ${particles.length} particles.`,
+    }));
+}

@@ -1,0 +1,42 @@
+// The view in a saved model: read from the file where it is opened, taken up by the page of its session.
+import { remember } from "./memory";
+import type { Kept, Options } from "./types";
+
+const taken = new Map<string, Kept>();
+const LOCAL = 0x04034b50;
+const MOST = 16;
+
+/** `view.json` of a .hookean file, whose parts are not compressed; null where there is none. */
+export async function viewOf(file: File): Promise<Kept | null> {
+  if (!file.name.toLowerCase().endsWith(".hookean")) return null;
+  try {
+    for (let at = 0, part = 0; part < MOST; part++) {
+      const head = new DataView(await file.slice(at, at + 30).arrayBuffer());
+      if (head.byteLength < 30 || head.getUint32(0, true) !== LOCAL) return null;
+      const [size, named, more] = [head.getUint32(18, true), head.getUint16(26, true), head.getUint16(28, true)];
+      const begin = at + 30 + named + more;
+      const name = await file.slice(at + 30, at + 30 + named).text();
+      if (name === "view.json") return JSON.parse(await file.slice(begin, begin + size).text()) as Kept;
+      at = begin + size;
+    }
+  } catch {
+    // the service says what is wrong with a damaged file
+  }
+  return null;
+}
+
+/** Keep the view for the page of a session. */
+export function keepView(key: string, view: Kept | null): void {
+  if (!view) return;
+  taken.set(key, view);
+  if (Array.isArray(view.eye)) remember(key, view.eye);
+}
+
+/** Give the options of a session's page what was kept. */
+export function takeUp(key: string, options: Options): void {
+  const view = taken.get(key);
+  if (!view) return;
+  taken.delete(key);
+  if (["force", "strain", "plain"].includes(view.colouring)) options.colouring.value = view.colouring;
+  options.layers.value = { ...options.layers.value, ...view.layers };
+}

@@ -1,0 +1,73 @@
+"""Colours that read true, views without perspective, and a phone on which the form stays in sight."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from .browser import PHONE, Studio, net
+from .conftest import Opened
+
+SIDE = 8
+SMALL = """() => [...document.querySelectorAll(".work :is(button, select, summary, input)")]
+    .filter((e) => e.offsetParent && !["checkbox", "radio"].includes(e.type))
+    .map((e) => [e.getBoundingClientRect().height, e.textContent || e.ariaLabel])
+    .filter(([height]) => height < 40)"""
+
+
+def shown(studio: Studio, key: str, scene: dict[str, Any]) -> Studio:
+    studio.service.put(key, scene)
+    studio.open(key)
+    return studio
+
+
+def test_a_flat_field_reads_equal(tab: Studio):
+    """No spring of a net at its start is stretched: the legend has one number, not a scale."""
+    shown(tab, "seen-flat", net(SIDE))
+    tab.page.get_by_text("Force: all equal, 0 N").wait_for()
+
+
+def test_outliers_do_not_set_the_scale_and_are_marked(tab: Studio):
+    """Of 112 springs stretched to strains from 0.01 to 0.02 and one to 5, k L0 e of stiffness 500 and length 1 ends
+    near 10 N, not at 2500 N; the legend counts the one."""
+    scene = net(SIDE)
+    count = 2 * SIDE * (SIDE - 1)
+    strain = np.linspace(0.01, 0.02, count)
+    strain[count // 2] = 5.0
+    scene["forces"][0] = {"kind": "springs", "mesh": "net", "stiffness": 500.0, "strain": strain.tolist()}
+    shown(tab, "seen-outliers", scene)
+    legend = tab.page.get_by_role("group", name="Legend")
+    legend.get_by_role("button", name="beyond").click()
+    high = float(legend.locator(".ends span").last.inner_text())
+    assert high < 0.02 / 1.01 * 500 + 1
+
+
+@pytest.mark.parametrize(("view", "along", "across"), [("Top", 2, (0, 1)), ("Front", 1, (0, 2)), ("Right", 0, (1, 2))])
+def test_named_views_are_orthographic(tab: Studio, view: str, along: int, across: tuple[int, int]):
+    """Particles that differ only in depth are drawn at the same place, to less than a pixel."""
+    scene = net(3)
+    scene["particles"] = [[x, y, z] for x in (0.0, 2.0) for y in (0.0, 2.0) for z in (0.0, 2.0)]
+    scene["meshes"] = {}
+    pairs = [[i, j] for i in range(8) for j in range(i)]
+    scene["forces"] = [{"kind": "springs", "particles": pairs, "stiffness": 100.0}]
+    scene["anchors"] = [{"particles": [0, 3, 5, 6]}]
+    shown(tab, "seen-box", scene)
+    tab.press(view)
+    tab.place(0)
+    points = np.array(scene["particles"])
+    places = np.array([tab.seen(i) for i in range(8)])
+    for i in range(8):
+        [other] = [j for j in range(8) if j != i and (points[j, list(across)] == points[i, list(across)]).all()]
+        assert points[other, along] != points[i, along]
+        assert np.abs(places[i] - places[other]).max() < 1.0  # CSS pixels
+
+
+def test_on_a_phone_the_form_stays_in_sight_and_targets_fit_fingers(open_studio: Opened):
+    """At the last control of the panels the canvas is still inside the window; every target is 40 px high."""
+    studio = shown(open_studio(PHONE), "seen-phone", net(SIDE))
+    studio.page.get_by_label("Solver").scroll_into_view_if_needed()
+    box = studio.page.get_by_label("The form").bounding_box()
+    assert box is not None and box["y"] >= 0 and box["y"] + box["height"] <= PHONE["height"]
+    assert studio.page.evaluate(SMALL) == []
