@@ -36,9 +36,8 @@ export function FileButton() {
   return (
     <div class="drop">
       <p>
-        Drop a file anywhere on this page: a saved model (.hookean), a Rhino model (.3dm), an OBJ mesh, a COMPAS document or a scene
-        (.json), or a
-        saved simulation (.npz).
+        Drop a file anywhere on this page: a saved model (.hookean), a Rhino model (.3dm), an OBJ mesh, a COMPAS
+        document or a scene (.json), or a saved simulation (.npz).
       </p>
       <button type="button" disabled={opening.value !== ""} onClick={() => input.current?.click()}>
         {opening.value ? `Opening ${opening.value} ...` : "Open a file ..."}
