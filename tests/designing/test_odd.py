@@ -41,7 +41,7 @@ def test_constraints_that_contradict_one_another_are_named() -> None:
 
 
 def test_badly_scaled_variables_reach_their_goals() -> None:
-    """A stiffness of 1e8 N/m and a load of 1e-2 N from starts a million times off: the sag of the closed form."""
+    """A load of 5e-6 N on springs of 100 N/m where 20 N are asked of a support, and weights of 1e6 beside 1e-6."""
     scene = cable()
     scene["forces"][0]["stiffness"] = 1e2
     scene["forces"][1]["vector"] = [0, 0, -5e-6]

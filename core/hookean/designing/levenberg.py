@@ -17,7 +17,6 @@ from hookean.designing.answer import DesignStatus
 from hookean.designing.linearised import Linearised
 
 if TYPE_CHECKING:
-    from hookean.designing.augmented import Augmented
     from hookean.designing.search import Search
 
 Floats = NDArray[np.float64]
@@ -29,24 +28,22 @@ PASSES = 4  # of one step, each with more unknowns held at bounds
 ROUNDING = 1e-15  # of the targets: residuals below are nothing
 
 
-def levenberg(
-    search: Search | Augmented, lower: Floats, upper: Floats, start: Floats, most: int
-) -> tuple[int, DesignStatus, Floats]:
-    """Search from a start between bounds with at most so many iterations; how many, how it ended, and where."""
+def levenberg(search: Search, lower: Floats, upper: Floats) -> tuple[int, DesignStatus]:
+    """Search from zero between bounds; iterations, and how it ended."""
     settings = search.problem.settings
-    y = np.clip(start, lower, upper)
+    y = np.clip(np.zeros(search.unknowns.count), lower, upper)
     r, factor, unit = search.residuals(y), 1.0, 0.0
     nothing = (settings.tolerance * 1e-2 * search.aims.size) ** 2
-    for iteration in range(most):
+    for iteration in range(settings.max_iterations):
         cost = float(r @ r)
         if cost <= max(nothing, (ROUNDING * search.aims.size) ** 2):
-            return iteration, DesignStatus.CONVERGED, y
+            return iteration, DesignStatus.CONVERGED
         model = search.linearised(y)
         slope = model.transposed(r)
         held = ((y <= lower) & (slope > 0.0)) | ((y >= upper) & (slope < 0.0)) | (lower >= upper)
         reach = float(np.abs(np.where(held, 0.0, slope)).max(initial=0.0))
         if not reach > ROUNDING * cost:
-            return iteration, DesignStatus.CONVERGED, y
+            return iteration, DesignStatus.CONVERGED
         unit = unit or START * float(slope @ slope) / cost
         found = None
         while found is None and factor <= MOST:
@@ -54,24 +51,18 @@ def levenberg(
             if found is None:
                 factor *= 10.0
         if found is None:
-            return iteration, DesignStatus.CONVERGED, y  # no step of any length leads further
+            return iteration, DesignStatus.CONVERGED  # no step of any length leads further
         new, r_new, quality = found
         factor = max(factor * (0.01 if quality > 0.7 else 0.3 if quality > 0.25 else 2.0), LEAST)
         fell, moved = cost - float(r_new @ r_new), float(np.abs(new - y).max(initial=0.0))
         y, r = new, r_new
         if fell <= settings.tolerance * cost and quality > 0.25 and moved <= np.sqrt(settings.tolerance):
-            return iteration + 1, DesignStatus.CONVERGED, y
-    return most, DesignStatus.MAX_ITERATIONS, y
+            return iteration + 1, DesignStatus.CONVERGED
+    return settings.max_iterations, DesignStatus.MAX_ITERATIONS
 
 
 def _better(
-    search: Search | Augmented,
-    model: Linearised,
-    r: Floats,
-    y: Floats,
-    damping: float,
-    held: Bools,
-    bounds: tuple[Floats, Floats],
+    search: Search, model: Linearised, r: Floats, y: Floats, damping: float, held: Bools, bounds: tuple[Floats, Floats]
 ) -> tuple[Floats, Floats, float] | None:
     """A step that lowers the objective: new unknowns, residuals, and the fall by that of the linear model."""
     new = _cut_step(model, r, y, damping, held, bounds)

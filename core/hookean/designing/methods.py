@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.answer import DesignStatus
-from hookean.designing.augmented import augmented
 from hookean.designing.feasible import nearer
 from hookean.designing.gains import at_minimum
 from hookean.designing.levenberg import levenberg
@@ -56,14 +55,7 @@ def _least_squares(search: Search) -> Ended:
 
 
 def _levenberg_marquardt(search: Search) -> Ended:
-    start, most = np.zeros(search.unknowns.count), search.problem.settings.max_iterations
-    iterations, ended, _ = levenberg(search, *search.bounds, start, most)
-    return iterations, ended, ""
-
-
-def _augmented_lagrangian(search: Search) -> Ended:
-    iterations, ended = augmented(search)
-    return iterations, ended, NO_STEP if ended is DesignStatus.STALLED and search.best[0] == 0.0 else ""
+    return *levenberg(search, *search.bounds), ""
 
 
 def _lbfgsb(search: Search) -> Ended:
@@ -156,5 +148,4 @@ METHODS: dict[str, Callable[[Search], Ended]] = {
     "levenberg_marquardt": _levenberg_marquardt,
     "l-bfgs-b": _lbfgsb,
     "slsqp": _slsqp,
-    "augmented_lagrangian": _augmented_lagrangian,
 }

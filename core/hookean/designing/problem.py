@@ -30,7 +30,7 @@ else:
     AnyQuantity = Annotated[Union[tuple(QUANTITIES.values())], Field(discriminator="kind")]  # noqa: UP007
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
-METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp", "augmented_lagrangian")
+METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp")
 
 
 class Drive(Model):

@@ -32,7 +32,6 @@ from hookean.system.system import System, compile
 Floats = NDArray[np.float64]
 FAR = 1e3  # of its size: an unknown there that is no minimum has no end
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
-LARGE = 300  # unknowns and values of constraints, above which dense quadratic programming takes too long
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
 Keep = Callable[[Floats], None]
@@ -214,17 +213,11 @@ def chosen(search: Search) -> str:
     aimed = all(goal.aimed for goal in problem.goals)
     if wanted == "auto":
         if problem.constraints or not aimed:
-            limited = sum(len(low) for low, _ in search.aims.limits)
-            many = min(limited, search.unknowns.count) > LARGE
-            constrained = "augmented_lagrangian" if many else "slsqp"
-            return constrained if problem.constraints else "l-bfgs-b"
+            return "slsqp" if problem.constraints else "l-bfgs-b"
         values = len(search.aims.weights(search.first))
         return "levenberg_marquardt" if min(values, search.unknowns.count) > MANY else "least_squares"
-    if problem.constraints and wanted not in ("slsqp", "augmented_lagrangian"):
-        said = f"{wanted} takes no constraints; choose slsqp, augmented_lagrangian or auto"
-        raise InputError("/settings/method", said)
-    if wanted == "augmented_lagrangian" and not problem.constraints:
-        raise InputError("/settings/method", f"{wanted} needs constraints; choose auto")
+    if problem.constraints and wanted != "slsqp":
+        raise InputError("/settings/method", f"{wanted} takes no constraints; choose slsqp or auto")
     if wanted in ("least_squares", "levenberg_marquardt") and not aimed:
         raise InputError("/settings/method", f"{wanted} needs a target for each goal; choose l-bfgs-b or auto")
     return str(wanted)
