@@ -270,7 +270,7 @@ def test_kinds_are_told_apart(data: bytes, name: str, found: str) -> None:
 
 @pytest.mark.parametrize(("data", "name"), [(b"solid ascii", "a.stl"), (b"\x89PNG", "a.png"), (b"", ""), (b"\0", "")])
 def test_other_kinds_are_refused(data: bytes, name: str) -> None:
-    with pytest.raises(InputError, match=r"give a \.3dm, \.obj, \.json or \.npz file"):
+    with pytest.raises(InputError, match=r"give a \.3dm, \.obj, \.json, \.npz or \.hookean file"):
         readers.reader(data, name)
 
 

@@ -26,6 +26,8 @@ PATHS = {
     "/v1/forces": "GET",
     "/v1/discretize": "GET",
     "/v1/relax": "POST",
+    "/v1/design": "POST",
+    "/v1/sensitivity": "POST",
     "/v1/relax/3dm": "POST",
     "/v1/geometry/3dm": "POST",
     "/v1/examples": "GET",

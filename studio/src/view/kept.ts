@@ -20,7 +20,7 @@ export async function viewOf(file: File): Promise<Kept | null> {
       at = begin + size;
     }
   } catch {
-    // the service says what is wrong with a damaged file
+    // the service reports what is wrong with a damaged file
   }
   return null;
 }
