@@ -119,7 +119,7 @@ def _step(pattern: Pattern, system: System, state: State, left: Floats, shift: f
 def _search(system: System, state: State, step: Floats, before: Judged) -> tuple[float, Judged]:
     """Shorten the step until energy falls enough, or the largest force halves; zero length if nothing helps.
 
-    Where some force has no energy of its own, the mean of what is out of balance at both ends tells what fell as well.
+    Where some force has no energy of its own, the mean of what is out of balance at both ends shows what fell as well.
     """
     start, length = state.x.copy(), 1.0
     slope = float((before.left * step).sum())

@@ -16,6 +16,7 @@ from hookean.scene.text import parse
 from hookean_server.http import claimed, openapi
 from hookean_server.http.handling import read_json, uploaded_scene
 from hookean_server.http.limits import media_type
+from hookean_server.problems import faulty
 from hookean_server.sessions.conditions import Conditions, When
 from hookean_server.sessions.exports import FORMATS
 from hookean_server.sessions.live import Live, summary
@@ -196,10 +197,13 @@ async def state(
 
 
 def _view(told: str) -> dict[str, Any]:
-    """How a session is looked at; InputError where that is not a JSON object."""
-    found = parse(told, "view")
-    if not isinstance(found, dict):
-        raise InputError("view", f"{told[:40]!r} given; give a JSON object")
+    """How a session is looked at; the problem of a request whose view is not a JSON object."""
+    try:
+        found = parse(told, "view")
+        if not isinstance(found, dict):
+            raise InputError("view", f"{told[:40]!r} given; give a JSON object")
+    except InputError as error:
+        raise faulty("invalid-input", [error]) from None
     return found
 
 
