@@ -11,7 +11,7 @@ from compas.datastructures import Mesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from canvas.canvasing import Bench, let_go, sentences
+from canvas.canvasing import Bench, sentences
 from canvas.test_engine import Cable
 from canvas.test_tools import Placed
 from canvas.test_tools_sweep import cable, tree
@@ -122,20 +122,6 @@ def rhino() -> Iterator[None]:
     made = stand_in.Canvas().install()
     yield
     made.remove()
-
-
-@pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that the components find."""
-    patch = pytest.MonkeyPatch()
-    found = Home(tmp_path_factory.mktemp("fall") / "state")
-    found.serve()
-    patch.setenv("HOOKEAN_STATE", str(found.folder))
-    canvas_link.service.forget()
-    yield found
-    let_go()
-    patch.undo()
-    found.end()
 
 
 @pytest.mark.parametrize("solver", ["momentum", "relaxation", "newton"])

@@ -3,39 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 
-from canvas.canvasing import Bench, let_go, line, point, sentences, xyz
+from canvas.canvasing import Bench, line, point, sentences, xyz
 from canvas.test_tools import Placed, branches
 from hookean import Scene, simulate
 from hookean_canvas.run import stand_in
-from hookean_client import canvas_link
 from serving import Home
 
-
-@pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that the component finds."""
-    patch = pytest.MonkeyPatch()
-    found = Home(tmp_path_factory.mktemp("state"))
-    found.serve()
-    patch.setenv("HOOKEAN_STATE", str(found.folder))
-    canvas_link.service.forget()
-    yield found
-    let_go()
-    patch.undo()
-    found.end()
-
-
-@pytest.fixture(autouse=True)
-def canvas() -> Iterator[Any]:
-    made = stand_in.Canvas().install()
-    yield made
-    made.remove()
+pytestmark = pytest.mark.usefixtures("canvas")
 
 
 def cable(bench: Bench, **settings: Any) -> dict[str, Any]:

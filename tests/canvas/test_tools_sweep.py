@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import httpx
@@ -12,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from canvas.canvasing import Bench, let_go, line, point, sentences
+from canvas.canvasing import Bench, line, point, sentences
 from canvas.test_tools import Placed, branches
 from hookean import Scene
 from hookean.running.sweep import solve
@@ -21,26 +20,7 @@ from hookean_client import canvas_link, canvas_sweep
 from server.conftest import endless
 from serving import SWING, Home, wait_for
 
-
-@pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that the component finds."""
-    patch = pytest.MonkeyPatch()
-    found = Home(tmp_path_factory.mktemp("state"))
-    found.serve()
-    patch.setenv("HOOKEAN_STATE", str(found.folder))
-    canvas_link.service.forget()
-    yield found
-    let_go()
-    patch.undo()
-    found.end()
-
-
-@pytest.fixture(autouse=True)
-def canvas() -> Iterator[Any]:
-    made = stand_in.Canvas().install()
-    yield made
-    made.remove()
+pytestmark = pytest.mark.usefixtures("canvas")
 
 
 def tree(*rows: list[Any]) -> Any:
