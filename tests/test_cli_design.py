@@ -46,7 +46,7 @@ def test_a_drawing_is_written_back_with_table_and_picture(problem: Path, tmp_pat
     arguments = [str(problem), "-o", f"{out}/", "--csv", f"{out}/", "--picture", f"{out}/", "--report", f"{out}/a.json"]
     ran = CliRunner().invoke(app, arguments)
     assert ran.exit_code == 0, ran.output
-    assert "goal position: -6 m, target -6" in ran.output and "chain.rest_length: 0.6542" in ran.output
+    assert "goal position: -6 m, target -6 m" in ran.output and "chain.rest_length: 0.6542 m" in ran.output
     assert sorted(p.name for p in out.iterdir()) == ["a.json", "problem.3dm", "problem.csv", "problem.png"]
     drawn = rhino3dm.File3dm.Read(str(out / "problem.3dm"))
     layers = {item.Name: item.Index for item in drawn.Layers}

@@ -165,7 +165,7 @@ def test_an_empty_list_of_elements_has_whole_numbers() -> None:
 
 
 def test_an_error_of_a_force_as_a_whole_has_its_place() -> None:
-    """What a force finds when it is compiled is told at the force."""
+    """An error that a force raises when it is compiled has the pointer of the force."""
     cable = {"kind": "sliding_cable", "particles": [[0, 1]], "force": 1.0, "axial_stiffness": 0.0}
     with pytest.raises(InputError) as caught:
         started({**pair(), "forces": [cable]})

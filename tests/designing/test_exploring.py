@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -114,9 +115,10 @@ def test_the_command_writes_table_picture_and_report(tmp_path: Path) -> None:
     ran = CliRunner().invoke(app, [*arguments, "--report", str(tmp_path / "t.json")])
     assert ran.exit_code == 0, ran.output
     assert "6 samples, 6 at rest" in ran.output and "load_path" in ran.output
+    assert re.search(r"\(string\.stiffness [\d.]+ N/m\)", ran.output)
     rows = list(csv.DictReader((tmp_path / "t.csv").read_text().splitlines()))
-    assert len(rows) == 6 and set(rows[0]) >= {"string.stiffness", "sag missed [m]", "load_path [N m]", "front"}
-    assert float(rows[2]["sag missed [m]"]) == pytest.approx(2.5 / float(rows[2]["string.stiffness"]), rel=1e-8)
+    assert len(rows) == 6 and set(rows[0]) >= {"string.stiffness [N/m]", "sag missed [m]", "load_path [N m]", "front"}
+    assert float(rows[2]["sag missed [m]"]) == pytest.approx(2.5 / float(rows[2]["string.stiffness [N/m]"]), rel=1e-8)
     assert len(json.loads((tmp_path / "t.json").read_text())["front"]) == sum(row["front"] == "True" for row in rows)
     assert imread(tmp_path / "t.png").shape[1] >= 1500
     path.write_text(json.dumps(problem(variables=[{"force": "string", "field": "stiffness"}])))

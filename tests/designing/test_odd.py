@@ -63,7 +63,7 @@ def test_badly_scaled_variables_reach_their_goals() -> None:
 
 
 def test_a_start_without_an_equilibrium_is_reported() -> None:
-    """A weight that nothing holds falls: the search says so and returns the start."""
+    """A weight that nothing holds falls: the search reports this and returns the start."""
     scene = cable()
     scene["anchors"] = []
     found = design({"scene": scene, "variables": [FREE], "goals": [level(target=-1.0)]})

@@ -184,20 +184,20 @@ class Stop:
 
 
 def _print(found: Design) -> None:
-    units = found.result.units
     typer.echo(found.message)
+
+    def told(entry: dict[str, Any], value: Any) -> str:
+        unit = found.result.units.of(entry["unit"])
+        return f"{_numbers(value)} {unit}".rstrip()
+
     for entry in found.variables:
-        bound = " (at a bound)" if _any(entry["at_bound"]) else ""
-        typer.echo(f"  {entry['name']}: {_numbers(entry['value'])}{bound}")
+        typer.echo(f"  {entry['name']}: {told(entry, entry['value'])}{' (at a bound)' * _any(entry['at_bound'])}")
     for entry in found.goals:
-        unit = units.of(entry["unit"]) if entry["unit"] else "-"
-        target = "minimised" if entry["target"] is None else f"target {_numbers(entry['target'])}"
-        typer.echo(f"  goal {entry['name']}: {_numbers(entry['value'])} {unit}, {target}")
+        target = "minimised" if entry["target"] is None else f"target {told(entry, entry['target'])}"
+        typer.echo(f"  goal {entry['name']}: {told(entry, entry['value'])}, {target}")
     for entry in found.constraints:
-        unit = units.of(entry["unit"]) if entry["unit"] else "-"
-        typer.echo(
-            f"  constraint {entry['name']}: {_numbers(entry['value'])} {unit}, {'met' if entry['met'] else 'not met'}"
-        )
+        met = "met" if entry["met"] else "not met"
+        typer.echo(f"  constraint {entry['name']}: {told(entry, entry['value'])}, {met}")
     for warning in found.warnings:
         typer.echo(f"hookean: {warning}", err=True)
 

@@ -127,7 +127,8 @@ def _print(found: Exploration) -> None:
     rows = found.rows()
     for number in found.front[:20]:
         row = rows[number]
-        values = ", ".join(f"{name} {row[name]:.4g}" for name in found.names[:6])
+        pairs = ((name.rstrip("]").partition(" ["), row[name]) for name in found.names[:6])
+        values = ", ".join(f"{name} {value:.4g} {unit}".rstrip() for (name, _, unit), value in pairs)
         more = ", ..." if len(found.names) > 6 else ""
         goals = ", ".join(f"{g} {row[g]:.4g} {u}" for g, u in zip(found.goals, found.units, strict=True))
         typer.echo(f"  {number}: {goals} ({values}{more})")

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from hookean.errors import InputError
 from hookean.forces.base import PLACES, Block, Force, Rider
 from hookean.running.patch import changed_forces
+from hookean.scene.catalogue import unit
 from hookean.scene.scene import Scene
 from hookean.system.group import Group, Part, fitted, ride
 from hookean.system.system import System
@@ -112,6 +113,11 @@ class Column:
     def force(self) -> Force:
         """The force as it is now."""
         return self.part.force
+
+    @property
+    def unit(self) -> str:
+        """The unit of the column, such as `force/length`; empty for a number."""
+        return unit(type(self.force).model_fields[self.variable.field]).strip("-")
 
     def _given(self, system: System) -> Floats:
         """The column's values as they are given, or as the force works them out."""

@@ -35,10 +35,10 @@ CHUNK = 16  # samples that a worker gets at once
 class Exploration:
     """Samples of a problem's variables and what their equilibria are like.
 
-    `points` (n, u) are the values of all unknowns, `names` (u) what they are, `values` (n, g) one number for each goal:
-    of a goal with a target the root of the sum of squares of what is missed, else the sum of its values, in its unit;
-    less is better. `met` (n): whether the constraints are met. `statuses` (n) of the runs. `front` are the numbers of
-    the samples at rest that meet the constraints and that no other such sample beats in all goals.
+    `points` (n, u) are the values of all unknowns, `names` (u) what they are, with their units, `values` (n, g) one
+    number for each goal: of a goal with a target the root of the sum of squares of what is missed, else the sum of its
+    values, in its unit; less is better. `met` (n): whether the constraints are met. `statuses` (n) of the runs. `front`
+    are the numbers of the samples at rest that meet the constraints and that no other such sample beats in all goals.
     """
 
     problem: Problem
@@ -204,13 +204,14 @@ def pareto(values: Floats) -> list[int]:
 
 
 def titles(search: Search) -> list[str]:
-    """Names of all unknowns, each once."""
+    """Names of all unknowns, each once, with their units."""
     found: list[str] = []
+    units = search.system.scene.units
     for variable, part in zip(search.unknowns.variables, search.unknowns.slices, strict=True):
         count = part.stop - part.start
-        name = variable.variable.title
-        found += [name] if count == 1 else [f"{name}[{i}]" for i in range(count)]
-    return _once(found)
+        name, unit = variable.variable.title, f" [{units.of(variable.unit)}]" if variable.unit else ""
+        found += [f"{name}{unit}"] if count == 1 else [f"{name}[{i}]{unit}" for i in range(count)]
+    return once(found)
 
 
 def _called(search: Search) -> tuple[list[str], list[str]]:
@@ -220,10 +221,11 @@ def _called(search: Search) -> tuple[list[str], list[str]]:
         missed = " missed" if goal.aimed else ""
         names.append((goal.name or str(goal.quantity.kind_name)) + missed)
         dimensions.append(units.of(goal.quantity.unit) if goal.quantity.unit else "-")
-    return _once(names), dimensions
+    return once(names), dimensions
 
 
-def _once(names: Iterable[str]) -> list[str]:
+def once(names: Iterable[str]) -> list[str]:
+    """The names, with a number behind those that occurred before."""
     found: list[str] = []
     for name in names:
         number = 2

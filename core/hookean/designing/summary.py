@@ -88,6 +88,7 @@ def _variables(search: Search, values: Floats, gained: Gains | None) -> Entries:
             {
                 "name": variable.variable.title,
                 "value": _shaped(variable, own),
+                "unit": variable.unit,
                 "at_bound": _shaped(variable, bound),
                 "gain": None if gained is None else _shaped(variable, np.where(bound, gain[part], 0.0)),
             }

@@ -28,6 +28,8 @@ NOTHING = np.zeros(0, np.int64)
 class Moved:
     """A variable that is where an anchor holds its particles."""
 
+    unit = "length"
+
     def __init__(self, variable: Variable, system: System, pointer: str) -> None:
         assert variable.anchor is not None
         self.variable, self.pointer = variable, pointer

@@ -124,16 +124,20 @@ def _rank(name: str) -> int:
     return PLACES.index(name) if name in PLACES else 99 if name == "name" else 50
 
 
+def unit(field: FieldInfo) -> str:
+    """The unit in the description of a field, such as `force/length`; empty where it has none."""
+    found = _UNIT.search(field.description or "")
+    return found.group(1) if found else ""
+
+
 def _field(name: str, field: FieldInfo, described: dict[str, Any]) -> dict[str, Any]:
-    words = field.description or ""
-    unit = _UNIT.search(words)
     default = None if field.is_required() else field.default
     kind = _type(described)
     coordinates = name in PLACES and kind in ("points", "lines", "rows of points")
     found: dict[str, Any] = {
         "name": name,
-        "description": words,
-        "unit": unit.group(1) if unit else "length" if coordinates else "-",
+        "description": field.description or "",
+        "unit": unit(field) or ("length" if coordinates else "-"),
         "type": kind,
         "required": field.is_required(),
         "default": np.asarray(default).tolist() if isinstance(default, tuple | np.ndarray) else default,

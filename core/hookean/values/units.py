@@ -43,7 +43,7 @@ class Units(Model):
         }
         if dimension in derived:
             return derived[dimension]
-        return re.sub(r"[a-z]+", lambda word: str(getattr(self, word[0])), dimension)
+        return re.sub(r"\b(?:length|force|time|mass)\b", lambda word: str(getattr(self, word[0])), dimension)
 
     def factor(self, dimension: str, to: Units) -> float:
         """What a number of this dimension is multiplied by to be in the units `to`."""

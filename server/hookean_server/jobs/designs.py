@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.checks import checked
-from hookean.designing.search import Search, design
+from hookean.designing.exploring import once
+from hookean.designing.search import design
 from hookean.designing.sensitivity import sensitivity
 from hookean.errors import InputError
 from hookean.running.run import bounded
@@ -63,18 +64,9 @@ def about(scene: Scene, given: Any, prefix: str) -> dict[str, Any]:
     return {
         "kind": "design",
         "total": 1,
-        "names": titles(search),
+        "names": once(variable.title for variable in search.problem.variables),
         "columns": [("objective", ""), *columns(scene)],
     }
-
-
-def titles(search: Search) -> list[str]:
-    """Names of the variables, each once."""
-    found: list[str] = []
-    for number, variable in enumerate(search.problem.variables):
-        title = variable.title
-        found.append(title if title not in found else f"{title} (variable {number})")
-    return found
 
 
 def _under(prefix: str, pointer: str) -> str:
@@ -174,11 +166,9 @@ class _Teller:
 
 def _item(found: Design) -> bytes:
     scene = found.scene
-    names: dict[str, Any] = {}
-    for number, entry in enumerate(found.variables):
-        name = entry["name"]
-        names[name if name not in names else f"{name} (variable {number})"] = entry["value"]
-    row = {"number": 0, "parameters": names, **figures(found.result, compile(scene))}
+    names = once(entry["name"] for entry in found.variables)
+    values = dict(zip(names, (entry["value"] for entry in found.variables), strict=True))
+    row = {"number": 0, "parameters": values, **figures(found.result, compile(scene))}
     row.update(status=str(found.status), message=found.message, iterations=found.iterations, objective=found.objective)
     return answers.dump(row, "list") + b"\n" + answers.dump(found.to_dict(), "list")
 

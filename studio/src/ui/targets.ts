@@ -22,7 +22,7 @@ export function places(kind: Kind, topology: Topology): [Where, string][] {
   return [...meshes, ...found];
 }
 
-/** The fields that say so, or a sentence on what is missing. */
+/** The fields of the place that was chosen, or a sentence on what is missing. */
 export function placed(
   where: Where,
   kind: Kind,

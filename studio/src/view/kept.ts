@@ -6,7 +6,7 @@ const taken = new Map<string, Kept>();
 const LOCAL = 0x04034b50;
 const MOST = 16;
 
-/** `view.json` of a .hookean file, whose parts are not compressed; null where there is none. */
+/** `view.json` of a .hookean file, whose parts are not compressed; null if the file has none. */
 export async function viewOf(file: File): Promise<Kept | null> {
   if (!file.name.toLowerCase().endsWith(".hookean")) return null;
   try {
