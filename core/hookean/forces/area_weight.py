@@ -81,6 +81,7 @@ class AreaWeight(FaceLoad):
     )
 
     formula: ClassVar[str] = "f = q A g/3"
+    directed: ClassVar[bool] = True
     on_film: ClassVar[OnFilm] = "spread"
     kernel: ClassVar[Any] = staticmethod(area_weight_kernel)
     hessian: ClassVar[Any] = staticmethod(area_weight_hessian)

@@ -135,6 +135,7 @@ class Force(Model):
     bears: ClassVar[bool] = False  # a load that can also carry what is loaded, as water does
     oriented: ClassVar[bool] = False  # internal, but of a direction fixed in space: a turned shape has other forces
     constant: ClassVar[bool] = False  # the force is the same wherever the particles are
+    directed: ClassVar[bool] = False  # a load whose size follows the shape, while its direction stays
     # the column that bounds an element's stiffness in every shape (K <= k times the identity, of two particles k times
     # that of a spring); "" where stiffness has no such bound
     steady: ClassVar[str] = ""

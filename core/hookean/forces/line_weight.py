@@ -87,6 +87,7 @@ class LineWeight(LineForce):
     formula: ClassVar[str] = "f = q l g/2"
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     conservative: ClassVar[bool] = False
+    directed: ClassVar[bool] = True
     creates: ClassVar[bool] = False
     on_film: ClassVar[OnFilm] = "spread"
     kernel: ClassVar[Any] = staticmethod(line_weight_kernel)

@@ -31,7 +31,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 QUICK = 5_000  # multiplications for each particle up to which a front is quicker than conjugate gradients
-WEIGHTS = ("area_weight", "line_weight")  # whose direction stays, while their size follows the shape
 MOST = 1e11  # beyond which it would take half a minute, and more than a gigabyte
 
 
@@ -86,13 +85,13 @@ class Method(Solver):
 
 
 def nonlinear(system: System, *, weights: bool = False) -> str:
-    """Why a system is not linear, as a sentence; empty if it is. With `weights` those per area or length of a shape
-    may act, which change with it."""
+    """Why a system is not linear, as a sentence; empty if it is. With `weights` loads may act whose size follows the
+    shape (`Force.directed`)."""
     if system.contacts:
         return "a floor is not linear; force_density supports springs of rest length 0 only"
     linear = False
     for group in system.groups:
-        if group.cls.role == "load" and (group.cls.conservative or (weights and group.cls.kind_name in WEIGHTS)):
+        if group.cls.role == "load" and (group.cls.conservative or (weights and group.cls.directed)):
             continue
         if group.cls is AnchorSpring:
             if slides(group.block):
