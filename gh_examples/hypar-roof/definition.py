@@ -88,7 +88,7 @@ for i in (0, count):
     for j in range(count):
         for one, other in ((wide * i + j, wide * i + j + 1), (wide * j + i, wide * (j + 1) + i)):
             lengths.append(x[one].DistanceTo(x[other]))
-densities = [force / length for force, length in zip(form_forces.Branch(4), lengths)]
+densities = [force / length for force, length in zip(form_forces.Branch(3), lengths)]
 least, largest = min(densities), max(densities)
 
 y = places(result)
@@ -142,8 +142,7 @@ def definition() -> Definition:
         )  # fmt: skip
         common = {"anchors": made["corners"], "settings": settings, "reset": d.toggle("Reset", True)}
         own = d.component("AreaWeight", "Weight", mesh=made["mesh"], weight=weight)
-        none = d.component("AreaWeight", "No snow", mesh=made["mesh"], weight=d.text("No snow", "0"))
-        form = d.component("Engine", "Form", forces=flat(*drawn, own, none), geometry=made["mesh"], **common)
+        form = d.component("Engine", "Form", forces=flat(*drawn, own), geometry=made["mesh"], **common)
     with d.group("Cut"):
         elastic = {
             "warp_stiffness": d.text("Warp [kN/m]", f"{ROOF.WARP:g}"),
