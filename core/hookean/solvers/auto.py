@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # a tangent larger than this costs more to factor than the relaxation it saves
 LARGEST_NEWTON = 60_000  # unknowns
 LARGEST_FILM = 1_000_000  # particles, of some five gigabytes
-LARGEST_BLOCKS = 8_000_000  # entries of all element blocks; a shell's have 36 x 36 each
+LARGEST_BLOCKS = 12_000_000  # entries of all element blocks, 24 bytes each; a shell's have 36 x 36
 LEAST_MULTILEVEL = 4_000  # particles from which on multigrid is quicker than relaxation
 MANY = 30_000  # particles from which on relaxation takes minutes, and creases as well
 CREASED = "Some springs are in compression and may wrinkle the net; other equilibrium shapes may exist."
