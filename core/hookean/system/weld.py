@@ -43,6 +43,7 @@ class Welded:
         self._rows: dict[int, Ints] = {}
         self._lost: set[str] = set()  # pointers of points that met no particle
         self._meshes: dict[str, Ints] = {}
+        self._families: dict[str, tuple[Ints, Ints]] = {}  # warp and weft of meshes
         self._edges: dict[tuple[str, str], Ints] = {}
         self._pointer: dict[int, str] = {id(f): f"/forces/{i}" for i, f in enumerate(scene.forces)}
         self._weld()
@@ -154,7 +155,9 @@ class Welded:
         plain = Mesh(data.vertices, own[data.faces] if len(data.faces) else data.faces)
         which, _, pattern = choice.partition("_")
         if which in ("warp", "weft"):
-            pairs = warpweft.warp_weft(plain)[which == "weft"]
+            if mesh not in self._families:
+                self._families[mesh] = warpweft.warp_weft(plain)
+            pairs = self._families[mesh][which == "weft"]
         elif which == "diagonals":
             pairs = meshes.diagonals(plain, pattern or "both")
         else:
