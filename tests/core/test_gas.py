@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from core.test_volume import SOLID, TENSION, icosahedron, tightened
-from hookean import Scene
+from core.test_volume import SOLID, TENSION, icosahedron, outwards, tightened
+from hookean import Scene, relax
 from hookean.forces import enclosed
 from hookean.system.system import compile
 
@@ -27,6 +29,34 @@ def test_boyles_law_holds_an_icosahedron_open(pressure: float, outside: float) -
     assert found.forces[1]["length"] == pytest.approx(np.full(30, edge), rel=1e-8)
     expected = pressure * start / (SOLID * edge**3) - outside
     assert found.forces[0]["pressure"] == pytest.approx(np.full(20, expected), rel=1e-6)
+
+
+def bubble(level: int, **content: Any) -> tuple[float, float]:
+    """Mean radius and pressure of a film of tension 0.8 on an icosahedron cut `level` times."""
+    x, faces = icosahedron()
+    for _ in range(level):
+        x = np.concatenate([x, np.unique((x[faces] + x[np.roll(faces, 1, axis=1)]).reshape(-1, 3) / 2.0, axis=0)])
+        x /= np.linalg.norm(x, axis=1, keepdims=True)
+        faces = outwards(x)
+    forces = [{"kind": "soapfilm", "mesh": "skin", "tension": 0.8}, {"mesh": "skin", **content}]
+    mesh = {"skin": {"vertices": x, "faces": faces}}
+    found = relax(Scene(particles=x, meshes=mesh, forces=forces, settings={"tolerance": 1e-9}))
+    assert found.converged, found.message
+    radius = np.linalg.norm(found.particles - found.particles.mean(axis=0), axis=1).mean()
+    return radius, found.forces[1]["pressure"][0]
+
+
+@pytest.mark.parametrize("kind", ["gas", "volume"])
+def test_a_bubble_has_the_pressure_of_laplace(kind: str) -> None:
+    """p = 2 T / R, with p = p0 V0 / V - p_out in a gas and p = K (V0 - V) / V0 of a volume (Laplace, 1806). Chords of
+    a sphere miss it by the square of their length: with each edge halved by about 4 times less."""
+    content = {"gas": {"pressure": 2.0, "outside": 0.3}, "volume": {"stiffness": 9.0}}[kind]
+    missed = []
+    for level in (1, 2):
+        radius, pressure = bubble(level, kind=kind, **content)
+        missed.append(abs(pressure * radius / 1.6 - 1.0))
+    assert missed[0] < 0.15
+    assert missed[1] < missed[0] / 3.0
 
 
 @pytest.mark.parametrize("volume", [1e-2, 1.0001e-3, 0.9999e-3, 1e-4, 0.0, -0.5])
