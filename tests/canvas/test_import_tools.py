@@ -24,6 +24,8 @@ MACHINE = (("Geometry", None), ("Length", 2.5), ("FixCurves", None), ("FixVertic
            ("PullStrength", 0.8), ("CurvatureAdaptivity", 0.0), ("BoundaryScale", 1.0), ("BoundaryDistance", 5.0),
            ("SizePoints", None), ("SizeValues", None), ("Exponent", 2), ("Background", 0.5), ("Iterations", 1),
            ("Reset", True))  # fmt: skip
+MULTIPIPE = (("Curves", None), ("NodeSize", None), ("SizePoints", None), ("EndOffset", 1.0), ("StrutSize", 1.0),
+             ("Segment", 0.0), ("KinkAngle", 0.6), ("CubeFit", 0.0), ("Caps", 1))  # fmt: skip
 BOTH = {
     "removeDuplicatePts": (POINTS, ("unique points",), "RemoveDuplicatePoints", {"points": "points"}, ["points"]),
     "Combine&Clean": ((("Meshes", None),), ("Mesh",), "CombineClean", {"meshes": "meshes"}, ["mesh"]),
@@ -52,6 +54,9 @@ LATER = {
                        {"poly": "polyline"}, ["corners", "parts"]),
     "MeshMap": ((("SourceMesh", None), ("TargetMesh", None), ("Point", None), ("Distance", 1.0)), ("Point",),
                 "MeshMap", {"sourcemesh": "source", "targetmesh": "target", "point": "point"}, ["points"]),
+    "MeshDirection": (MESH, ("Mesh",), "AlignQuads", {"mesh": "mesh"}, ["mesh"]),
+    "MeshTurn": (MESH, ("Mesh",), "TurnQuads", {"mesh": "mesh"}, ["mesh"]),
+    "MultiPipe": (MULTIPIPE, ("Pipe",), "Pipes", {"curves": "lines", "nodesize": "radius"}, ["mesh"]),
 }  # fmt: skip
 CASES = [(True, name, *case) for name, case in {**BOTH, **FIRST}.items()]
 CASES += [(False, name, *case) for name, case in {**BOTH, **LATER}.items()]

@@ -31,7 +31,8 @@ SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 0)]
         ("Cross Reference", ([1] * 2000, [2] * 2000)), ("Divide Domain", (("domain", 0, 1), MANY)),
         ("Divide Curve", (CURVE, MANY, False)), ("Divide Length", (CURVE, 1e-12)), ("Divide Distance", (CURVE, 1e-12)),
         ("Polygon", (XY, 1.0, MANY, 0.0)), ("Mesh Sphere", (XY, 1.0, MANY, 3)), ("Mesh Plane", (SQUARE, MANY, 1)),
-        ("Rectangular", (XY, 1.0, 1.0, 10**4, 10**4)),
+        ("Rectangular", (XY, 1.0, 1.0, 10**4, 10**4)), ("Hexagonal", (XY, 1.0, 1, MANY)),
+        ("Triangular", (XY, 1.0, MANY, 1)), ("Radial", (XY, 1.0, 10**4, 10**4)),
         ("Linear Array", (("mesh", SQUARE[:3], [(0, 1, 2)]), ("vector", 1, 0, 0), MANY)),
     ],
 )  # fmt: skip

@@ -13,6 +13,8 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     datatrees,
     edges,
     expressions,
+    freeform,
+    grids,
     lists,
     logic,
     maths,
