@@ -178,6 +178,38 @@ def test_beams_report_the_moments_that_k2engineering_would_from_the_same_planes(
     np.testing.assert_allclose(shown(outcome, "RM"), [[0.1, -0.2, -0.12]], atol=1e-4)
 
 
+def test_beams_between_planes_that_lean_are_bent_in(tmp_path: Path) -> None:
+    """Two beams of a flat arch in a plane that leans, on planes across its mean direction in the middle and across each
+    beam at its ends, all held: M = EI / L (4 a + 2 b) of the angles between planes and chords, in both the same sense.
+    """
+    d = Kangaroo("arch", "Arch", "Beams bent in")
+    up, across, rise = np.array([0.0, 0.6, 0.8]), (0.0, 0.8, -0.6), 0.01
+    corners = [np.zeros(3), np.array([1.0, 0.0, 0.0]) + rise * up, np.array([2.0, 0.0, 0.0])]
+    nodes = [d.point(*map(float, corner)) for corner in corners]
+    across_x = d.parameter("Vector", "across", [across])
+
+    def leaning(name: str, node: Any, axis: np.ndarray) -> Any:
+        y = d.parameter("Vector", name, [tuple(map(float, axis))])
+        return d.native("Construct Plane", name, **{"origin": node, "x-axis": across_x, "y-axis": y})
+
+    first, last = up - rise * np.array([1.0, 0.0, 0.0]), up + rise * np.array([1.0, 0.0, 0.0])
+    planes = [leaning(*one) for one in zip("abc", nodes, (first, up, last), strict=True)]
+    typed = [("E-modulus", E), ("G-modulus", G), ("A", 100.0), ("Iy", 1e4), ("Iz", 2e4), ("It", 1e4)]
+    beams = part(d, "Beam", "Beam", typed, StartPlane=planes[:2], EndPlane=planes[1:])
+    support = part(d, "Support6DOF", "Support6DOFGoal", [("Strength", 1e12)], SupportPt=nodes)
+    solver = solved(d, [beams, support])
+    output = part(d, "BeamOutput", "My0 Mz0 My1 Mz1", BeamData=picked(d, "beams", solver["O"], [0, 1]))
+    for name in ("My0", "Mz0", "My1", "Mz1"):
+        d.panel(name, output[name])
+    outcome = ran(d, tmp_path)
+    length = math.hypot(1.0, rise)
+    bend = E * 1e6 * 1e4 * 1e-12 / length * rise / length * 1e-3  # kN m for a rotation by the slope
+    # at rest to 1e-3 of the forces, of which both beams and the support have a part in each moment
+    np.testing.assert_allclose(shown(outcome, "My0"), [2.0 * bend, -4.0 * bend], rtol=4e-3)
+    np.testing.assert_allclose(shown(outcome, "My1"), [4.0 * bend, -2.0 * bend], rtol=4e-3)
+    np.testing.assert_allclose([shown(outcome, "Mz0"), shown(outcome, "Mz1")], 0.0, atol=4e-3 * bend)
+
+
 def test_what_calculates_gives_the_numbers_of_its_formulas(tmp_path: Path) -> None:
     """A tube's section, weights with 9.82 m/s2, the largest displacement with its sign, snow, wind and pretension."""
     d = Kangaroo("tools", "Tools", "Numbers")
