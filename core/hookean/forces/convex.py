@@ -27,7 +27,7 @@ FLAT = 1e-9  # part of the size of a solid within which points are on one plane
 TURN, INVERSE, FORCE, MOMENT, STIFF, COUNT, POINT, PLANE, TABLE, ROWS, HEAD, RADIUS, BODY = (
     3, 13, 22, 25, 28, 29, 30, 31, 32, 33, 34, 35, 36,
 )  # fmt: skip
-# of a contact: energy, force and moment on the other solid, pressing force, where that acts, area, its polar moment,
+# of a contact: energy, force and moment on the other solid, pressing force, area, its centroid, its polar moment,
 # normal, stiffness of the particles of both, which is the reference
 ENERGY, PUSH, TWIST, PRESS, AT, AREA, POLAR, AXIS, OTHERS, OWN, BASE, HIT = 0, 1, 4, 7, 8, 11, 12, 13, 16, 17, 18, 19
 SHALLOW = 1e-9  # part of the sizes summed below which a volume is mostly rounding
@@ -286,7 +286,7 @@ def press(solids: Any, base: Any, face: Any, j: Any, count: Any, desk: Any) -> N
     if hit[PRESS] > 0.0:
         square = 0.0
         for c in range(3):
-            hit[AT + c] /= hit[PRESS]
+            hit[AT + c] /= hit[AREA]
             square += hit[AT + c] * hit[AT + c]
         hit[POLAR] = max(hit[POLAR] - hit[AREA] * square, 0.0)
 
@@ -299,7 +299,7 @@ def add_pressure(m: Any, depth: Any, area: Any, slope: Any, normal: Any, hit: An
         p, q = (i + 1) % 3, (i + 2) % 3
         hit[PUSH + i] -= part * normal[i]
         hit[TWIST + i] -= part * (m[p] * normal[q] - m[q] * normal[p])
-        hit[AT + i] += slope * part * m[i]
+        hit[AT + i] += max(slope, 0.0) * area * m[i]
     hit[PRESS] += slope * part
     if slope > 0.0:
         hit[AREA] += slope * area
