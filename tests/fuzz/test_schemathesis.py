@@ -21,15 +21,14 @@ from schemathesis.config import SchemathesisConfig
 from schemathesis.core.parameters import ParameterLocation
 from schemathesis.specs.openapi import checks
 
-from hookean_server.app import create_app
 from hookean_server.problems import CATALOGUE
 from server.conftest import Served
-from serving import CABLE, HANG
+from serving import CABLE, HANG, app
 from soak import SOAK
 
 CASES = 300 if SOAK else 5
 RUNS, STEPS = (200, 20) if SOAK else (10, 10)
-LABELS = sorted(f"{method.upper()} {path}" for path, item in create_app().openapi()["paths"].items() for method in item)
+LABELS = sorted(f"{method.upper()} {path}" for path, item in app().openapi()["paths"].items() for method in item)
 CHECKS = [
     checks.status_code_conformance,
     checks.content_type_conformance,
