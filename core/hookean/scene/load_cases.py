@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import model_validator
 
 from hookean.forces import KINDS
-from hookean.values.columns import Model, Positives, fault
+from hookean.forces.cloth import one_way
+from hookean.values.columns import Directions, Lines, Model, Positives, fault
 from hookean.values.fields import Field, Maybe, Named
 
 if TYPE_CHECKING:
@@ -48,6 +49,36 @@ class ElasticLine(Model):
         return self
 
 
+class ElasticCloth(Model):
+    """The cloth that a film becomes when the form is frozen: made in the shape and with the stress that it has there.
+
+    The fields are those of a membrane.
+    """
+
+    material: str | None = Field(default=None, description="Name of a cloth, or of a solid with `thickness`")
+    thickness: float | None = Field(default=None, gt=0, le=1e12, description="Thickness of a solid material [length]")
+    warp_stiffness: float | None = Field(default=None, gt=0, le=1e12, description="Ew per width [force/length]")
+    weft_stiffness: float | None = Field(
+        default=None, gt=0, le=1e12, description="Ef per width [force/length]; default: that of the warp"
+    )
+    shear_stiffness: float | None = Field(
+        default=None, gt=0, le=1e12, description="G per width [force/length]; default: that of an isotropic sheet"
+    )
+    poisson: float | None = Field(
+        default=None, gt=-10, lt=10, description="nu, contraction along the weft by tension along the warp [-]; or 0"
+    )
+    warp: Maybe[Directions] = Field(
+        default=None, description="Direction of the warp, one or one for each face; default: the yarns or mesh rows"
+    )
+    warp_lines: Maybe[Lines] = Field(default=None, description="Lines along which the warp runs: the nearest counts")
+    wrinkling: bool = Field(default=False, description="Whether compression makes wrinkles, at no cost")
+
+    @model_validator(mode="after")
+    def _given(self) -> ElasticCloth:
+        one_way(self)
+        return self
+
+
 class Stages(Model):
     """How a scene gets from its form to its load cases."""
 
@@ -55,6 +86,7 @@ class Stages(Model):
         default="find", description="find: relax the scene to find the form; drawn: the start shape is the form"
     )
     freeze: Named[ElasticLine] = Field(default={}, description="By a force's name (or kind), its elastic properties")
+    films: Named[ElasticCloth] = Field(default={}, description="By a film's name (or kind), the cloth that it becomes")
 
 
 def named(scene: Scene, name: str) -> list[int]:
@@ -88,6 +120,11 @@ def check(scene: Scene) -> None:
         if not named(scene, name):
             known = [f.name or f.kind_name for f in scene.forces]
             raise fault(f"no force is called {name!r}; {_listed(known)}", f"/stages/freeze/{_escaped(name)}")
+    films = [f.name or f.kind_name for f in scene.forces if KINDS[f.kind_name].is_film]
+    for name in scene.stages.films if scene.stages is not None else ():
+        found = named(scene, name)
+        if not found or any(not KINDS[scene.forces[number].kind_name].is_film for number in found):
+            raise fault(f"no film is called {name!r}; {_listed(films)}", f"/stages/films/{_escaped(name)}")
 
 
 def _check_combination(scene: Scene, name: str, factors: Mapping[str, Any]) -> None:
