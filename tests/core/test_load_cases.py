@@ -263,6 +263,40 @@ def test_the_envelope_has_the_extremes_and_their_cases() -> None:
     assert found.to_dict()["envelope"]["displacement"]["largest_case"][1] == names[far[:, 1].argmax()]
 
 
+STEEL = {"materials": {"steel": {"E": 2e5, "G": 8e4, "expansion": 1.2e-5}}, "sections": {"rope": {"area": 0.01}}}
+WARM: Spec = {
+    **STEEL,
+    "stages": {"freeze": {"cable": {"material": "steel", "section": "rope"}}},
+    "load_cases": {
+        "warm": {"temperature": {"cable": 40.0}},
+        "snow": {"forces": ["snow load"]},
+        "wind": {"forces": ["wind load"]},
+    },
+    "combinations": {"both": {"snow": 1.0, "warm": 1.5, "prestress": 1.1}},
+}
+
+
+def test_warmth_lengthens_a_cable() -> None:
+    """Between its ends a cable of EA = 2000 keeps its length: T' = EA (l / (L0 (1 + a dT)) - 1), L0 = l EA / (EA + T).
+    With snow on it, it is the cable of that tension at rest, and its sag has a closed form."""
+    found = hookean.load_cases(Scene.read(cable(**WARM)))
+
+    def tension(prestress: float, degrees: float) -> float:
+        return (EA + prestress) / (1.0 + 1.2e-5 * degrees) - EA
+
+    np.testing.assert_allclose(found.cases["warm"].result.force("cable")["force"], tension(T, 40.0), rtol=1e-12)
+    z, pull = sag(10.0, tension(1.1 * T, 60.0))
+    case = found.cases["both"]
+    np.testing.assert_allclose(case.displacements[1], [0.0, 0.0, -z], atol=1e-6 * L)
+    np.testing.assert_allclose(case.result.force("cable")["force"], pull, rtol=1e-5)
+
+
+def test_what_has_no_thermal_expansion_is_one_sentence() -> None:
+    stages = cable()["stages"]
+    with pytest.raises(InputError, match="/load_cases/warm/temperature/cable: cable has no thermal expansion; freeze"):
+        hookean.load_cases(Scene.read(cable(**{**WARM, "stages": stages})), ["warm"])
+
+
 LOADS = [kind for kind, cls in KINDS.items() if cls.role == "load" and not cls.momentary]
 
 
@@ -323,6 +357,11 @@ def faces(load: Any) -> list[list[int]]:
     [
         ({"load_cases": {"snow": {"forces": ["snow"]}}}, "/load_cases/snow/forces/0: no load is called 'snow'"),
         ({"load_cases": {"s": {"forces": ["cable"]}}}, "'cable' is not a load"),
+        ({"load_cases": {"s": {}}}, "/load_cases/s: neither forces nor temperature given"),
+        (
+            {"load_cases": {"s": {"temperature": {"snow load": 5}}}},
+            "constant tension are called 'snow load'; the scene has cable",
+        ),
         ({"load_cases": {"permanent": {"forces": ["unary"]}}}, "is a reserved name"),
         ({"combinations": {"ULS": {"fog": 1.0}}}, "/combinations/ULS/fog: no load case is called 'fog'"),
         ({"combinations": {"snow": {"snow": 1.0}}}, "a load case has this name, too"),

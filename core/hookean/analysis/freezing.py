@@ -63,7 +63,8 @@ class Frozen:
     `particles` (n, 3) [length] is the form, and `form` the result of finding it. `notes` are sentences on forces that
     stay as they were although they are not elastic, and on films. `lengths` and `tensions` (m,) are those of the
     elastic lines in the form, by the number of their force; `films` are the numbers of what was a film and is cloth;
-    `rotations` (r, 4) the unit quaternions w, x, y, z of the ends of beams.
+    `expansions` [1/K] are known of lines of a material; `rotations` (r, 4) are the unit quaternions w, x, y, z of the
+    ends of beams.
     """
 
     scene: Scene
@@ -73,6 +74,7 @@ class Frozen:
     lengths: dict[int, Floats] = field(default_factory=dict)
     tensions: dict[int, Floats] = field(default_factory=dict)
     films: tuple[int, ...] = ()
+    expansions: dict[int, float] = field(default_factory=dict)
     rotations: Floats = field(default_factory=lambda: np.zeros((0, 4)))
 
     def system(self, scene: Scene | None = None) -> tuple[System, State]:
@@ -105,6 +107,7 @@ def freeze(scene: Scene) -> Frozen:
     forces = list(scene.forces)
     lengths: dict[int, Floats] = {}
     tensions: dict[int, Floats] = {}
+    expansions: dict[int, float] = {}
     for group, memory in zip(system.groups, state.memory, strict=True):
         element_forces = system.element_forces(group, state, memory) if group.cls.role == "internal" else None
         for part in group.parts:
@@ -118,13 +121,15 @@ def freeze(scene: Scene) -> Frozen:
                 line = _line(system, stages, part, block, columns)
                 forces[part.number] = FREEZERS[group.cls.kind_name](line)
                 lengths[part.number], tensions[part.number] = line.length, line.tension
+                if (expansion := _expansion(line, system.places)) is not None:
+                    expansions[part.number] = expansion
             elif group.cls.role == "internal" and group.cls.kind_name not in ELASTIC:
                 name = force.name or force.kind_name
                 notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
     frozen = scene.replaced(forces=tuple(forces))
     turned = system.slots.quaternions(state.x)
     found = state.x[: system.slots.count].copy()
-    model = Frozen(frozen, found, form, tuple(notes), lengths, tensions, films, turned)
+    model = Frozen(frozen, found, form, tuple(notes), lengths, tensions, films, expansions, turned)
     other = compile(frozen)
     if not np.array_equal(other.x, system.x):
         raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")
@@ -225,6 +230,12 @@ def _filled(wanted: ElasticLine, force: Force, places: Places, pointer: str) -> 
     except InputError as error:
         raise InputError(pointer, error.sentence) from None
     return wanted
+
+
+def _expansion(line: Line, places: Places) -> float | None:
+    """Thermal expansion [1/K] of a line, of the material that it becomes or has; None where it has none."""
+    material = line.wanted.material or getattr(line.force, "material", None)
+    return None if material is None else places.material(material).expansion
 
 
 def _place(force: Force) -> dict[str, object]:

@@ -17,13 +17,25 @@ if TYPE_CHECKING:
 
 PRESTRESS, PERMANENT = "prestress", "permanent"
 """Names in combinations: what the form is stressed by, and the loads that are in no case."""
+LINES = ("springs", "constant_tension")
+"""Kinds along lines that freeze into elastic ones, and so have changes of temperature."""
 
 
 class LoadCase(Model):
-    """Loads that act together, by their names (or kinds). They do not act while the form is found."""
+    """Loads that act together, by their names (or kinds), and changes of temperature. They do not act while the form is
+    found."""
 
-    forces: tuple[str, ...] = Field(min_length=1, description="Names (or kinds) of loads")
-    factor: float = Field(default=1.0, description="Factor on these loads [-]")
+    forces: tuple[str, ...] = Field(default=(), description="Names (or kinds) of loads")
+    temperature: dict[str, float] = Field(
+        default={}, description="Change of temperature [K] by the name (or kind) of a force along lines"
+    )
+    factor: float = Field(default=1.0, description="Factor on these loads and changes [-]")
+
+    @model_validator(mode="after")
+    def _some(self) -> LoadCase:
+        if not self.forces and not self.temperature:
+            raise fault("neither forces nor temperature given; give at least one of them")
+        return self
 
 
 class ElasticLine(Model):
@@ -114,6 +126,12 @@ def check(scene: Scene) -> None:
                 raise fault(f"no load is called {load!r}; {_listed(loads)}", f"{pointer}/forces/{i}")
             if any(KINDS[scene.forces[number].kind_name].role != "load" for number in found):
                 raise fault(f"{load!r} is not a load; {_listed(loads)}", f"{pointer}/forces/{i}")
+        lines = [f.name or f.kind_name for f in scene.forces if f.kind_name in LINES]
+        for line in case.temperature:
+            found = named(scene, line)
+            if not found or any(scene.forces[number].kind_name not in LINES for number in found):
+                said = f"no springs or lines of constant tension are called {line!r}; {_listed(lines)}"
+                raise fault(said, f"{pointer}/temperature/{_escaped(line)}")
     for name, factors in scene.combinations.items():
         _check_combination(scene, name, factors)
     for name in scene.stages.freeze if scene.stages is not None else ():

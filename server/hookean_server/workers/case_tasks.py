@@ -50,6 +50,7 @@ def freeze_form(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> D
             for number, tension in frozen.tensions.items()
         ],
         "films": list(frozen.films),
+        "expansions": list(frozen.expansions.items()),
     }
     lines = json.dumps(head).encode(), answers.dump(frozen.form.to_dict(), "list"), answers.dump(model, "list")
     return Done(b"\n".join(lines), timing=clock.parts)
@@ -66,6 +67,7 @@ def solve_one(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Don
         lengths={line["force"]: np.array(line["length"], dtype=float) for line in lines},
         tensions={line["force"]: np.array(line["tension"], dtype=float) for line in lines},
         films=tuple(value["films"]),
+        expansions=dict(value["expansions"]),
         rotations=np.array(value["rotations"], dtype=float).reshape(-1, 4),
     )
     try:
