@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.optimize
-from hypothesis import Phase, given, settings
+from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 import hookean
@@ -126,7 +126,12 @@ def test_a_frozen_form_does_not_move(seed: int) -> None:
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=100, phases=(Phase.generate,), derandomize=True)
 def test_more_frozen_forms_do_not_move(seed: int) -> None:
-    assert_stays(seed)
+    """100 scenes whose form is found: a tent may have none, where its cables are too slack for its film."""
+    try:
+        assert_stays(seed)
+    except InputError as error:
+        assume("no form was found" not in str(error))
+        raise
 
 
 def test_a_film_becomes_cloth_of_its_shape_and_stress() -> None:
