@@ -136,6 +136,7 @@ if TYPE_CHECKING:
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
+    from hookean.scene.load_cases import ElasticCloth as ElasticCloth
     from hookean.scene.load_cases import ElasticLine as ElasticLine
     from hookean.scene.load_cases import LoadCase as LoadCase
     from hookean.scene.load_cases import Stages as Stages
@@ -187,6 +188,7 @@ _HOMES = {
     "cables": "workshop.cables",
     "Patterns": "workshop.patterns",
     "cutting_patterns": "workshop.patterns",
+    "ElasticCloth": "scene.load_cases",
     "ElasticLine": "scene.load_cases",
     "Frozen": "analysis.freezing",
     "freeze": "analysis.freezing",
@@ -244,6 +246,7 @@ __all__ = [
     "Design",
     "Developable",
     "Direction",
+    "ElasticCloth",
     "ElasticLine",
     "EqualAngle",
     "EqualLength",

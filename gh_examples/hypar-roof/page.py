@@ -1,5 +1,5 @@
 """A hypar roof on one page: form, cases, checks, cable lengths, cutting patterns and report, from the model and recipe
-beside this file: `python page.py [FOLDER]`."""
+beside this file: `python page.py [FOLDER [PROCESSES]]`; several processes pay from some thousand particles on."""
 
 import sys
 from pathlib import Path
@@ -39,4 +39,5 @@ def design(scene: Scene, folder: Path, processes: int = 1) -> hookean.LoadCases:
 
 if __name__ == "__main__":
     target = Path(sys.argv[1]) if len(sys.argv) > 1 else Path.cwd()
-    design(read_scene(HERE / "model.3dm", HERE / "recipe.toml"), target)
+    many = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    design(read_scene(HERE / "model.3dm", HERE / "recipe.toml"), target, many)

@@ -1,5 +1,6 @@
 """Random scenes whose form is found and then frozen, seeded: nets of force densities, nets of rest factors with edge
-cables of constant tension, cable nets of springs, bent gridshells."""
+cables of constant tension, cable nets of springs, bent gridshells; films between rims, with yarns, under pressure, with
+edge cables, between rings; shells."""
 
 from __future__ import annotations
 
@@ -7,6 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from hookean.discretize import grid, naked_edges, naked_vertices
+
+from .film_meshes import cut, tube
 from .random_nets import lattice, rim
 
 Numbers = np.random.Generator
@@ -87,4 +91,67 @@ def gridshell(rng: Numbers) -> Spec:
     return cased({"particles": x, "forces": [rods, bend], "anchors": anchors}, rng, len(x))
 
 
-FAMILIES = (densities, membrane, cable_net, gridshell)
+def skin(rng: Numbers) -> Spec:
+    """A mesh over a rectangle, of quads or triangles, its vertices on a slanting saddle."""
+    n, m = rng.integers(5, 10, 2)
+    mesh = grid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, m + 1) * rng.uniform(0.6, 1.5))
+    x, (a, b, c) = np.array(mesh.vertices), rng.uniform(-0.5, 0.5, 3)
+    x[:, 2] = a * x[:, 0] * x[:, 1] + b * x[:, 0] ** 2 + c * x[:, 1]
+    faces = cut(mesh.faces, "quads" if rng.random() < 0.5 else "triangles")
+    return {"particles": x, "meshes": {"skin": {"vertices": x, "faces": faces}}, "stages": {"films": {"film": {
+        "warp_stiffness": 10.0 ** rng.uniform(2, 4), "poisson": rng.uniform(0.0, 0.4)}}}}  # fmt: skip
+
+
+def film(rng: Numbers) -> Spec:
+    """A film on a rim, perhaps with yarns."""
+    scene = skin(rng)
+    woven = dict(zip(("warp", "weft"), rng.uniform(0.5, 3.0, 2), strict=True)) if rng.random() < 0.5 else {}
+    forces = [{"kind": "soapfilm", "name": "film", "mesh": "skin", "tension": rng.uniform(1, 5), **woven}]
+    anchors = [{"particles": naked_vertices(tuple(scene["meshes"]["skin"].values()))}]
+    return cased({**scene, "forces": forces, "anchors": anchors}, rng, len(scene["particles"]))
+
+
+def bubble(rng: Numbers) -> Spec:
+    """A film on a rim under pressure, which stays with the shape."""
+    spec = film(rng)
+    lift = {"kind": "pressure", "name": "lift", "mesh": "skin", "pressure": rng.uniform(-0.5, 0.5)}
+    return {**spec, "forces": [spec["forces"][0], lift, *spec["forces"][1:]]}
+
+
+def tent(rng: Numbers) -> Spec:
+    """A film between edge cables of constant tension, held at its corners."""
+    scene = skin(rng)
+    mesh = tuple(scene["meshes"]["skin"].values())
+    x = scene["particles"]
+    held = [int(np.argmin((x[:, :2] * signs).sum(axis=1))) for signs in ([1, 1], [1, -1], [-1, 1], [-1, -1])]
+    tension = rng.uniform(1, 5)
+    forces = [{"kind": "soapfilm", "name": "film", "mesh": "skin", "tension": tension}]
+    cables = {"kind": "constant_tension", "name": "edge", "particles": naked_edges(mesh)}
+    forces.append({**cables, "tension": tension * rng.uniform(8.0, 15.0)})
+    stages = {**scene["stages"], "freeze": {"edge": {"axial_stiffness": 1e4}}}
+    return cased({**scene, "forces": forces, "stages": stages, "anchors": [{"particles": held}]}, rng, len(x))
+
+
+def catenoid(rng: Numbers) -> Spec:
+    """A film between two rings, on quads or triangles."""
+    kind = "quads" if rng.random() < 0.5 else "triangles"
+    x, faces, rings = tube(int(rng.integers(8, 16)), int(rng.integers(3, 7)), rng.uniform(0.2, 0.5), kind)
+    forces = [{"kind": "soapfilm", "name": "film", "mesh": "skin", "tension": rng.uniform(1, 5)}]
+    return cased({"particles": x, "meshes": {"skin": {"vertices": x, "faces": faces}}, "forces": forces,
+                  "anchors": [{"particles": rings}], "stages": {"films": {"film": {"warp_stiffness": 500.0}}}},
+                 rng, len(x))  # fmt: skip
+
+
+def plate(rng: Numbers) -> Spec:
+    """A shell that bends with springs along its edges, between rims pushed towards each other; its stress-free shape
+    stays the drawn one."""
+    scene = skin(rng)
+    mesh, x = tuple(scene["meshes"]["skin"].values()), scene["particles"]
+    held = np.asarray(naked_vertices(mesh))
+    forces = [{"kind": "springs", "name": "net", "mesh": "skin", "stiffness": 1e3}]
+    forces.append({"kind": "shell", "mesh": "skin", "strength": rng.uniform(1.0, 20.0), "poisson": 0.3})
+    anchors = [{"particles": held, "targets": x[held] * rng.uniform(0.96, 0.99)}]
+    return cased({"particles": x, "meshes": scene["meshes"], "forces": forces, "anchors": anchors}, rng, len(x))
+
+
+FAMILIES = (densities, membrane, cable_net, gridshell, film, bubble, tent, catenoid, plate)

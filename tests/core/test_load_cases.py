@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.optimize
+from hypothesis import Phase, assume, given, settings
+from hypothesis import strategies as st
 
 import hookean
 from hookean import InputError, Scene
@@ -19,7 +21,7 @@ from hookean.solvers import solver
 from hookean.system.balance import balance
 from hookean.system.system import compile
 
-from .formed import formed
+from .formed import FAMILIES, formed
 
 Spec = dict[str, Any]
 EA, T, L = 2000.0, 30.0, 4.0
@@ -114,18 +116,51 @@ def assert_stays(seed: int) -> None:
             np.testing.assert_allclose(after["force"], before["force"], atol=1e-6 * scale)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(len(FAMILIES)))
 def test_a_frozen_form_does_not_move(seed: int) -> None:
+    """One of each family."""
     assert_stays(seed)
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize("seed", range(10, 100))
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=100, phases=(Phase.generate,), derandomize=True)
 def test_more_frozen_forms_do_not_move(seed: int) -> None:
-    assert_stays(seed)
+    """100 scenes whose form is found: a tent may have none, where its cables are too slack for its film."""
+    try:
+        assert_stays(seed)
+    except InputError as error:
+        assume("no form was found" not in str(error))
+        raise
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+def test_a_film_becomes_cloth_of_its_shape_and_stress() -> None:
+    """A flat film has its tension in all directions, and so has the cloth; its Poisson's ratio and the load factor on
+    prestress do not change its shape."""
+    spec = formed(4)
+    x = np.array(spec["particles"]) * [1, 1, 0]
+    spec = {**spec, "particles": x, "meshes": {"skin": {**spec["meshes"]["skin"], "vertices": x}}}
+    spec["forces"][0] = {"kind": "soapfilm", "name": "film", "mesh": "skin", "tension": 3.0}
+    spec["combinations"] = {"jacked": {"prestress": 1.5}}
+    found = hookean.load_cases(Scene.read(spec), ["jacked"])
+    np.testing.assert_array_equal(found.frozen.particles, found.form.particles)
+    assert not found.frozen.notes and found.frozen.scene.forces[0].kind_name == "membrane"
+    for name, wanted in (("warp", 4.5), ("weft", 4.5), ("shear", 0.0)):
+        np.testing.assert_allclose(found.cases["jacked"].result.force("film")[name], wanted, atol=1e-9)
+
+
+def test_cloth_of_a_curved_film_keeps_its_shape_and_notes_the_change_of_stress() -> None:
+    """Its vertices are where the film's were, to the bit; the mean stress is the film's tension to the error of flat
+    triangles."""
+    spec = formed(7)
+    frozen = hookean.freeze(Scene.read(spec))
+    np.testing.assert_allclose(frozen.particles, frozen.form.particles, atol=1e-9)
+    assert len(frozen.notes) == 1 and "balanced across itself only" in frozen.notes[0]
+    stress, tension = frozen.scene.forces[0].prestress, spec["forces"][0]["tension"]
+    np.testing.assert_allclose(stress.mean(axis=0), [tension, tension, 0.0], atol=0.05 * tension)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 6])
 def test_cases_in_any_order_give_the_same_bits(seed: int) -> None:
     """And side by side on an executor."""
     spec = formed(seed)
@@ -141,7 +176,8 @@ def test_cases_in_any_order_give_the_same_bits(seed: int) -> None:
             for name in order:
                 result, same = found.cases[name].result, wanted.cases[name].result
                 assert result.particles.tobytes() == same.particles.tobytes()
-                assert result.forces[0]["force"].tobytes() == same.forces[0]["force"].tobytes()
+                for column, values in same.forces[0].items():
+                    assert np.asarray(result.forces[0][column]).tobytes() == np.asarray(values).tobytes()
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -232,6 +268,40 @@ def test_the_envelope_has_the_extremes_and_their_cases() -> None:
     assert found.to_dict()["envelope"]["displacement"]["largest_case"][1] == names[far[:, 1].argmax()]
 
 
+STEEL = {"materials": {"steel": {"E": 2e5, "G": 8e4, "expansion": 1.2e-5}}, "sections": {"rope": {"area": 0.01}}}
+WARM: Spec = {
+    **STEEL,
+    "stages": {"freeze": {"cable": {"material": "steel", "section": "rope"}}},
+    "load_cases": {
+        "warm": {"temperature": {"cable": 40.0}},
+        "snow": {"forces": ["snow load"]},
+        "wind": {"forces": ["wind load"]},
+    },
+    "combinations": {"both": {"snow": 1.0, "warm": 1.5, "prestress": 1.1}},
+}
+
+
+def test_warmth_lengthens_a_cable() -> None:
+    """Between its ends a cable of EA = 2000 keeps its length: T' = EA (l / (L0 (1 + a dT)) - 1), L0 = l EA / (EA + T).
+    With snow on it, it is the cable of that tension at rest, and its sag has a closed form."""
+    found = hookean.load_cases(Scene.read(cable(**WARM)))
+
+    def tension(prestress: float, degrees: float) -> float:
+        return (EA + prestress) / (1.0 + 1.2e-5 * degrees) - EA
+
+    np.testing.assert_allclose(found.cases["warm"].result.force("cable")["force"], tension(T, 40.0), rtol=1e-12)
+    z, pull = sag(10.0, tension(1.1 * T, 60.0))
+    case = found.cases["both"]
+    np.testing.assert_allclose(case.displacements[1], [0.0, 0.0, -z], atol=1e-6 * L)
+    np.testing.assert_allclose(case.result.force("cable")["force"], pull, rtol=1e-5)
+
+
+def test_what_has_no_thermal_expansion_is_one_sentence() -> None:
+    stages = cable()["stages"]
+    with pytest.raises(InputError, match="/load_cases/warm/temperature/cable: cable has no thermal expansion; freeze"):
+        hookean.load_cases(Scene.read(cable(**{**WARM, "stages": stages})), ["warm"])
+
+
 LOADS = [kind for kind, cls in KINDS.items() if cls.role == "load" and not cls.momentary]
 
 
@@ -292,10 +362,17 @@ def faces(load: Any) -> list[list[int]]:
     [
         ({"load_cases": {"snow": {"forces": ["snow"]}}}, "/load_cases/snow/forces/0: no load is called 'snow'"),
         ({"load_cases": {"s": {"forces": ["cable"]}}}, "'cable' is not a load"),
+        ({"load_cases": {"s": {}}}, "/load_cases/s: neither forces nor temperature given"),
+        (
+            {"load_cases": {"s": {"temperature": {"snow load": 5}}}},
+            "constant tension are called 'snow load'; the scene has cable",
+        ),
         ({"load_cases": {"permanent": {"forces": ["unary"]}}}, "is a reserved name"),
         ({"combinations": {"ULS": {"fog": 1.0}}}, "/combinations/ULS/fog: no load case is called 'fog'"),
         ({"combinations": {"snow": {"snow": 1.0}}}, "a load case has this name, too"),
         ({"stages": {"freeze": {"net": {}}}}, "/stages/freeze/net: no force is called 'net'"),
+        ({"stages": {"films": {"cable": {"warp_stiffness": 1.0}}}}, "/stages/films/cable: no film is called 'cable'"),
+        ({"stages": {"films": {"cable": {}}}}, "/stages/films/cable: its stiffness is missing"),
     ],
 )
 def test_faults_in_a_scene_are_one_sentence(change: Spec, said: str) -> None:
@@ -315,6 +392,8 @@ def test_what_cannot_be_frozen_is_one_sentence() -> None:
     spec["stages"] = None
     with pytest.raises(InputError, match="have no rest length; give their EA"):
         hookean.freeze(Scene.read(spec))
+    with pytest.raises(InputError, match="film keeps its stress at any strain; give the cloth that it becomes"):
+        hookean.freeze(Scene.read({**formed(4), "stages": {}}))
     with pytest.raises(InputError, match="'rain' is not a load case or combination; the scene has snow, wind"):
         hookean.load_cases(Scene.read(cable()), ["rain"])
     with pytest.raises(InputError, match="the scene has none"):

@@ -249,9 +249,11 @@ def test_the_square_airbag_rises_as_published(count: int) -> None:
     assert np.count_nonzero(found.force("membrane")["state"] == WRINKLED) > count
 
 
-def start_stress(**more: Any) -> dict[str, Any]:
+QUAD = np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1.0, 0]])
+
+
+def start_stress(x: np.ndarray = QUAD, **more: Any) -> dict[str, Any]:
     """What the result of a held quad of cloth reports at its start."""
-    x = np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1.0, 0]])
     scene = Scene(
         particles=x,
         meshes={"m": {"vertices": x, "faces": [[0, 1, 2, 3]]}},
@@ -277,6 +279,28 @@ def test_prestress_is_that_of_the_start(way: Any) -> None:
     assert found["warp"] == pytest.approx(np.full(4, 3.0), rel=1e-12)
     assert found["weft"] == pytest.approx(np.full(4, 2.0), rel=1e-12)
     assert np.abs(found["shear"]) == pytest.approx(np.full(4, 0.5), rel=1e-12)
+
+
+def test_each_triangle_may_have_a_prestress_of_its_own() -> None:
+    """A quad has four triangles, the two of either cut."""
+    rows = np.array([[3.0, 2.0, 0.5], [1.0, 4.0, 0.0], [2.0, 2.0, -0.5], [5.0, 1.0, 0.2]])
+    found = start_stress(prestress=rows, warp=[1, 0, 0], **CLOTH)
+    for i, name in enumerate(("warp", "weft", "shear")):
+        assert found[name] == pytest.approx(rows[:, i], rel=1e-12, abs=1e-15)
+    with pytest.raises(InputError, match="3 stresses for 1 faces of 4 triangles; give one, or one for each"):
+        start_stress(prestress=rows[:3], warp=[1, 0, 0], **CLOTH)
+
+
+def test_the_prestress_is_that_of_another_shape() -> None:
+    """A sheet made in a smaller shape has the closed-form stress of the stretch (1.05, 1.02) to the start, and its
+    prestress if it was made there."""
+    x = np.array([[0, 0, 0], [1.05, 0, 0], [1.05, 1.02, 0], [0, 1.02, 0]])
+    found = start_stress(x, shape=x / [1.05, 1.02, 1.0], warp=[1, 0, 0], **CLOTH)
+    expected = stressed(np.diag([1.05, 1.02]))
+    assert found["warp"] == pytest.approx(np.full(4, expected[0, 0]), rel=1e-12)
+    assert found["weft"] == pytest.approx(np.full(4, expected[1, 1]), rel=1e-12)
+    with pytest.raises(InputError, match="3 points of shape for a mesh of 4 vertices; give one for each vertex"):
+        start_stress(x, shape=x[:3], warp=[1, 0, 0], **CLOTH)
 
 
 def test_without_a_warp_it_runs_along_the_rows() -> None:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import copy
+import io
 import json
 
+import ezdxf
 import httpx
+import numpy as np
 import pytest
 
 import hookean
-from hookean_server.http.analysis_schemas import ANALYSIS_EXAMPLES, CASES_EXAMPLE
+from hookean.files.report import report
+from hookean_server.http.analysis_schemas import ANALYSIS_EXAMPLES, CASES_EXAMPLE, EXPORT_EXAMPLE, REPORT_EXAMPLE
 from hookean_server.workers.analysis_task import ANALYSES
 
 from .conftest import problem
@@ -94,3 +98,57 @@ def test_load_cases_of_a_bent_beam_start_from_its_rotations(client: httpx.Client
     wanted = hookean.load_cases(hookean.Scene.read(scene)).to_dict()
     assert abs(wanted["form"]["particles"][2][2]) > 0.3
     assert answer.json() == json.loads(json.dumps(wanted))
+
+
+def test_prestress_of_cloth_that_was_a_film_is_multiplied(client: httpx.Client) -> None:
+    """A flat film of tension 2 between held edges: 1.5 times that, over HTTP as by the function."""
+    x = [[i, j, 0.0] for i in range(3) for j in range(3)]
+    scene = {
+        "particles": x,
+        "meshes": {"skin": {"vertices": x, "faces": [[0, 3, 4, 1], [1, 4, 5, 2], [3, 6, 7, 4], [4, 7, 8, 5]]}},
+        "forces": [{"kind": "soapfilm", "name": "film", "mesh": "skin", "tension": 2.0}],
+        "anchors": [{"particles": [0, 1, 2, 3, 5, 6, 7, 8]}],
+        "combinations": {"jacked": {"prestress": 1.5}},
+        "stages": {"films": {"film": {"warp_stiffness": 100.0}}},
+    }
+    answer = client.post("/v1/analysis/load-cases", json={"scene": scene})
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["cases"][0]["result"]["forces"][0]["warp"] == pytest.approx([3.0] * 16, rel=1e-12)
+
+
+def test_a_report_is_that_of_the_function(client: httpx.Client) -> None:
+    answer = client.post("/v1/analysis/report", json=REPORT_EXAMPLE)
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"] == "text/html; charset=utf-8"
+    wanted = report(hookean.Scene.read(REPORT_EXAMPLE["scene"]), title="Truss", pictures=False)
+    assert answer.text == wanted
+
+
+def test_an_export_is_read_back_with_the_shape_of_its_case(client: httpx.Client) -> None:
+    """Lines of the DXF file, by ezdxf, to the last digit but one of float32 coordinates at most."""
+    answer = client.post("/v1/analysis/export", json=EXPORT_EXAMPLE)
+    assert answer.status_code == 200, answer.text
+    assert 'filename="result.dxf"' in answer.headers["content-disposition"]
+    lines = ezdxf.read(io.StringIO(answer.text)).modelspace().query('LINE[layer != "LOADS"]')
+    found = sorted([*map(tuple, (line.dxf.start, line.dxf.end))] for line in lines)
+    case = hookean.load_cases(hookean.Scene.read(EXPORT_EXAMPLE["scene"]), ["ULS 1"]).cases["ULS 1"].result
+    wanted = sorted([tuple(case.particles[i]) for i in pair] for pair in ([0, 1], [1, 2]))
+    np.testing.assert_allclose(found, wanted, atol=1e-6)
+    relaxed = client.post("/v1/analysis/export", json={"scene": EXPORT_EXAMPLE["scene"], "format": "compas.json"})
+    assert relaxed.status_code == 200 and relaxed.json()["dtype"].startswith("compas")
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer", "said"),
+    [
+        ({"format": "stl"}, "/format", '"stl" given; allowed: dxf, vtu, inp, ifc, compas.json'),
+        ({"case": "rain"}, "/cases", "'rain' is not a load case or combination"),
+        ({"scene": {"particles": [[0, 0, 0]], "forces": [{"kind": "unary", "particles": [0], "vector": [0, 0, -1]}]},
+          "case": None},
+         "/scene", "is not in equilibrium"),
+    ],
+)  # fmt: skip
+def test_bad_exports_get_one_sentence(client: httpx.Client, change: dict, pointer: str, said: str) -> None:
+    answer = client.post("/v1/analysis/export", json={**EXPORT_EXAMPLE, **change})
+    found = problem(answer, 422, "invalid-input")
+    assert found["errors"][0]["pointer"] == pointer and said in found["detail"]

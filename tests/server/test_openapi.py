@@ -124,7 +124,11 @@ def test_examples_run_and_fit(client: httpx.Client, path: str, name: str, exampl
     for arrays in ("list", "buffer"):
         answer = client.post(path, json=example, params={"arrays": arrays, "meshes": "compas"})
         assert answer.status_code == 200, answer.text
-        validator(content["responses"]["200"]["content"]["application/json"]["schema"]).validate(answer.json())
+        described = content["responses"]["200"]["content"]
+        if "application/json" in described and answer.headers["content-type"] == "application/json":
+            validator(described["application/json"]["schema"]).validate(answer.json())
+        else:
+            assert answer.headers["content-type"].partition(";")[0] in described
 
 
 def test_there_is_an_example_of_relaxing_and_of_most_operations() -> None:

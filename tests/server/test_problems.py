@@ -39,7 +39,7 @@ PATHS = {
     "/": "GET",
     "/{function}": "GET",
     **{f"/v1/discretize/{name}": "POST" for name in OPERATIONS},
-    **{f"/v1/analysis/{name}": "POST" for name in (*ANALYSES, "load-cases")},
+    **{f"/v1/analysis/{name}": "POST" for name in (*ANALYSES, "load-cases", "report", "export")},
 }
 METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE")
 JSON = {"content-type": "application/json"}

@@ -9,10 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.analysis.at_rest import AtRest
+from hookean.analysis.frozen_films import balanced, frozen_film
 from hookean.analysis.matrices import Unknowns, factor
 from hookean.errors import InputError
-from hookean.forces import Block, Force, elastic
+from hookean.forces import Block, Force, base, elastic
 from hookean.forces.base import Places
+from hookean.forces.membrane import Membrane
+from hookean.forces.soapfilm import SoapFilm
 from hookean.forces.springs import Springs
 from hookean.running.result import Result, Status, gather
 from hookean.running.run import relax_state
@@ -29,6 +32,7 @@ from hookean.system.system import System, compile
 Floats = NDArray[np.float64]
 
 STEPS = 12  # of Newton's method that take a form to rounding
+SETTLED = 1e-9  # part of the forces and of the size that counts as none
 ELASTIC = ("anchor_spring", "bend", "gas", "hinge", "membrane", "beam", "power_law", "shell", "springs", "volume")
 """Internal forces and supports that stay as they are, besides those that `FREEZERS` turns into others."""
 
@@ -57,8 +61,10 @@ class Frozen:
 
     `scene` has the elastic elements; it keeps the start shape, meshes and load cases of the scene it comes from.
     `particles` (n, 3) [length] is the form, and `form` the result of finding it. `notes` are sentences on forces that
-    stay as they were although they are not elastic. `lengths` and `tensions` (m,) are those of the elastic lines in the
-    form, by the number of their force; `rotations` (r, 4) the unit quaternions w, x, y, z of the ends of beams.
+    stay as they were although they are not elastic, and on films. `lengths` and `tensions` (m,) are those of the
+    elastic lines in the form, by the number of their force; `films` are the numbers of what was a film and is cloth;
+    `expansions` [1/K] are known of lines of a material; `rotations` (r, 4) are the unit quaternions w, x, y, z of the
+    ends of beams.
     """
 
     scene: Scene
@@ -67,6 +73,8 @@ class Frozen:
     notes: tuple[str, ...] = ()
     lengths: dict[int, Floats] = field(default_factory=dict)
     tensions: dict[int, Floats] = field(default_factory=dict)
+    films: tuple[int, ...] = ()
+    expansions: dict[int, float] = field(default_factory=dict)
     rotations: Floats = field(default_factory=lambda: np.zeros((0, 4)))
 
     def system(self, scene: Scene | None = None) -> tuple[System, State]:
@@ -83,7 +91,8 @@ def freeze(scene: Scene) -> Frozen:
     Loads of load cases do not act. The form is taken to rounding by Newton steps, so that the frozen model does not
     move. Springs keep stiffness and rest length, or take EA (`Scene.stages`): L0 = l EA / (EA + T), k = EA / L0, with
     the length l and the tension T of the form. Lines of constant tension and springs without a rest length need EA.
-    Bending, hinges, shells and supports stay as they are; so do other forces, with a note.
+    Films become cloth (`Stages.films`) of the shape and stress of the form. Bending, hinges, shells and supports stay
+    as they are; so do other forces, with a note.
 
     Raises InputError where no form is found, EA is missing, or an element pushes harder than its EA.
     Source: Schek, The force density method for form finding, 1974; Barnes, Form finding and analysis of tension
@@ -91,9 +100,14 @@ def freeze(scene: Scene) -> Frozen:
     """
     stages = scene.stages or Stages()
     system, state, form = _form(scene, stages)
-    forces, notes = list(scene.forces), list[str]()
+    notes, films = list[str](), tuple[int, ...]()
+    if system.films is not None:
+        system, state, films, notes = _clothed(system, state, stages)
+        scene = system.scene
+    forces = list(scene.forces)
     lengths: dict[int, Floats] = {}
     tensions: dict[int, Floats] = {}
+    expansions: dict[int, float] = {}
     for group, memory in zip(system.groups, state.memory, strict=True):
         element_forces = system.element_forces(group, state, memory) if group.cls.role == "internal" else None
         for part in group.parts:
@@ -107,16 +121,53 @@ def freeze(scene: Scene) -> Frozen:
                 line = _line(system, stages, part, block, columns)
                 forces[part.number] = FREEZERS[group.cls.kind_name](line)
                 lengths[part.number], tensions[part.number] = line.length, line.tension
+                if (expansion := _expansion(line, system.places)) is not None:
+                    expansions[part.number] = expansion
             elif group.cls.role == "internal" and group.cls.kind_name not in ELASTIC:
                 name = force.name or force.kind_name
                 notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
     frozen = scene.replaced(forces=tuple(forces))
     turned = system.slots.quaternions(state.x)
-    model = Frozen(frozen, state.x[: system.slots.count].copy(), form, tuple(notes), lengths, tensions, turned)
+    found = state.x[: system.slots.count].copy()
+    model = Frozen(frozen, found, form, tuple(notes), lengths, tensions, films, expansions, turned)
     other = compile(frozen)
     if not np.array_equal(other.x, system.x):
         raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")
     return model
+
+
+def _clothed(system: System, state: State, stages: Stages) -> tuple[System, State, tuple[int, ...], list[str]]:
+    """A form whose films are cloth that is at rest: its system and state, the numbers of the films, and notes."""
+    scene = system.scene
+    forces, films = list(scene.forces), list[int]()
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        if group.cls is not SoapFilm:
+            continue
+        pulls = system.element_forces(group, state, memory)
+        for part in group.parts:
+            forces[part.number] = frozen_film(system, stages, part, state.x, pulls[part.rows])
+            films.append(part.number)
+    done = None if scene.stages is None else scene.stages.replaced(films={})
+    cloth, notes = balanced(scene.replaced(forces=tuple(forces), stages=done), films, state)
+    other = compile(cloth)
+    there = other.start()
+    there.x, there.free = state.x.copy(), state.free
+    kept = {part.number: own[part.rows] for g, own in zip(system.groups, state.memory, strict=True) for part in g.parts}
+    for group, own in zip(other.groups, there.memory, strict=True):
+        for part in group.parts:
+            if part.number not in films:
+                own[part.rows] = kept[part.number]
+    sharpen(other, there)
+    if not balance(other, there).still(SETTLED):
+        raise InputError(
+            "/forces", "the cloth of a film is not at rest in the form; hold its edges or add cables there"
+        )
+    count = system.slots.count
+    moved = float(base.lengths(there.x - state.x)[:count].max(initial=0.0))
+    if moved > SETTLED * float(np.linalg.norm(np.ptp(state.x[:count], axis=0))):
+        unit = scene.units.length
+        notes.append(f"the form moved by up to {moved:.2g} {unit} to where the cloth is at rest")
+    return other, there, tuple(films), notes
 
 
 def _form(scene: Scene, stages: Stages) -> tuple[System, State, Result]:
@@ -127,9 +178,6 @@ def _form(scene: Scene, stages: Stages) -> tuple[System, State, Result]:
         found = balance(system, state)
         said = "The form is the start shape."
         return system, state, gather(system, state, found, None, Status.CONVERGED, said, "none", moving=False)
-    if system.films is not None:
-        said = "soap films keep their stress at any strain and cannot be frozen; use springs along warp and weft"
-        raise InputError("/forces", said)
     result = relax_state(system, state, solver(scene.settings.solver))
     if not result.converged:
         raise InputError("model", f"no form was found: {result.message}")
@@ -182,6 +230,12 @@ def _filled(wanted: ElasticLine, force: Force, places: Places, pointer: str) -> 
     except InputError as error:
         raise InputError(pointer, error.sentence) from None
     return wanted
+
+
+def _expansion(line: Line, places: Places) -> float | None:
+    """Thermal expansion [1/K] of a line, of the material that it becomes or has; None where it has none."""
+    material = line.wanted.material or getattr(line.force, "material", None)
+    return None if material is None else places.material(material).expansion
 
 
 def _place(force: Force) -> dict[str, object]:
@@ -267,7 +321,8 @@ FREEZERS: dict[str, Callable[[Line], Force]] = {"springs": frozen_springs, "cons
 
 
 def prestressed(frozen: Frozen, factor: float) -> Scene:
-    """The elastic scene with the tensions of the form times a factor: lengths l stay, L0 = l EA / (EA + factor T)."""
+    """The elastic scene with the tensions of the form times a factor: lengths l stay, L0 = l EA / (EA + factor T); and
+    so do the shapes of cloth."""
     if factor == 1.0:
         return frozen.scene
     forces = list(frozen.scene.forces)
@@ -279,4 +334,8 @@ def prestressed(frozen: Frozen, factor: float) -> Scene:
         slack = np.asarray(force.lower_cutoff) >= np.asarray(force.rest_length)
         lower = np.where(slack, rest, force.lower_cutoff)
         forces[number] = force.replaced(stiffness=stiffness, rest_length=rest, lower_cutoff=lower)
+    for number in frozen.films:
+        cloth = forces[number]
+        assert isinstance(cloth, Membrane)
+        forces[number] = cloth.replaced(prestress=factor * cloth.prestress)
     return frozen.scene.replaced(forces=tuple(forces))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from hookean.analysis.envelope import Envelope, envelope
 from hookean.analysis.freezing import Frozen, freeze, prestressed
-from hookean.analysis.load_factors import scaled
+from hookean.analysis.load_factors import scaled, warmed
 from hookean.errors import InputError
 from hookean.forces import KINDS, Force
 from hookean.forces.springs import Springs
@@ -167,6 +167,10 @@ def case_scene(frozen: Frozen, name: str) -> Scene:
         for number in sorted({i for load in scene.load_cases[case].forces for i in named(scene, load)}):
             acting[number] = acting.get(number, 0.0) + factor * scene.load_cases[case].factor
     forces = list(scene.forces)
+    for i, degrees in _temperatures(frozen, given).items():
+        line = forces[i]
+        assert isinstance(line, Springs)
+        forces[i] = warmed(line, frozen.expansions[i], degrees)
     for i, force in enumerate(forces):
         if i in later and i not in acting:
             forces[i] = force.replaced(name=IDLE)
@@ -174,6 +178,22 @@ def case_scene(frozen: Frozen, name: str) -> Scene:
             forces[i] = scaled(force, acting[i] if i in acting else given.get(PERMANENT, 1.0))
     idle = {IDLE: LoadCase(forces=(IDLE,))} if any(i not in acting for i in later) else {}
     return scene.replaced(forces=tuple(forces), load_cases=idle, combinations={}, stages=None)
+
+
+def _temperatures(frozen: Frozen, given: Mapping[str, float]) -> dict[int, float]:
+    """Changes of temperature [K] by the numbers of forces; InputError where a force has no thermal expansion."""
+    found = dict[int, float]()
+    for name, factor in given.items():
+        if name not in frozen.scene.load_cases:
+            continue
+        case = frozen.scene.load_cases[name]
+        for line, degrees in case.temperature.items():
+            for number in named(frozen.scene, line):
+                if number not in frozen.expansions:
+                    said = f"{line} has no thermal expansion; freeze it to a material that has one, with a section"
+                    raise InputError(f"/load_cases/{name}/temperature/{line}", said)
+                found[number] = found.get(number, 0.0) + factor * case.factor * degrees
+    return found
 
 
 def solve_case(frozen: Frozen, name: str) -> CaseResult:

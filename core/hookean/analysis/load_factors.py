@@ -1,4 +1,4 @@
-"""Loads times a factor: each load has fields that its force is proportional to, in units of force."""
+"""Loads times a factor, each with fields that its force is proportional to, in units of force; and warmth."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hookean.forces import Force
+from hookean.forces.springs import Springs
 
 
 def magnitudes(cls: type[Force]) -> list[str]:
@@ -32,3 +33,12 @@ def scaled(load: Force, factor: float) -> Force:
     if getattr(load, "material", None) is not None:
         changed["factor"] = factor * getattr(load, "factor", 1.0)
     return load.replaced(**changed)
+
+
+def warmed(force: Springs, expansion: float, degrees: float) -> Springs:
+    """Frozen springs whose temperature changes: rest lengths L0 (1 + expansion x degrees) of the same EA; those that go
+    slack below their rest length go slack below the new one."""
+    growth = 1.0 + expansion * degrees
+    rest = np.asarray(force.rest_length) * growth
+    lower = np.where(np.asarray(force.lower_cutoff) >= np.asarray(force.rest_length), rest, force.lower_cutoff)
+    return force.replaced(stiffness=np.asarray(force.stiffness) / growth, rest_length=rest, lower_cutoff=lower)

@@ -33,9 +33,11 @@ def warp_weft(mesh: Any, strict: bool = True) -> tuple[Index, Index]:
     quad = of[:, 2] >= 0
     family = np.full(len(first), -1)
     neighbours = _neighbours(of, len(first))
+    found, sides_of, is_quad = family.tolist(), of.tolist(), quad.tolist()  # numbers of Python: one by one, quicker
     for seed in np.flatnonzero(quad).tolist():
-        if (family[of[seed]] < 0).all():
-            _spread(seed, of, quad, neighbours, family)
+        if all(found[side] < 0 for side in sides_of[seed]):
+            _spread(seed, sides_of, is_quad, neighbours, found)
+    family = np.array(found, dtype=np.int64)
     if strict:
         _check(of, quad, family)
     _triangles(of, quad, neighbours, family)
@@ -50,17 +52,17 @@ def threads(mesh: Any, strict: bool = True) -> tuple[Index, Index, NDArray[np.bo
     return warp, weft, on_boundary(m, warp), on_boundary(m, weft)
 
 
-def _spread(seed: int, of: Index, quad: NDArray[np.bool_], neighbours: list[list[int]], family: Index) -> None:
-    family[of[seed, 0]] = 0
+def _spread(seed: int, of: list[list[int]], quad: list[bool], neighbours: list[list[int]], family: list[int]) -> None:
+    family[of[seed][0]] = 0
     queue, seen = deque([seed]), {seed}
     while queue:
-        face = queue.popleft()
-        sides = of[face]
+        sides = of[queue.popleft()]
         known = next(s for s in range(4) if family[sides[s]] >= 0)
-        for s in range(4):
-            if family[sides[s]] < 0:
-                family[sides[s]] = (family[sides[known]] + s - known) % 2
-            for other in neighbours[sides[s]]:
+        start = family[sides[known]] - known
+        for s, side in enumerate(sides):
+            if family[side] < 0:
+                family[side] = (start + s) % 2
+            for other in neighbours[side]:
                 if quad[other] and other not in seen:
                     seen.add(other)
                     queue.append(other)

@@ -123,7 +123,8 @@ def _cases(scene: Scene, cases: LoadCases) -> Iterator[str]:
     yield "<h2>Load cases and combinations</h2>"
     rows = []
     for name, case in scene.load_cases.items():
-        rows.append((name, f"{case.factor:g} x ({', '.join(case.forces)})"))
+        warm = (f"{degrees:+g} K on {line}" for line, degrees in case.temperature.items())
+        rows.append((name, f"{case.factor:g} x ({', '.join((*case.forces, *warm))})"))
     for name, factors in scene.combinations.items():
         rows.append((name, " + ".join(f"{factor:g} x {key}" for key, factor in factors.items())))
     yield _table(("case", "loads"), rows)

@@ -14,12 +14,13 @@ from hookean.values.mesh import Mesh
 
 if TYPE_CHECKING:
     from hookean.forces.membrane import Membrane
+    from hookean.scene.load_cases import ElasticCloth
 
 STIFFNESSES = ("warp_stiffness", "weft_stiffness", "shear_stiffness", "poisson")
 ALIKE = 1e-9  # part by which an isotropic cloth may differ with direction
 
 
-def one_way(force: Membrane) -> None:
+def one_way(force: Membrane | ElasticCloth) -> None:
     """A fault unless the stiffness and the warp are each given in one way."""
     own = [name for name in STIFFNESSES if getattr(force, name) is not None]
     if force.material is not None and own:
@@ -67,9 +68,35 @@ def numbers(force: Membrane, places: Places) -> tuple[float, float, float, float
     return filled(stiff, None, None, material.contraction(force.material))
 
 
-def grain(force: Membrane, places: Places, faces: Ints, cloth: tuple[float, float, float, float]) -> Floats:
-    """Direction of the warp (m, 3) in every face; InputError where it has none."""
-    corners = places.x[faces]
+def made(force: Membrane, places: Places) -> tuple[Floats, Ints]:
+    """Points (n, 3) [length] and faces (m, 4) of the shape that has the prestress: the start, or `shape`."""
+    faces = places.faces(force.mesh)
+    if force.shape is None:
+        return places.x, faces
+    vertices, own = places.geometry(force.mesh)
+    if len(force.shape) != len(vertices):
+        said = f"{len(force.shape)} points of shape for a mesh of {len(vertices)} vertices; give one for each vertex"
+        raise InputError("", said)
+    triangles = faces[:, 2] == faces[:, 3]
+    return force.shape, np.column_stack([own[:, :3], np.where(triangles, own[:, 2], own[:, 3])])
+
+
+def stresses(force: Membrane, face: Ints, faces: int) -> Floats:
+    """Stress (m, 3) [force/length] at the start of the triangles of these faces (m,)."""
+    rows = np.atleast_2d(force.prestress)
+    if len(rows) == 1:
+        return np.broadcast_to(rows, (len(face), 3))
+    if len(rows) == len(face):
+        return rows
+    if len(rows) == faces:
+        return rows[face]
+    said = f"{len(rows)} stresses for {faces} faces of {len(face)} triangles; give one, or one for each"
+    raise InputError("", said)
+
+
+def grain(force: Membrane, x: Floats, faces: Ints, cloth: tuple[float, float, float, float]) -> Floats:
+    """Direction of the warp (m, 3) in every face of a shape with points (n, 3); InputError where it has none."""
+    corners = x[faces]
     if force.warp is not None:
         given = np.atleast_2d(force.warp)
         if len(given) not in (1, len(faces)):
@@ -80,8 +107,8 @@ def grain(force: Membrane, places: Places, faces: Ints, cloth: tuple[float, floa
     first, last = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 3]
     triangles = faces[:, 2] == faces[:, 3]
     if not triangles.any():
-        warp = warp_weft(Mesh(places.x, faces))[0]
-        size = len(places.x)
+        warp = warp_weft(Mesh(x, faces))[0]
+        size = len(x)
         known = np.unique(np.sort(warp, axis=1) @ [size, 1])
         side = np.isin(np.sort(faces[:, :2], axis=1) @ [size, 1], known)
         other = corners[:, 2] - corners[:, 1] + corners[:, 3] - corners[:, 0]
@@ -93,8 +120,10 @@ def grain(force: Membrane, places: Places, faces: Ints, cloth: tuple[float, floa
 
 def _isotropic(cloth: tuple[float, float, float, float], prestress: Floats) -> bool:
     warp, weft, shear, poisson = cloth
-    size = np.abs(prestress).max()
-    even = abs(prestress[0] - prestress[1]) <= ALIKE * size and abs(prestress[2]) <= ALIKE * size
+    rows = np.atleast_2d(prestress)
+    size = np.abs(rows).max(initial=0.0)
+    uneven = np.abs(np.column_stack([rows[:, 0] - rows[:, 1], rows[:, 2]])).max(initial=0.0)
+    even = uneven <= ALIKE * size
     alike = abs(warp - weft) <= ALIKE * warp and abs(shear * 2.0 * (1.0 + poisson) - warp) <= ALIKE * warp
     return bool(even and alike)
 

@@ -10,15 +10,15 @@ from pydantic import model_validator
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places
-from hookean.forces.cloth import grain, numbers, one_way
+from hookean.forces.cloth import grain, made, numbers, one_way, stresses
 from hookean.forces.soapfilm import halves, yarns
 from hookean.forces.tension_field import respond, stiffen
-from hookean.values.columns import Directions, Lines, Vector
+from hookean.values.columns import Directions, Lines, Points, Vectors
 from hookean.values.fields import Field, Maybe
 
 AREA, SLOPES, CLOTH, STRAIN, WRINKLING = 0, 1, 7, 11, 14  # columns of the parameters
 SLIVER = 1e-8
-"""Triangles lower than this part of their size have no plane at the start, and no force."""
+"""Triangles lower than this part of their size have no plane where they are made, and no force."""
 
 
 @device
@@ -134,8 +134,8 @@ class Membrane(Force):
     W is the energy per start area of the Green strain along warp and weft, e C e / 2 (St. Venant-Kirchhoff), with
     C^-1 = [[1/Ew, -nu/Ew, 0], [-nu/Ew, 1/Ef, 0], [0, 0, 1/G]]: stiffnesses are per width [force/length], and nu is how
     much the cloth contracts along the weft where the warp is pulled. A sheet of modulus E and thickness t has Ew = E t.
-    Strain is constant in each triangle, and a quad is the mean of its two cuts. The start shape has the `prestress`
-    along warp, weft and in shear, and is free of strain without one.
+    Strain is constant in each triangle, and a quad is the mean of its two cuts. The start shape, or another `shape`,
+    has the `prestress` along warp, weft and in shear, and is free of strain without one.
 
     The warp runs along a vector that is projected on each triangle; along the nearest of some lines; or, without
     either, along the rows of the mesh, from the first edge of its first face, which needs quads (or cloth that is alike
@@ -169,14 +169,19 @@ class Membrane(Force):
         default=None, description="Direction of the warp, one or one for each face; its length is ignored"
     )
     warp_lines: Maybe[Lines] = Field(default=None, description="Lines along which the warp runs: the nearest counts")
-    prestress: Vector = Field(
-        default=np.zeros(3), description="Stress of the start shape along warp, along weft, in shear [force/length]"
+    prestress: Vectors = Field(
+        default=np.zeros(3),
+        description="Stress of the start shape along warp, along weft, in shear, one or one for each face, or for each "
+        "triangle (a quad has four) [force/length]",
+    )
+    shape: Maybe[Points] = Field(
+        default=None, description="Vertices of the mesh in the shape with the `prestress` [length]; default: the start"
     )
     wrinkling: bool = Field(default=False, description="Whether compression makes wrinkles, at no cost")
 
     formula: ClassVar[str] = "E = A0 e·C·e/2"
     arity: ClassVar[int] = 3
-    shared: ClassVar[tuple[str, ...]] = ("warp", "warp_lines", "prestress")
+    shared: ClassVar[tuple[str, ...]] = ("warp", "warp_lines", "prestress", "shape")
     outputs: ClassVar[dict[str, str]] = {
         "warp": "force/length",
         "weft": "force/length",
@@ -196,22 +201,23 @@ class Membrane(Force):
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: area, gradients along warp and weft, stiffnesses, prestrain, wrinkling."""
-        faces = places.faces(self.mesh)
-        corners, share, face = halves(faces)
+        corners, share, face = halves(places.faces(self.mesh))
+        x, faces = made(self, places)
+        at = halves(faces)[0]
         cloth = numbers(self, places)
-        along = grain(self, places, faces, cloth)[face]
-        double = twice_area(places.x, corners)
-        flat = _flat(places.x, corners, double)
-        slopes = yarns(places.x, corners, along) / np.where(flat, 0.5 * double, 1.0)[:, None]
+        along = grain(self, x, faces, cloth)[face]
+        double = twice_area(x, at)
+        flat = _flat(x, at, double)
+        slopes = yarns(x, at, along) / np.where(flat, 0.5 * double, 1.0)[:, None]
         warp, weft, shear, poisson = cloth
-        first, second, third = np.asarray(self.prestress)
+        first, second, third = stresses(self, face, len(faces)).T
         strain = [first / warp - poisson * second / warp, second / weft - poisson * first / warp, third / shear]
         return Block.of(
             corners,
             area=np.where(flat, 0.5 * double * share, 0.0),
             slopes=np.where(flat[:, None], slopes, 0.0),
             cloth=np.tile(cloth, (len(corners), 1)),
-            prestrain=np.tile(strain, (len(corners), 1)),
+            prestrain=np.column_stack(strain),
             wrinkling=float(self.wrinkling),
         )
 

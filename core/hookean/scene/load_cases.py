@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import model_validator
 
 from hookean.forces import KINDS
-from hookean.values.columns import Model, Positives, fault
+from hookean.forces.cloth import one_way
+from hookean.values.columns import Directions, Lines, Model, Positives, fault
 from hookean.values.fields import Field, Maybe, Named
 
 if TYPE_CHECKING:
@@ -16,13 +17,25 @@ if TYPE_CHECKING:
 
 PRESTRESS, PERMANENT = "prestress", "permanent"
 """Names in combinations: what the form is stressed by, and the loads that are in no case."""
+LINES = ("springs", "constant_tension")
+"""Kinds along lines that freeze into elastic ones, and so have changes of temperature."""
 
 
 class LoadCase(Model):
-    """Loads that act together, by their names (or kinds). They do not act while the form is found."""
+    """Loads that act together, by their names (or kinds), and changes of temperature. They do not act while the form is
+    found."""
 
-    forces: tuple[str, ...] = Field(min_length=1, description="Names (or kinds) of loads")
-    factor: float = Field(default=1.0, description="Factor on these loads [-]")
+    forces: tuple[str, ...] = Field(default=(), description="Names (or kinds) of loads")
+    temperature: dict[str, float] = Field(
+        default={}, description="Change of temperature [K] by the name (or kind) of a force along lines"
+    )
+    factor: float = Field(default=1.0, description="Factor on these loads and changes [-]")
+
+    @model_validator(mode="after")
+    def _some(self) -> LoadCase:
+        if not self.forces and not self.temperature:
+            raise fault("neither forces nor temperature given; give at least one of them")
+        return self
 
 
 class ElasticLine(Model):
@@ -48,6 +61,36 @@ class ElasticLine(Model):
         return self
 
 
+class ElasticCloth(Model):
+    """The cloth that a film becomes when the form is frozen: made in the shape and with the stress that it has there.
+
+    The fields are those of a membrane.
+    """
+
+    material: str | None = Field(default=None, description="Name of a cloth, or of a solid with `thickness`")
+    thickness: float | None = Field(default=None, gt=0, le=1e12, description="Thickness of a solid material [length]")
+    warp_stiffness: float | None = Field(default=None, gt=0, le=1e12, description="Ew per width [force/length]")
+    weft_stiffness: float | None = Field(
+        default=None, gt=0, le=1e12, description="Ef per width [force/length]; default: that of the warp"
+    )
+    shear_stiffness: float | None = Field(
+        default=None, gt=0, le=1e12, description="G per width [force/length]; default: that of an isotropic sheet"
+    )
+    poisson: float | None = Field(
+        default=None, gt=-10, lt=10, description="nu, contraction along the weft by tension along the warp [-]; or 0"
+    )
+    warp: Maybe[Directions] = Field(
+        default=None, description="Direction of the warp, one or one for each face; default: the yarns or mesh rows"
+    )
+    warp_lines: Maybe[Lines] = Field(default=None, description="Lines along which the warp runs: the nearest counts")
+    wrinkling: bool = Field(default=False, description="Whether compression makes wrinkles, at no cost")
+
+    @model_validator(mode="after")
+    def _given(self) -> ElasticCloth:
+        one_way(self)
+        return self
+
+
 class Stages(Model):
     """How a scene gets from its form to its load cases."""
 
@@ -55,6 +98,7 @@ class Stages(Model):
         default="find", description="find: relax the scene to find the form; drawn: the start shape is the form"
     )
     freeze: Named[ElasticLine] = Field(default={}, description="By a force's name (or kind), its elastic properties")
+    films: Named[ElasticCloth] = Field(default={}, description="By a film's name (or kind), the cloth that it becomes")
 
 
 def named(scene: Scene, name: str) -> list[int]:
@@ -82,12 +126,23 @@ def check(scene: Scene) -> None:
                 raise fault(f"no load is called {load!r}; {_listed(loads)}", f"{pointer}/forces/{i}")
             if any(KINDS[scene.forces[number].kind_name].role != "load" for number in found):
                 raise fault(f"{load!r} is not a load; {_listed(loads)}", f"{pointer}/forces/{i}")
+        lines = [f.name or f.kind_name for f in scene.forces if f.kind_name in LINES]
+        for line in case.temperature:
+            found = named(scene, line)
+            if not found or any(scene.forces[number].kind_name not in LINES for number in found):
+                said = f"no springs or lines of constant tension are called {line!r}; {_listed(lines)}"
+                raise fault(said, f"{pointer}/temperature/{_escaped(line)}")
     for name, factors in scene.combinations.items():
         _check_combination(scene, name, factors)
     for name in scene.stages.freeze if scene.stages is not None else ():
         if not named(scene, name):
             known = [f.name or f.kind_name for f in scene.forces]
             raise fault(f"no force is called {name!r}; {_listed(known)}", f"/stages/freeze/{_escaped(name)}")
+    films = [f.name or f.kind_name for f in scene.forces if KINDS[f.kind_name].is_film]
+    for name in scene.stages.films if scene.stages is not None else ():
+        found = named(scene, name)
+        if not found or any(not KINDS[scene.forces[number].kind_name].is_film for number in found):
+            raise fault(f"no film is called {name!r}; {_listed(films)}", f"/stages/films/{_escaped(name)}")
 
 
 def _check_combination(scene: Scene, name: str, factors: Mapping[str, Any]) -> None:

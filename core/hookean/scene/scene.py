@@ -5,11 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, Union
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import field_validator, model_validator
 
+from hookean.discretize.warpweft import warp_weft
 from hookean.forces import KINDS, Force
 from hookean.forces.floor import Floor
 from hookean.scene import load_cases
@@ -30,6 +33,7 @@ from hookean.values.columns import (
 )
 from hookean.values.fields import Field, Maybe, Named, Part, Parts, Switch
 from hookean.values.materials import Material
+from hookean.values.mesh import Mesh
 from hookean.values.sections import Section
 from hookean.values.units import Units
 
@@ -58,6 +62,11 @@ class MeshData(Model):
                 f"/faces/{row}/{column}",
             )
         return self
+
+    @cached_property
+    def families(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Warp and weft edges of a mesh of quads, found once for all scenes that have it."""
+        return warp_weft(Mesh(self.vertices, self.faces))
 
 
 class Anchor(Model):

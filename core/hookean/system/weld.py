@@ -156,7 +156,8 @@ class Welded:
         which, _, pattern = choice.partition("_")
         if which in ("warp", "weft"):
             if mesh not in self._families:
-                self._families[mesh] = warpweft.warp_weft(plain)
+                alike = len(first) == len(vertices)  # no two vertices became one
+                self._families[mesh] = data.families if alike else warpweft.warp_weft(plain)
             pairs = self._families[mesh][which == "weft"]
         elif which == "diagonals":
             pairs = meshes.diagonals(plain, pattern or "both")

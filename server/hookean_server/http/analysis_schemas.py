@@ -8,6 +8,7 @@ from hookean.values.columns import Model
 from hookean_server.http.schemas import EXAMPLES
 from hookean_server.workers.analysis_task import ANALYSES
 from hookean_server.workers.case_tasks import Cases
+from hookean_server.workers.paper_tasks import Export, Report
 
 _NET = EXAMPLES["relax"]["pulled net"]
 _TRUSS: dict[str, Any] = {
@@ -41,6 +42,19 @@ CASES_EXAMPLE = {
         "combinations": {"ULS 1": {"permanent": 1.35, "snow": 1.5}},
     }
 }
+REPORT_EXAMPLE = {**CASES_EXAMPLE, "title": "Truss", "pictures": False}
+EXPORT_EXAMPLE = {**CASES_EXAMPLE, "format": "dxf", "case": "ULS 1"}
+
+
+def report_schema() -> dict[str, Any]:
+    """Schema of the body of a report."""
+    return _body(Report)
+
+
+def export_schema() -> dict[str, Any]:
+    """Schema of the body of an export."""
+    body = _body(Export)
+    return {**body, "required": ["scene", "format"]}
 
 
 def cases_schema() -> tuple[dict[str, Any], dict[str, Any]]:

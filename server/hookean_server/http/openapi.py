@@ -11,11 +11,21 @@ from fastapi.openapi.utils import get_openapi
 import hookean
 from hookean_server.http import claimed
 from hookean_server.http.access import Access
-from hookean_server.http.analysis_schemas import ANALYSIS_EXAMPLES, CASES_EXAMPLE, analysis_schema, cases_schema
+from hookean_server.http.analysis_schemas import (
+    ANALYSIS_EXAMPLES,
+    CASES_EXAMPLE,
+    EXPORT_EXAMPLE,
+    REPORT_EXAMPLE,
+    analysis_schema,
+    cases_schema,
+    export_schema,
+    report_schema,
+)
 from hookean_server.http.design_schemas import SLOPES, design_schemas
 from hookean_server.http.schemas import EXAMPLES, SCHEMAS, operation_schema
 from hookean_server.http.tokens import cookie_name
 from hookean_server.problems import CATALOGUE, MEDIA_TYPE
+from hookean_server.workers.paper_tasks import MEDIA
 
 HEALTH = {"application/json": {"schema": {"$ref": "#/components/schemas/Health"}}}
 PROOF = {"application/json": {"schema": {"$ref": "#/components/schemas/Proof"}}}
@@ -144,6 +154,21 @@ def load_cases() -> dict[str, Any]:
         "responses": problems({"application/json": {"schema": gives}}, computed=True),
         "openapi_extra": _takes(takes, {"small": CASES_EXAMPLE}),
     }
+
+
+def report() -> dict[str, Any]:
+    """Description of the route of reports."""
+    success = {"text/html": {"schema": {"type": "string"}}}
+    extra = _takes(report_schema(), {"small": REPORT_EXAMPLE})
+    return {"responses": problems(success, computed=True), "openapi_extra": extra}
+
+
+def export() -> dict[str, Any]:
+    """Description of the route of files for other programs."""
+    binary = {"schema": {"type": "string", "format": "binary"}}
+    success = dict.fromkeys((*MEDIA.values(), "application/octet-stream"), binary)
+    extra = _takes(export_schema(), {"small": EXPORT_EXAMPLE})
+    return {"responses": problems(success, computed=True), "openapi_extra": extra}
 
 
 def sensitivity() -> dict[str, Any]:

@@ -55,6 +55,19 @@ async def load_cases(request: Request) -> Response:
     return await compute_steps(request, steps)
 
 
+@router.post("/v1/analysis/report", summary="Report of a scene as one HTML page, fit to print", **openapi.report())
+async def report(request: Request) -> Response:
+    """Loads, cases, largest values and where they are, with pictures, as an HTML page without other files. With load
+    cases the form is found and frozen, and all cases are solved; else the scene is relaxed."""
+    return await compute(request, "report", {})
+
+
+@router.post("/v1/analysis/export", summary="Result of a scene as a file for another program", **openapi.export())
+async def export(request: Request) -> Response:
+    """The relaxed scene, or one load case of it, as DXF, VTU, Abaqus input, IFC or COMPAS JSON."""
+    return await compute(request, "export", {"seconds": request.app.state.settings.solve_seconds})
+
+
 async def _together(running: list[Coroutine[Any, Any, Reply]]) -> list[Reply]:
     """All answers; if one fails or the client leaves, the others are stopped."""
     tasks = [asyncio.ensure_future(one) for one in running]

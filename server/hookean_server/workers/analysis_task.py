@@ -118,15 +118,16 @@ def analyse(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
     return Done(text, timing=clock.parts)
 
 
-def request(body: bytes, options: type[Given], seconds: float) -> tuple[Scene, Given]:
-    """The scene in a body, with a time limit, and the options beside it."""
+def request(body: bytes, options: type[Given], seconds: float | None) -> tuple[Scene, Given]:
+    """The scene in a body, with a time limit unless that is None, and the options beside it."""
     value = parse(body)
     if not isinstance(value, dict):
         raise InputError("/", "an object with a scene is expected")
     if "scene" not in value:
         raise InputError("/scene", "this is required")
     given = options.model_validate({name: v for name, v in value.items() if name != "scene"})
-    return bounded(read_scene(value["scene"]), seconds), given
+    scene = read_scene(value["scene"])
+    return scene if seconds is None else bounded(scene, seconds), given
 
 
 def placed(pointer: str) -> str:

@@ -49,6 +49,8 @@ def freeze_form(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> D
             {"force": number, "length": frozen.lengths[number], "tension": tension}
             for number, tension in frozen.tensions.items()
         ],
+        "films": list(frozen.films),
+        "expansions": list(frozen.expansions.items()),
     }
     lines = json.dumps(head).encode(), answers.dump(frozen.form.to_dict(), "list"), answers.dump(model, "list")
     return Done(b"\n".join(lines), timing=clock.parts)
@@ -64,6 +66,8 @@ def solve_one(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Don
         np.array(value["particles"], dtype=float).reshape(-1, 3),
         lengths={line["force"]: np.array(line["length"], dtype=float) for line in lines},
         tensions={line["force"]: np.array(line["tension"], dtype=float) for line in lines},
+        films=tuple(value["films"]),
+        expansions=dict(value["expansions"]),
         rotations=np.array(value["rotations"], dtype=float).reshape(-1, 4),
     )
     try:

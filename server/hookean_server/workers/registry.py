@@ -26,7 +26,15 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
 def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
     from hookean_server.hops import functions
     from hookean_server.jobs import designs, work
-    from hookean_server.workers import analysis_task, case_tasks, discretize_task, example_task, file_tasks, relax_task
+    from hookean_server.workers import (
+        analysis_task,
+        case_tasks,
+        discretize_task,
+        example_task,
+        file_tasks,
+        paper_tasks,
+        relax_task,
+    )
 
     return {
         "relax": relax_task.relax_scene,
@@ -34,6 +42,8 @@ def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
         "freeze": case_tasks.freeze_form,
         "case": case_tasks.solve_one,
         "cases": case_tasks.gather_cases,
+        "report": paper_tasks.write_report,
+        "export": paper_tasks.write_export,
         "discretize": discretize_task.discretize,
         "hops": functions.solve,
         "file": file_tasks.relax_upload,
