@@ -136,6 +136,7 @@ if TYPE_CHECKING:
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
+    from hookean.scene.families import family as family
     from hookean.scene.load_cases import ElasticLine as ElasticLine
     from hookean.scene.load_cases import LoadCase as LoadCase
     from hookean.scene.load_cases import Stages as Stages
@@ -187,6 +188,7 @@ _HOMES = {
     "cables": "workshop.cables",
     "Patterns": "workshop.patterns",
     "cutting_patterns": "workshop.patterns",
+    "family": "scene.families",
     "ElasticLine": "scene.load_cases",
     "Frozen": "analysis.freezing",
     "freeze": "analysis.freezing",
@@ -327,6 +329,7 @@ __all__ = [
     "cutting_patterns",
     "design",
     "explore",
+    "family",
     "freeze",
     "frequencies",
     "load_cases",

@@ -139,6 +139,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "items": _object(id=_TEXT, figure=_TEXT, title=_TEXT, sentence=_TEXT, picture=_TEXT, scene=_TEXT),
         }
     ),
+    "Families": _object(families={"type": "array", "items": {"type": "object"}}),
     "Catalogue": _object(forces={"type": "array", "items": {"type": "object"}}),
     "Result": _object(
         status={"enum": ["converged", "stalled", "diverged", "max_iterations", "time_limit", "cancelled"]},
@@ -245,6 +246,7 @@ SCHEMAS["Edit"] = {
             "items": {"type": ["string", "integer"]},
             "description": "Forces by name or number",
         },
+        "rebuild": {"type": "object", "description": "Alone: parameters of the family that the model was made from"},
         "gesture": {"type": "string", "maxLength": 80, "description": "Edits of one gesture are undone as one"},
     },
     "additionalProperties": False,

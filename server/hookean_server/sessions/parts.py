@@ -115,7 +115,8 @@ def _put(simulation: Simulation, arrays: dict[str, NDArray[Any]]) -> None:
 
 
 def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
-    """Make an edit: `{"undo": true}`, `redo`, `reset`, or a patch with or without a `gesture`.
+    """Make an edit: `{"undo": true}`, `redo`, `reset`; `{"rebuild": {...}}` with parameters of the scene's family, or a
+    patch, both with or without a `gesture`.
 
     Returns it as it can be made again exactly, and what it sets in words: an edit of the same gesture that sets the
     same replaces it in the store; "" for one that nothing replaces.
@@ -131,6 +132,14 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
             getattr(simulation, name)()
             simulation.state.revision += name == "reset"
             return json.dumps(value).encode(), ""
+    if "rebuild" in value:
+        if set(value) != {"rebuild"} or not isinstance(value["rebuild"], dict):
+            raise InputError(
+                "/rebuild", 'must be the only key, with parameters of the family: {"rebuild": {"rise": 4}}'
+            )
+        simulation.rebuild(value["rebuild"], gesture=gesture)
+        sets = json.dumps(["rebuild", gesture, sorted(value["rebuild"])]) if gesture else ""
+        return json.dumps({**value, "gesture": gesture} if gesture else value).encode(), sets
     patch = Patch.read(value)
     pins = []
     for pin, read in zip(value.get("pin") or [], patch.pin, strict=True):
@@ -171,7 +180,7 @@ class Wired:
         """The same text for the same forces on the same particles, whatever their parameters."""
         groups = simulation.system.groups
         if self._groups is not groups:
-            digest = hashlib.sha256()
+            digest = hashlib.sha256(str(simulation.system.slots.count).encode())
             for group in simulation.system.all_groups:
                 for part in group.parts:
                     digest.update(f"{part.number} {part.force.name!r} {group.cls.__name__} ".encode())

@@ -26,7 +26,15 @@ def perform(request: dict[str, Any], body: bytes, cancelled: Cancelled) -> tuple
 def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
     from hookean_server.hops import functions
     from hookean_server.jobs import designs, work
-    from hookean_server.workers import analysis_task, case_tasks, discretize_task, example_task, file_tasks, relax_task
+    from hookean_server.workers import (
+        analysis_task,
+        case_tasks,
+        discretize_task,
+        example_task,
+        family_task,
+        file_tasks,
+        relax_task,
+    )
 
     return {
         "relax": relax_task.relax_scene,
@@ -40,6 +48,7 @@ def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
         "scene": file_tasks.scene_upload,
         "geometry": file_tasks.geometry_upload,
         "example": example_task.read_example,
+        "family": family_task.make_family,
         "job": work.check,
         "batch": work.batch,
         "item": work.item,
