@@ -74,8 +74,12 @@ export interface Scene {
   forces: SceneForce[];
   settings: Record<string, number | string | boolean | null | Record<string, unknown>>;
   units: Units;
+  /** What it was made from. */
+  family?: { name: string; parameters: Parameters } | null;
   [field: string]: unknown;
 }
+
+export type Parameters = Record<string, number | string>;
 
 export type SceneForce = { kind: string; name: string } & Record<string, unknown>;
 
@@ -102,6 +106,8 @@ export interface Patch {
   add?: SceneForce[];
   /** Forces to take away, by name or number. */
   remove?: (string | number)[];
+  /** Alone: other parameters of the family that it was made from. */
+  rebuild?: Parameters;
   /** Edits of one gesture are taken back as one. */
   gesture?: string;
 }
@@ -118,6 +124,14 @@ export interface Kind {
   /** Without a place it acts on all. */
   everywhere: boolean;
   fields: Field[];
+}
+
+/** A family of scenes to begin with. */
+export interface Family {
+  name: string;
+  title: string;
+  summary: string;
+  parameters: Field[];
 }
 
 /** What a number may be; more_than and less_than are bounds it does not reach. */

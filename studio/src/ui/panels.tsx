@@ -5,6 +5,7 @@ import { Forces } from "./forces";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
 import { SeePanel } from "./see";
+import { Shape } from "./shape";
 import type { Studio } from "./studio";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
@@ -13,6 +14,11 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       <Panel name="Picked">
         <PickedPanel studio={studio} />
       </Panel>
+      {studio.session.scene.value?.family && (
+        <Panel name="Shape">
+          <Shape session={studio.session} />
+        </Panel>
+      )}
       <Panel name="Forces">
         <Forces studio={studio} />
       </Panel>
@@ -32,7 +38,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
 function Panel({ name, children }: { name: string; children: ComponentChildren }) {
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
-    <details class="panel" open={!narrow || name === "Picked" || name === "Forces"}>
+    <details class="panel" open={!narrow || ["Picked", "Shape", "Forces"].includes(name)}>
       <summary>
         <h2>{name}</h2>
       </summary>
