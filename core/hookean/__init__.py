@@ -126,6 +126,7 @@ if TYPE_CHECKING:
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
     from hookean.running.frame import Frame as Frame
+    from hookean.running.frames import simulate as simulate
     from hookean.running.live import relax_live as relax_live
     from hookean.running.patch import Move as Move
     from hookean.running.patch import Patch as Patch
@@ -134,7 +135,6 @@ if TYPE_CHECKING:
     from hookean.running.run import relax as relax
     from hookean.running.script import Script as Script
     from hookean.running.simulation import Simulation as Simulation
-    from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
     from hookean.scene.families import family as family
     from hookean.scene.load_cases import ElasticLine as ElasticLine
@@ -210,7 +210,7 @@ _HOMES = {
     "relax_live": "running.live",
     "render": "pictures.picture",
     "save": "files.save",
-    "simulate": "running.simulation",
+    "simulate": "running.frames",
 }
 
 __all__ = [

@@ -182,7 +182,8 @@ def test_parameters_rebuild_a_running_model_and_are_undone() -> None:
 
 
 def test_what_has_no_place_of_its_own_survives_a_rebuilding_and_other_edits_forbid_it() -> None:
-    """Stiffness by hand, settings and a load on all of a mesh stay; a pin has particles that may be gone."""
+    """Stiffness by hand, settings and a load on all of a mesh stay, and a load on a particle whose number stays; a pin
+    forbids it, as does that load where there are other particles."""
     simulation = Simulation(family("grid", across=2, along=2))
     simulation.patch({"forces": {"net": {"stiffness": 7.0}}, "settings": {"drag": 3.0}})
     simulation.patch({"add": [{"kind": "self_weight", "name": "snow", "mesh": "net", "total": 5.0}]})
@@ -190,6 +191,12 @@ def test_what_has_no_place_of_its_own_survives_a_rebuilding_and_other_edits_forb
     assert simulation.system.slots.count == 12
     net, *_, snow = simulation.scene.forces
     assert (np.asarray(net.stiffness).tolist(), snow.name, simulation.scene.settings.drag) == (7.0, "snow", 3.0)
+    simulation.patch({"add": [{"kind": "unary", "name": "lamp", "particles": [5], "vector": [0, 0, -1]}]})
+    simulation.rebuild({"width": 9.0})
+    assert [force.name for force in simulation.scene.forces][-2:] == ["snow", "lamp"]
+    with pytest.raises(InputError, match=r"edited after it was made \(the added force 'lamp'\)"):
+        simulation.rebuild({"across": 4})
+    simulation.patch({"remove": ["lamp"]})
     before = simulation.state.x.copy(), simulation.state.revision
     simulation.patch({"pin": [{"particles": [5]}]})
     with pytest.raises(InputError, match=r"edited after it was made \(anchors\).*undo these edits"):

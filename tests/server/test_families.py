@@ -58,3 +58,16 @@ def test_parameters_of_a_session_are_edits_that_its_file_keeps(client: httpx.Cli
     assert "undo these edits" in problem(refused, 422, "invalid-input")["detail"]
     refused = client.patch(again, json={"rebuild": {"span": 5}, "pin": []})
     assert "only key" in problem(refused, 422, "invalid-input")["detail"]
+
+
+def test_units_of_a_session_are_an_edit(client: httpx.Client) -> None:
+    """The numbers stay, in mm now; undo goes back to m. What is no unit is refused."""
+    address = client.post("/v1/sessions", json=family("cable", parts=2).model_dump(mode="json")).headers["location"]
+    before = client.get(f"{address}/scene").json()
+    assert client.patch(address, json={"units": {"length": "mm"}}).json()["units"]["length"] == "mm"
+    after = client.get(f"{address}/scene").json()
+    assert after == {**before, "units": {**before["units"], "length": "mm"}}
+    client.post(f"{address}/undo")
+    assert client.get(f"{address}/scene").json() == before
+    refused = client.patch(address, json={"units": {"length": "miles"}})
+    assert problem(refused, 422, "invalid-input")["errors"][0]["pointer"] == "/units/length"

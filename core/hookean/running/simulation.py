@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
@@ -32,27 +32,6 @@ from hookean.system.system import System, compile
 OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
 
 Source = Stream | str | Path | Iterable[str]
-
-
-def simulate(
-    scene: Scene,
-    frames: int | None = None,
-    *,
-    script: Script | Mapping[str, Any] | str | None = None,
-    stream: Source | None = None,
-) -> Iterator[Frame]:
-    """Frames of a scene in motion, `sub_iterations` steps apart, bouncing included; ends at rest, after `frames` or
-    with the frame in which the stream ends. A script that still moves something keeps it running.
-
-    The first frame is the start. The scene's solver, or `verlet` where that is `auto`.
-    """
-    running = Simulation(scene, script, stream)
-    yield running.frame()
-    shown = 0
-    while running.status is Status.RUNNING and not running.over and (frames is None or shown < frames):
-        running.step()
-        shown += 1
-        yield running.frame()
 
 
 class Simulation:
@@ -293,9 +272,13 @@ class Simulation:
         for one that is not allowed, and where edits have to be undone first."""
         from hookean.scene.families.rebuilding import rebuilt
 
+        return self.replace(rebuilt(self.edited_scene(), parameters), gesture=gesture)
+
+    def replace(self, scene: Scene, *, gesture: str = "") -> int:
+        """Go on with another scene; returns the new revision. Particles that start where one of this scene starts are
+        where that one is now. InputError for a scene that is not valid, and where a script is played."""
         if self._playing is not None:
-            raise InputError("/family", "a script leads particles by number; rebuild without")
-        scene = rebuilt(self.edited_scene(), parameters)
+            raise InputError("", "a script refers to particles and forces by number; replace the scene without one")
         before = self._changed(lambda: self._follow(compile(scene)))
         self.history.note(before.setup, gesture)
         return self.state.revision

@@ -18,8 +18,9 @@ CARRIED = ("family", "forces", "settings")
 def rebuilt(scene: Scene, parameters: Mapping[str, Any]) -> Scene:
     """The scene of the same family with other values of some parameters.
 
-    Settings, changed numbers of the family's forces, and forces that were added without a place of their own (on all
-    particles, or on a mesh) are carried over. InputError where anything else was changed: it may have no place there.
+    Settings, changed numbers of the family's forces, and forces that were added on all particles or on a mesh are
+    carried over; where the particles keep their numbers, also forces on these. InputError where anything else was
+    changed: it may have no place there.
     """
     if scene.family is None:
         raise InputError("/family", "this model was not made from a family, so it has no parameters")
@@ -32,8 +33,9 @@ def rebuilt(scene: Scene, parameters: Mapping[str, Any]) -> Scene:
     forces = [_carried(*three) for three in zip(scene.forces, made.forces, fresh.forces, strict=False)]
     if len(scene.forces) < len(made.forces) or len(made.forces) != len(fresh.forces):
         raise _edited("forces")
+    places = {"mesh", "particles"} if _numbered(made) == _numbered(fresh) else {"mesh"}
     for force in scene.forces[len(made.forces) :]:
-        if any(getattr(force, place, None) is not None for place in PLACES if place != "mesh"):
+        if any(getattr(force, place, None) is not None for place in PLACES if place not in places):
             raise _edited(f"the added force {force.name or force.called!r}")
         forces.append(force)
     return fresh.replaced(forces=tuple(forces), settings=scene.settings)
@@ -52,6 +54,16 @@ def _carried(force: Force, made: Force, fresh: Force) -> Force:
         if _value(fresh, name) == _value(made, name):
             kept[name] = getattr(force, name)
     return fresh.replaced(**kept) if kept else fresh
+
+
+def _numbered(scene: Scene) -> list[Any]:
+    """What is the same in scenes whose particles have the same numbers."""
+    faces = [mesh.faces.tolist() for mesh in scene.meshes.values()]
+    return [len(scene.particles), faces, [_value(force, "particles") for force in scene.forces if _placed(force)]]
+
+
+def _placed(force: Force) -> bool:
+    return getattr(force, "particles", None) is not None
 
 
 def _value(part: Any, name: str) -> Any:
