@@ -29,6 +29,8 @@ export interface Summary {
   /** One sentence on the status. */
   message: string;
   playing: boolean;
+  /** Whether it plays to rest by its solver. */
+  solving?: boolean;
   particles: number;
   /** Edits that can be undone, and made again. */
   undo: number;
@@ -108,6 +110,8 @@ export interface Patch {
   remove?: (string | number)[];
   /** Alone: other parameters of the family that it was made from. */
   rebuild?: Parameters;
+  /** Alone: other units of the same numbers. */
+  units?: Partial<Units>;
   /** Edits of one gesture are taken back as one. */
   gesture?: string;
 }

@@ -5,6 +5,7 @@ import { createView } from "../view/view";
 import { dark } from "./theme";
 import { Report } from "./report";
 import { LegendBox, Looks } from "./see";
+import { Solving } from "./solving";
 import type { Studio } from "./studio";
 
 export function Stage({ studio }: { studio: Studio }) {
@@ -56,6 +57,7 @@ export function Stage({ studio }: { studio: Studio }) {
         <Looks studio={studio} />
         <LegendBox studio={studio} />
       </div>
+      <Solving session={studio.session} />
       <Report studio={studio} />
     </>
   );

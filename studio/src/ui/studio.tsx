@@ -10,6 +10,7 @@ import { arrive, entry } from "./place";
 import { Readings } from "./readings";
 import { Stage } from "./stage";
 import { dark, remember, remembered } from "./theme";
+import { calledOf } from "./words";
 
 const LAYERS = "hookean-layers";
 
@@ -44,7 +45,7 @@ export function SessionPage({ name }: { name: string }) {
 
 function Work({ studio }: { studio: Studio }) {
   const summary = studio.session.summary.value;
-  const title = summary?.label || studio.session.key;
+  const title = calledOf({ label: summary?.label ?? "", key: studio.session.key });
   useEffect(arrive, []);
   const locked = studio.session.connection.value === "locked";
   useEffect(() => {

@@ -38,5 +38,6 @@ export function takeUp(key: string, options: Options): void {
   if (!view) return;
   taken.delete(key);
   if (["force", "strain", "plain"].includes(view.colouring)) options.colouring.value = view.colouring;
+  if (view.scale && ["auto", "even", "log"].includes(view.scale.kind)) options.scale.value = view.scale;
   options.layers.value = { ...options.layers.value, ...view.layers };
 }

@@ -4,10 +4,20 @@ import { type Signal, signal } from "@preact/signals";
 export type Colouring = "force" | "strain" | "plain";
 export type Lock = "view" | "x" | "y" | "z" | "xy" | "xz" | "yz";
 export type Look = "perspective" | "top" | "front" | "right";
-export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "reactions" | "floor";
+export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "reactions" | "floor" | "guides";
 
 /** What is picked. */
 export type Picked = { kind: "particle" | "spring"; index: number } | null;
+
+/** How numbers become colours: from extreme to extreme, about 0, or by the logarithm of their size. */
+export type ScaleKind = "auto" | "even" | "log";
+
+/** With its two ends; null: as found. */
+export interface Scale {
+  kind: ScaleKind;
+  low: number | null;
+  high: number | null;
+}
 
 /** Which number a colour stands for. */
 export interface Legend {
@@ -28,6 +38,7 @@ export interface Legend {
 /** What a person has chosen to see: of this page alone, the session knows nothing of it. */
 export interface Options {
   colouring: Signal<Colouring>;
+  scale: Signal<Scale>;
   layers: Signal<Record<Layer, boolean>>;
   /** Along what a drag goes: the plane that faces the eye, an axis, a plane. */
   lock: Signal<Lock>;
@@ -49,7 +60,9 @@ export const options = (): Options => ({
     loads: true,
     reactions: true,
     floor: true,
+    guides: true,
   }),
+  scale: signal<Scale>({ kind: "auto", low: null, high: null }),
   lock: signal<Lock>("view"),
   picked: signal<Picked>(null),
   marked: signal<number[]>([]),
@@ -62,6 +75,7 @@ export interface Kept {
   /** Target and direction to the eye (x y z each), height seen [length], angle [degrees]. */
   eye: number[];
   colouring: Colouring;
+  scale?: Scale;
   layers: Partial<Record<Layer, boolean>>;
 }
 
