@@ -133,7 +133,7 @@ def test_guides_are_drawn_where_they_are(tab: Studio) -> None:
 
 
 def guide_pixels(studio: Studio) -> int:
-    """Pixels of the canvas that are brown as guides are (#8a6d1f, partly over the light ground); nothing else there is."""
+    """Pixels of the canvas that are brown as guides are (#8a6d1f, partly over the ground); nothing else is."""
     box = studio.page.get_by_label("The form").bounding_box()
     pixels = np.array(Image.open(BytesIO(studio.page.screenshot(clip=box))).convert("RGB")).astype(int)
     return int(((pixels[..., 0] - pixels[..., 2] > 50) & (pixels[..., 1] > pixels[..., 2])).sum())

@@ -5,6 +5,7 @@ import { Forces } from "./forces";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
 import { SeePanel } from "./see";
+import { Selected } from "./selected";
 import { Shape } from "./shape";
 import type { Studio } from "./studio";
 
@@ -13,6 +14,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
     <aside class="panels" aria-label="Panels">
       <Panel name="Picked">
         <PickedPanel studio={studio} />
+        <Selected studio={studio} />
       </Panel>
       {studio.session.scene.value?.family && (
         <Panel name="Shape">

@@ -5,6 +5,7 @@ import { createView } from "../view/view";
 import { dark } from "./theme";
 import { Report } from "./report";
 import { LegendBox, Looks } from "./see";
+import { Selecting } from "./selecting";
 import { Solving } from "./solving";
 import type { Studio } from "./studio";
 
@@ -54,6 +55,7 @@ export function Stage({ studio }: { studio: Studio }) {
             The form is out of view: zoom to it
           </button>
         )}
+        <Selecting studio={studio} />
         <Looks studio={studio} />
         <LegendBox studio={studio} />
       </div>

@@ -5,6 +5,7 @@ import { Session } from "../session";
 import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
+import { keepGroups, keptGroups } from "./kept";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
 import { Readings } from "./readings";
@@ -29,13 +30,17 @@ export function SessionPage({ name }: { name: string }) {
     const session = new Session(name);
     const chosen = options();
     chosen.layers.value = { ...chosen.layers.value, ...remembered(LAYERS, {}) };
+    chosen.groups.value = keptGroups(name);
     takeUp(name, chosen);
     chosen.dark.value = dark.peek();
-    const forget = effect(() => remember(LAYERS, chosen.layers.value));
+    const forgets = [
+      effect(() => remember(LAYERS, chosen.layers.value)),
+      effect(() => keepGroups(name, chosen.groups.value)),
+    ];
     const readings = new Readings(session, chosen);
     setStudio({ session, options: chosen, view: signal(null), readings });
     return () => {
-      forget();
+      forgets.forEach((forget) => forget());
       readings.dispose();
       session.close();
     };

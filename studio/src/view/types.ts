@@ -9,6 +9,12 @@ export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "re
 /** What is picked. */
 export type Picked = { kind: "particle" | "spring"; index: number } | null;
 
+/** What a drag on the canvas does: as ever, or select particles. */
+export type Tool = "none" | "box" | "lasso";
+
+/** Particles by the name of a group. */
+export type Groups = Record<string, number[]>;
+
 /** How numbers become colours: from extreme to extreme, about 0, or by the logarithm of their size. */
 export type ScaleKind = "auto" | "even" | "log";
 
@@ -43,7 +49,9 @@ export interface Options {
   /** Along what a drag goes: the plane that faces the eye, an axis, a plane. */
   lock: Signal<Lock>;
   picked: Signal<Picked>;
-  /** Particles to be marked, such as those a warning speaks of. */
+  tool: Signal<Tool>;
+  groups: Signal<Groups>;
+  /** Particles that are selected, or that a warning speaks of. */
   marked: Signal<number[]>;
   /** Rest length of each spring [length], for strain; null: not known yet. */
   restLengths: Signal<Float32Array | null>;
@@ -65,6 +73,8 @@ export const options = (): Options => ({
   scale: signal<Scale>({ kind: "auto", low: null, high: null }),
   lock: signal<Lock>("view"),
   picked: signal<Picked>(null),
+  tool: signal<Tool>("none"),
+  groups: signal<Groups>({}),
   marked: signal<number[]>([]),
   restLengths: signal<Float32Array | null>(null),
   dark: signal(false),
@@ -76,6 +86,7 @@ export interface Kept {
   eye: number[];
   colouring: Colouring;
   scale?: Scale;
+  groups?: Groups;
   layers: Partial<Record<Layer, boolean>>;
 }
 
@@ -94,6 +105,8 @@ export interface View {
   look(from: Look): void;
   /** Bring particles into view. */
   show(particles: number[]): void;
+  /** Particles drawn inside of a closed line on the canvas [CSS pixels]. */
+  inside(line: { x: number; y: number }[]): number[];
   /** Particles of the springs whose values lie beyond the scale. */
   beyond(): number[];
   /** How it is looked at now: what a saved model keeps. */

@@ -17,6 +17,7 @@ import { numbers, remember, remembered } from "./memory";
 import { Picker } from "./picking";
 import { Picture } from "./picture";
 import { Scaling } from "./scaling";
+import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
 import { Triad } from "./triad";
 import type { Kept, Legend, Look, Options, Picked, View } from "./types";
@@ -96,6 +97,16 @@ class Drawing implements View {
       this.eye.fit(particles.flatMap((i) => [positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!]));
   }
 
+  inside(line: Place[]): number[] {
+    const { left, top } = this.canvas.getBoundingClientRect();
+    const found: number[] = [];
+    for (let i = 0; 3 * i < this.particles().length; i++) {
+      const at = this.project(i);
+      if (at && inside({ x: at.x - left, y: at.y - top }, line)) found.push(i);
+    }
+    return found;
+  }
+
   beyond(): number[] {
     const ends = this.picture.form?.springs;
     if (!this.drawn || !ends) return [];
@@ -103,8 +114,9 @@ class Drawing implements View {
   }
 
   kept(): Kept {
-    const { colouring, scale, layers } = this.options;
-    return { eye: numbers(this.eye.place), colouring: colouring.value, scale: scale.value, layers: layers.value };
+    const { colouring, scale, groups, layers } = this.options;
+    const eye = numbers(this.eye.place);
+    return { eye, colouring: colouring.value, scale: scale.value, groups: groups.value, layers: layers.value };
   }
 
   async png(): Promise<Blob> {
