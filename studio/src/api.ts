@@ -1,5 +1,6 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
-import type { Action, Anchor, Example, Family, Kind, Parameters, Patch, Result, Scene, Store, Summary, Topology } from "./model";
+import type { Action, Anchor, Example, Family, Kind, Parameters, Patch, Result } from "./model";
+import type { Scene, Store, Summary, Topology } from "./model";
 
 /** What the service refused, in its own words; status 0: it could not be reached. */
 export class Refused extends Error {

@@ -42,7 +42,12 @@ export function Groups({ studio: { options }, chosen, choose }: Told) {
               {called}
             </button>
             <span class="faint">{counted(particles.length, "particle")}</span>
-            <button type="button" class="plain" aria-label={`Forget the group ${called}`} onClick={() => forget(called)}>
+            <button
+              type="button"
+              class="plain"
+              aria-label={`Forget the group ${called}`}
+              onClick={() => forget(called)}
+            >
               ×
             </button>
           </li>

@@ -74,7 +74,9 @@ export function New() {
             return (
               <Choice key={key} name={seen} value={value} choices={field.choices ?? []} hint={told.hint} done={done} />
             );
-          return <NumberField key={key} name={seen} seen={seen} {...told} value={value} bounds={field.bounds} done={done} />;
+          return (
+            <NumberField key={key} name={seen} seen={seen} {...told} value={value} bounds={field.bounds} done={done} />
+          );
         })}
         <button type="submit" disabled={busy.value}>
           Make the {family.title.toLowerCase()}

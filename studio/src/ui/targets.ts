@@ -39,7 +39,8 @@ export function placed(
   const flat = where === "numbers" ? numbered(numbers) : particlesAt(where, session, options);
   if (typeof flat === "string") return flat;
   const per = Math.max(1, kind.particles_per_element);
-  if (!flat.length) return where === "picked" ? "Pick a particle or a spring, or select several, first." : "There is no such particle.";
+  const none = where === "picked" ? "Pick a particle or a spring, or select several, first." : "";
+  if (!flat.length) return none || "There is no such particle.";
   if (flat.length % per)
     return `${flat.length} particles given; ${kind.title} needs ${per} for each element, in their order.`;
   if (per === 1) return { particles: flat };

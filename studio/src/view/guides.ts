@@ -25,7 +25,8 @@ export function guidesOf(scene: Scene, size: number): { wire: Wire; planes: Flat
   const wire: Wire = { points: [], pairs: [] };
   const planes: Flat[] = [];
   for (const force of scene.forces) {
-    if (isRows(force["curve"])) strand(wire, force["curve"], force["closed"] === true || force.kind === "collide_curve");
+    const closed = force["closed"] === true || force.kind === "collide_curve";
+    if (isRows(force["curve"])) strand(wire, force["curve"], closed);
     for (const faces of meshesOf(scene, force)) strands(wire, faces);
     for (const row of (force["control_points"] ?? []) as unknown[]) if (isRows(row)) strand(wire, row, false);
     if (force.kind === "pull_to_line") lines(wire, force, size);
@@ -142,7 +143,8 @@ export class Guides {
   }
 
   private strip(): void {
-    for (const mesh of [this.lines?.mesh, ...this.planes.map((plane) => plane.mesh)]) if (mesh) this.stage.group.remove(mesh);
+    if (this.lines) this.stage.group.remove(this.lines.mesh);
+    this.planes.forEach(({ mesh }) => this.stage.group.remove(mesh));
     this.lines?.dispose();
     this.column?.dispose();
     this.planes.forEach((plane) => plane.dispose());

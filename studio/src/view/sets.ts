@@ -60,7 +60,7 @@ function direction(a: Point, b: Point): Point {
   return d.map((part) => part / length) as Point;
 }
 
-/** Springs whose forces lie between two ends; null: any. */
+/** Springs whose forces lie between two ends; null: no end. */
 export function between(forces: Float32Array, low: number | null, high: number | null): number[] {
   const found: number[] = [];
   forces.forEach((force, spring) => {
