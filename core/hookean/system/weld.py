@@ -195,7 +195,10 @@ class Welded:
         return materials.find(name, self.materials, self.units)
 
     def section(self, name: str) -> Section:
-        """The scene's section of this name, which a scene has for each of its forces."""
+        """The scene's section of this name; InputError if there is none."""
+        if name not in self.sections:
+            known = ", ".join(repr(n) for n in self.sections) or "none"
+            raise InputError("/sections", f"section {name!r} does not exist; the scene has {known}")
         return self.sections[name]
 
     def meet(self, points: Floats) -> Ints:
