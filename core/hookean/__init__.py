@@ -126,6 +126,7 @@ if TYPE_CHECKING:
     from hookean.pictures.picture import picture as picture
     from hookean.pictures.picture import render as render
     from hookean.running.frame import Frame as Frame
+    from hookean.running.frames import simulate as simulate
     from hookean.running.live import relax_live as relax_live
     from hookean.running.patch import Move as Move
     from hookean.running.patch import Patch as Patch
@@ -134,8 +135,8 @@ if TYPE_CHECKING:
     from hookean.running.run import relax as relax
     from hookean.running.script import Script as Script
     from hookean.running.simulation import Simulation as Simulation
-    from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
+    from hookean.scene.families import family as family
     from hookean.scene.load_cases import ElasticCloth as ElasticCloth
     from hookean.scene.load_cases import ElasticLine as ElasticLine
     from hookean.scene.load_cases import LoadCase as LoadCase
@@ -189,6 +190,7 @@ _HOMES = {
     "Patterns": "workshop.patterns",
     "cutting_patterns": "workshop.patterns",
     "ElasticCloth": "scene.load_cases",
+    "family": "scene.families",
     "ElasticLine": "scene.load_cases",
     "Frozen": "analysis.freezing",
     "freeze": "analysis.freezing",
@@ -210,7 +212,7 @@ _HOMES = {
     "relax_live": "running.live",
     "render": "pictures.picture",
     "save": "files.save",
-    "simulate": "running.simulation",
+    "simulate": "running.frames",
 }
 
 __all__ = [
@@ -330,6 +332,7 @@ __all__ = [
     "cutting_patterns",
     "design",
     "explore",
+    "family",
     "freeze",
     "frequencies",
     "load_cases",

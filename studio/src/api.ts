@@ -1,5 +1,6 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
-import type { Action, Anchor, Example, Kind, Patch, Result, Scene, Store, Summary, Topology } from "./model";
+import type { Action, Anchor, Example, Family, Kind, Parameters, Patch, Result } from "./model";
+import type { Scene, Store, Summary, Topology } from "./model";
 
 /** What the service refused, in its own words; status 0: it could not be reached. */
 export class Refused extends Error {
@@ -60,6 +61,13 @@ export const edit = (key: string, patch: Patch) => send<Summary>("PATCH", at(key
 
 /** A new session of a scene. */
 export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1/sessions${labelled(label)}`, scene);
+
+/** Families of scenes, each with its parameters. */
+export const families = async () => (await read<{ families: Family[] }>("/v1/families")).families;
+
+/** The scene of a family. */
+export const familyScene = (name: string, units: object, parameters: Parameters) =>
+  send<Scene>("POST", `/v1/families/${encodeURIComponent(name)}`, { units, parameters });
 
 /** A new session of a file: .3dm, .obj, COMPAS JSON, a scene or a saved simulation. */
 export async function open(file: File): Promise<Summary & { warnings?: string[] }> {

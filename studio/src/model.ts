@@ -29,6 +29,8 @@ export interface Summary {
   /** One sentence on the status. */
   message: string;
   playing: boolean;
+  /** Whether it plays to rest by its solver. */
+  solving?: boolean;
   particles: number;
   /** Edits that can be undone, and made again. */
   undo: number;
@@ -74,8 +76,12 @@ export interface Scene {
   forces: SceneForce[];
   settings: Record<string, number | string | boolean | null | Record<string, unknown>>;
   units: Units;
+  /** What it was made from. */
+  family?: { name: string; parameters: Parameters } | null;
   [field: string]: unknown;
 }
+
+export type Parameters = Record<string, number | string>;
 
 export type SceneForce = { kind: string; name: string } & Record<string, unknown>;
 
@@ -102,6 +108,10 @@ export interface Patch {
   add?: SceneForce[];
   /** Forces to take away, by name or number. */
   remove?: (string | number)[];
+  /** Alone: other parameters of the family that it was made from. */
+  rebuild?: Parameters;
+  /** Alone: other units of the same numbers. */
+  units?: Partial<Units>;
   /** Edits of one gesture are taken back as one. */
   gesture?: string;
 }
@@ -118,6 +128,14 @@ export interface Kind {
   /** Without a place it acts on all. */
   everywhere: boolean;
   fields: Field[];
+}
+
+/** A family of scenes to begin with. */
+export interface Family {
+  name: string;
+  title: string;
+  summary: string;
+  parameters: Field[];
 }
 
 /** What a number may be; more_than and less_than are bounds it does not reach. */

@@ -1,32 +1,69 @@
-"""A model from parameters alone: the page's shape at rest is what the Python API finds of the same scene."""
+"""A model from parameters alone: the page's shape at rest is what the Python API finds of the same family, and its
+parameters stay editable."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import pytest
 
-from hookean import Scene, relax
+from hookean import Scene, family, relax
 
 from .browser import Studio
 
 
 @pytest.mark.parametrize(
-    ("shape", "typed", "particles"),
-    [("Grid", {"Rise": "2", "Rest factor": "0"}, 121), ("Radial net", {"Rays": "8"}, 49), ("Cable", {}, 21)],
+    ("name", "typed"),
+    [("saddle", {"rise": 2, "held": "edges"}), ("radial_net", {"rays": 8}), ("cable", {}), ("tensegrity", {})],
 )
-def test_a_model_is_made_and_solved(studio: Studio, shape: str, typed: dict[str, str], particles: int):
-    """A hypar 10 x 10 m among them: (faces + 1)^2, 1 + rings x rays and springs + 1 particles."""
+def test_a_model_is_made_and_solved(studio: Studio, name: str, typed: dict[str, Any]):
+    """The form, whose fields are those of the schema, sends what was typed; a hypar 10 x 10 m among them."""
     page = studio.page
+    title = name.replace("_", " ").capitalize()
     page.get_by_text("New model").click()
-    page.get_by_label("Shape").select_option(label=shape)
-    for name, value in typed.items():
-        page.get_by_label(name).fill(value)
-        page.keyboard.press("Tab")
-    studio.press(f"Make the {shape.lower()}")
+    page.get_by_label("Shape").select_option(label=title)
+    for field, value in typed.items():
+        control = page.get_by_label(field.capitalize())
+        if isinstance(value, str):
+            control.select_option(value)
+        else:
+            control.fill(str(value))
+            page.keyboard.press("Tab")
+    studio.press(f"Make the {title.lower()}")
     studio.drawing()
-    scene = Scene.read(studio.service.scene(studio.key))
-    assert (len(studio.particles()), scene.units.force) == (particles, "kN")
+    scene = family(name, {"force": "kN"}, **typed)
+    assert studio.service.scene(studio.key) == scene.model_dump(mode="json")
     studio.press("Solve")
     studio.service.at_rest(studio.key)
     truth = relax(scene).particles
     assert np.abs(studio.service.particles(studio.key) - truth).max() < 1e-3  # of 10 m
+
+
+def test_parameters_are_changed_undone_and_refused_after_a_pin(studio: Studio):
+    """The number of faces makes the model anew with (n + 1)^2 particles; a pin forbids it until it is undone."""
+    page, service = studio.page, studio.service
+    made = service.client.post("/v1/sessions", json=family("grid", across=4, along=4).model_dump(mode="json")).json()
+    studio.open(made["key"])
+    shape = page.get_by_role("group", name="Grid")
+    field = shape.get_by_role("spinbutton", name="Across")
+
+    def type_across(value: int) -> None:
+        field.fill(str(value))
+        page.keyboard.press("Tab")
+
+    type_across(6)
+    studio.until(lambda: len(studio.particles()) == 35)
+    shape.get_by_role("combobox", name="Held").select_option("edges")
+    studio.until(lambda: len(service.anchors(studio.key)[0]["particles"]) == 20)
+    studio.press("Undo")
+    studio.press("Undo")
+    studio.until(lambda: len(studio.particles()) == 25)
+    assert Scene.read(service.scene(studio.key)).canonical == family("grid", across=4, along=4).canonical
+    service.edit(studio.key, {"pin": [{"particles": [12]}]})
+    type_across(5)
+    said = page.get_by_text("edited after it was made (anchors)")
+    said.first.wait_for()
+    studio.press("Undo")
+    type_across(5)
+    studio.until(lambda: len(studio.particles()) == 30)

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.running.result import Status
+from hookean.running.result import Status, carried
+from hookean.system.state import State
+from hookean.system.system import System
 
 
 @dataclass(frozen=True)
@@ -24,3 +26,11 @@ class Frame:
     status: Status
     message: str
     rotations: NDArray[np.float64]
+
+
+def framed(system: System, state: State, residual: float, status: Status, message: str) -> Frame:
+    """A state of a system as clients see it."""
+    particles = state.x[: system.slots.count].copy()
+    clock = state.time, state.iteration, state.revision
+    turned = system.slots.quaternions(state.x)
+    return Frame(particles, carried(system, state), *clock, residual, status, message, turned)

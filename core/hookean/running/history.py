@@ -1,6 +1,7 @@
-"""History: what patches of a running system replaced, so that they can be taken back and made again.
+"""History: what edits of a running system replaced, so that they can be taken back and made again.
 
-A `Setup` is everything a patch may set: the scene as patched (whose arrays are shared, never copied) and the anchors.
+A `Setup` is everything an edit may set: the system, its scene as patched (whose arrays are shared, never copied) and
+the anchors.
 Where the particles are, is not part of it: taking a patch back is an edit, and the form follows it as any other.
 """
 
@@ -16,12 +17,14 @@ from hookean.system.system import Held, System
 from hookean.system.wiring import Wiring
 
 LONGEST = 100  # edits that can be taken back
+SYSTEMS = 10  # and the systems among them, which are large
 
 
 @dataclass(frozen=True)
 class Setup:
-    """A scene with its forces and settings, what the forces were compiled to, and the anchors, at one moment."""
+    """A system with its scene, what its forces were compiled to, and its anchors, at one moment."""
 
+    system: System
     scene: Scene
     held: tuple[Held, ...]
     wiring: Wiring
@@ -29,12 +32,12 @@ class Setup:
     @classmethod
     def of(cls, system: System) -> Setup:
         """The present setup of a system; patches replace anchors and never write into them."""
-        return cls(system.scene, tuple(system.held), Wiring.of(system))
+        return cls(system, system.scene, tuple(system.held), Wiring.of(system))
 
-    def put_back(self, system: System, state: State) -> None:
-        """Make this the setup of the system again; raises its revision."""
-        self.wiring.put_into(system, state)
-        retune(system, state, self.scene, list(self.held))
+    def put_back(self, state: State) -> None:
+        """Make this the setup of its system again, whose state is given; raises its revision."""
+        self.wiring.put_into(self.system, state)
+        retune(self.system, state, self.scene, list(self.held))
 
 
 class Before:
@@ -47,8 +50,14 @@ class Before:
             (group.block.parameters.copy(), [part.force for part in group.parts]) for group in system.all_groups
         ]
 
-    def put_back(self, system: System, state: State) -> State:
-        """Undo what was done to the system since, and its state `state`; the state as it was. Once only."""
+    @property
+    def system(self) -> System:
+        """The system that was changed, or that another one replaced."""
+        return self.setup.system
+
+    def put_back(self, state: State) -> State:
+        """Undo what was done to the system since, and to its state `state`; the state as it was. Once only."""
+        system = self.system
         self.setup.wiring.put_into(system, state)
         for group, (parameters, forces) in zip(system.all_groups, self._parameters, strict=True):
             group.block.parameters[:] = parameters
@@ -78,20 +87,22 @@ class History:
         if not gesture or gesture != self.gesture:
             self.before.append(setup)
             del self.before[:-LONGEST]
+            while len({id(one.system) for one in self.before}) > SYSTEMS:
+                del self.before[0]
         self.gesture = gesture
         self.after.clear()
 
-    def undo(self, system: System, state: State) -> None:
-        """Undo the last edit; raises InputError if there is no edit."""
-        self._move(self.before, self.after, system, state, "undone")
+    def undo(self, now: Setup) -> Setup:
+        """What is to be put back to undo the last edit; raises InputError if there is no edit."""
+        return self._move(self.before, self.after, now, "undone")
 
-    def redo(self, system: System, state: State) -> None:
-        """Redo the last undone edit; raises InputError if there is no such edit."""
-        self._move(self.after, self.before, system, state, "redone")
+    def redo(self, now: Setup) -> Setup:
+        """What is to be put back to redo the last undone edit; raises InputError if there is no such edit."""
+        return self._move(self.after, self.before, now, "redone")
 
-    def _move(self, source: list[Setup], target: list[Setup], system: System, state: State, verb: str) -> None:
+    def _move(self, source: list[Setup], target: list[Setup], now: Setup, verb: str) -> Setup:
         if not source:
             raise InputError("", f"there is no edit to be {verb}")
-        target.append(Setup.of(system))
-        source.pop().put_back(system, state)
+        target.append(now)
         self.gesture = ""
+        return source.pop()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
@@ -11,10 +11,11 @@ import numpy as np
 
 from hookean.errors import InputError
 from hookean.running import saving
-from hookean.running.frame import Frame
-from hookean.running.history import Before, History
+from hookean.running.following import followed
+from hookean.running.frame import Frame, framed
+from hookean.running.history import Before, History, Setup
 from hookean.running.patch import Patch, apply
-from hookean.running.result import Result, Status, carried, gather, kinetic
+from hookean.running.result import Result, Status, gather, kinetic
 from hookean.running.run import Progress, relax_state
 from hookean.running.saving import UNREADABLE, Saved, anchors_of, no_simulation
 from hookean.running.script import Playing, Script
@@ -26,36 +27,15 @@ from hookean.stability import time_steps
 from hookean.system.addressed import edited_scene
 from hookean.system.balance import Balance, balance
 from hookean.system.state import State
-from hookean.system.system import compile
+from hookean.system.system import System, compile
 
 OFTEN = 30  # frames of a run that is played, at most, from judgement to judgement: half a second on the screen
 
 Source = Stream | str | Path | Iterable[str]
 
 
-def simulate(
-    scene: Scene,
-    frames: int | None = None,
-    *,
-    script: Script | Mapping[str, Any] | str | None = None,
-    stream: Source | None = None,
-) -> Iterator[Frame]:
-    """Frames of a scene in motion, `sub_iterations` steps apart, bouncing included; ends at rest, after `frames` or
-    with the frame in which the stream ends. A script that still moves something keeps it running.
-
-    The first frame is the start. The scene's solver, or `verlet` where that is `auto`.
-    """
-    running = Simulation(scene, script, stream)
-    yield running.frame()
-    shown = 0
-    while running.status is Status.RUNNING and not running.over and (frames is None or shown < frames):
-        running.step()
-        shown += 1
-        yield running.frame()
-
-
 class Simulation:
-    """A running system: stepped frame by frame, patched while it runs, saved and resumed bit for bit.
+    """A running system: stepped, patched while it runs, saved and resumed bit for bit.
 
     A `script` (see `running.script`) leads anchors and columns of forces through time, a `stream` (path, `-` for
     standard input, lines of CSV) gives the values of its drives. They need a solver of physical time.
@@ -247,17 +227,7 @@ class Simulation:
 
     def frame(self) -> Frame:
         """The state as a client sees it."""
-        return Frame(
-            self.state.x[: self.system.slots.count].copy(),
-            carried(self.system, self.state),
-            self.state.time,
-            self.state.iteration,
-            self.state.revision,
-            self.balance.residual,
-            self.status,
-            self.message,
-            self.system.slots.quaternions(self.state.x),
-        )
+        return framed(self.system, self.state, self.balance.residual, self.status, self.message)
 
     def result(self) -> Result:
         """Everything about the present state; warnings name a time step that is too long for it."""
@@ -297,21 +267,53 @@ class Simulation:
         self.history.note(before.setup, gesture)
         return self.state.revision
 
+    def rebuild(self, parameters: Mapping[str, Any], *, gesture: str = "") -> int:
+        """Give the scene's family other parameters (see `families.rebuilding`); returns the new revision. InputError
+        for one that is not allowed, and where edits have to be undone first."""
+        from hookean.scene.families.rebuilding import rebuilt
+
+        return self.replace(rebuilt(self.edited_scene(), parameters), gesture=gesture)
+
+    def replace(self, scene: Scene, *, gesture: str = "") -> int:
+        """Go on with another scene; returns the new revision. Particles that start where one of this scene starts are
+        where that one is now. InputError for a scene that is not valid, and where a script is played."""
+        if self._playing is not None:
+            raise InputError("", "a script refers to particles and forces by number; replace the scene without one")
+        before = self._changed(lambda: self._follow(compile(scene)))
+        self.history.note(before.setup, gesture)
+        return self.state.revision
+
     def undo(self) -> int:
-        """Take the last patch back; returns the new revision. The form follows. InputError if no patch is left."""
-        self._changed(lambda: self.history.undo(self.system, self.state))
+        """Take the last edit back, the form follows; returns the new revision. InputError if no edit is left."""
+        self._changed(lambda: self._put(self.history.undo(Setup.of(self.system))))
         return self.state.revision
 
     def redo(self) -> int:
-        """Redo the last undone patch; InputError if no patch was undone."""
-        self._changed(lambda: self.history.redo(self.system, self.state))
+        """Redo the last undone edit; InputError if there is none."""
+        self._changed(lambda: self._put(self.history.redo(Setup.of(self.system))))
         return self.state.revision
 
+    def _put(self, setup: Setup) -> None:
+        """Make a setup the present one."""
+        self._follow(setup.system)
+        setup.put_back(self.state)
+
+    def _follow(self, system: System) -> None:
+        """Go on with another system, from where the particles are."""
+        if system is not self.system:
+            self.system, self.state = system, followed(self.system, self.state, system)
+
     def revert(self) -> None:
-        """Put everything back to before the last patch, undo, redo or reset, as if it had never been made."""
+        """Put everything back to before the last edit, undo, redo or reset, as if it had never been made."""
         if self._last is not None:
             (before, self.history, status), self._last = self._last, None
-            self.take_up(before.put_back(self.system, self.state), status)
+            self._restore(before)
+            self.take_up(self.state, status)
+
+    def _restore(self, before: Before) -> None:
+        """All as it was before a change."""
+        self.state = before.put_back(self.state)
+        self.system = before.system
 
     def _changed(self, change: Callable[[], None], *, warn: bool = True) -> Before:
         """Make a change that lands whole or not at all; what was before."""
@@ -325,10 +327,11 @@ class Simulation:
             same = self.scene.settings.solver == settings.solver
             if not same or self.status is Status.DIVERGED:
                 self.state.v[:] = 0.0  # what one solver calls velocity means nothing to another, or it flew apart
-            self._begin(start=not (same and solver.physical), warn=warn)
+            goes_on = same and solver.physical and self.system is before.system
+            self._begin(start=not goes_on, warn=warn)
         except InputError:
-            self.state, self.solver = before.put_back(self.system, self.state), solver
-            self._last = None
+            self._restore(before)
+            self.solver, self._last = solver, None
             raise
         return before
 
@@ -342,15 +345,8 @@ class Simulation:
         """A simulation of another scene that goes on from here: particles that start where one of this scene starts
         (within the weld tolerance) are where that one is now, with its velocity. Anchors are those of the new scene,
         its forces remember nothing yet."""
-        from scipy.spatial import cKDTree
-
         new = Simulation(scene)
-        apart, same = cKDTree(self.system.points).query(new.system.points)
-        known = np.flatnonzero(apart <= scene.weld_tolerance)
-        new.system.slots.take_over(new.state, known, self.system.slots, self.state, same[known])
-        new.system.hold(new.state)
-        new.system.put_outside(new.state)
-        new.state.revision = self.state.revision + 1
+        new.state = followed(self.system, self.state, new.system)
         new._begin(start=True)
         return new
 

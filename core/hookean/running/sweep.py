@@ -125,7 +125,7 @@ class Table:
             state.revision = 0
             return relax_state(system, state, solver(system.scene.settings.solver), cancelled=cancelled)
         finally:
-            before.put_back(system, state)
+            before.put_back(state)
             system.report.warnings[:] = self._said
 
     def row(self, patch: Mapping[str, Any], cancelled: Cancelled | None = None) -> dict[str, Any]:

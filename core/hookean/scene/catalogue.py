@@ -51,7 +51,7 @@ def entry(cls: type[Force], described: dict[str, Any] | None = None) -> dict[str
         "places": [name for name in PLACES if name in cls.model_fields],
         "everywhere": cls.everywhere,
         "fields": [
-            _field(name, field, described["properties"][name])
+            field_entry(name, field, described["properties"][name])
             for name, field in sorted(cls.model_fields.items(), key=lambda item: _rank(item[0]))
             if name != "kind"
         ],
@@ -137,7 +137,8 @@ def unit(field: FieldInfo) -> str:
     return found.group(1) if found else ""
 
 
-def _field(name: str, field: FieldInfo, described: dict[str, Any]) -> dict[str, Any]:
+def field_entry(name: str, field: FieldInfo, described: dict[str, Any]) -> dict[str, Any]:
+    """A field as plain values: name, description, unit, type, required, default, bounds, choices."""
     default = None if field.is_required() else field.default
     kind = _type(described)
     coordinates = name in PLACES and kind in ("points", "lines", "rows of points")

@@ -180,6 +180,13 @@ class Settings(Model):
         return None if value is False else value
 
 
+class Origin(Model):
+    """The family that a scene was made from, and its parameters; see `hookean.scene.families`."""
+
+    name: str = Field(description="Name of the family")
+    parameters: dict[str, float | str] = Field(default={}, description="Parameters by name, in the units of the scene")
+
+
 class Scene(Model):
     """Particles, forces, anchors, carried geometry and settings; the same in Python and in JSON.
 
@@ -214,6 +221,7 @@ class Scene(Model):
         default={}, description="Factors on load cases, prestress and permanent [-], by the name of the combination"
     )
     stages: Switch[Stages] = Field(default=None, description="How the form becomes elastic for its load cases")
+    family: Switch[Origin] = Field(default=None, description="Family of scenes that it was made from")
 
     @classmethod
     def read(cls, value: Any) -> Self:

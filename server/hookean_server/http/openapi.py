@@ -32,6 +32,7 @@ PROOF = {"application/json": {"schema": {"$ref": "#/components/schemas/Proof"}}}
 SESSION = {"application/json": {"schema": {"$ref": "#/components/schemas/Session"}}}
 SESSIONS = {"application/json": {"schema": {"$ref": "#/components/schemas/Sessions"}}}
 FORCES = {"application/json": {"schema": {"$ref": "#/components/schemas/Catalogue"}}}
+FAMILIES = {"application/json": {"schema": {"$ref": "#/components/schemas/Families"}}}
 GALLERY = {"application/json": {"schema": {"$ref": "#/components/schemas/Examples"}}}
 PICTURE = {"image/png": {"schema": {"type": "string", "format": "binary"}}}
 METRICS = {"text/plain": {"schema": {"type": "string"}}}
@@ -109,6 +110,21 @@ def example_scene() -> dict[str, Any]:
     success = {"application/json": {"schema": {"$ref": "#/components/schemas/Scene"}}}
     found = problems(success)
     return {"responses": {**found, **{code: problems(computed=True)[code] for code in (503, 504)}}}
+
+
+def family(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Description of the route of a family's scene, from the schema of its parameters."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Scene"}}}
+    body = {
+        "type": "object",
+        "properties": {
+            "units": {"$ref": "#/components/schemas/Units"},
+            "parameters": {"type": "object", "properties": parameters, "additionalProperties": False},
+        },
+        "additionalProperties": False,
+    }
+    examples = {"all parameters at their defaults": {"units": {"length": "m", "force": "kN"}}}
+    return {"responses": problems(success, computed=True), "openapi_extra": _takes(body, examples)}
 
 
 def relax_file() -> dict[str, Any]:

@@ -139,6 +139,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "items": _object(id=_TEXT, figure=_TEXT, title=_TEXT, sentence=_TEXT, picture=_TEXT, scene=_TEXT),
         }
     ),
+    "Families": _object(families={"type": "array", "items": {"type": "object"}}),
     "Catalogue": _object(forces={"type": "array", "items": {"type": "object"}}),
     "Result": _object(
         status={"enum": ["converged", "stalled", "diverged", "max_iterations", "time_limit", "cancelled"]},
@@ -210,6 +211,7 @@ SCHEMAS["Session"] = {
         "message": {"type": "string", "description": "One sentence on its status"},
         "particles": {"type": "integer"},
         "playing": {"type": "boolean"},
+        "solving": {"type": "boolean", "description": "Whether it plays to rest by the scene's solver"},
         "undo": {"type": "integer", "description": "Edits that can be undone"},
         "redo": {"type": "integer"},
         "awake": {"type": "boolean", "description": "Whether it has a process"},
@@ -245,6 +247,8 @@ SCHEMAS["Edit"] = {
             "items": {"type": ["string", "integer"]},
             "description": "Forces by name or number",
         },
+        "rebuild": {"type": "object", "description": "Alone: parameters of the family that the model was made from"},
+        "units": {"type": "object", "description": "Alone: other units of the same numbers"},
         "gesture": {"type": "string", "maxLength": 80, "description": "Edits of one gesture are undone as one"},
     },
     "additionalProperties": False,

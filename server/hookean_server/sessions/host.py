@@ -381,7 +381,9 @@ class Host:
     def _described(self) -> dict[str, Any]:
         simulation = self._simulation()
         wiring, now = self.wired.tag(simulation), time.monotonic_ns()  # a clock that all processes share
-        return {**parts.describe(simulation), "wiring": wiring, "playing": self.playing, "told": now}
+        solving = self.resting is not None
+        told = {"wiring": wiring, "playing": self.playing, "solving": solving, "told": now}
+        return {**parts.describe(simulation), **told}
 
     def _simulation(self) -> Simulation:
         if self.simulation is None:

@@ -25,6 +25,8 @@ from hookean.system.two_ended import spring_forces
 from hookean_server.sessions.wire import Shown
 
 EDITS = ("undo", "redo", "reset")
+REPLACES: dict[str, dict[str, Any]] = {"rebuild": {"rise": 4}, "units": {"length": "mm"}}
+"""Edits that lead to another scene, with an example of each."""
 
 
 def scene_of(body: bytes) -> Scene:
@@ -115,7 +117,8 @@ def _put(simulation: Simulation, arrays: dict[str, NDArray[Any]]) -> None:
 
 
 def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
-    """Make an edit: `{"undo": true}`, `redo`, `reset`, or a patch with or without a `gesture`.
+    """Make an edit: `{"undo": true}`, `redo`, `reset`; `{"rebuild": {...}}` with parameters of the scene's family,
+    `{"units": {...}}` with other units of the same numbers, or a patch, all with or without a `gesture`.
 
     Returns it as it can be made again exactly, and what it sets in words: an edit of the same gesture that sets the
     same replaces it in the store; "" for one that nothing replaces.
@@ -131,6 +134,11 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
             getattr(simulation, name)()
             simulation.state.revision += name == "reset"
             return json.dumps(value).encode(), ""
+    for name in REPLACES:
+        if name in value:
+            _replace(simulation, name, value, gesture)
+            sets = json.dumps([name, gesture, sorted(value[name])]) if gesture else ""
+            return json.dumps({**value, "gesture": gesture} if gesture else value).encode(), sets
     patch = Patch.read(value)
     pins = []
     for pin, read in zip(value.get("pin") or [], patch.pin, strict=True):
@@ -143,6 +151,22 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
     if not gesture:
         return json.dumps(value).encode(), ""
     return json.dumps({**value, "gesture": gesture}).encode(), _sets(value, patch, gesture)
+
+
+def _replace(simulation: Simulation, name: str, value: dict[str, Any], gesture: str) -> None:
+    """Give the family of the scene other parameters, or its numbers other units."""
+    given = value[name]
+    if set(value) != {name} or not isinstance(given, dict):
+        raise InputError(f"/{name}", f"must be the only key, with an object: {json.dumps({name: REPLACES[name]})}")
+    if name == "rebuild":
+        simulation.rebuild(given, gesture=gesture)
+        return
+    scene = simulation.edited_scene()
+    try:
+        units = scene.units.model_copy(update=given)
+    except InputError as error:
+        raise InputError(f"/units{error.pointer}", error.sentence) from None
+    simulation.replace(scene.replaced(units=units), gesture=gesture)
 
 
 def _sets(value: dict[str, Any], patch: Patch, gesture: str) -> str:
@@ -171,7 +195,7 @@ class Wired:
         """The same text for the same forces on the same particles, whatever their parameters."""
         groups = simulation.system.groups
         if self._groups is not groups:
-            digest = hashlib.sha256()
+            digest = hashlib.sha256(f"{simulation.system.slots.count} {simulation.scene.units!r}".encode())
             for group in simulation.system.all_groups:
                 for part in group.parts:
                     digest.update(f"{part.number} {part.force.name!r} {group.cls.__name__} ".encode())

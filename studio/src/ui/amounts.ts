@@ -44,6 +44,8 @@ const isRows = (value: Value): value is number[][] => Array.isArray(value) && Ar
 // a slider has no more digits than this, and 0.30000000000000004 is not what anybody set
 const tidy = (value: number) => Number(value.toPrecision(12));
 
+const [FINE, WIDE] = [3, 100];
+
 /** What a slider goes through. */
 export interface Range {
   low: number;
@@ -52,12 +54,20 @@ export interface Range {
   log: boolean;
 }
 
-/** A range around an amount, within its bounds. */
-export function around(value: number, bounds: Bounds | undefined, log: boolean): Range {
+/** A range around an amount, within its bounds: fine, by which the form changes but stays in sight, or wide. */
+export function around(value: number, bounds: Bounds | undefined, log: boolean, isWide: boolean): Range {
   const least = bounds?.minimum ?? bounds?.more_than ?? -Infinity;
   const most = bounds?.maximum ?? bounds?.less_than ?? Infinity;
   if (log && value > 0)
-    return { low: Math.max(value / 100, least > 0 ? least : 0), high: Math.min(value * 100, most), log };
+    return {
+      low: Math.max(value / (isWide ? WIDE : FINE), least > 0 ? least : 0),
+      high: Math.min(value * (isWide ? WIDE : FINE), most),
+      log,
+    };
+  if (!isWide && value !== 0) {
+    const half = nice(0.5 * Math.abs(value), ENDS);
+    return { low: Math.max(value - half, least), high: Math.min(value + half, most), log: false };
+  }
   const reach = nice(2 * Math.abs(value) || 1, ENDS);
   const high = most - Math.max(least, 0) <= 10 ? most : Math.min(reach, most);
   return { low: least >= -reach ? least : -reach, high, log: false };

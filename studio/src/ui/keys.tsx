@@ -9,6 +9,7 @@ const LIST: [string, string][] = [
   [".", "One step"],
   ["Ctrl Z", "Undo"],
   ["Ctrl Shift Z", "Redo"],
+  ["Shift", "On a slider: a wider range"],
   ["f", "Zoom to fit"],
   ["1 2 3 4", "Perspective, top, front, right"],
   ["p", "Pin or release the picked particle"],

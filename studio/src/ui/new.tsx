@@ -1,30 +1,33 @@
-// A new model from nothing: a shape by its parameters, in units that are chosen at the start.
+// A new model from nothing: a family by its parameters, in units that are chosen at the start.
 import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import * as api from "../api";
-import { BEGINNINGS, sceneOf } from "./newscenes";
+import type { Parameters } from "../model";
+import { Choice } from "./choice";
+import { families, knowFamilies, seenOf } from "./families";
 import { refuse } from "./notices";
 import { NumberField } from "./number";
 import { go, met } from "./place";
-import { unit } from "./words";
 
 const LENGTHS = ["m", "cm", "mm", "ft", "in"];
 const FORCES = ["N", "kN"];
 
 export function New() {
-  const chosen = useSignal(0);
-  const typed = useSignal<Record<string, number>>({});
+  const chosen = useSignal("saddle");
+  const typed = useSignal<Parameters>({});
   const units = useSignal({ length: "m", force: "kN", time: "s" });
-  const stiffness = useSignal(100);
-  const factor = useSignal(1);
   const busy = useSignal(false);
-  const beginning = BEGINNINGS[chosen.value]!;
-  const values = Object.fromEntries(beginning.parameters.map((one) => [one.name, typed.value[one.name] ?? one.value]));
+  useEffect(() => {
+    knowFamilies().catch(met);
+  }, []);
+  const family = families.value?.find(({ name }) => name === chosen.value);
+  if (!family) return null;
   const make = async (event: Event) => {
     event.preventDefault();
     busy.value = true;
     try {
-      const scene = sceneOf(beginning.make(values), units.value, stiffness.value, factor.value);
-      go((await api.create(scene, beginning.name)).key);
+      const scene = await api.familyScene(family.name, units.value, typed.value);
+      go((await api.create(scene, family.title)).key);
     } catch (error) {
       met(error);
       refuse(error, "The model was not made. ");
@@ -32,20 +35,7 @@ export function New() {
       busy.value = false;
     }
   };
-  const pick = (which: "length" | "force", all: string[]) => (
-    <label class="field">
-      <span>Unit of {which}</span>
-      <select
-        aria-label={`Unit of ${which}`}
-        value={units.value[which]}
-        onChange={(event) => (units.value = { ...units.value, [which]: event.currentTarget.value })}
-      >
-        {all.map((one) => (
-          <option key={one}>{one}</option>
-        ))}
-      </select>
-    </label>
-  );
+  const take = (name: string, value: number | string) => (typed.value = { ...typed.value, [name]: value });
   return (
     <details class="seldom">
       <summary>New model</summary>
@@ -55,51 +45,41 @@ export function New() {
           <select
             aria-label="Shape"
             value={chosen.value}
-            title={beginning.hint}
-            onChange={(event) => (chosen.value = Number(event.currentTarget.value))}
+            title={family.summary}
+            onChange={(event) => ([chosen.value, typed.value] = [event.currentTarget.value, {}])}
           >
-            {BEGINNINGS.map(({ name }, number) => (
-              <option key={name} value={number}>
-                {name}
+            {families.value!.map(({ name, title }) => (
+              <option key={name} value={name}>
+                {title}
               </option>
             ))}
           </select>
         </label>
-        <p class="note">{beginning.hint}.</p>
-        {pick("length", LENGTHS)}
-        {pick("force", FORCES)}
-        {beginning.parameters.map((one) => (
-          <NumberField
-            key={`${beginning.name} ${one.name}`}
-            name={one.seen}
-            seen={one.seen}
-            value={values[one.name]!}
-            unit={unit(one.unit, units.value)}
-            bounds={{ minimum: one.minimum, maximum: one.maximum }}
-            whole={one.whole === true}
-            done={(value) => value !== null && (typed.value = { ...typed.value, [one.name]: value })}
+        <p class="note">{family.summary}</p>
+        {(["length", "force"] as const).map((which) => (
+          <Choice
+            key={which}
+            name={`Unit of ${which}`}
+            value={units.value[which]}
+            choices={which === "length" ? LENGTHS : FORCES}
+            done={(value) => (units.value = { ...units.value, [which]: value })}
           />
         ))}
-        <NumberField
-          name="Stiffness"
-          seen="Stiffness"
-          hint="Force that stretches a spring by one unit of length"
-          value={stiffness.value}
-          unit={unit("force/length", units.value)}
-          bounds={{ more_than: 0 }}
-          done={(value) => value !== null && (stiffness.value = value)}
-        />
-        <NumberField
-          name="Rest factor"
-          seen="Rest factor"
-          hint="Rest length as a part of the drawn length: below 1 the net is stretched, 0 gives a minimal net"
-          value={factor.value}
-          unit=""
-          bounds={{ minimum: 0 }}
-          done={(value) => value !== null && (factor.value = value)}
-        />
+        {family.parameters.map((field) => {
+          const { seen, ...told } = seenOf(field, units.value);
+          const value = typed.value[field.name] ?? (field.default as number | string);
+          const key = `${family.name} ${field.name}`;
+          const done = (to: number | string | null) => to !== null && take(field.name, to);
+          if (typeof value === "string")
+            return (
+              <Choice key={key} name={seen} value={value} choices={field.choices ?? []} hint={told.hint} done={done} />
+            );
+          return (
+            <NumberField key={key} name={seen} seen={seen} {...told} value={value} bounds={field.bounds} done={done} />
+          );
+        })}
         <button type="submit" disabled={busy.value}>
-          Make the {beginning.name.toLowerCase()}
+          Make the {family.title.toLowerCase()}
         </button>
       </form>
     </details>

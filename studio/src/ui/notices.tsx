@@ -3,6 +3,7 @@
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { Refused } from "../api";
+import { plain } from "./words";
 
 interface Notice {
   kind: "refused" | "done";
@@ -19,7 +20,9 @@ export function refuse(error: unknown, before = ""): void {
   const sentence = error instanceof Error ? error.message : String(error);
   const errors = error instanceof Refused ? error.errors : [];
   const details = errors.map((e) => `${e.pointer}: ${e.detail}`).filter((detail) => !sentence.includes(detail));
-  notice.value = { kind: "refused", sentence: before + sentence, details };
+  const seen = plain(sentence);
+  if (seen !== sentence) details.unshift(sentence);
+  notice.value = { kind: "refused", sentence: before + seen, details };
 }
 
 /** Show what was done. */
@@ -59,11 +62,14 @@ function Said({ notice }: { notice: Notice }) {
       <div>
         <p>{notice.sentence}</p>
         {notice.details.length > 0 && (
-          <ul>
-            {notice.details.map((detail) => (
-              <li key={detail}>{detail}</li>
-            ))}
-          </ul>
+          <details open={notice.kind === "done"}>
+            <summary>Details</summary>
+            <ul>
+              {notice.details.map((detail) => (
+                <li key={detail}>{notice.kind === "done" ? plain(detail) : detail}</li>
+              ))}
+            </ul>
+          </details>
         )}
       </div>
       <button type="button" class="plain" aria-label="Close the notice" aria-keyshortcuts="Escape" onClick={quiet}>

@@ -3,6 +3,7 @@ import { useSignal } from "@preact/signals";
 import * as api from "../api";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
+import { fitting } from "./kept";
 import type { Studio } from "./studio";
 
 const FILES: { format: api.Format; seen: string; ending: string; hint: string }[] = [
@@ -50,6 +51,11 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
       .normalize("NFKD")
       .replace(/[^\w.-]+/g, "-")
       .replace(/^-+|-+$/g, "") || "session";
+  const exported = async (format: api.Format) => {
+    const kept = view.value && format === "hookean" ? fitting(view.value.kept()) : null;
+    const made = await api.exported(session.key, format, kept?.view);
+    return { ...made, notes: [...made.notes, ...(kept?.notes ?? [])] };
+  };
   const take = async (seen: string, file: string, made: () => Promise<{ blob: Blob; notes: string[] }>) => {
     busy.value = seen;
     done.value = "";
@@ -86,7 +92,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
             title={hint}
             disabled={!live || busy.value !== ""}
             aria-busy={busy.value === seen}
-            onClick={() => void take(seen, name + ending, () => api.exported(session.key, format, view.value?.kept()))}
+            onClick={() => void take(seen, name + ending, () => exported(format))}
           >
             {seen}
           </button>

@@ -5,6 +5,8 @@ import { Forces } from "./forces";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
 import { SeePanel } from "./see";
+import { Selected } from "./selected";
+import { Shape } from "./shape";
 import type { Studio } from "./studio";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
@@ -12,7 +14,13 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
     <aside class="panels" aria-label="Panels">
       <Panel name="Picked">
         <PickedPanel studio={studio} />
+        <Selected studio={studio} />
       </Panel>
+      {studio.session.scene.value?.family && (
+        <Panel name="Shape">
+          <Shape session={studio.session} />
+        </Panel>
+      )}
       <Panel name="Forces">
         <Forces studio={studio} />
       </Panel>
@@ -32,7 +40,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
 function Panel({ name, children }: { name: string; children: ComponentChildren }) {
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
-    <details class="panel" open={!narrow || name === "Picked" || name === "Forces"}>
+    <details class="panel" open={!narrow || ["Picked", "Shape", "Forces"].includes(name)}>
       <summary>
         <h2>{name}</h2>
       </summary>

@@ -6,6 +6,7 @@ import { said } from "./words";
 
 interface Repair {
   seen: string;
+  hint?: string;
   patch: Patch;
   done: string;
 }
@@ -15,16 +16,17 @@ export function Repairs({ session }: { session: Session }) {
   const [summary, scene, topology] = [session.summary.value, session.scene.value, session.topology.value];
   if (!summary || !scene || !topology) return null;
   const loose = isLoose(session.anchors.value, scene);
-  const found = [...ofSentences(summary, scene), ...(loose ? holds(topology) : [])];
+  const found = [...ofSentences(summary, scene), ...ofSize(topology, scene), ...(loose ? holds(topology) : [])];
   if (!found.length && !loose) return null;
   return (
     <div class="repairs" role="group" aria-label="Repairs">
       {loose && <p>Nothing is held: hold some particles, or pick one and pin it under Picked.</p>}
-      {found.map(({ seen, patch, done }) => (
+      {found.map(({ seen, hint, patch, done }) => (
         <button
           key={seen}
           type="button"
           class="small"
+          title={hint}
           disabled={busy || session.connection.value !== "live"}
           onClick={() => void make(patch, done)}
         >
@@ -57,6 +59,30 @@ function ofSentences(summary: Summary, scene: Scene): Repair[] {
   if (/use auto,/.test(told))
     found.push({ seen: "Use solver auto", patch: { settings: { solver: "auto" } }, done: "The solver is auto." });
   return found;
+}
+
+const METRES: Record<string, number> = { dm: 0.1, m: 1, km: 1000, ft: 0.3048, yd: 0.9144 };
+const LARGEST = 1000;
+
+/** Of a model that is larger than anything built, as one that was drawn in mm and read in m. */
+function ofSize({ start }: Topology, { units }: Scene): Repair[] {
+  const extents = [0, 1, 2].map((axis) => {
+    const [low, high] = start.reduce(
+      ([least, most], point) => [Math.min(least, point[axis]!), Math.max(most, point[axis]!)],
+      [Infinity, -Infinity],
+    );
+    return high - low;
+  });
+  const size = Math.max(...extents);
+  if (!(size * (METRES[units.length] ?? 0) > LARGEST && size * 1e-3 <= LARGEST)) return [];
+  return [
+    {
+      seen: "Unit: mm",
+      hint: `The model is ${said(size, 3)} ${units.length} long; all lengths are read in mm instead, numbers stay`,
+      patch: { units: { length: "mm" } },
+      done: `All lengths are in mm: the model is ${said(size * 1e-3, 3)} m long. Forces per length keep their numbers.`,
+    },
+  ];
 }
 
 /** Whether nothing holds the form: no anchor, no support and no floor. */

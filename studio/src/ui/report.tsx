@@ -34,7 +34,7 @@ function Lost({ studio: { session } }: { studio: Studio }) {
   return (
     <>
       <p role="alert" class={session.said.value ? "fault" : "unseen"}>
-        {session.said.value}
+        {plain(session.said.value)}
       </p>
       <p role="status" class={sentence ? "lost" : "unseen"}>
         {sentence}

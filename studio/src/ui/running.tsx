@@ -4,7 +4,7 @@ import * as api from "../api";
 import type { Store, Summary } from "../model";
 import { refuse, tell } from "./notices";
 import { linkTo, met } from "./place";
-import { counted } from "./words";
+import { calledOf, counted } from "./words";
 
 const AGAIN = 2000;
 
@@ -72,7 +72,7 @@ function Stored({ store }: { store: Store }) {
 }
 
 function Row({ session, forgotten }: { session: Summary; forgotten: (key: string) => void }) {
-  const name = session.label || session.key;
+  const name = calledOf(session);
   const forget = async () => {
     if (!window.confirm(`Delete the session "${name}"? This cannot be undone.`)) return;
     try {

@@ -1,6 +1,7 @@
 // Colours, layers, views and the axis lock of drags.
 import { palette } from "../view/colours";
 import type { Colouring, Layer, Legend, Lock, Look } from "../view/types";
+import { ScaleChoice } from "./scalechoice";
 import type { Studio } from "./studio";
 import { dark } from "./theme";
 import { counted, measured, said, titled } from "./words";
@@ -28,7 +29,7 @@ export const LOOKS: [Look, string][] = [
   ["right", "Right"],
 ];
 
-export function SeePanel({ studio: { options } }: { studio: Studio }) {
+export function SeePanel({ studio: { options, session } }: { studio: Studio }) {
   const layers = options.layers.value;
   return (
     <>
@@ -47,6 +48,7 @@ export function SeePanel({ studio: { options } }: { studio: Studio }) {
           </label>
         ))}
       </fieldset>
+      {options.colouring.value !== "plain" && <ScaleChoice studio={{ options, session }} />}
       <fieldset class="choices layers">
         <legend>Layers</legend>
         {(Object.keys(layers) as Layer[]).map((layer) => (

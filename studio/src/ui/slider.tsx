@@ -1,5 +1,5 @@
 // A slider with its number. A drag, or strokes of keys in a row, are one gesture: taken back as one.
-import { useSignal } from "@preact/signals";
+import { signal, useSignal } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { gesture, Newest } from "../hand";
 import type { Bounds, Patch } from "../model";
@@ -26,10 +26,16 @@ interface Led {
 
 const IN_A_ROW = 1000;
 
+/** Whether Shift is down: sliders go wide. */
+const wide = signal(false);
+for (const type of ["keydown", "keyup"] as const)
+  window.addEventListener(type, (event) => (wide.value = event.shiftKey), { capture: true });
+window.addEventListener("blur", () => (wide.value = false));
+
 export function Slider({ session, name, seen, value, unit, hint, note, bounds, log, whole, patch }: Led) {
   const hand = useHand(session, value, patch);
-  const range = useRange(value, bounds, log, hand.held);
   const shown = hand.value ?? value;
+  const range = useRange(shown, bounds, log, hand.held, wide.value);
   const live = session.connection.value === "live";
   const step = whole && !range.log ? 1 : stepOf(range);
   const at = (x: number) => (range.log ? Math.log10(x) : x);
@@ -55,7 +61,7 @@ export function Slider({ session, name, seen, value, unit, hint, note, bounds, l
         type="range"
         aria-label={name}
         aria-valuetext={measured(shown, unit)}
-        title={hint}
+        title={hint && `${hint}. Shift: a wider range; any value can be typed`}
         disabled={!live}
         min={at(range.low)}
         max={at(range.high)}
@@ -109,9 +115,10 @@ function useHand(session: Session, value: number, patch: (value: number) => Patc
 }
 
 /** A range that stays while a hand is on the slider, and grows where the hand came to its end. */
-function useRange(value: number, bounds: Bounds | undefined, log: boolean, held: boolean): Range {
-  const range = useRef<Range | null>(null);
-  range.current ??= around(value, bounds, log);
-  if (!held && outgrown(range.current, value, bounds)) range.current = around(value, bounds, log);
-  return range.current;
+function useRange(value: number, bounds: Bounds | undefined, log: boolean, held: boolean, isWide: boolean): Range {
+  const range = useRef<{ of: Range; isWide: boolean } | null>(null);
+  const now = range.current;
+  if (!now || (!held && (now.isWide !== isWide || outgrown(now.of, value, bounds))))
+    range.current = { of: around(value, bounds, log, isWide), isWide };
+  return range.current!.of;
 }

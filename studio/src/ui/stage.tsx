@@ -5,6 +5,8 @@ import { createView } from "../view/view";
 import { dark } from "./theme";
 import { Report } from "./report";
 import { LegendBox, Looks } from "./see";
+import { Selecting } from "./selecting";
+import { Solving } from "./solving";
 import type { Studio } from "./studio";
 
 export function Stage({ studio }: { studio: Studio }) {
@@ -53,9 +55,11 @@ export function Stage({ studio }: { studio: Studio }) {
             The form is out of view: zoom to it
           </button>
         )}
+        <Selecting studio={studio} />
         <Looks studio={studio} />
         <LegendBox studio={studio} />
       </div>
+      <Solving session={studio.session} />
       <Report studio={studio} />
     </>
   );

@@ -5,11 +5,13 @@ import { Session } from "../session";
 import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
+import { keepGroups, keptGroups } from "./kept";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
 import { Readings } from "./readings";
 import { Stage } from "./stage";
 import { dark, remember, remembered } from "./theme";
+import { calledOf } from "./words";
 
 const LAYERS = "hookean-layers";
 
@@ -28,13 +30,17 @@ export function SessionPage({ name }: { name: string }) {
     const session = new Session(name);
     const chosen = options();
     chosen.layers.value = { ...chosen.layers.value, ...remembered(LAYERS, {}) };
+    chosen.groups.value = keptGroups(name);
     takeUp(name, chosen);
     chosen.dark.value = dark.peek();
-    const forget = effect(() => remember(LAYERS, chosen.layers.value));
+    const forgets = [
+      effect(() => remember(LAYERS, chosen.layers.value)),
+      effect(() => keepGroups(name, chosen.groups.value)),
+    ];
     const readings = new Readings(session, chosen);
     setStudio({ session, options: chosen, view: signal(null), readings });
     return () => {
-      forget();
+      forgets.forEach((forget) => forget());
       readings.dispose();
       session.close();
     };
@@ -44,7 +50,7 @@ export function SessionPage({ name }: { name: string }) {
 
 function Work({ studio }: { studio: Studio }) {
   const summary = studio.session.summary.value;
-  const title = summary?.label || studio.session.key;
+  const title = calledOf({ label: summary?.label ?? "", key: studio.session.key });
   useEffect(arrive, []);
   const locked = studio.session.connection.value === "locked";
   useEffect(() => {

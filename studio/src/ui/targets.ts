@@ -31,10 +31,16 @@ export function placed(
   if (where.startsWith(PER_MESH)) return { mesh: where.slice(PER_MESH.length) };
   const topology = session.topology.value!;
   if (where === "springs") return { particles: topology.springs };
+  const { picked, marked } = { picked: options.picked.value, marked: new Set(options.marked.value) };
+  if (where === "picked" && !picked && marked.size && kind.particles_per_element === 2) {
+    const among = topology.springs.filter((ends) => ends.every((end) => marked.has(end)));
+    return among.length ? { particles: among } : "No spring joins two of the selected particles.";
+  }
   const flat = where === "numbers" ? numbered(numbers) : particlesAt(where, session, options);
   if (typeof flat === "string") return flat;
   const per = Math.max(1, kind.particles_per_element);
-  if (!flat.length) return where === "picked" ? "Pick a particle or a spring first." : "There is no such particle.";
+  const none = where === "picked" ? "Pick a particle or a spring, or select several, first." : "";
+  if (!flat.length) return none || "There is no such particle.";
   if (flat.length % per)
     return `${flat.length} particles given; ${kind.title} needs ${per} for each element, in their order.`;
   if (per === 1) return { particles: flat };
@@ -53,7 +59,7 @@ function particlesAt(where: Where, session: Session, options: Options): number[]
 }
 
 /** Whole numbers in a text: "0 3 5-8". */
-function numbered(text: string): number[] | string {
+export function numbered(text: string): number[] | string {
   const found: number[] = [];
   for (const part of text.split(/[\s,;]+/).filter(Boolean)) {
     const [, low, high] = /^(\d+)(?:-(\d+))?$/.exec(part) ?? [];

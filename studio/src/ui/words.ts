@@ -19,6 +19,7 @@ export function unit(words: string, units: Units | undefined): string {
     ? { ...units, moment: `${units.force}·${units.length}`, angle: "rad" }
     : {};
   return words
+    .replace(/;.*/, "") // what a sign means
     .replace(/[a-z]+/g, (word) => names[word] ?? word)
     .replace(/\^(\d)/g, (_, power: string) => POWERS[power] ?? `^${power}`)
     .replace(/ /g, "·");
@@ -30,12 +31,22 @@ export const measured = (value: number, unit: string) => (unit ? `${said(value)}
 /** A field or kind of the catalogue as a heading: rest_factor is Rest factor. */
 export const titled = (name: string) => (name.charAt(0).toUpperCase() + name.slice(1)).replaceAll("_", " ");
 
+/** What a session is called: its label, or its key where somebody chose that. */
+export const calledOf = ({ label, key }: { label: string; key: string }) =>
+  label || (/^[0-9a-f]{32}$/.test(key) ? "Untitled model" : key);
+
 /** Counted things. */
 export const counted = (count: number, one: string) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;
 
-/** A sentence of the service without pointers: /settings/time_step is the time step, /forces/0 force 0. */
+const ID = "\\{?[0-9a-f]{8}-?(?:[0-9a-f]{4}-?){3}[0-9a-f]{12}\\}?";
+const IDS = new RegExp(`,? ?\\(?(?:\\bids? )?${ID}(?:, ${ID})*\\)?`, "gi");
+
+/** A sentence of the service without ids and pointers: /settings/time_step is the time step, /forces/0 force 0. */
 export const plain = (sentence: string) =>
   sentence
+    .replace(IDS, "")
+    .replace(/^\/(?:family|rebuild): (.)/, (_, first: string) => first.toUpperCase())
+    .replace(/^\/(?:rebuild\/)?([a-z]\w*): /, (_, field: string) => `${titled(field)}: `)
     .replace(/\/settings\/(\w+)/g, (_, name: string) => `the ${name.replaceAll("_", " ")}`)
     .replace(/\/forces\/(\d+)(?:\/(\w+))?/g, (_, number: string, field?: string) =>
       field ? `${field.replaceAll("_", " ")} of force ${number}` : `force ${number}`,

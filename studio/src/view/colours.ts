@@ -16,6 +16,8 @@ export interface Palette {
   load: string;
   reaction: string;
   floor: string;
+  /** What forces pull to. */
+  guide: string;
   accent: string;
   warning: string;
   cold: string[];
@@ -34,6 +36,7 @@ const LIGHT: Palette = {
   load: "#2a9d5c",
   reaction: "#8e44ad",
   floor: "#b4bec8",
+  guide: "#8a6d1f",
   accent: "#e08a00",
   warning: "#d6186b",
   cold: ["#06306e", "#1f66b0", "#5ea2d6", "#a9c9e2"],
@@ -53,6 +56,7 @@ const DARK: Palette = {
   load: "#4fce86",
   reaction: "#c58be0",
   floor: "#4a5764",
+  guide: "#d6b656",
   accent: "#ffb84d",
   warning: "#ff6fae",
   cold: ["#cfe6ff", "#86c0ff", "#4d94e6", "#3d6fa8"],

@@ -38,5 +38,7 @@ export function takeUp(key: string, options: Options): void {
   if (!view) return;
   taken.delete(key);
   if (["force", "strain", "plain"].includes(view.colouring)) options.colouring.value = view.colouring;
+  if (view.scale && ["auto", "even", "log"].includes(view.scale.kind)) options.scale.value = view.scale;
+  if (view.groups) options.groups.value = view.groups;
   options.layers.value = { ...options.layers.value, ...view.layers };
 }

@@ -69,7 +69,9 @@ export class Keys {
     else if (event.key === "-" || event.key === "_") eye.zoom(1 / ZOOM);
     else if (event.key.toLowerCase() === "f") this.view.fit();
     else if (event.key.toLowerCase() === "a") this.next(event.shiftKey ? -1 : 1);
+    else if (event.key === "Escape" && options.tool.value !== "none") options.tool.value = "none";
     else if (event.key === "Escape" && options.picked.value) options.picked.value = null;
+    else if (event.key === "Escape" && options.marked.value.length) options.marked.value = [];
     else return false;
     return true;
   }

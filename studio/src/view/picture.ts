@@ -4,11 +4,12 @@ import type { Frame } from "../frame";
 import type { Anchor } from "../model";
 import type { Acting } from "./acting";
 import { Arrows, MANY } from "./arrows";
-import { channels, type Palette, palette, type Ramp } from "./colours";
+import { channels, type Palette, palette } from "./colours";
 import { Column } from "./columns";
 import type { Form } from "./form";
 import { Marks } from "./marks";
 import { Plane } from "./plane";
+import type { Coloured } from "./scaling";
 import { Segments } from "./segments";
 import { Skin } from "./skin";
 import type { Stage } from "./stage";
@@ -23,7 +24,7 @@ export interface Dress {
   colouring: Colouring;
   layers: Record<Layer, boolean>;
   dark: boolean;
-  ramp: Ramp;
+  ramp: Coloured;
   /** Length of a CSS pixel. */
   pixel: number;
 }
@@ -219,12 +220,13 @@ export class Picture {
   private lines(parts: Parts, dress: Dress, colours: Palette, gap: number): void {
     const { springs, edges, strokes } = parts;
     const { style } = springs;
-    const { colours: stops, first, last } = dress.ramp;
+    const { colours: stops, first, last, log } = dress.ramp;
     this.sprung = dress.layers.springs && springs.count > 0;
     style.width.value = clamp(Math.max(0.1 * gap, 20 / Math.sqrt(springs.count)), 1.5, 3.4);
     style.colouring.value = dress.colouring === "force" ? 1 : dress.colouring === "strain" && this.rest ? 2 : 0;
     [style.low.value, style.high.value] = [first, last];
-    style.slack.value = 1e-9 * Math.max(Math.abs(first), Math.abs(last));
+    style.slack.value = 1e-9 * (log ? 10 ** last : Math.max(Math.abs(first), Math.abs(last)));
+    style.log.value = log ? 1 : 0;
     stops.forEach((stop, i) => style.stops.value[i]!.set(...channels(stop)));
     style.count.value = stops.length;
     style.plain.value = [...channels(colours.plain), 1];

@@ -14,7 +14,7 @@ import { type Common, material } from "./material";
 
 const COLOURED = `
 uniform highp isampler2D rows;
-uniform int colouring;
+uniform int colouring, logarithmic;
 uniform sampler2D forces, restLengths;
 uniform float low, high, slack;
 uniform vec3 stops[9];
@@ -23,6 +23,7 @@ uniform vec4 plain;
 uniform vec3 slackColour;
 vec4 coloured(float value) {
   if (abs(value) <= slack) return vec4(slackColour, plain.a);
+  if (logarithmic == 1) value = log2(abs(value)) * 0.30103;
   float at = clamp((value - low) / (high - low), 0.0, 1.0) * float(count - 1);
   int i = min(int(at), count - 2);
   return vec4(mix(stops[i], stops[i + 1], at - float(i)), plain.a);
@@ -110,6 +111,7 @@ export class Segments {
     low: { value: 0 },
     high: { value: 1 },
     slack: { value: -1 },
+    log: { value: 0 },
     stops: { value: Array.from({ length: 9 }, () => new Vector3()) },
     count: { value: 2 },
     plain: { value: [0, 0, 0, 1] as [number, number, number, number] },
@@ -119,7 +121,7 @@ export class Segments {
 
   constructor(shared: Common, ends: Int32Array, order: number, onTop = false) {
     this.rows = new Rows(ends, 2);
-    const uniforms = { ...this.style, rows: { value: this.rows.texture } };
+    const uniforms = { ...this.style, logarithmic: this.style.log, rows: { value: this.rows.texture } };
     const made = material(shared, {
       vertex: COLOURED + VERTEX,
       fragment: FRAGMENT,

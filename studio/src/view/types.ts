@@ -4,10 +4,26 @@ import { type Signal, signal } from "@preact/signals";
 export type Colouring = "force" | "strain" | "plain";
 export type Lock = "view" | "x" | "y" | "z" | "xy" | "xz" | "yz";
 export type Look = "perspective" | "top" | "front" | "right";
-export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "reactions" | "floor";
+export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "reactions" | "floor" | "guides";
 
 /** What is picked. */
 export type Picked = { kind: "particle" | "spring"; index: number } | null;
+
+/** What a drag on the canvas does: as ever, or select particles. */
+export type Tool = "none" | "box" | "lasso";
+
+/** Particles by the name of a group. */
+export type Groups = Record<string, number[]>;
+
+/** How numbers become colours: from extreme to extreme, about 0, or by the logarithm of their size. */
+export type ScaleKind = "auto" | "even" | "log";
+
+/** With its two ends; null: as found. */
+export interface Scale {
+  kind: ScaleKind;
+  low: number | null;
+  high: number | null;
+}
 
 /** Which number a colour stands for. */
 export interface Legend {
@@ -28,11 +44,14 @@ export interface Legend {
 /** What a person has chosen to see: of this page alone, the session knows nothing of it. */
 export interface Options {
   colouring: Signal<Colouring>;
+  scale: Signal<Scale>;
   layers: Signal<Record<Layer, boolean>>;
   /** Along what a drag goes: the plane that faces the eye, an axis, a plane. */
   lock: Signal<Lock>;
   picked: Signal<Picked>;
-  /** Particles to be marked, such as those a warning speaks of. */
+  tool: Signal<Tool>;
+  groups: Signal<Groups>;
+  /** Particles that are selected, or that a warning speaks of. */
   marked: Signal<number[]>;
   /** Rest length of each spring [length], for strain; null: not known yet. */
   restLengths: Signal<Float32Array | null>;
@@ -49,9 +68,13 @@ export const options = (): Options => ({
     loads: true,
     reactions: true,
     floor: true,
+    guides: true,
   }),
+  scale: signal<Scale>({ kind: "auto", low: null, high: null }),
   lock: signal<Lock>("view"),
   picked: signal<Picked>(null),
+  tool: signal<Tool>("none"),
+  groups: signal<Groups>({}),
   marked: signal<number[]>([]),
   restLengths: signal<Float32Array | null>(null),
   dark: signal(false),
@@ -62,6 +85,8 @@ export interface Kept {
   /** Target and direction to the eye (x y z each), height seen [length], angle [degrees]. */
   eye: number[];
   colouring: Colouring;
+  scale?: Scale;
+  groups?: Groups;
   layers: Partial<Record<Layer, boolean>>;
 }
 
@@ -80,6 +105,8 @@ export interface View {
   look(from: Look): void;
   /** Bring particles into view. */
   show(particles: number[]): void;
+  /** Particles drawn inside of a closed line on the canvas [CSS pixels]. */
+  inside(line: { x: number; y: number }[]): number[];
   /** Particles of the springs whose values lie beyond the scale. */
   beyond(): number[];
   /** How it is looked at now: what a saved model keeps. */

@@ -7,16 +7,17 @@ import type { Session } from "../session";
 import { note, stats } from "../stats";
 import { acting } from "./acting";
 import { Eye } from "./camera";
-import { ramp } from "./colours";
 import { Hand, type Held } from "./dragging";
-import { Extremes, outside, spread } from "./extremes";
 import { form } from "./form";
 import { Guide } from "./guide";
+import { Guides } from "./guides";
 import { Highlights } from "./highlights";
 import { Keys } from "./keys";
 import { numbers, remember, remembered } from "./memory";
 import { Picker } from "./picking";
 import { Picture } from "./picture";
+import { Scaling } from "./scaling";
+import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
 import { Triad } from "./triad";
 import type { Kept, Legend, Look, Options, Picked, View } from "./types";
@@ -39,12 +40,12 @@ class Drawing implements View {
   private readonly picture: Picture;
   private readonly highlights: Highlights;
   private readonly guide: Guide;
+  private readonly guides: Guides;
   private readonly triad: Triad;
   private readonly hand: Hand;
   private readonly keys: Keys;
   private readonly picker = new Picker();
-  private readonly scale = new Extremes();
-  private outliers = 0;
+  private readonly scale = new Scaling();
   private readonly undo: (() => void)[] = [];
   private frame: Frame | null = null;
   private drawn: Frame | null = null;
@@ -73,6 +74,7 @@ class Drawing implements View {
     this.picture = new Picture(this.stage);
     this.highlights = new Highlights(this.stage);
     this.guide = new Guide(this.stage);
+    this.guides = new Guides(this.stage);
     this.triad = new Triad(this.stage);
     this.hand = new Hand(this.handles());
     const say = (sentence: string) => (this.announcement.value = sentence);
@@ -95,16 +97,26 @@ class Drawing implements View {
       this.eye.fit(particles.flatMap((i) => [positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!]));
   }
 
+  inside(line: Place[]): number[] {
+    const { left, top } = this.canvas.getBoundingClientRect();
+    const found: number[] = [];
+    for (let i = 0; 3 * i < this.particles().length; i++) {
+      const at = this.project(i);
+      if (at && inside({ x: at.x - left, y: at.y - top }, line)) found.push(i);
+    }
+    return found;
+  }
+
   beyond(): number[] {
-    const { low, high } = this.scale;
     const ends = this.picture.form?.springs;
-    if (!this.drawn || !ends || !this.outliers) return [];
-    return outside(this.numbers(this.drawn), low, high).flatMap((i) => [ends[2 * i]!, ends[2 * i + 1]!]);
+    if (!this.drawn || !ends) return [];
+    return this.scale.beyond(this.numbers(this.drawn)).flatMap((i) => [ends[2 * i]!, ends[2 * i + 1]!]);
   }
 
   kept(): Kept {
-    const { colouring, layers } = this.options;
-    return { eye: numbers(this.eye.place), colouring: colouring.value, layers: layers.value };
+    const { colouring, scale, groups, layers } = this.options;
+    const eye = numbers(this.eye.place);
+    return { eye, colouring: colouring.value, scale: scale.value, groups: groups.value, layers: layers.value };
   }
 
   async png(): Promise<Blob> {
@@ -136,7 +148,7 @@ class Drawing implements View {
     clearTimeout(this.counting);
     clearTimeout(this.pacing);
     this.undo.reverse().forEach((undo) => undo());
-    for (const part of [this.hand, this.keys, this.guide, this.triad, this.highlights]) part.dispose();
+    for (const part of [this.hand, this.keys, this.guide, this.guides, this.triad, this.highlights]) part.dispose();
     this.eye.dispose();
     this.picture.dispose();
     this.stage.dispose();
@@ -247,7 +259,7 @@ class Drawing implements View {
       }),
       effect(() => {
         void options.colouring.value;
-        this.scale.forget();
+        this.scale.choose(options.scale.value);
         this.ask();
       }),
       effect(() => {
@@ -357,10 +369,7 @@ class Drawing implements View {
     const resting = finely || !frame.playing;
     if (!resting && !this.scale.due(now)) return;
     this.picture.survey(frame);
-    const { low, high, beyond } = spread(this.numbers(frame));
-    const isOther = beyond !== this.outliers;
-    this.outliers = beyond;
-    if (this.scale.take(low, high, resting, now) || isOther) this.relabel();
+    if (this.scale.take(this.numbers(frame), resting, now)) this.relabel();
     const { load, reaction } = this.picture.longest;
     const told = this.arrows.value;
     if (load !== told.load || reaction !== told.reaction) this.arrows.value = { load, reaction };
@@ -389,14 +398,9 @@ class Drawing implements View {
   }
 
   private relabel(): void {
-    const { low, high } = this.scale;
     const force = this.options.colouring.value === "force";
-    const { colours, first, last } = ramp(low, high, this.options.dark.value);
     const unit = force ? (this.session.topology.value?.units.force ?? "") : "-";
-    const isFlat = high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high));
-    const title = force ? "Force" : "Strain";
-    const told = { title, unit, low: first, high: last, beyond: this.outliers, equal: isFlat ? high : null, colours };
-    this.legend.value = low <= high ? told : null;
+    this.legend.value = this.scale.legend(force ? "Force" : "Strain", unit, this.options.dark.value);
   }
 
   /** Colours and sizes, where they may have changed. */
@@ -411,10 +415,12 @@ class Drawing implements View {
       colouring: options.colouring.value,
       layers: options.layers.value,
       dark: options.dark.value,
-      ramp: ramp(scale.low, scale.high, options.dark.value),
+      ramp: scale.coloured(options.dark.value),
       pixel,
     });
     picture.lay(floorOf(this.session.scene.value), options.layers.value.floor);
+    this.guides.put(this.session.scene.value, picture.size);
+    this.guides.dress(options.dark.value, options.layers.value.guides, picture.size);
     this.highlights.dress(options.dark.value);
     this.triad.dress(options.dark.value);
   }

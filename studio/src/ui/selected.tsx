@@ -1,0 +1,154 @@
+// Several particles at once: found by a box, a lasso, a row of springs or a range of forces; held, moved, named.
+import { useSignal } from "@preact/signals";
+import type { Point } from "../model";
+import { between, endsOf, row } from "../view/sets";
+import type { Tool } from "../view/types";
+import { Choice } from "./choice";
+import { Groups } from "./groups";
+import { useEdit } from "./loads";
+import { NumberField } from "./number";
+import type { Studio } from "./studio";
+import { counted } from "./words";
+
+const TOOLS: [Tool, string, string][] = [
+  ["box", "Box", "Drag a box on the canvas; Shift adds, Alt takes away"],
+  ["lasso", "Lasso", "Draw a line around particles on the canvas; Shift adds, Alt takes away"],
+];
+const AXES = ["xyz", "xy", "xz", "yz", "x", "y", "z"];
+
+export function Selected({ studio }: { studio: Studio }) {
+  const { options, session } = studio;
+  const topology = session.topology.value;
+  if (!topology) return null;
+  const chosen = options.marked.value.filter((particle) => particle < topology.particles);
+  const choose = (particles: number[]) => ([options.picked.value, options.marked.value] = [null, particles]);
+  const all = Array.from({ length: topology.particles }, (_, i) => i);
+  const known = new Set(chosen);
+  const picked = options.picked.value;
+  const along = () => {
+    if (picked?.kind === "spring") choose(endsOf(topology.springs, row(topology, picked.index)));
+  };
+  const button = (name: string, hint: string, does: () => void, able = true) => (
+    <button type="button" class="small" title={hint} disabled={!able} onClick={does}>
+      {name}
+    </button>
+  );
+  return (
+    <details class="seldom">
+      <summary>Select several</summary>
+      <div class="row" role="group" aria-label="Ways to select">
+        {TOOLS.map(([tool, seen, hint]) => (
+          <button
+            key={tool}
+            type="button"
+            class="small"
+            title={hint}
+            aria-pressed={options.tool.value === tool}
+            onClick={() => (options.tool.value = options.tool.value === tool ? "none" : tool)}
+          >
+            {seen}
+          </button>
+        ))}
+        {button("Row", "All springs that go on straight from the picked one", along, picked?.kind === "spring")}
+        {button("All", "All particles", () => choose(all))}
+        {button("Invert", "Those that are not selected", () => choose(all.filter((one) => !known.has(one))))}
+        {button("None", "Nothing", () => choose([]), chosen.length > 0)}
+      </div>
+      <ByForce studio={studio} choose={choose} />
+      <p role="status" class="note">
+        {counted(chosen.length, "particle")} selected. Forces are added to them by "What is picked" below.
+      </p>
+      <Acts studio={studio} chosen={chosen} />
+      <Groups studio={studio} chosen={chosen} choose={choose} />
+    </details>
+  );
+}
+
+function ByForce({ studio: { session }, choose }: { studio: Studio; choose: (particles: number[]) => void }) {
+  const range = useSignal<{ low: number | null; high: number | null }>({ low: null, high: null });
+  const topology = session.topology.value;
+  if (!topology?.springs.length) return null;
+  const end = (which: "low" | "high", seen: string) => (
+    <NumberField
+      name={`${seen} force`}
+      seen={seen}
+      value={range.value[which]}
+      unit={topology.units.force}
+      placeholder="any"
+      done={(value) => (range.value = { ...range.value, [which]: value })}
+    />
+  );
+  const find = () => {
+    const forces = session.frame?.springForces;
+    if (forces) choose(endsOf(topology.springs, between(forces, range.value.low, range.value.high)));
+  };
+  return (
+    <div class="row" role="group" aria-label="Springs by force">
+      {end("low", "From")}
+      {end("high", "To")}
+      <button type="button" class="small" title="The ends of springs with forces of this range" onClick={find}>
+        Select by force
+      </button>
+    </div>
+  );
+}
+
+/** What is done with all of them: each is one edit. */
+function Acts({ studio: { session }, chosen }: { studio: Studio; chosen: number[] }) {
+  const { busy, make } = useEdit(session);
+  const axes = useSignal("xyz");
+  const shift = useSignal<Point>([0, 0, 0]);
+  const held = new Set(session.anchors.value.flatMap((anchor) => anchor.particles));
+  const [fixed, able] = [chosen.filter((one) => held.has(one)), !busy && session.connection.value === "live"];
+  const move = () => {
+    const pins = session.anchors.value.flatMap((anchor) => {
+      const rows = anchor.particles.map((_, i) => i).filter((i) => fixed.includes(anchor.particles[i]!));
+      const targets = rows.map((i) => anchor.targets[i]!.map((x, axis) => x + shift.value[axis]!) as Point);
+      return rows.length ? [{ particles: rows.map((i) => anchor.particles[i]!), targets, axes: anchor.axes }] : [];
+    });
+    void make({ pin: pins }, `${counted(fixed.length, "held particle")} moved; Undo takes it back.`);
+  };
+  const unit = session.topology.value?.units.length ?? "";
+  return (
+    <>
+      <Choice name="Hold along" value={axes.value} choices={AXES} done={(to) => (axes.value = to)} />
+      <div class="row">
+        <button
+          type="button"
+          class="small"
+          disabled={!able || !chosen.length}
+          onClick={() =>
+            void make({ pin: [{ particles: chosen, axes: axes.value }] }, `${counted(chosen.length, "particle")} held.`)
+          }
+        >
+          Hold the selected
+        </button>
+        <button
+          type="button"
+          class="small"
+          disabled={!able || !fixed.length}
+          onClick={() => void make({ release: fixed }, `${counted(fixed.length, "particle")} released.`)}
+        >
+          Release the selected
+        </button>
+      </div>
+      <div class="components" role="group" aria-label="Move by">
+        <span class="seen">Move by</span>
+        {shift.value.map((value, axis) => (
+          <NumberField
+            key={axis}
+            name={`Move by ${"xyz"[axis]}`}
+            seen={"xyz"[axis]!}
+            value={value}
+            unit=""
+            done={(to) => (shift.value = shift.value.map((old, i) => (i === axis ? (to ?? 0) : old)) as Point)}
+          />
+        ))}
+        <span class="unit">{unit}</span>
+      </div>
+      <button type="button" class="small" disabled={!able || !fixed.length} onClick={move}>
+        Move the held ones
+      </button>
+    </>
+  );
+}
