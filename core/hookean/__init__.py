@@ -153,9 +153,13 @@ if TYPE_CHECKING:
     from hookean.workshop.cables import cables as cables
     from hookean.workshop.patterns import Patterns as Patterns
     from hookean.workshop.patterns import cutting_patterns as cutting_patterns
+    from hookean_server.lifecycle.show import show as show
+    from hookean_server.lifecycle.view import View as View
 
 __version__ = "0.1.0"
 
+# of packages beside this one, which nothing in it imports: they start the service, and speak with it
+_BESIDE = {"View": "hookean_server.lifecycle.view", "show": "hookean_server.lifecycle.show"}
 _HOMES = {
     "Scene": "scene.scene",
     "Anchor": "scene.scene",
@@ -318,6 +322,7 @@ __all__ = [
     "TranslationLock",
     "Unary",
     "Units",
+    "View",
     "Volume",
     "Vortex",
     "Wind",
@@ -339,6 +344,7 @@ __all__ = [
     "render",
     "save",
     "sensitivity",
+    "show",
     "simulate",
 ]
 
@@ -349,6 +355,8 @@ if not TYPE_CHECKING:  # type checkers know the names above, and no others
         # loaded when first used: `import hookean` alone costs nothing
         if name in _HOMES:
             return getattr(importlib.import_module(f"hookean.{_HOMES[name]}"), name)
+        if name in _BESIDE:
+            return getattr(importlib.import_module(_BESIDE[name]), name)
         from hookean.forces import KINDS
 
         for cls in KINDS.values():

@@ -106,6 +106,13 @@ export interface Patch {
   gesture?: string;
 }
 
+/** What programs and pages share about a session beside its model. */
+export interface Shared {
+  picked: { kind: "particle" | "spring"; index: number } | null;
+  /** Numbers that colour the springs, by springs or particles. */
+  colours: { title: string; unit: string; of: "springs" | "particles"; values: number[] } | null;
+}
+
 export type Action = "play" | "relax" | "pause" | "step" | "reset" | "undo" | "redo";
 
 /** A kind of force in the catalogue. */

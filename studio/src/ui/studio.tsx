@@ -8,6 +8,7 @@ import { Bar } from "./bar";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
 import { Readings } from "./readings";
+import { sharing } from "./sharing";
 import { Stage } from "./stage";
 import { dark, remember, remembered } from "./theme";
 
@@ -33,7 +34,9 @@ export function SessionPage({ name }: { name: string }) {
     const forget = effect(() => remember(LAYERS, chosen.layers.value));
     const readings = new Readings(session, chosen);
     setStudio({ session, options: chosen, view: signal(null), readings });
+    const stop = sharing(session, chosen);
     return () => {
+      stop();
       forget();
       readings.dispose();
       session.close();

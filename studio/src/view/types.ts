@@ -1,13 +1,20 @@
 // What the view shows and receives: signals that panels set and the view follows, and what it gives back.
 import { type Signal, signal } from "@preact/signals";
 
-export type Colouring = "force" | "strain" | "plain";
+export type Colouring = "force" | "strain" | "plain" | "given";
 export type Lock = "view" | "x" | "y" | "z" | "xy" | "xz" | "yz";
 export type Look = "perspective" | "top" | "front" | "right";
 export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "reactions" | "floor";
 
 /** What is picked. */
 export type Picked = { kind: "particle" | "spring"; index: number } | null;
+
+/** Numbers that a program gave to colour the springs with, one each. */
+export interface Given {
+  title: string;
+  unit: string;
+  values: Float32Array;
+}
 
 /** Which number a colour stands for. */
 export interface Legend {
@@ -36,6 +43,7 @@ export interface Options {
   marked: Signal<number[]>;
   /** Rest length of each spring [length], for strain; null: not known yet. */
   restLengths: Signal<Float32Array | null>;
+  given: Signal<Given | null>;
   dark: Signal<boolean>;
 }
 
@@ -54,6 +62,7 @@ export const options = (): Options => ({
   picked: signal<Picked>(null),
   marked: signal<number[]>([]),
   restLengths: signal<Float32Array | null>(null),
+  given: signal<Given | null>(null),
   dark: signal(false),
 });
 

@@ -246,7 +246,9 @@ class Drawing implements View {
         this.ask();
       }),
       effect(() => {
-        void options.colouring.value;
+        const isGiven = options.colouring.value === "given";
+        picture.given = isGiven ? (options.given.value?.values ?? null) : null;
+        this.outdated = true;
         this.scale.forget();
         this.ask();
       }),
@@ -376,8 +378,9 @@ class Drawing implements View {
   }
 
   private numbers(frame: Frame): ArrayLike<number> {
-    const { restLengths, colouring } = this.options;
+    const { restLengths, colouring, given } = this.options;
     if (colouring.value === "force") return frame.springForces;
+    if (colouring.value === "given") return given.value?.values ?? [];
     const lengths = restLengths.value;
     const ends = this.picture.form!.springs;
     if (colouring.value === "plain" || !lengths || !this.picture.strained) return [];
@@ -390,11 +393,13 @@ class Drawing implements View {
 
   private relabel(): void {
     const { low, high } = this.scale;
-    const force = this.options.colouring.value === "force";
+    const { colouring, given } = this.options;
+    const force = colouring.value === "force";
+    const own = colouring.value === "given" ? given.value : null;
     const { colours, first, last } = ramp(low, high, this.options.dark.value);
-    const unit = force ? (this.session.topology.value?.units.force ?? "") : "-";
+    const unit = own ? own.unit : force ? (this.session.topology.value?.units.force ?? "") : "-";
     const isFlat = high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high));
-    const title = force ? "Force" : "Strain";
+    const title = own ? own.title : force ? "Force" : "Strain";
     const told = { title, unit, low: first, high: last, beyond: this.outliers, equal: isFlat ? high : null, colours };
     this.legend.value = low <= high ? told : null;
   }
