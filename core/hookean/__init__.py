@@ -133,6 +133,8 @@ if TYPE_CHECKING:
     from hookean.running.result import Status as Status
     from hookean.running.run import relax as relax
     from hookean.running.script import Script as Script
+    from hookean.running.showing import View as View
+    from hookean.running.showing import show as show
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.simulation import simulate as simulate
     from hookean.running.stream import Stream as Stream
@@ -153,13 +155,9 @@ if TYPE_CHECKING:
     from hookean.workshop.cables import cables as cables
     from hookean.workshop.patterns import Patterns as Patterns
     from hookean.workshop.patterns import cutting_patterns as cutting_patterns
-    from hookean_server.lifecycle.show import show as show
-    from hookean_server.lifecycle.view import View as View
 
 __version__ = "0.1.0"
 
-# of packages beside this one, which nothing in it imports: they start the service, and speak with it
-_BESIDE = {"View": "hookean_server.lifecycle.view", "show": "hookean_server.lifecycle.show"}
 _HOMES = {
     "Scene": "scene.scene",
     "Anchor": "scene.scene",
@@ -175,6 +173,8 @@ _HOMES = {
     "Result": "running.result",
     "Status": "running.result",
     "Frame": "running.frame",
+    "View": "running.showing",
+    "show": "running.showing",
     "Simulation": "running.simulation",
     "Move": "running.patch",
     "Patch": "running.patch",
@@ -355,8 +355,6 @@ if not TYPE_CHECKING:  # type checkers know the names above, and no others
         # loaded when first used: `import hookean` alone costs nothing
         if name in _HOMES:
             return getattr(importlib.import_module(f"hookean.{_HOMES[name]}"), name)
-        if name in _BESIDE:
-            return getattr(importlib.import_module(_BESIDE[name]), name)
         from hookean.forces import KINDS
 
         for cls in KINDS.values():

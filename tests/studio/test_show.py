@@ -14,6 +14,8 @@ import pytest
 
 import hookean
 from hookean import InputError, Scene
+from hookean_server.lifecycle.discovery import ask, find
+from hookean_server.lifecycle.show import _children as started
 from serving import CABLE, HANG
 
 from .browser import Studio
@@ -112,3 +114,17 @@ def test_a_deleted_session_is_reported(shown: hookean.View, service: Service):
     service.client.delete("/v1/sessions/from-python")
     with pytest.raises(ConnectionError, match="session"):
         _ = shown.pick
+
+
+@pytest.mark.soak
+def test_a_service_is_started_where_none_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """The same folder as `hookean serve` uses has its address afterwards; the next `show` joins it."""
+    monkeypatch.setenv("HOOKEAN_STATE", str(tmp_path / "state"))
+    first = hookean.show(CABLE, browser=False)
+    second = hookean.show(CABLE, browser=False)
+    try:
+        assert first.url.partition("#")[0] == second.url.partition("#")[0] and first.url != second.url
+    finally:
+        found = find(tmp_path / "state")
+        assert found is not None and ask(found, "POST", "/v1/shutdown") is not None
+        assert started.pop().wait(HANG) == 0

@@ -1,65 +1,68 @@
-"""`hookean.show`: opens the studio on a scene from Python, and what a program does with the page afterwards."""
+"""`hookean.show`: finds the service of this user, or starts it, and opens the studio on what a program shows."""
 
 from __future__ import annotations
 
+import os
 import re
 import secrets
+import subprocess
 import sys
-from collections.abc import Mapping
+import tempfile
+import time
 from typing import Any
 from urllib.parse import quote
 
-import hookean_client
 from hookean.errors import InputError
-from hookean.running.result import Result
-from hookean.running.simulation import Simulation
-from hookean.scene.scene import Scene
-from hookean_server.lifecycle.discovery import find, folder
-from hookean_server.lifecycle.studio import Refused, open_page
-from hookean_server.lifecycle.view import View
+from hookean.running.showing import View
+from hookean_server.lifecycle.discovery import Distrusted, Found, check, find, folder
+from hookean_server.lifecycle.studio import STARTED, Refused, open_page
+from hookean_server.lifecycle.view import Page, Shown
 
-STARTED = 60.0  # seconds a service may take to start; kernels may have to be compiled first
+_children: list[subprocess.Popen[str]] = []  # services that were started here: known until this program ends
 IDLE = 60.0  # minutes without use after which a service that was started here ends
 
 
-def show(
-    scene: Scene | Result | Simulation | Mapping[str, Any], *, name: str = "", browser: bool | None = None
-) -> View:
-    """Open the studio, the page of the service, on a scene, a result or a simulation; returns its `View`.
-
-    The service of this user is used, or started; it outlives this program, and ends after an hour without use. A result
-    is shown in its shape, a simulation as it stands. The same `name` (letters, digits and . _ : ~ -) shows the next
-    scene in the same page. `browser`: whether to open a browser; None: unless this is a notebook, where the last line
-    of a cell shows the page below it.
-
-    Raises InputError for an invalid scene or name, ConnectionError where no service can be started or none answers.
-    """
+def show(scene: Shown, name: str, browser: bool | None) -> View:
+    """See `hookean.show`."""
     if name and not re.fullmatch(r"[A-Za-z0-9._:~-]{1,160}", name):
         raise InputError("name", f"{name[:40]!r} given; give 1 to 160 letters, digits and . _ : ~ -")
-    view = View(_service(), name or f"python-{secrets.token_hex(6)}")
-    view.update(scene)
+    try:
+        check(folder())
+    except Distrusted as error:
+        raise ConnectionError(str(error)) from None
+    found = find(folder()) or _started()
+    page = Page(found, name or f"python-{secrets.token_hex(6)}")
+    page.update(scene)
     if browser or (browser is None and not _is_notebook()):
-        _open(view)
-    return view
+        _open(found, page)
+    return page
 
 
-def _service() -> hookean_client.Client:
-    """A client of the service of this user, which is started where none runs."""
-    try:
-        return hookean_client.connect(python=sys.executable, timeout=STARTED, folder=str(folder()), parent=0, idle=IDLE)
-    except hookean_client.Problem as problem:
-        raise ConnectionError(problem.detail) from None
+def _started() -> Found:
+    """The service, started as `hookean serve` starts it, apart from this program."""
+    command = [sys.executable, "-m", "hookean.cli", "serve", "--any-port", "--idle-exit", str(IDLE)]
+    apart: dict[str, Any] = {"creationflags": 0x08000200} if os.name == "nt" else {"start_new_session": True}
+    until = time.monotonic() + STARTED
+    with tempfile.TemporaryFile("w+") as said:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, **apart)
+        _children.append(process)
+        while (found := find(folder())) is None and time.monotonic() < until and not process.poll():
+            time.sleep(0.05)
+        if found is None:
+            said.seek(0)
+            lines = said.read().strip().splitlines() or ["it does not answer."]
+            raise ConnectionError(f"The service could not be started: {lines[-1]}")
+    return found
 
 
-def _open(view: View) -> None:
+def _open(found: Found, page: Page) -> None:
     """Open a browser on it; where there is none, print the address."""
-    found = find(folder())
     try:
-        if found is not None and open_page(found, f"&s={quote(view.key)}"):
+        if open_page(found, f"&s={quote(page.key)}"):
             return
     except Refused as error:
         raise ConnectionError(str(error)) from None
-    print(f"No browser could be opened; open {view.url} in one. `hookean token` prints the token that it asks for.")
+    print(f"No browser could be opened; open {page.url} in one. `hookean token` prints the token that it asks for.")
 
 
 def _is_notebook() -> bool:

@@ -180,7 +180,8 @@ def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
     if ask(found, "GET", f"/v1/sessions/{key}") is not None:
         return key, []
     body, kind = form(file.name, data)
-    status, value = _put(found, f"/v1/sessions/{key}?label={quote(file.name[:200])}", body, kind)
+    address = f"/v1/sessions/{key}?label={quote(file.name[:200])}"
+    status, value = request(found, "PUT", address, body, kind)
     if status not in (200, 201):
         raise Refused(f"{file.name}: {re.sub(r'^/file:? ?', '', str(value.get('detail')))}")
     return key, [str(note) for note in value.get("warnings", [])]
@@ -195,14 +196,19 @@ def form(file: str, data: bytes) -> tuple[bytes, str]:
     return body, f"multipart/form-data; boundary={boundary}"
 
 
-def _put(found: Found, path: str, body: bytes, kind: str) -> tuple[int, dict[str, Any]]:
+def request(
+    found: Found, method: str, path: str, body: bytes = b"", kind: str = "application/json"
+) -> tuple[int, dict[str, Any]]:
+    """The status and the JSON object that a server answers to its user; empty without a body. Raises Refused where it
+    does not answer."""
     headers = {"authorization": f"Bearer {found.token}", "content-type": kind}
     connection = proven(found, READ)
     try:
         if connection is not None:
-            connection.request("PUT", path, body, headers)
+            connection.request(method, path, body or None, headers)
             answer = connection.getresponse()
-            return answer.status, json.loads(answer.read())
+            data = answer.read()
+            return answer.status, json.loads(data) if data else {}
     except (OSError, http.client.HTTPException, ValueError):
         pass
     finally:

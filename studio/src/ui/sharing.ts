@@ -36,7 +36,8 @@ export function sharing(session: Session, options: Options): () => void {
     }),
     effect(() => {
       const picked = options.picked.value;
-      if (!isFirst && session.connection.peek() === "live") void api.share(session.key, { picked }).catch(() => undefined);
+      const tells = !isFirst && session.connection.peek() === "live";
+      if (tells) void api.share(session.key, { picked }).catch(() => undefined);
       isFirst = false;
     }),
   ];
