@@ -87,6 +87,14 @@ export interface Result {
   forces: ({ kind: string; name: string } & Record<string, unknown>)[];
   reactions: { particles: number[]; force: Point[]; names: string[] };
   energy: Record<string, number>;
+  stability: string;
+  /** A sentence; "" for none. */
+  stability_reason: string;
+  /** The particle that moves most in the softest mode. */
+  soft_particle: number | null;
+  /** How far positions are from the equilibrium [length]; null where that is not known. */
+  position_error: number | null;
+  position_reason: string;
   report: { merged: number; unmatched: unknown[]; warnings: string[] };
   units: Units;
 }

@@ -21,6 +21,15 @@ def test_a_result_goes_on_from_its_shape():
     assert again.result().residual == result.residual
 
 
+def test_the_stability_of_a_shape_that_another_run_found_is_known():
+    """A cable in tension is stable (its tangent is positive definite), whichever run came to its shape."""
+    result = hookean.relax(SCENE)
+    simulation = hookean.Simulation(SCENE)
+    simulation.relax()
+    for found in (resumed(result).result(), simulation.result()):
+        assert found.stability == result.stability == "stable" and found.position_error is not None
+
+
 def test_a_shape_that_is_moved_as_a_whole_rests_as_it_did():
     """Equilibrium does not change by a translation (Newton's first law). Both shapes have residuals below the
     tolerance r = 1e-6; the stiffness of a hanging cable against its load is at least P / l, so positions differ by at

@@ -6,6 +6,7 @@ import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
 import { SeePanel } from "./see";
 import type { Studio } from "./studio";
+import { Tables } from "./tables";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
   return (
@@ -22,6 +23,9 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       <Panel name="Charts">
         <Charts studio={studio} />
       </Panel>
+      <Panel name="Tables" isClosed>
+        <Tables studio={studio} />
+      </Panel>
       <Panel name="Out">
         <OutPanel studio={studio} title={title} />
       </Panel>
@@ -29,10 +33,16 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
   );
 }
 
-function Panel({ name, children }: { name: string; children: ComponentChildren }) {
+interface Told {
+  name: string;
+  isClosed?: boolean;
+  children: ComponentChildren;
+}
+
+function Panel({ name, isClosed = false, children }: Told) {
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
-    <details class="panel" open={!narrow || name === "Picked" || name === "Forces"}>
+    <details class="panel" open={(!narrow && !isClosed) || name === "Picked" || name === "Forces"}>
       <summary>
         <h2>{name}</h2>
       </summary>

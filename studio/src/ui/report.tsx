@@ -2,6 +2,7 @@
 import { useEffect } from "preact/hooks";
 import { Repairs } from "./repairs";
 import { tellReturns } from "./returns";
+import { Stable } from "./stable";
 import type { Studio } from "./studio";
 import { stateOf } from "./running";
 import { measured, particlesOf, plain, said, titled } from "./words";
@@ -12,6 +13,7 @@ export function Report({ studio }: { studio: Studio }) {
     <section class="report" aria-label="Status">
       <Lost studio={studio} />
       <Standing studio={studio} />
+      <Stable studio={studio} />
       <Warnings studio={studio} />
       <Repairs session={studio.session} />
     </section>

@@ -8,6 +8,7 @@ import { Bar } from "./bar";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
 import { Readings } from "./readings";
+import { Rested } from "./rested";
 import { sharing } from "./sharing";
 import { Stage } from "./stage";
 import { dark, remember, remembered } from "./theme";
@@ -21,6 +22,7 @@ export interface Studio {
   /** Null until there is a canvas, and where the browser cannot draw. */
   view: Signal<View | null>;
   readings: Readings;
+  rested: Rested;
 }
 
 export function SessionPage({ name }: { name: string }) {
@@ -33,12 +35,14 @@ export function SessionPage({ name }: { name: string }) {
     chosen.dark.value = dark.peek();
     const forget = effect(() => remember(LAYERS, chosen.layers.value));
     const readings = new Readings(session, chosen);
-    setStudio({ session, options: chosen, view: signal(null), readings });
+    const rested = new Rested(session);
+    setStudio({ session, options: chosen, view: signal(null), readings, rested });
     const stop = sharing(session, chosen);
     return () => {
       stop();
       forget();
       readings.dispose();
+      rested.dispose();
       session.close();
     };
   }, [name]);
