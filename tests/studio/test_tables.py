@@ -74,3 +74,29 @@ def test_stability_and_accuracy_are_at_the_status(cable: Studio):
     assert state["stability"] == "stable" and told.inner_text().startswith("Stability: stable.")
     within = re.search(r"within (\S+) m of the equilibrium", told.inner_text())
     assert within and float(within[1]) == pytest.approx(state["position_error"], rel=0.05)
+
+
+def test_a_drag_is_told_at_the_hand(cable: Studio):
+    """Position, distance and reaction of the particle that is dragged are those of the service; afterwards they go."""
+    page, service = cable.page, cable.service
+    before = service.particles("tables")[2]
+    x, y = cable.place(2)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 15, y + 40, steps=6)
+    told = page.get_by_role("group", name="At the hand")
+    told.get_by_text("Reaction").wait_for()
+
+    def fits() -> bool:
+        state = service.state("tables")
+        at, held = np.array(state["particles"])[2], state["reactions"]
+        if state["status"] != "converged" or 2 not in held["particles"]:
+            return False
+        reaction = np.linalg.norm(held["force"][held["particles"].index(2)])
+        seen = [float(number) for number in re.findall(r"-?[\d.]+(?:e-?\d+)?", told.inner_text())]
+        wanted = [*at, np.linalg.norm(at - before), reaction]
+        return bool(np.allclose(seen, wanted, rtol=1e-3, atol=1e-6))
+
+    cable.until(fits)
+    page.mouse.up()
+    told.wait_for(state="detached")

@@ -10,7 +10,7 @@ import { measured, particlesOf, plain, said, titled } from "./words";
 export function Report({ studio }: { studio: Studio }) {
   useEffect(() => tellReturns(studio.session), [studio]);
   return (
-    <section class="report" aria-label="Status">
+    <section class="report" aria-label="Status" tabIndex={0}>
       <Lost studio={studio} />
       <Standing studio={studio} />
       <Stable studio={studio} />

@@ -1,5 +1,6 @@
 // What the view shows and receives: signals that panels set and the view follows, and what it gives back.
 import { type Signal, signal } from "@preact/signals";
+import type { Point } from "../model";
 
 export type Colouring = "force" | "strain" | "plain" | "given";
 export type Lock = "view" | "x" | "y" | "z" | "xy" | "xz" | "yz";
@@ -74,7 +75,14 @@ export interface Kept {
   layers: Partial<Record<Layer, boolean>>;
 }
 
+/** A particle in the hand, and where it was taken from [length]. */
+export interface Dragged {
+  particle: number;
+  from: Point;
+}
+
 export interface View {
+  readonly dragged: Signal<Dragged | null>;
   readonly legend: Signal<Legend | null>;
   /** The longest arrows of loads and of reactions [force]; 0 for none. */
   readonly arrows: Signal<{ load: number; reaction: number }>;

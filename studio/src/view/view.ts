@@ -19,7 +19,7 @@ import { Picker } from "./picking";
 import { Picture } from "./picture";
 import { Stage } from "./stage";
 import { Triad } from "./triad";
-import type { Kept, Legend, Look, Options, Picked, View } from "./types";
+import type { Dragged, Kept, Legend, Look, Options, Picked, View } from "./types";
 
 const REST = 220;
 
@@ -33,6 +33,7 @@ class Drawing implements View {
   readonly arrows = signal({ load: 0, reaction: 0 });
   readonly announcement = signal("");
   readonly away = signal(false);
+  readonly dragged = signal<Dragged | null>(null);
   readonly rate = signal(0);
   private readonly stage: Stage;
   private readonly eye: Eye;
@@ -409,6 +410,8 @@ class Drawing implements View {
     const { options, picture, eye, stage, scale } = this;
     const pixel = eye.pixel(stage.height);
     this.highlights.hover(this.hand.hovered, picture.form);
+    const { held } = this.hand;
+    if (held?.particle !== this.dragged.peek()?.particle) this.dragged.value = held;
     this.guide.show(this.hand.led, picture.size, options.dark.value);
     if (pixel === this.dressed) return;
     this.dressed = pixel;
