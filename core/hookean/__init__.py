@@ -134,6 +134,8 @@ if TYPE_CHECKING:
     from hookean.running.result import Status as Status
     from hookean.running.run import relax as relax
     from hookean.running.script import Script as Script
+    from hookean.running.showing import View as View
+    from hookean.running.showing import show as show
     from hookean.running.simulation import Simulation as Simulation
     from hookean.running.stream import Stream as Stream
     from hookean.scene.families import family as family
@@ -173,6 +175,8 @@ _HOMES = {
     "Result": "running.result",
     "Status": "running.result",
     "Frame": "running.frame",
+    "View": "running.showing",
+    "show": "running.showing",
     "Simulation": "running.simulation",
     "Move": "running.patch",
     "Patch": "running.patch",
@@ -323,6 +327,7 @@ __all__ = [
     "TranslationLock",
     "Unary",
     "Units",
+    "View",
     "Volume",
     "Vortex",
     "Wind",
@@ -345,6 +350,7 @@ __all__ = [
     "render",
     "save",
     "sensitivity",
+    "show",
     "simulate",
 ]
 

@@ -30,7 +30,7 @@ from hookean_server.jobs.manager import Jobs
 from hookean_server.lifecycle import ending
 from hookean_server.problems import Problem
 from hookean_server.routes import about, analysis, design, discretize, docs, examples, families, geometry, page, relax
-from hookean_server.sessions import frames
+from hookean_server.sessions import frames, shown
 from hookean_server.sessions import routes as session_routes
 from hookean_server.sessions.manager import Manager
 from hookean_server.settings import Settings
@@ -93,6 +93,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         routes_hops,
         page,
         session_routes,
+        shown,
         frames,
         job_routes,
     )

@@ -1,6 +1,6 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
 import type { Action, Anchor, Example, Family, Kind, Parameters, Patch, Result } from "./model";
-import type { Scene, Store, Summary, Topology } from "./model";
+import type { Scene, Shared, Store, Summary, Topology } from "./model";
 
 /** What the service refused, in its own words; status 0: it could not be reached. */
 export class Refused extends Error {
@@ -90,6 +90,10 @@ export async function exported(
   const notes = JSON.parse(answer.headers.get("hookean-warnings") ?? "[]") as string[];
   return { blob: await answer.blob(), notes };
 }
+
+/** What programs and pages share about a session beside its model. */
+export const shared = (key: string) => read<Shared>(`${at(key)}/view`);
+export const share = (key: string, view: Partial<Shared>) => send<Shared>("PATCH", `${at(key)}/view`, view);
 
 /** The catalogue of forces: fields, units, defaults, bounds. */
 export const catalogue = async () => (await read<{ forces: Kind[] }>("/v1/forces")).forces;

@@ -93,6 +93,14 @@ export interface Result {
   forces: ({ kind: string; name: string } & Record<string, unknown>)[];
   reactions: { particles: number[]; force: Point[]; names: string[] };
   energy: Record<string, number>;
+  stability: string;
+  /** A sentence; "" for none. */
+  stability_reason: string;
+  /** The particle that moves most in the softest mode. */
+  soft_particle: number | null;
+  /** How far positions are from the equilibrium [length]; null where that is not known. */
+  position_error: number | null;
+  position_reason: string;
   report: { merged: number; unmatched: unknown[]; warnings: string[] };
   units: Units;
 }
@@ -114,6 +122,13 @@ export interface Patch {
   units?: Partial<Units>;
   /** Edits of one gesture are taken back as one. */
   gesture?: string;
+}
+
+/** What programs and pages share about a session beside its model. */
+export interface Shared {
+  picked: { kind: "particle" | "spring"; index: number } | null;
+  /** Numbers that colour the springs, by springs or particles. */
+  colours: { title: string; unit: string; of: "springs" | "particles"; values: number[] } | null;
 }
 
 export type Action = "play" | "relax" | "pause" | "step" | "reset" | "undo" | "redo";

@@ -29,6 +29,8 @@ export class Session {
   /** As of the last revision that was read. */
   readonly anchors = signal<Anchor[]>([]);
   readonly scene = signal<Scene | null>(null);
+  /** Counts changes of the colours that programs give. */
+  readonly views = signal(0);
   /** What went wrong last, in a sentence; "" for nothing. */
   readonly said = signal("");
   /** Counts frames: what shows numbers of the frame reads it, at most ten times a second. */
@@ -133,6 +135,7 @@ export class Session {
     if (this.connection.value === "silent") this.connection.value = "live";
     if (typeof data !== "string") return this.framed(data);
     const message = JSON.parse(data) as Record<string, unknown>;
+    if ("view" in message) this.views.value = message["view"] as number;
     if ("hello" in message) this.greeted(message["session"] as Summary, message["topology"] as string);
     else if ("state" in message) this.stands(message["state"] as Summary, message["topology"] as string);
     else this.answered(message);

@@ -24,6 +24,7 @@ from hookean.running.watch import Watch, seldom
 from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.stability import time_steps
+from hookean.stability.equilibrium import assess
 from hookean.system.addressed import edited_scene
 from hookean.system.balance import Balance, balance
 from hookean.system.state import State
@@ -236,7 +237,10 @@ class Simulation:
             self._warn()
             self._note()
         found, moving = self._balance(), self.solver.physical
-        rest = self._watch.rest if self.status is Status.CONVERGED else None
+        rested = self.status is Status.CONVERGED
+        if rested and self._watch.rest is None:  # another run came to this shape
+            self._watch.rest = assess(self.system, self.state, found, self.solver)
+        rest = self._watch.rest if rested else None
         return gather(self.system, self.state, found, rest, self.status, self.message, self.solver.name, moving=moving)
 
     def relax(self, *, progress: Progress | None = None, cancelled: Callable[[], bool] | None = None) -> Result:

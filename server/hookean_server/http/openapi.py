@@ -215,6 +215,24 @@ def edit() -> dict[str, Any]:
     return {"responses": problems(SESSION, live=True), "openapi_extra": extra}
 
 
+def looked() -> dict[int | str, dict[str, Any]]:
+    """Responses of how a session is looked at."""
+    return problems({"application/json": {"schema": {"$ref": "#/components/schemas/View"}}}, live=True)
+
+
+def look() -> dict[str, Any]:
+    """Description of the route that changes how a session is looked at."""
+    colours = {"title": "Utilisation", "unit": "-", "of": "springs", "values": [0.2, 0.9, 0.4, 0.3, 0.5]}
+    examples = {"a pick": {"picked": {"kind": "particle", "index": 2}}, "colours": {"colours": colours}}
+    extra = _takes({"$ref": "#/components/schemas/View"}, examples)
+    return {"responses": looked(), "openapi_extra": extra}
+
+
+def edits() -> dict[int | str, dict[str, Any]]:
+    """Responses of the edits of a session."""
+    return problems({"application/json": {"schema": {"$ref": "#/components/schemas/Edits"}}}, live=True)
+
+
 def acted() -> dict[int | str, dict[str, Any]]:
     """Responses of commands to a session."""
     return problems(SESSION, live=True)

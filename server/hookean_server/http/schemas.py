@@ -35,6 +35,7 @@ def _optional(schema: dict[str, Any], **properties: Any) -> dict[str, Any]:
 
 _DEGREE = {"type": "integer", "minimum": 1, "maximum": 25}
 _TEXT = {"type": "string"}
+_NULL = {"type": "null"}
 _SENTENCES = {"type": "array", "items": _TEXT}
 _TREES = {"type": "array", "items": _object(ParamName=_TEXT, InnerTree={"type": "object"})}
 _AT = _object(particles=_ARRAY, force=_ARRAY)
@@ -112,7 +113,14 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         store={"$ref": "#/components/schemas/Store"},
     ),
     "Proof": _object(instance={"type": "string"}, proof={"type": "string", "pattern": "^[0-9a-f]{64}$"}),
-    "Code": _object(code={"type": "string"}, seconds={"type": "number"}),
+    "Code": _object(
+        code={"type": "string"},
+        seconds={"type": "number"},
+        frame={
+            "type": "string",
+            "description": "In /?frame=..., lets pages of this machine frame the studio",
+        },
+    ),
     "Store": {
         "type": "object",
         "properties": {
@@ -225,6 +233,33 @@ SCHEMAS["Session"] = {
 SCHEMAS["Sessions"] = _object(
     sessions={"type": "array", "items": {"$ref": "#/components/schemas/Session"}},
     store={"$ref": "#/components/schemas/Store"},
+)
+SCHEMAS["View"] = {
+    "type": "object",
+    "description": "How a session is looked at; not stored",
+    "properties": {
+        "picked": {
+            "anyOf": [_object(kind={"enum": ["particle", "spring"]}, index={"type": "integer", "minimum": 0}), _NULL],
+            "description": "What is picked in the page",
+        },
+        "colours": {
+            "anyOf": [
+                _optional(
+                    _object(
+                        title=_TEXT,
+                        of={"enum": ["springs", "particles"]},
+                        values={"type": "array", "items": _NUMBER, "minItems": 1},
+                    ),
+                    unit=_TEXT,
+                ),
+                _NULL,
+            ],
+            "description": "Numbers that colour the springs",
+        },
+    },
+}
+SCHEMAS["Edits"] = _object(
+    edits={"type": "array", "items": _object(revision={"type": "integer"}, edit={"type": "object"})}
 )
 SCHEMAS["Edit"] = {
     "type": "object",

@@ -89,6 +89,12 @@ class Tokens:
         said = f"hookean {instance} {address.removeprefix('::ffff:')} {port} {nonce}"
         return hmac.new(self.proof.encode(), said.encode(), hashlib.sha256).hexdigest()
 
+    @property
+    def frame(self) -> str:
+        """What an address of the page has by which a client with the token lets pages of this machine show it in a
+        frame. It opens nothing: who is in the frame logs in there."""
+        return self._mac("frame", "page")
+
     # codes
 
     def code(self) -> str:

@@ -118,7 +118,7 @@ def _show(found: Found, file: Path | None, data: bytes | None, browser: bool) ->
         print(address, flush=True)
         return 0
     try:
-        if _opened_by_file(found, session):
+        if open_page(found, session):
             return 0
     except Refused as error:
         return command.refuse(str(error))
@@ -126,7 +126,7 @@ def _show(found: Found, file: Path | None, data: bytes | None, browser: bool) ->
     return 0
 
 
-def _opened_by_file(found: Found, session: str) -> bool:
+def open_page(found: Found, session: str) -> bool:
     """Whether a browser was opened. It is given a file that only this user can read, which leads it to the page with a
     code that is valid for one log-in: every user of this machine can read the arguments of a program. The file exists
     until the code is used or expires."""
@@ -179,24 +179,36 @@ def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
     key = f"{re.sub(r'[^A-Za-z0-9._-]+', '-', file.stem)[:80]}-{content}"
     if ask(found, "GET", f"/v1/sessions/{key}") is not None:
         return key, []
-    boundary = secrets.token_hex(16)
-    name = re.sub(r'[^ -~]|["\\]', "_", file.name)
-    head = f'--{boundary}\r\nContent-Disposition: form-data; name="file"; filename="{name}"\r\n\r\n'
-    body = b"".join([head.encode(), data, f"\r\n--{boundary}--\r\n".encode()])
-    status, value = _put(found, f"/v1/sessions/{key}?label={quote(file.name[:200])}", body, boundary)
+    body, kind = form(file.name, data)
+    address = f"/v1/sessions/{key}?label={quote(file.name[:200])}"
+    status, value = request(found, "PUT", address, body, kind)
     if status not in (200, 201):
         raise Refused(f"{file.name}: {re.sub(r'^/file:? ?', '', str(value.get('detail')))}")
     return key, [str(note) for note in value.get("warnings", [])]
 
 
-def _put(found: Found, path: str, body: bytes, boundary: str) -> tuple[int, dict[str, Any]]:
-    headers = {"authorization": f"Bearer {found.token}", "content-type": f"multipart/form-data; boundary={boundary}"}
+def form(file: str, data: bytes) -> tuple[bytes, str]:
+    """A form with a file, and its media type."""
+    boundary = secrets.token_hex(16)
+    name = re.sub(r'[^ -~]|["\\]', "_", file)
+    head = f'--{boundary}\r\nContent-Disposition: form-data; name="file"; filename="{name}"\r\n\r\n'
+    body = b"".join([head.encode(), data, f"\r\n--{boundary}--\r\n".encode()])
+    return body, f"multipart/form-data; boundary={boundary}"
+
+
+def request(
+    found: Found, method: str, path: str, body: bytes = b"", kind: str = "application/json"
+) -> tuple[int, dict[str, Any]]:
+    """The status and the JSON object that a server answers to its user; empty without a body. Raises Refused where it
+    does not answer."""
+    headers = {"authorization": f"Bearer {found.token}", "content-type": kind}
     connection = proven(found, READ)
     try:
         if connection is not None:
-            connection.request("PUT", path, body, headers)
+            connection.request(method, path, body or None, headers)
             answer = connection.getresponse()
-            return answer.status, json.loads(answer.read())
+            data = answer.read()
+            return answer.status, json.loads(data) if data else {}
     except (OSError, http.client.HTTPException, ValueError):
         pass
     finally:

@@ -116,8 +116,10 @@ async def logout(request: Request) -> Response:
 @router.post("/v1/login/codes", status_code=201, summary="A code for one log-in", **openapi.code())
 @marked(Access.PROGRAM)
 async def code(request: Request) -> JSONResponse:
-    """A code that a page may send to `/v1/login` instead of the token, once, within `seconds`."""
-    body = {"code": request.app.state.tokens.code(), "seconds": CODE_LIFE}
+    """A code that a page may send to `/v1/login` instead of the token, once, within `seconds`. With `frame` in its
+    address, `/?frame=...`, notebooks on this machine can show the page in a cell."""
+    tokens = request.app.state.tokens
+    body = {"code": tokens.code(), "seconds": CODE_LIFE, "frame": tokens.frame}
     return JSONResponse(body, 201, headers={"cache-control": "no-store"})
 
 

@@ -1,7 +1,9 @@
-"""The page: its built files as browsers get them. It loads nothing from elsewhere and is shown in no other page."""
+"""The page: its built files as browsers get them. It loads nothing from elsewhere. No other page shows it, but those of
+this machine for which a client with the token has asked for it."""
 
 from __future__ import annotations
 
+import hmac
 import re
 from pathlib import Path
 
@@ -21,6 +23,7 @@ HEADERS = {
     "referrer-policy": "no-referrer",
     "x-content-type-options": "nosniff",
 }
+LOCAL = "http://127.0.0.1:* http://localhost:*"  # such as notebooks
 FOR_EVER = "public, max-age=31536000, immutable"
 NOT_BUILT = (
     '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>hookean</title>\n<p>The page of hookean is not '
@@ -43,6 +46,10 @@ def start_page(request: Request) -> Response:
     except Problem:
         shown = Response(NOT_BUILT, media_type="text/html", headers={**HEADERS, "cache-control": "no-cache"})
     shown.headers["vary"] = "Accept"
+    frame, known = request.query_params.get("frame", ""), request.app.state.tokens.frame
+    if hmac.compare_digest(frame.encode(), known.encode()):
+        policy = shown.headers["content-security-policy"]
+        shown.headers["content-security-policy"] = policy.replace("frame-ancestors 'none'", f"frame-ancestors {LOCAL}")
     return shown
 
 

@@ -76,15 +76,16 @@ class _Client:
     async def send(self) -> None:
         """Frames as they come and the client has room, and what else is new."""
         live, told = self.live, ""
-        hello = {"hello": VERSION, "topology": live.topology, "session": summary(live)}
+        hello = {"hello": VERSION, "topology": live.topology, "session": summary(live), "view": live.views}
         await self._text(hello)
         while not (self.sessions.closing or live.gone):
             news = live.news
-            now = json.dumps([live.topology, live.process is None, live.notes, [live.described.get(n) for n in _NEWS],
+            now = json.dumps([live.topology, live.process is None, live.notes, live.views,
+                              [live.described.get(n) for n in _NEWS],
                               live.described.get("message") if not live.playing else ""])  # fmt: skip
             if now != told:
                 told = now
-                await self._text({"state": summary(live), "topology": live.topology})
+                await self._text({"state": summary(live), "topology": live.topology, "view": live.views})
             if len(self.on_their_way) < IN_FLIGHT:
                 self.room.clear()
                 if live.frame and live.frame_number != self.sent:

@@ -48,6 +48,8 @@ class Live:
     folding: bool = False
     fold_at: int = 0  # how many edits there must be for it
     saving: bool = False  # whether a checkpoint is on its way
+    view: dict[str, Any] = field(default_factory=dict)  # what is picked, and colours; see `shown`
+    views: int = 0  # how often colours have changed
 
     def etag(self, described: dict[str, Any] | None = None) -> str:
         """The ETag of how it stands, or stood: creation, revision, and a digest of what else of it changes."""

@@ -84,6 +84,16 @@ def edit(key: str, revision: int, sets: str, body: bytes) -> Work:
     return work
 
 
+def edits(key: str, after: int) -> Work:
+    """The edits of a session that led to revisions later than `after`, in their order, each with its revision."""
+
+    def work(db: Database) -> list[tuple[int, bytes]]:
+        query = "SELECT revision, body FROM edits WHERE key = ? AND revision > ? ORDER BY number"
+        return [(int(revision), body) for revision, body in db.execute(query, (key, after))]
+
+    return work
+
+
 def checkpoint(key: str, described: dict[str, Any], state: bytes) -> Work:
     """How far a session has come."""
 

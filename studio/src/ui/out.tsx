@@ -126,7 +126,8 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
   );
 }
 
-function keep(blob: Blob, file: string): void {
+/** Download a file. */
+export function keep(blob: Blob, file: string): void {
   const address = URL.createObjectURL(blob);
   const anchor = document.createElement("a");
   anchor.href = address;

@@ -8,6 +8,7 @@ import { SeePanel } from "./see";
 import { Selected } from "./selected";
 import { Shape } from "./shape";
 import type { Studio } from "./studio";
+import { Tables } from "./tables";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
   return (
@@ -30,6 +31,9 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       <Panel name="Charts">
         <Charts studio={studio} />
       </Panel>
+      <Panel name="Tables" isClosed>
+        <Tables studio={studio} />
+      </Panel>
       <Panel name="Out">
         <OutPanel studio={studio} title={title} />
       </Panel>
@@ -37,10 +41,16 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
   );
 }
 
-function Panel({ name, children }: { name: string; children: ComponentChildren }) {
+interface Told {
+  name: string;
+  isClosed?: boolean;
+  children: ComponentChildren;
+}
+
+function Panel({ name, isClosed = false, children }: Told) {
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
-    <details class="panel" open={!narrow || ["Picked", "Shape", "Forces"].includes(name)}>
+    <details class="panel" open={(!narrow && !isClosed) || ["Picked", "Shape", "Forces"].includes(name)}>
       <summary>
         <h2>{name}</h2>
       </summary>

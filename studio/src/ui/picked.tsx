@@ -207,7 +207,7 @@ const vector = (v: Point, unit: string) =>
   `${measured(Math.hypot(...v), unit)} (${v.map((n) => said(n, 3)).join(", ")})`;
 
 /** The reaction on a held particle; null where the frame is of other anchors. */
-function reactionOn(anchors: Anchor[], reactions: Float32Array, index: number): Point | null {
+export function reactionOn(anchors: Anchor[], reactions: Float32Array, index: number): Point | null {
   const held = [...new Set(anchors.flatMap((anchor) => anchor.particles))].sort((a, b) => a - b);
   const place = held.indexOf(index);
   return place >= 0 && reactions.length === 3 * held.length ? pointOf(reactions, place) : null;

@@ -55,6 +55,8 @@ export async function enter(told: string): Promise<void> {
   } catch (error) {
     refusedEntry.value = error instanceof Error ? error.message : String(error);
     entry.value = "out";
+    // a page that is read again has a code that was used, and the cookie that it got for it
+    void look();
   }
 }
 

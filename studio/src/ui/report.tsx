@@ -2,6 +2,7 @@
 import { useEffect } from "preact/hooks";
 import { Repairs } from "./repairs";
 import { tellReturns } from "./returns";
+import { Stable } from "./stable";
 import type { Studio } from "./studio";
 import { stateOf } from "./running";
 import { measured, particlesOf, plain, said, titled } from "./words";
@@ -9,9 +10,10 @@ import { measured, particlesOf, plain, said, titled } from "./words";
 export function Report({ studio }: { studio: Studio }) {
   useEffect(() => tellReturns(studio.session), [studio]);
   return (
-    <section class="report" aria-label="Status">
+    <section class="report" aria-label="Status" tabIndex={0}>
       <Lost studio={studio} />
       <Standing studio={studio} />
+      <Stable studio={studio} />
       <Warnings studio={studio} />
       <Repairs session={studio.session} />
     </section>

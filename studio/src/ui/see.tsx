@@ -31,11 +31,13 @@ export const LOOKS: [Look, string][] = [
 
 export function SeePanel({ studio: { options, session } }: { studio: Studio }) {
   const layers = options.layers.value;
+  const given = options.given.value;
+  const colourings: [Colouring, string][] = given ? [...COLOURINGS, ["given", given.title]] : COLOURINGS;
   return (
     <>
       <fieldset class="choices">
         <legend>Colour springs by</legend>
-        {COLOURINGS.map(([name, seen]) => (
+        {colourings.map(([name, seen]) => (
           <label key={name}>
             <input
               type="radio"

@@ -3,6 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { expose } from "../automation";
 import { createView } from "../view/view";
 import { dark } from "./theme";
+import { Readout } from "./readout";
 import { Report } from "./report";
 import { LegendBox, Looks } from "./see";
 import { Selecting } from "./selecting";
@@ -58,6 +59,7 @@ export function Stage({ studio }: { studio: Studio }) {
         <Selecting studio={studio} />
         <Looks studio={studio} />
         <LegendBox studio={studio} />
+        <Readout studio={studio} />
       </div>
       <Solving session={studio.session} />
       <Report studio={studio} />

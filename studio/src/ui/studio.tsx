@@ -9,6 +9,8 @@ import { keepGroups, keptGroups } from "./kept";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
 import { Readings } from "./readings";
+import { Rested } from "./rested";
+import { sharing } from "./sharing";
 import { Stage } from "./stage";
 import { dark, remember, remembered } from "./theme";
 import { calledOf } from "./words";
@@ -22,6 +24,7 @@ export interface Studio {
   /** Null until there is a canvas, and where the browser cannot draw. */
   view: Signal<View | null>;
   readings: Readings;
+  rested: Rested;
 }
 
 export function SessionPage({ name }: { name: string }) {
@@ -38,10 +41,14 @@ export function SessionPage({ name }: { name: string }) {
       effect(() => keepGroups(name, chosen.groups.value)),
     ];
     const readings = new Readings(session, chosen);
-    setStudio({ session, options: chosen, view: signal(null), readings });
+    const rested = new Rested(session);
+    setStudio({ session, options: chosen, view: signal(null), readings, rested });
+    const stop = sharing(session, chosen);
     return () => {
+      stop();
       forgets.forEach((forget) => forget());
       readings.dispose();
+      rested.dispose();
       session.close();
     };
   }, [name]);

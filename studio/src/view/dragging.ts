@@ -4,7 +4,7 @@ import { Grip } from "../hand";
 import type { Session } from "../session";
 import type { Led } from "./guide";
 import { led, lockOf, toggled } from "./locks";
-import type { Lock, Options, Picked } from "./types";
+import type { Dragged, Lock, Options, Picked } from "./types";
 
 const MOUSE = { particle: 10, spring: 6, still: 4 };
 const FINGER = { particle: 22, spring: 14, still: 9 };
@@ -63,6 +63,12 @@ export class Hand {
     if (!taken?.grip) return null;
     const { particle, hand, from } = taken;
     return { particle: this.view.at(particle), hand, from, lock: this.view.options.lock.value };
+  }
+
+  /** The particle that is dragged; null for none. */
+  get held(): Dragged | null {
+    const taken = this.press?.taken;
+    return taken?.grip ? { particle: taken.particle, from: taken.from.toArray() } : null;
   }
 
   /** Another form: what was held is let go. */

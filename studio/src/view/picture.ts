@@ -55,6 +55,8 @@ export class Picture {
   private positions: Column | null = null;
   private forces: Column | null = null;
   private rest: Column | null = null;
+  /** Numbers that stand in for the forces of springs. */
+  given: Float32Array | null = null;
   private readonly box = new Box3();
 
   constructor(private readonly stage: Stage) {
@@ -94,7 +96,7 @@ export class Picture {
   put(frame: Frame): void {
     const { renderer } = this.stage;
     this.positions!.put(renderer, frame.positions);
-    if (frame.springForces.length) this.forces!.put(renderer, frame.springForces);
+    if (frame.springForces.length) this.forces!.put(renderer, this.given ?? frame.springForces);
     if (!this.reactions || frame.reactions.length !== 3 * this.held.size) return;
     this.reactions.put(renderer, frame.reactions);
   }
@@ -223,9 +225,11 @@ export class Picture {
     const { colours: stops, first, last, log } = dress.ramp;
     this.sprung = dress.layers.springs && springs.count > 0;
     style.width.value = clamp(Math.max(0.1 * gap, 20 / Math.sqrt(springs.count)), 1.5, 3.4);
-    style.colouring.value = dress.colouring === "force" ? 1 : dress.colouring === "strain" && this.rest ? 2 : 0;
+    const isGiven = dress.colouring === "given";
+    const isStrain = dress.colouring === "strain" && this.rest;
+    style.colouring.value = isGiven || dress.colouring === "force" ? 1 : isStrain ? 2 : 0;
     [style.low.value, style.high.value] = [first, last];
-    style.slack.value = 1e-9 * (log ? 10 ** last : Math.max(Math.abs(first), Math.abs(last)));
+    style.slack.value = isGiven ? -1 : 1e-9 * (log ? 10 ** last : Math.max(Math.abs(first), Math.abs(last)));
     style.log.value = log ? 1 : 0;
     stops.forEach((stop, i) => style.stops.value[i]!.set(...channels(stop)));
     style.count.value = stops.length;

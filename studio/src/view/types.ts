@@ -1,7 +1,8 @@
 // What the view shows and receives: signals that panels set and the view follows, and what it gives back.
 import { type Signal, signal } from "@preact/signals";
+import type { Point } from "../model";
 
-export type Colouring = "force" | "strain" | "plain";
+export type Colouring = "force" | "strain" | "plain" | "given";
 export type Lock = "view" | "x" | "y" | "z" | "xy" | "xz" | "yz";
 export type Look = "perspective" | "top" | "front" | "right";
 export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "reactions" | "floor" | "guides";
@@ -23,6 +24,13 @@ export interface Scale {
   kind: ScaleKind;
   low: number | null;
   high: number | null;
+}
+
+/** Numbers that a program gave to colour the springs with, one each. */
+export interface Given {
+  title: string;
+  unit: string;
+  values: Float32Array;
 }
 
 /** Which number a colour stands for. */
@@ -55,6 +63,7 @@ export interface Options {
   marked: Signal<number[]>;
   /** Rest length of each spring [length], for strain; null: not known yet. */
   restLengths: Signal<Float32Array | null>;
+  given: Signal<Given | null>;
   dark: Signal<boolean>;
 }
 
@@ -77,6 +86,7 @@ export const options = (): Options => ({
   groups: signal<Groups>({}),
   marked: signal<number[]>([]),
   restLengths: signal<Float32Array | null>(null),
+  given: signal<Given | null>(null),
   dark: signal(false),
 });
 
@@ -90,7 +100,14 @@ export interface Kept {
   layers: Partial<Record<Layer, boolean>>;
 }
 
+/** A particle in the hand, and where it was taken from [length]. */
+export interface Dragged {
+  particle: number;
+  from: Point;
+}
+
 export interface View {
+  readonly dragged: Signal<Dragged | null>;
   readonly legend: Signal<Legend | null>;
   /** The longest arrows of loads and of reactions [force]; 0 for none. */
   readonly arrows: Signal<{ load: number; reaction: number }>;

@@ -20,7 +20,7 @@ import { Scaling } from "./scaling";
 import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
 import { Triad } from "./triad";
-import type { Kept, Legend, Look, Options, Picked, View } from "./types";
+import type { Dragged, Kept, Legend, Look, Options, Picked, View } from "./types";
 
 const REST = 220;
 
@@ -34,6 +34,7 @@ class Drawing implements View {
   readonly arrows = signal({ load: 0, reaction: 0 });
   readonly announcement = signal("");
   readonly away = signal(false);
+  readonly dragged = signal<Dragged | null>(null);
   readonly rate = signal(0);
   private readonly stage: Stage;
   private readonly eye: Eye;
@@ -258,7 +259,9 @@ class Drawing implements View {
         this.ask();
       }),
       effect(() => {
-        void options.colouring.value;
+        const isGiven = options.colouring.value === "given";
+        picture.given = isGiven ? (options.given.value?.values ?? null) : null;
+        this.outdated = true;
         this.scale.choose(options.scale.value);
         this.ask();
       }),
@@ -385,8 +388,9 @@ class Drawing implements View {
   }
 
   private numbers(frame: Frame): ArrayLike<number> {
-    const { restLengths, colouring } = this.options;
+    const { restLengths, colouring, given } = this.options;
     if (colouring.value === "force") return frame.springForces;
+    if (colouring.value === "given") return given.value?.values ?? [];
     const lengths = restLengths.value;
     const ends = this.picture.form!.springs;
     if (colouring.value === "plain" || !lengths || !this.picture.strained) return [];
@@ -398,9 +402,11 @@ class Drawing implements View {
   }
 
   private relabel(): void {
-    const force = this.options.colouring.value === "force";
-    const unit = force ? (this.session.topology.value?.units.force ?? "") : "-";
-    this.legend.value = this.scale.legend(force ? "Force" : "Strain", unit, this.options.dark.value);
+    const { colouring, given, dark } = this.options;
+    const force = colouring.value === "force";
+    const own = colouring.value === "given" ? given.value : null;
+    const unit = own ? own.unit : force ? (this.session.topology.value?.units.force ?? "") : "-";
+    this.legend.value = this.scale.legend(own ? own.title : force ? "Force" : "Strain", unit, dark.value);
   }
 
   /** Colours and sizes, where they may have changed. */
@@ -408,6 +414,8 @@ class Drawing implements View {
     const { options, picture, eye, stage, scale } = this;
     const pixel = eye.pixel(stage.height);
     this.highlights.hover(this.hand.hovered, picture.form);
+    const { held } = this.hand;
+    if (held?.particle !== this.dragged.peek()?.particle) this.dragged.value = held;
     this.guide.show(this.hand.led, picture.size, options.dark.value);
     if (pixel === this.dressed) return;
     this.dressed = pixel;
