@@ -224,7 +224,7 @@ def _with_devices(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def _without_literals(made: Any) -> Any:
     """The same, compiled once for all numbers of a type: numba compiles it for the constants of each call, too."""
-    from numba.core.types import unliteral
+    from numba.core.types.misc import unliteral
 
     found = made.get_call_template
     made.get_call_template = lambda args, kws: found(
