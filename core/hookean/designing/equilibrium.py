@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.designing.cycles import Cycles
+from hookean.designing.cycles import LEFT, Cycles
 from hookean.designing.factors import Factored, Orders
 from hookean.forces.base import lengths
 from hookean.running.result import Result
@@ -30,6 +30,8 @@ SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the
 NOTHING = 1e-15  # part of the diagonal: entries of the tangent that are rounding
 ALIKE = 1e-14  # part of the largest entry by which equal tangents differ
 POLISH = 6  # exact steps after that, while each leaves less
+ROUNDING = 10.0  # times the rounding floor: what is out of balance there is rounding
+ROUGH = 1e-4  # part that such a step may leave of the little that is out of balance
 FOLLOWED = 12  # exact steps by which a shape is followed as variables change
 NEARBY = 0.1  # part of the model's size: the largest of these where forces are not linear
 SETTLED, FINISHED = 1e-8, 1e-13  # parts of it: steps that may be rounding, and steps that are nothing
@@ -117,10 +119,11 @@ class Equilibrium:
             return True
         return False
 
-    def solve(self, b: Floats, *, transposed: bool = False) -> Floats:
-        """K^-1 b, or K^-T b, (3n,) on the free motions; 0 on the others. NaN where K is singular."""
+    def solve(self, b: Floats, *, transposed: bool = False, left: float = LEFT) -> Floats:
+        """K^-1 b, or K^-T b, (3n,) on the free motions; 0 on the others. NaN where K is singular. Without factors a
+        part `left` of b may remain."""
         if self._factor is None and self._cycles is not None:
-            found = self._cycles.solve(b)
+            found = self._cycles.solve(b, left)
             if found is not None:
                 return found.ravel()
         right = self.basis.T @ b
@@ -189,11 +192,13 @@ def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
 
 
 def _polished(system: System, state: State, result: Result, orders: Orders, once: bool) -> Equilibrium:
-    """Exact steps, while each leaves less out of balance."""
+    """Exact steps, while each leaves less out of balance; one is enough where it is slight, for the next is its
+    square."""
     found = Equilibrium(system, state, result, orders, once=once)
     left = _left(system, state)
-    for _ in range(POLISH):
-        step = found.solve(left.ravel()).reshape(-1, 3)
+    rounding = once and result.residual <= ROUNDING * result.rounding_floor  # nothing is left that a step would meet
+    for _ in range(0 if rounding else POLISH):
+        step = found.solve(left.ravel(), left=ROUGH).reshape(-1, 3)
         size = lengths(left).max(initial=0.0)
         if not np.isfinite(step).all() or size == 0.0:
             break
@@ -204,7 +209,10 @@ def _polished(system: System, state: State, result: Result, orders: Orders, once
             state.x = start
             break
         left = now
-        if lengths(step).max(initial=0.0) > SLIGHT * system.size:
+        slight = lengths(step).max(initial=0.0) <= SLIGHT * system.size
+        if slight and once:
+            break
+        if not slight:
             before, found = found, Equilibrium(system, state, result, orders, once=once)
             if not once:
                 found.take_factor(before)

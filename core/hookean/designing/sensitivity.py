@@ -65,7 +65,8 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
         raise InputError("/scene/forces", f"{missing}, so nothing can be differentiated through its equilibrium")
     unknowns = Unknowns(problem, system)
     state = system.start()
-    unknowns.put(system, state, unknowns.start)
+    if unknowns.differ:
+        unknowns.put(system, state, unknowns.start)
     found = settle(system, state, once=True)
     values = [g.quantity.values(found, f"/goals/{i}") for i, g in enumerate(problem.goals)]
     total = sum(g.weight * each.sum() for g, each in zip(problem.goals, values, strict=True))

@@ -110,6 +110,12 @@ class Unknowns:
         self.start = np.clip(given, self.lower, self.upper)
 
     @property
+    def differ(self) -> bool:
+        """Whether the scene has other values than the start: where variables tie, drive or are cut at bounds."""
+        entries = [(part, variable.entries) for variable, part in self.parts]
+        return any(not np.array_equal(e.with_values(self.start[part]), e.values) for part, e in entries)
+
+    @property
     def scale(self) -> Floats:
         """The size (u,) of each unknown: of its value, of its bounds, or of the mean of its variable."""
         found = np.empty(self.count)
