@@ -68,6 +68,7 @@ KINDS: list[dict[str, Any]] = [
     {"kind": "planarity", "mesh": "roof"},
     {"kind": "fairness", "force": "net"},
     {"kind": "frequency", "mode": 2},
+    {"kind": "direction", "force": "net", "elements": [2, 5], "axes": "xz"},
 ]
 
 

@@ -4,6 +4,7 @@ QUANTITIES."""
 from __future__ import annotations
 
 from hookean.designing.quantities.base import Quantity
+from hookean.designing.quantities.direction import Direction
 from hookean.designing.quantities.energy import StrainEnergy
 from hookean.designing.quantities.faces import Fairness, Planarity
 from hookean.designing.quantities.frequency import Frequency
@@ -17,7 +18,7 @@ QUANTITIES: dict[str, type[Quantity]] = {
     cls.kind_name: cls
     for cls in (
         *(Position, Offset, Length, Force, ForceDensity, LoadPath, Output, StrainEnergy, Reaction, Volume, Area),
-        *(Planarity, Fairness, Frequency),
+        *(Planarity, Fairness, Frequency, Direction),
     )
 }
 """All quantities by kind."""
