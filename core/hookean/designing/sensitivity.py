@@ -76,7 +76,10 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
     if not np.isfinite(gradient).all():
         raise InputError("/scene", f"the tangent at the equilibrium is singular; {found.result.message}")
     parts = [gradient[s].reshape(v.shape) for v, s in zip(unknowns.variables, unknowns.slices, strict=True)]
-    return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], warnings(found), found.result)
+    said = warnings(found)
+    if unknowns.clipped:
+        said.append(f"{unknowns.clipped} values of the scene are beyond the bounds; the shape has them at the bounds")
+    return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], said, found.result)
 
 
 def gradients(
