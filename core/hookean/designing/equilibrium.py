@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from hookean.designing.cycles import LEFT, Cycles
 from hookean.designing.factors import Factored, Orders
+from hookean.designing.resting import resting
 from hookean.forces.base import lengths
 from hookean.running.result import Result
 from hookean.running.run import relax_state
@@ -50,7 +51,8 @@ class Equilibrium:
         self.system, self.state, self._result, self.once = system, state, result, once
         self.orders = orders or Orders()
         self._tangent = None if once else tangent(system, state)  # later the system has other values
-        self.basis = _basis(system, state)
+        self.resting = resting(system, state)
+        self.basis = _basis(system, state, self.resting.motions)
         self._factor: Factored | None = None
         self.yielded: list[str] = []  # kinds of forces that have yielded on the way here
 
@@ -81,7 +83,7 @@ class Equilibrium:
     @cached_property
     def _cycles(self) -> Cycles | None:
         """What solves without factors."""
-        if not self.once or len(self.basis.indices) < np.count_nonzero(self.state.free):
+        if not self.once or self.resting.motions or len(self.basis.indices) < np.count_nonzero(self.state.free):
             return None
         cycles = Cycles(self.system, self.state)
         return cycles if cycles.usable else None
@@ -105,7 +107,8 @@ class Equilibrium:
     def factor(self) -> Factored:
         """The reduced tangent in factors."""
         if self._factor is None:
-            axes = None if self.system.films is not None else self.basis.indices % 3
+            skew = self.system.films is not None or len(self.basis.indices) > self.basis.shape[1]
+            axes = None if skew else self.basis.indices % 3
             self._factor = Factored(self.reduced, axes, self.symmetric, self.orders)
         return self._factor
 
@@ -223,13 +226,16 @@ def _polished(system: System, state: State, result: Result, orders: Orders, once
 def _left(system: System, state: State) -> Floats:
     """What is out of balance (n, 3) [force]."""
     left = system.evaluate(state)[0] * state.free
+    if system.contacts:
+        system.support(state, left)
     if system.films is not None:
         system.films.across(state.x, state.free, left)
     return left
 
 
-def _basis(system: System, state: State) -> Any:
-    """The free motions (3n, r): free axes of particles that something holds; of films the axes that count."""
+def _basis(system: System, state: State, resting: dict[int, Floats]) -> Any:
+    """The free motions (3n, r): free axes of particles that something holds; of films the axes that count; along the
+    floor of what rests on it."""
     from scipy.sparse import csc_matrix
 
     parts = system.components(state)
@@ -238,13 +244,30 @@ def _basis(system: System, state: State) -> Any:
     free[loose[~parts.joined[parts.label[loose]]]] = 0.0
     n = len(free)
     if system.films is None:
+        free[list(resting)] = 0.0
         axes = np.flatnonzero(free.ravel() > 0.0)
-        return csc_matrix((np.ones(len(axes)), (axes, np.arange(len(axes)))), shape=(3 * n, len(axes)))
+        basis = csc_matrix((np.ones(len(axes)), (axes, np.arange(len(axes)))), shape=(3 * n, len(axes)))
+        return _with_motions(basis, resting)
     frames, counts = system.films.frames(state.x, free)
     particle, rank = np.nonzero(counts > 0.0)
     rows = (3 * particle[:, None] + np.arange(3)).ravel()
     columns = np.repeat(np.arange(len(particle)), 3)
     return csc_matrix((frames[particle, rank].ravel(), (rows, columns)), shape=(3 * n, len(particle)))
+
+
+def _with_motions(basis: Any, resting: dict[int, Floats]) -> Any:
+    """Free motions (3n, r), and those of particles that rest on a floor."""
+    from scipy.sparse import csc_matrix, hstack
+
+    if not resting:
+        return basis
+    particle = np.repeat(list(resting), [len(motions) for motions in resting.values()])
+    rows = 3 * particle[:, None] + np.arange(3)
+    values = np.concatenate(list(resting.values()))
+    columns = np.repeat(np.arange(len(particle)), 3)
+    along = csc_matrix((values.ravel(), (rows.ravel(), columns)), shape=(basis.shape[0], len(particle)))
+    along.eliminate_zeros()
+    return hstack([basis, along], format="csc")
 
 
 def tangent(system: System, state: State) -> Any:

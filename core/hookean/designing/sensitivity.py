@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.equilibrium import Equilibrium, settle
+from hookean.designing.kinks import kinks
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity
 from hookean.designing.unknowns import Unknowns
@@ -123,5 +124,6 @@ def warnings(found: Equilibrium) -> list[str]:
     if found.result.stability in (Stability.UNSTABLE, Stability.MECHANISM):
         kind = "unstable" if found.result.stability is Stability.UNSTABLE else "a mechanism"
         said.append(f"the shape is {kind} ({found.result.stability_reason}); its derivatives are those of this shape")
+    said += found.resting.said + kinks(found)
     said += [f"{kind} have yielded; derivatives are those of elastic behaviour from here on" for kind in found.yielded]
     return said
