@@ -90,6 +90,8 @@ def gradients(
     by_place, by_unknown = np.zeros(found.x.size), np.zeros(unknowns.count)
     for (quantity, pointer), weight in zip(quantities, weights, strict=True):
         placed, direct = quantity.slopes(found, unknowns, pointer)
+        if quantity.centred and len(weight):
+            weight = weight - weight.mean()
         by_place += placed.T @ weight
         by_unknown += direct.T @ weight
     forces, moves = unknowns.slopes(found)
@@ -111,9 +113,15 @@ def jacobian(found: Equilibrium, unknowns: Unknowns, quantities: list[tuple[Quan
     total = by_unknown.toarray() + (by_place @ moves).toarray()
     if by_place.shape[0] < unknowns.count:
         solved = np.array([found.solve(row, transposed=True) for row in by_place.toarray()]).reshape(by_place.shape)
-        return np.asarray(total + solved @ right)
-    solved = np.array([found.solve(right[:, [j]].toarray().ravel()) for j in range(unknowns.count)])
-    return np.asarray(total + by_place @ solved.T)
+        total = np.asarray(total + solved @ right)
+    else:
+        solved = np.array([found.solve(right[:, [j]].toarray().ravel()) for j in range(unknowns.count)])
+        total = np.asarray(total + by_place @ solved.T)
+    ends = np.cumsum([s[0].shape[0] for s in slopes])
+    for (quantity, _), end, (own, _) in zip(quantities, ends, slopes, strict=True):
+        if quantity.centred and own.shape[0]:
+            total[end - own.shape[0] : end] -= total[end - own.shape[0] : end].mean(axis=0)
+    return total
 
 
 def warnings(found: Equilibrium) -> list[str]:
