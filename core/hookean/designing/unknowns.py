@@ -150,14 +150,7 @@ class Unknowns:
 
     def scene(self, scene: Scene) -> Scene:
         """The scene with the anchors where they are held now; forces have their values already."""
-        anchors = list(scene.anchors)
-        for variable in self.variables:
-            if isinstance(variable, Moved) and variable.anchor.number >= 0:
-                number, targets = variable.anchor.number, variable.anchor.targets
-                given = anchors[number].particles if anchors[number].points is None else anchors[number].points
-                if given is not None and len(given) == len(targets):
-                    anchors[number] = anchors[number].replaced(targets=targets)
-        return scene.replaced(anchors=tuple(anchors))
+        return as_held(scene, [v.anchor for v in self.variables if isinstance(v, Moved)])
 
     def slopes(self, found: Equilibrium) -> tuple[Any, Any]:
         """df/du (3n, u) [force by unit] at fixed positions, and how held particles move, dx_h/du (3n, u)."""
@@ -177,6 +170,18 @@ class Unknowns:
             return coo_matrix((values, (rows, columns)), shape=shape).tocsc()
 
         return matrix(pushes), matrix(moves)
+
+
+def as_held(scene: Scene, held: list[Held]) -> Scene:
+    """A scene with these anchors where they are held."""
+    anchors = list(scene.anchors)
+    for anchor in held:
+        if anchor.number >= 0:
+            given = anchors[anchor.number].particles
+            given = given if anchors[anchor.number].points is None else anchors[anchor.number].points
+            if given is not None and len(given) == len(anchor.targets):
+                anchors[anchor.number] = anchors[anchor.number].replaced(targets=anchor.targets)
+    return scene.replaced(anchors=tuple(anchors))
 
 
 def _led(variable: Moved) -> tuple[Ints, Ints, Floats]:
