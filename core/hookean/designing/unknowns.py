@@ -177,10 +177,10 @@ def as_held(scene: Scene, held: list[Held]) -> Scene:
     anchors = list(scene.anchors)
     for anchor in held:
         if anchor.number >= 0:
-            given = anchors[anchor.number].particles
-            given = given if anchors[anchor.number].points is None else anchors[anchor.number].points
+            old = anchors[anchor.number]
+            given = old.particles if old.points is None else old.points
             if given is not None and len(given) == len(anchor.targets):
-                anchors[anchor.number] = anchors[anchor.number].replaced(targets=anchor.targets)
+                anchors[anchor.number] = old.replaced(targets=anchor.targets)
     return scene.replaced(anchors=tuple(anchors))
 
 

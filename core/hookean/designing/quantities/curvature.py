@@ -60,7 +60,8 @@ def _measured(x: Floats, corners: Ints) -> tuple[Floats, Floats, Any, Any]:
     """Of each particle (n,) what angles leave of 2 pi and a third of the area about it, and derivatives (n, 3n)."""
     n, places = len(x), 3 * corners[:, :, None] + np.arange(3)
     left, area = np.full(n, 2.0 * np.pi), np.zeros(n)
-    by_left, by_area = [], []
+    by_left: list[Any] = []
+    by_area: list[Any] = []
     for i in range(3):
         at, b, c = corners[:, i], corners[:, (i + 1) % 3], corners[:, (i + 2) % 3]
         p, q = x[b] - x[at], x[c] - x[at]
