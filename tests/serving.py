@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,15 @@ SWING: dict[str, Any] = {
     "settings": {"solver": "verlet", "drag": 0, "time_step": 0.001, "max_iterations": 10**9, "tolerance": 0},
 }
 """The same without damping: it never comes to rest."""
+
+
+@cache
+def app() -> Any:
+    """The service's app as it is without settings, for what does not change it: its description takes a second."""
+    from hookean_server.app import create_app
+
+    return create_app()
+
 
 HANG = forking.LONGEST
 """Seconds after which a test takes what it waits for to hang. Workers of jobs give way to everything else (nice 10),

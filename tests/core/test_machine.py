@@ -35,6 +35,17 @@ def scaled(x, factor, count, twice):  # type: ignore[no-untyped-def]
     return x.sum(), count + x.shape[1], not twice
 
 
+@dispatch.device
+def next_one(number):  # type: ignore[no-untyped-def]
+    """One more."""
+    return number + 1
+
+
+def after_seven(number):  # type: ignore[no-untyped-def]
+    """`next_one` of a constant and of an argument."""
+    return next_one(7) + next_one(number)
+
+
 def code(folder: Path) -> Compiled:
     """`scaled` from an empty folder, as a new process sees it."""
     return Compiled("scaled", folder, lambda: dispatch.dispatcher(scaled), None)
@@ -58,6 +69,12 @@ def nothing_reported(monkeypatch: pytest.MonkeyPatch) -> None:
 def folder(stored: Path, tmp_path: Path) -> Path:
     """A copy of it."""
     return Path(shutil.copytree(stored, tmp_path / "code"))
+
+
+def test_a_constant_compiles_no_code_of_its_own() -> None:
+    """Whole numbers have one code, written as a constant or given."""
+    assert dispatch.dispatcher(after_seven)(4) == 13
+    assert len(dispatch.dispatcher(next_one).overloads) == 1
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from starlette.routing import Route, WebSocketRoute
 from hookean_server.app import create_app
 from hookean_server.http.access import Access, of
 from hookean_server.routes import about as routes_about
-from serving import HANG
+from serving import HANG, app
 
 from .conftest import Served
 
@@ -182,7 +182,7 @@ def test_a_route_that_nobody_marked_is_closed() -> None:
 
 def test_every_operation_says_who_may_call_it() -> None:
     """The description names its schemes; an operation has one, or is open explicitly; as the guard has it."""
-    document = create_app().openapi()
+    document = app().openapi()
     schemes = document["components"]["securitySchemes"]
     assert schemes["token"]["scheme"] == schemes["code"]["scheme"] == "bearer"
     assert (schemes["cookie"]["type"], schemes["cookie"]["in"], schemes["cookie"]["name"]) == (

@@ -18,12 +18,11 @@ import psutil
 import pytest
 from starlette.types import Message
 
-from hookean_server.app import create_app
 from hookean_server.http.limits import BodyLimit
 from hookean_server.http.refusals import Problems
 from hookean_server.http.tokens import Unfit, chosen
 from hookean_server.settings import Settings
-from serving import CABLE, HANG, wait_for
+from serving import CABLE, HANG, app, wait_for
 
 from .conftest import Served, problem
 
@@ -134,7 +133,7 @@ def test_every_address_needs_the_token_but_for_the_open_ones(served: Served) -> 
     """Walks the description: without a token everything is 401 except health, problems, the page and Hops' calls."""
     opened = set()
     with httpx.Client(base_url=served.url, timeout=HANG) as nobody:
-        for path, item in create_app().openapi()["paths"].items():
+        for path, item in app().openapi()["paths"].items():
             for method in item:
                 answer = nobody.request(method.upper(), re.sub(r"\{.*?\}", "busy", path))
                 if answer.status_code != 401:

@@ -9,14 +9,13 @@ from email.utils import parsedate_to_datetime
 
 import pytest
 
-from hookean_server.app import create_app
-from serving import CABLE, HANG
+from serving import CABLE, HANG, app
 
 from .conftest import Served, problem
 
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
-DOCUMENT = create_app().openapi()
-TEMPLATES = sorted({route.path_format for route in create_app().state.table.routes})
+DOCUMENT = app().openapi()
+TEMPLATES = sorted({route.path_format for route in app().state.table.routes})
 CHANGING = {"date", "x-request-id", "server-timing", "content-length", "transfer-encoding"}
 
 

@@ -11,11 +11,10 @@ import pytest
 from fastapi.openapi.models import OpenAPI
 
 from hookean.forces import KINDS
-from hookean_server.app import create_app
 from hookean_server.problems import CATALOGUE
-from serving import CABLE
+from serving import CABLE, app
 
-DOCUMENT: dict[str, Any] = json.loads(json.dumps(create_app().openapi()))
+DOCUMENT: dict[str, Any] = json.loads(json.dumps(app().openapi()))
 OPERATIONS = [(path, method, o) for path, item in DOCUMENT["paths"].items() for method, o in item.items()]
 EXAMPLES = [
     (path, name, example["value"])

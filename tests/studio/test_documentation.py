@@ -9,7 +9,7 @@ from typing import Any
 import hatch_build
 import pytest
 
-from hookean_server.app import create_app
+from serving import app
 from soak import SOAK
 
 from .browser import LAPTOP, PHONE, context
@@ -99,7 +99,7 @@ def test_the_reference_lists_every_operation_and_tries_one(reader: Any, service:
     shown.open("/docs/http/")
     operations = shown.page.locator(".opblock")
     operations.first.wait_for()
-    assert operations.count() == sum(len(item) for item in create_app().openapi()["paths"].values())
+    assert operations.count() == sum(len(item) for item in app().openapi()["paths"].values())
     assert shown.page.evaluate("document.documentElement.classList.contains('dark-mode')")
     shown.own = service.url
     shown.page.locator("button.authorize").click()

@@ -76,7 +76,7 @@ def dispatcher(function: Callable[..., Any], role: str | None = None) -> Any:
     numba.config.SLP_VECTORIZE = 1  # the columns of a particle in one operation; no sum changes its order
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
     if role is None:
-        return numba.njit(**options)(prepared)
+        return _without_literals(numba.njit(**options)(prepared))
     return numba.njit(_signature(role), **options)(prepared)
 
 
@@ -220,6 +220,17 @@ def _with_devices(function: Callable[..., Any]) -> Callable[..., Any]:
     twin.__module__, twin.__qualname__ = function.__module__, function.__qualname__
     twin.__dict__.update(vars(function))
     return twin
+
+
+def _without_literals(made: Any) -> Any:
+    """The same, compiled once for all numbers of a type: numba compiles it for the constants of each call, too."""
+    from numba.core.types import unliteral
+
+    found = made.get_call_template
+    made.get_call_template = lambda args, kws: found(
+        [unliteral(one) for one in args], {name: unliteral(one) for name, one in dict(kws).items()}
+    )
+    return made
 
 
 def _signature(role: str) -> Any:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from copy import deepcopy
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +62,11 @@ def entry(cls: type[Force], described: dict[str, Any] | None = None) -> dict[str
 
 def schema() -> dict[str, Any]:
     """JSON schema of a scene; a force is identified by its `kind`."""
+    return deepcopy(_schema())
+
+
+@cache
+def _schema() -> dict[str, Any]:
     return Scene.model_json_schema(schema_generator=PlainSchema)
 
 
