@@ -56,7 +56,7 @@ def given(p: Problem) -> dict[str, Any]:
             {"kind": "length", "force": "net", "lower": low, "upper": high}
             for low, high in ([p.lengths] if p.lengths else [])
         ],
-        "settings": {"tolerance": p.tolerance, "max_iterations": p.most},
+        "settings": {"tolerance": p.tolerance, "max_iterations": min(p.most, 200)},
     }
 
 
