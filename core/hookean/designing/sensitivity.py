@@ -132,6 +132,6 @@ def warnings(found: Equilibrium) -> list[str]:
     if found.result.stability in (Stability.UNSTABLE, Stability.MECHANISM):
         kind = "unstable" if found.result.stability is Stability.UNSTABLE else "a mechanism"
         said.append(f"the shape is {kind} ({found.result.stability_reason}); its derivatives are those of this shape")
-    said += found.resting.said + kinks(found)
     said += [f"{kind} have yielded; derivatives are those of elastic behaviour from here on" for kind in found.yielded]
+    said += found.resting.said + kinks(found)
     return said
