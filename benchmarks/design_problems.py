@@ -1,7 +1,8 @@
-"""Design problems by force densities after the published examples of jax_fdm (MIT), as plain arrays for both programs.
+"""Design problems by force densities for both programs, as plain arrays: the published examples of jax_fdm (MIT) with
+their own data, goals, bounds and stops (PUBLISHED), and others after them.
 
-All are in compression there; here densities are positive and loads point up, which has the same shapes. The vault's
-target is a formula in the place of a file.
+All are in compression there; here densities are positive and loads point up, which has the same shapes. Densities that
+have no bounds there are at least 0 in hookean. The vault's target is a formula in the place of a file.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Goal = tuple[str, Ints, Any, float]
-"""Kind (z, point, plane, length, force, reaction), particles or edges, targets, weight."""
+"""Kind (z, point, plane, length, direction, force, reaction, load_path), particles or edges, targets, weight."""
 
 
 @dataclass
@@ -35,6 +36,8 @@ class Problem:
     optimizer: str
     tolerance: float
     most: int
+    loss: str = "SquaredError"
+    lengths: tuple[float, float] | None = None  # between which all edges must be
 
     @property
     def free(self) -> Ints:
@@ -55,23 +58,33 @@ class Problem:
         x[free] = splu(k[free][:, free].tocsc()).solve(right)
         return x, self.loads - k @ x
 
-    def objective(self, q: Floats) -> float:
-        """The sum of weight (value - target)²."""
+    def values(self, q: Floats, kind: str, which: Ints) -> Floats:
+        """What a goal measures."""
         x, forces = self.shape(q)
         along = x[self.edges[:, 1]] - x[self.edges[:, 0]]
         length = np.linalg.norm(along, axis=1)
+        measured = {"z": x[:, 2], "point": x, "plane": x[:, 0], "length": length, "force": q * length,
+                    "reaction": np.linalg.norm(forces, axis=1), "direction": along / length[:, None],
+                    "load_path": np.abs(q) * length**2}  # fmt: skip
+        return np.asarray(measured[kind][which])
+
+    def objective(self, q: Floats) -> float:
+        """The sum of weight (value - target)², or of weight x value without a target; the root of the mean square of
+        the distances if that is the loss."""
         total = 0.0
         for kind, which, target, weight in self.goals:
-            value = {
-                "z": lambda w=which: x[w, 2],
-                "point": lambda w=which: x[w],
-                "plane": lambda w=which: x[w, 0],
-                "length": lambda w=which: length[w],
-                "force": lambda w=which: q[w] * length[w],
-                "reaction": lambda w=which: np.linalg.norm(forces[w], axis=1),
-            }[kind]()
-            total += weight * float(((value - target) ** 2).sum())
-        return total
+            value = self.values(q, kind, which)
+            total += weight * float(value.sum() if target is None else ((value - target) ** 2).sum())
+        return float(np.sqrt(total / len(self.free))) if self.loss == "RootMeanSquaredError" else total
+
+    def missed(self, q: Floats) -> float:
+        """By how much lengths or bounds are missed, at most."""
+        low, high = self.bounds
+        over = max(float((low - q).max()), float((q - high).max()))
+        if self.lengths is not None:
+            length = self.values(q, "length", np.arange(len(self.edges)))
+            over = max(over, float((self.lengths[0] - length).max()), float((length - self.lengths[1]).max()))
+        return over
 
 
 def up(n: int, supports: Ints, load: float) -> Floats:
@@ -96,7 +109,8 @@ def arch() -> Problem:
 
 
 def pringle() -> Problem:
-    """A vault of 9 arches: reactions that grow to its middle, transversal planes, and lengths across."""
+    """A vault of 9 arches: reactions that grow to its middle, transversal planes, and lengths across (its
+    examples/pringle/pringle.py)."""
     num_u, num_v, long, wide = 10, 9, 6.0, 3.0
     at = np.arange(num_u * num_v).reshape(num_v, num_u)
     points = np.array(
@@ -185,5 +199,84 @@ def recovery(m: int) -> Problem:
     return found
 
 
-PROBLEMS: dict[str, Callable[[], Problem]] = {"arch": arch, "pringle": pringle, "dome": dome, "vault": vault}
+def load_path() -> Problem:
+    """The arch of least load path whose segments are between 0.75 and 1 long (its examples/arch/arch_loadpath.py)."""
+    n, span = 10, 5.0
+    points = np.array([[span * (i / n - 0.5), 0.0, 0.0] for i in range(n + 1)])
+    edges, supports = np.array([[i, i + 1] for i in range(n)]), np.array([0, n])
+    goals: list[Goal] = [("load_path", np.arange(n), None, 1.0)]
+    bounds = (-np.inf, np.inf)
+    loads = up(n + 1, supports, 0.3)
+    return Problem("arch of least load path", points, edges, supports, loads, np.ones(n), bounds, goals, "SLSQP", 1e-6,
+                   100, "PredictionError", (0.75, 1.0))  # fmt: skip
+
+
+def steep_dome(sides: int = 8, rings: int = 40) -> Problem:
+    """A dome of rings: its meridians of one length, and from 20 to 30 degrees off the vertical (its
+    examples/dome/dome.py)."""
+    turn = 2.0 * np.pi * np.arange(sides) / sides
+    radius = 0.5 - 0.01 / np.cos(np.pi / sides) * np.arange(1, rings + 2)
+    points = np.array([[r * np.cos(t), r * np.sin(t), 0.0] for r in radius for t in turn])
+    at = np.arange((rings + 1) * sides).reshape(rings + 1, sides)
+    hoops = np.stack([at[1:].ravel(), np.roll(at[1:], -1, axis=1).ravel()], axis=1)
+    meridians = np.stack([at[:-1].ravel(), at[1:].ravel()], axis=1)
+    own = len(hoops) + np.arange(len(meridians))
+    lean = np.radians(20.0 + 10.0 * np.arange(rings) / (rings - 1))
+    inwards = [[-np.sin(a) * np.cos(t), -np.sin(a) * np.sin(t), np.cos(a)] for a in lean for t in turn]
+    goals: list[Goal] = [("length", own, np.full(len(own), 0.03), 1.0), ("direction", own, np.array(inwards), 1.0)]
+    edges = np.concatenate([hoops, meridians])
+    scale = np.sqrt(len(edges)) / 2.0
+    start = np.concatenate([np.full(len(hoops), 2.0), np.repeat(0.5 * scale * (rings - np.arange(rings)), sides)])
+    loads, bounds = up(len(points), at[0], 0.1), (-np.inf, np.inf)
+    return Problem("dome to directions", points, edges, at[0], loads, start, bounds, goals, "LBFGSB", 1e-6, 10_000)
+
+
+CREASE = [3.7403, 3.9054, 4.3180, 4.9720, 5.8672, 7.0037, 8.3814, 9.9850]  # x, from the middle to either side
+EDGE = [9.7335, 9.7486, 9.8148, 9.9330, 10.0899, 10.3030, 10.6219, 11.0866]
+HEIGHTS = """
+.6489 1.1637 1.5387 1.7718 1.8572 1.7907 1.5745 1.1998 .6584 .6752 .7939 1.0195
+1.1167 1.9795 2.6219 3.0324 3.2011 3.1173 2.7681 2.1424 1.2253 1.2696 1.4810 1.9030
+1.4024 2.4837 3.2996 3.8349 4.0705 3.9939 3.5848 2.8199 1.6782 1.7653 2.0689 2.6739
+1.5256 2.7016 3.5947 4.1918 4.4717 4.4171 4.0071 3.2158 2.0186 2.1585 2.5453 3.3063
+1.4908 2.6396 3.5168 4.1092 4.4054 4.3850 4.0325 3.3273 2.2495 2.4498 2.9099 3.7726
+1.2932 2.2942 3.0622 3.5919 3.8774 3.9067 3.6739 3.1674 2.3792 2.6434 3.1653 4.0803
+.9131 1.6363 2.2078 2.6274 2.8931 3.0055 2.9630 2.7675 2.4174 2.7388 3.3097 4.2184
+1.2665 2.2495 3.0048 3.5255 3.8072 3.8406 3.6185 3.1317 2.3731 2.6598 3.1867 4.1021
+1.4839 2.6252 3.4975 4.0869 4.3788 4.3563 4.0037 3.3015 2.2302 2.4785 2.9467 3.8142
+1.5354 2.7177 3.6153 4.2114 4.4855 4.4258 4.0071 3.2023 1.9890 2.1993 2.5940 3.3632
+1.4272 2.5276 3.3547 3.8954 4.1321 4.0454 3.6157 2.8269 1.6495 1.8163 2.1283 2.7498
+1.1559 2.0494 2.7117 3.1334 3.3039 3.2104 2.8370 2.1754 1.2117 1.3315 1.5544 1.9914
+.7063 1.2600 1.6640 1.9138 2.0032 1.9265 1.6839 1.2672 .6757 .7476 .8757 1.1209
+"""
+
+
+def shell() -> Problem:
+    """The compression-only net nearest to a creased shell (its examples/creased_shell/creased_shell.py and
+    data/json/creased_shell.json, to 4 decimals; the shape is of Panozzo and others 2013)."""
+    grid = np.zeros((15, 13, 3))
+    for row, y in enumerate(np.arange(-7, 8)):
+        crease, end = CREASE[abs(y)], EDGE[abs(y)]
+        x = np.concatenate([np.linspace(-11.0866, crease, 10), np.linspace(crease, end, 4)[1:]])
+        grid[row, :, 0], grid[row, :, 1] = x, 10.0 * y / 7.0
+    grid[1:-1, 1:, 2] = np.array(HEIGHTS.split(), float).reshape(13, 12)
+    at = np.arange(15 * 13).reshape(15, 13)
+    edges = np.concatenate([np.stack([at[1:-1, :-1].ravel(), at[1:-1, 1:].ravel()], axis=1),
+                            np.stack([at[:-1, 1:].ravel(), at[1:, 1:].ravel()], axis=1)])  # fmt: skip
+    used, edges = np.unique(edges, return_inverse=True)
+    edges, points = edges.reshape(-1, 2), grid.reshape(-1, 3)[used]
+    supports = np.flatnonzero(np.bincount(edges.ravel()) == 1)
+    inner = np.setdiff1d(np.arange(len(points)), supports)
+    goals: list[Goal] = [("point", inner, points[inner], 1.0)]
+    loads, start = up(len(points), supports, 0.2), np.ones(len(edges))
+    return Problem("shell nearest to a shape", points, edges, supports, loads, start, (0.0, 20.0), goals, "LBFGSB",
+                   1e-6, 1000, "RootMeanSquaredError")  # fmt: skip
+
+
+PUBLISHED: dict[str, Callable[[], Problem]] = {
+    "load-path": load_path,
+    "pringle": pringle,
+    "steep-dome": steep_dome,
+    "shell": shell,
+}
+PROBLEMS: dict[str, Callable[[], Problem]] = PUBLISHED | {"arch": arch, "dome": dome, "vault": vault}
 PROBLEMS |= {f"heights-{(m + 1) ** 2}": partial(recovery, m) for m in (12, 30, 100)}

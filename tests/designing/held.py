@@ -35,7 +35,8 @@ def held(kind: str, seed: int) -> dict[str, Any]:
     force = force.model_copy(update={"name": "it", **elastic})
     scene = scene_of(force, x)
     system = compile(scene)
-    stiffness = 3.0 * float(system.evaluate(system.start())[1].max(initial=0.0)) or 1.0
+    firm = 3.0 if type(force).conservative else 30.0  # what has no energy swirls out of a soft hold
+    stiffness = firm * float(system.evaluate(system.start())[1].max(initial=0.0)) or 1.0
     reach = float(np.ptp(x, axis=0).max()) or 1.0
     particles = list(range(len(x)))
     targets = x + 0.01 * reach * rng.normal(size=x.shape)

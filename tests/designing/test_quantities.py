@@ -11,7 +11,7 @@ from hookean.designing.equilibrium import settle
 from hookean.designing.problem import Problem
 from hookean.designing.quantities import QUANTITIES
 from hookean.designing.search import design
-from hookean.designing.sensitivity import jacobian
+from hookean.designing.sensitivity import jacobian, sensitivity
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
 from hookean.system.system import compile
@@ -68,6 +68,8 @@ KINDS: list[dict[str, Any]] = [
     {"kind": "planarity", "mesh": "roof"},
     {"kind": "fairness", "force": "net"},
     {"kind": "frequency", "mode": 2},
+    {"kind": "curvature", "mesh": "roof"},
+    {"kind": "direction", "force": "net", "elements": [2, 5], "axes": "xz"},
 ]
 
 
@@ -103,8 +105,45 @@ def test_derivatives_are_those_of_whole_solves(given: dict[str, Any], moved: Any
 
 
 def test_all_quantities_are_tried() -> None:
-    """No kind without its derivatives in the test before."""
-    assert {given["kind"] for given in KINDS} == set(QUANTITIES)
+    """No kind without its derivatives in the test before; those of buckling factors are differences themselves."""
+    assert {given["kind"] for given in KINDS} | {"buckling_factor"} == set(QUANTITIES)
+
+
+def test_a_braced_post_has_the_buckling_factor_that_is_asked_for() -> None:
+    """A post of height h under a load P at its top, which springs of stiffness c / 2 hold on either side: it buckles at
+    c h / P times the load (rigid post on a spring; Timoshenko and Gere, Theory of Elastic Stability, 1961, 2.1)."""
+    scene = {
+        "particles": [[0, 0, 0], [0, 0, 2], [1, 0, 2], [-1, 0, 2], [0, 1, 2], [0, -1, 2]],
+        "forces": [
+            {"kind": "springs", "particles": [[0, 1]], "stiffness": 1e6},
+            {"kind": "springs", "name": "brace", "particles": [[1, 2], [1, 3], [1, 4], [1, 5]], "stiffness": 4.0},
+            {"kind": "unary", "particles": [1], "vector": [0, 0, -5]},
+        ],
+        "anchors": [{"particles": [0, 2, 3, 4, 5]}],
+    }
+    problem = {
+        "scene": scene,
+        "variables": [{"force": "brace", "field": "stiffness", "tie": [[0, 1], [2, 3]], "lower": 1.0}],
+        "goals": [{"kind": "buckling_factor", "mode": mode, "target": 2.0 + mode} for mode in (0, 1)],
+    }
+    found = design(problem)
+    c = 2.0 * np.sort(found.variables[0]["value"])
+    assert c == pytest.approx([2.0 * 5.0 / 2.0, 3.0 * 5.0 / 2.0], rel=1e-5)  # the post shortens by P / 1e6 h
+
+
+def test_an_octahedron_has_its_curvature() -> None:
+    """Four angles of 60 degrees leave 2 pi / 3 at each vertex, and a third of the four triangles of edge a is
+    a² / sqrt(3): 2 pi / (sqrt(3) a²) (angle defect; the sum is 4 pi, Gauss and Bonnet)."""
+    vertices = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
+    faces = [[i, (i + 1) % 4, 4] for i in range(4)] + [[(i + 1) % 4, i, 5] for i in range(4)]
+    scene = {
+        "meshes": {"solid": {"vertices": vertices, "faces": faces}},
+        "forces": [{"kind": "springs", "name": "edges", "mesh": "solid"}],
+        "anchors": [{"points": vertices[:2]}, {"points": vertices[4:5]}],
+    }
+    variable = {"force": "edges", "field": "rest_factor", "tie": "all"}
+    found = sensitivity(scene, goals=[{"kind": "curvature", "mesh": "solid"}], variables=[variable])
+    assert found.values[0] == pytest.approx(np.full(6, 2.0 * np.pi / (np.sqrt(3.0) * 2.0)), rel=1e-9)
 
 
 def test_a_mass_on_a_spring_has_the_frequency_that_is_asked_for() -> None:

@@ -12,7 +12,8 @@ from typer.testing import CliRunner
 
 import hookean
 from hookean.commands.design import app
-from hookean.designing.search import design
+from hookean.designing.problem import Problem
+from hookean.designing.search import Search, design
 from hookean.errors import InputError
 
 from .test_gradients import cable, sag
@@ -316,3 +317,14 @@ def test_the_command_reads_toml_and_writes_the_answer(tmp_path: Path) -> None:
     problem.write_text(text.replace("rest_length", "rest_lenght"))
     ran = CliRunner().invoke(app, [str(problem)])
     assert ran.exit_code == 2 and "no column 'rest_lenght'" in ran.output and "Traceback" not in ran.output
+
+
+def test_rounding_does_not_leave_the_bounds() -> None:
+    """A value at its least one is this one, whatever its scale rounds to."""
+    scene = cable()
+    scene["forces"][0]["rest_length"] = [1.1, 0.3]
+    variable = {"force": "string", "field": "rest_length", "lower": 0.0, "upper": 2.0}
+    goal = {"kind": "position", "particles": [1], "axes": "z", "target": -0.7}
+    search = Search(Problem.read({"scene": scene, "variables": [variable], "goals": [goal]}))
+    lower, upper = search.bounds
+    assert (search.given(lower * (1.0 + 1e-15)) == 0.0).all() and (search.given(upper * (1.0 + 1e-15)) == 2.0).all()

@@ -28,6 +28,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 STEP = 1e-5  # of a value, and of the mean of its column: the error is its square, and rounding 1e-11
+JUMP = 1e-9  # part of the values: what is less is rounding
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
@@ -153,8 +154,11 @@ class Column:
 
     def _least(self, system: System) -> float:
         """0 where the column takes no negative numbers, else -inf."""
-        negative = self._field(-1.0 - np.abs(self.entries.values))
-        return -np.inf if self._accepts(system, negative) else 0.0
+        values = self.entries.values
+        if (values < 0.0).any() or not values.size:
+            return -np.inf
+        shifted = values - 1.0 - 2.0 * values.max()  # all together: of the vertices of a solid it stays one
+        return -np.inf if self._accepts(system, self._field(shifted)) else 0.0
 
     def _field(self, values: Floats) -> Any:
         """Numbers (m, c) in the shape that the field takes."""
@@ -187,7 +191,7 @@ class Column:
             if (tie[:, column] >= 0).any():
                 steps = STEP * np.maximum(np.abs(values[:, column]), np.abs(values[:, column]).mean() or 1.0)
                 change = np.zeros(values.shape)
-                change[:, column] = steps
+                change[:, column] = np.where(tie[:, column] >= 0, steps, 0.0)
                 slope, unknown = self.slope(system, change, give), np.broadcast_to(tie[:, column], self.elements)
                 by = np.broadcast_to(steps, self.elements)[self.part.inputs]
                 yield unknown[self.part.inputs], self.factor * slope / by.reshape(-1, *[1] * (slope.ndim - 1))
@@ -203,15 +207,26 @@ class Column:
 
     def slope(self, system: System, change: Floats, give: Callable[[Force, Block], Floats]) -> Floats:
         """By how much what `give` says changes with a change (m, c) of the values: differences of second order, on one
-        side where the other is not allowed."""
+        side where the other is not allowed. InputError where it jumps at a value."""
         values = self.entries.values
         both = (values - change >= self.lower).all()
         ways = ((0.5, 1.0), (-0.5, -1.0)) if both else ((-1.5, 0.0), (2.0, 1.0), (-0.5, 2.0))
-        total: Any = 0.0
-        for weight, way in ways:
+        given = []
+        for _, way in ways:
             force = self._with(system.scene, values + way * change)
-            total = total + weight * give(force, compiled(system, self.group, self.number, force))
-        return np.asarray(total)
+            given.append(give(force, compiled(system, self.group, self.number, force)))
+        if not both:
+            self._check_smooth(given)
+        return np.asarray(sum(weight * each for (weight, _), each in zip(ways, given, strict=True)))
+
+    def _check_smooth(self, given: list[Floats]) -> None:
+        """InputError where values at 0, 1 and 2 steps from the least value do not follow a smooth curve."""
+        near, far = np.abs(given[1] - given[0]), np.abs(given[2] - given[1])
+        size = max(float(np.abs(each).max(initial=0.0)) for each in given)
+        if ((np.abs(near - far) > 0.5 * np.maximum(near, far)) & (np.maximum(near, far) > JUMP * size)).any():
+            name = self.variable.field
+            said = f"{name} is {self.lower:g}, where {self.force.kind_name} changes by a jump; give it a value beyond,"
+            raise InputError(f"{self.pointer}/field", f"{said} or leave such elements out by tie")
 
 
 def shape_of(columns: int, count: int, wide: Any) -> tuple[int, ...]:

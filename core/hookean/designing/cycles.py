@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 MANY = 3_000  # particles from which on it pays
-LEFT = 1e-12  # part of the right side that may be left
+LEFT = 1e-11  # part of the right side that may be left
 MOST = 500  # steps
 
 
@@ -62,11 +62,11 @@ class Cycles:
             self._scalar.append((hierarchy, particles, axes))
         return True
 
-    def solve(self, b: Floats) -> Floats | None:
-        """K^-1 b (n, 3) on the free axes; None where that did not come to an end."""
+    def solve(self, b: Floats, left: float = LEFT) -> Floats | None:
+        """K^-1 b (n, 3) on the free axes, of which a part may be left; None where that did not come to an end."""
         b = b.reshape(-1, 3) * (self.state.free > 0.0)
         if self._tangent is not None:
-            found, positive = self._tangent.solve(b, LEFT, MOST)
+            found, positive = self._tangent.solve(b, left, MOST)
             return found if positive and found is not None and np.isfinite(found).all() else None
         from hookean.linear.scalar_cg import solve
 
@@ -74,7 +74,7 @@ class Cycles:
         for hierarchy, particles, axes in self._scalar:
             right = np.zeros((len(particles), 4))
             right[:, axes] = b[particles][:, axes]
-            goal = LEFT * float(np.sqrt((right**2).sum(axis=0).max()))
+            goal = left * float(np.sqrt((right**2).sum(axis=0).max()))
             if goal > 0.0:
                 found = solve(hierarchy, right, goal)
                 if found is None:

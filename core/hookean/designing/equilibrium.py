@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.designing.cycles import Cycles
+from hookean.designing.cycles import LEFT, Cycles
 from hookean.designing.factors import Factored, Orders
+from hookean.designing.resting import resting
 from hookean.forces.base import lengths
 from hookean.running.result import Result
 from hookean.running.run import relax_state
@@ -30,6 +31,8 @@ SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the
 NOTHING = 1e-15  # part of the diagonal: entries of the tangent that are rounding
 ALIKE = 1e-14  # part of the largest entry by which equal tangents differ
 POLISH = 6  # exact steps after that, while each leaves less
+ROUNDING = 10.0  # times the rounding floor: what is out of balance there is rounding
+ROUGH = 1e-4  # part that such a step may leave of the little that is out of balance
 FOLLOWED = 12  # exact steps by which a shape is followed as variables change
 NEARBY = 0.1  # part of the model's size: the largest of these where forces are not linear
 SETTLED, FINISHED = 1e-8, 1e-13  # parts of it: steps that may be rounding, and steps that are nothing
@@ -48,7 +51,8 @@ class Equilibrium:
         self.system, self.state, self._result, self.once = system, state, result, once
         self.orders = orders or Orders()
         self._tangent = None if once else tangent(system, state)  # later the system has other values
-        self.basis = _basis(system, state)
+        self.resting = resting(system, state)
+        self.basis = _basis(system, state, self.resting.motions)
         self._factor: Factored | None = None
         self.yielded: list[str] = []  # kinds of forces that have yielded on the way here
 
@@ -79,7 +83,7 @@ class Equilibrium:
     @cached_property
     def _cycles(self) -> Cycles | None:
         """What solves without factors."""
-        if not self.once or len(self.basis.indices) < np.count_nonzero(self.state.free):
+        if not self.once or self.resting.motions or len(self.basis.indices) < np.count_nonzero(self.state.free):
             return None
         cycles = Cycles(self.system, self.state)
         return cycles if cycles.usable else None
@@ -103,7 +107,8 @@ class Equilibrium:
     def factor(self) -> Factored:
         """The reduced tangent in factors."""
         if self._factor is None:
-            axes = None if self.system.films is not None else self.basis.indices % 3
+            skew = self.system.films is not None or len(self.basis.indices) > self.basis.shape[1]
+            axes = None if skew else self.basis.indices % 3
             self._factor = Factored(self.reduced, axes, self.symmetric, self.orders)
         return self._factor
 
@@ -117,10 +122,11 @@ class Equilibrium:
             return True
         return False
 
-    def solve(self, b: Floats, *, transposed: bool = False) -> Floats:
-        """K^-1 b, or K^-T b, (3n,) on the free motions; 0 on the others. NaN where K is singular."""
+    def solve(self, b: Floats, *, transposed: bool = False, left: float = LEFT) -> Floats:
+        """K^-1 b, or K^-T b, (3n,) on the free motions; 0 on the others. NaN where K is singular. Without factors a
+        part `left` of b may remain."""
         if self._factor is None and self._cycles is not None:
-            found = self._cycles.solve(b)
+            found = self._cycles.solve(b, left)
             if found is not None:
                 return found.ravel()
         right = self.basis.T @ b
@@ -189,11 +195,13 @@ def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
 
 
 def _polished(system: System, state: State, result: Result, orders: Orders, once: bool) -> Equilibrium:
-    """Exact steps, while each leaves less out of balance."""
+    """Exact steps, while each leaves less out of balance; one is enough where it is slight, for the next is its
+    square."""
     found = Equilibrium(system, state, result, orders, once=once)
     left = _left(system, state)
-    for _ in range(POLISH):
-        step = found.solve(left.ravel()).reshape(-1, 3)
+    rounding = once and result.residual <= ROUNDING * result.rounding_floor  # nothing is left that a step would meet
+    for _ in range(0 if rounding else POLISH):
+        step = found.solve(left.ravel(), left=ROUGH).reshape(-1, 3)
         size = lengths(left).max(initial=0.0)
         if not np.isfinite(step).all() or size == 0.0:
             break
@@ -204,7 +212,10 @@ def _polished(system: System, state: State, result: Result, orders: Orders, once
             state.x = start
             break
         left = now
-        if lengths(step).max(initial=0.0) > SLIGHT * system.size:
+        slight = lengths(step).max(initial=0.0) <= SLIGHT * system.size
+        if slight and once:
+            break
+        if not slight:
             before, found = found, Equilibrium(system, state, result, orders, once=once)
             if not once:
                 found.take_factor(before)
@@ -215,13 +226,16 @@ def _polished(system: System, state: State, result: Result, orders: Orders, once
 def _left(system: System, state: State) -> Floats:
     """What is out of balance (n, 3) [force]."""
     left = system.evaluate(state)[0] * state.free
+    if system.contacts:
+        system.support(state, left)
     if system.films is not None:
         system.films.across(state.x, state.free, left)
     return left
 
 
-def _basis(system: System, state: State) -> Any:
-    """The free motions (3n, r): free axes of particles that something holds; of films the axes that count."""
+def _basis(system: System, state: State, resting: dict[int, Floats]) -> Any:
+    """The free motions (3n, r): free axes of particles that something holds; of films the axes that count; along the
+    floor of what rests on it."""
     from scipy.sparse import csc_matrix
 
     parts = system.components(state)
@@ -230,13 +244,30 @@ def _basis(system: System, state: State) -> Any:
     free[loose[~parts.joined[parts.label[loose]]]] = 0.0
     n = len(free)
     if system.films is None:
+        free[list(resting)] = 0.0
         axes = np.flatnonzero(free.ravel() > 0.0)
-        return csc_matrix((np.ones(len(axes)), (axes, np.arange(len(axes)))), shape=(3 * n, len(axes)))
+        basis = csc_matrix((np.ones(len(axes)), (axes, np.arange(len(axes)))), shape=(3 * n, len(axes)))
+        return _with_motions(basis, resting)
     frames, counts = system.films.frames(state.x, free)
     particle, rank = np.nonzero(counts > 0.0)
     rows = (3 * particle[:, None] + np.arange(3)).ravel()
     columns = np.repeat(np.arange(len(particle)), 3)
     return csc_matrix((frames[particle, rank].ravel(), (rows, columns)), shape=(3 * n, len(particle)))
+
+
+def _with_motions(basis: Any, resting: dict[int, Floats]) -> Any:
+    """Free motions (3n, r), and those of particles that rest on a floor."""
+    from scipy.sparse import csc_matrix, hstack
+
+    if not resting:
+        return basis
+    particle = np.repeat(list(resting), [len(motions) for motions in resting.values()])
+    rows = 3 * particle[:, None] + np.arange(3)
+    values = np.concatenate(list(resting.values()))
+    columns = np.repeat(np.arange(len(particle)), 3)
+    along = csc_matrix((values.ravel(), (rows.ravel(), columns)), shape=(basis.shape[0], len(particle)))
+    along.eliminate_zeros()
+    return hstack([basis, along], format="csc")
 
 
 def tangent(system: System, state: State) -> Any:

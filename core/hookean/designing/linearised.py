@@ -49,9 +49,11 @@ class Linearised:
         from scipy.sparse import diags, vstack
 
         slopes = [quantity.slopes(found, unknowns, pointer) for quantity, pointer in quantities]
-        by_place = diags(weights) @ vstack([s[0] for s in slopes]).tocsr()
-        direct = diags(weights) @ vstack([s[1] for s in slopes]).tocsr()
+        by_place, direct = vstack([s[0] for s in slopes]).tocsr(), vstack([s[1] for s in slopes]).tocsr()
         forces, moves = unknowns.slopes(found)
+        self.weights = weights
+        centred = [quantity.centred for quantity, _ in quantities]
+        self.means, self.spread = _means(centred, [s[0].shape[0] for s in slopes])
         self.found, self.orders = found, orders
         self.goals = (by_place @ found.basis).tocsr()  # G (k, r)
         self.direct = ((direct + by_place @ moves) @ diags(scale)).tocsc()  # D (k, u)
@@ -59,20 +61,22 @@ class Linearised:
 
     def transposed(self, r: Floats) -> Floats:
         """The Jacobian's transpose times residuals (k,): by the adjoint."""
+        r = self.weights * r
+        r = r - self.means.T @ (self.spread.T @ r)
         adjoint = self.found.factor.solve(self.goals.T @ r, transposed=True)
         return np.asarray(self.direct.T @ r + self.pushes.T @ adjoint)
 
     def forward(self, change: Floats) -> Floats:
         """The Jacobian times a change (u,) of the unknowns."""
-        return np.asarray(self.direct @ change + self.goals @ self.found.factor.solve(self.pushes @ change))
+        found = self.direct @ change + self.goals @ self.found.factor.solve(self.pushes @ change)
+        return np.asarray(self.weights * (found - self.spread @ (self.means @ found)))
 
     def step(self, r: Floats, damping: float, free: Bools) -> Floats | None:
         """The damped step (u,) of the free unknowns for residuals r (k,), None if it has none."""
         from scipy.sparse import bmat, identity, vstack
 
-        seen = self._seen()
-        goals, tangent = self.goals[:, seen], self.found.reduced[seen][:, seen]
-        spread = vstack([self.direct, -self.pushes[seen]]).tocsc()[:, np.flatnonzero(free)]
+        goals, tangent, direct, pushes = self._with_means()
+        spread = vstack([direct, -pushes]).tocsc()[:, np.flatnonzero(free)]
         wide = np.diff(spread.indptr) > DENSE
         thin, thick = spread[:, np.flatnonzero(~wide)], spread[:, np.flatnonzero(wide)]
         squares = -(thin @ thin.T).tocsr()
@@ -97,6 +101,20 @@ class Linearised:
         step[np.flatnonzero(free)] = -(spread.T @ both) / np.sqrt(damping)
         return step if np.isfinite(step).all() else None
 
+    def _with_means(self) -> tuple[Any, Any, Any, Any]:
+        """G, K, D and F with the means of centred values as further motions, so that all stay sparse: m = mean(G x + D
+        u), residuals G x + D u - m."""
+        from scipy.sparse import bmat, diags, hstack, identity, vstack
+
+        seen = self._seen()
+        by, goals, tangent = diags(self.weights), self.goals[:, seen], self.found.reduced[seen][:, seen]
+        if not self.means.shape[0]:
+            return by @ goals, tangent, by @ self.direct, self.pushes[seen]
+        size = float(np.abs(tangent.data).max(initial=0.0)) or 1.0
+        rows = [[tangent, None], [-size * (self.means @ goals), size * identity(self.means.shape[0])]]
+        pushes = vstack([self.pushes[seen], size * (self.means @ self.direct)])
+        return by @ hstack([goals, -self.spread]), bmat(rows, format="csr"), by @ self.direct, pushes
+
     def _seen(self) -> NDArray[np.int64]:
         """Free motions that a goal depends on."""
         from scipy.sparse import csr_matrix
@@ -108,6 +126,22 @@ class Linearised:
         read = np.zeros(count, dtype=bool)
         read[label[np.unique(self.goals.indices)]] = True
         return np.flatnonzero(read[label])
+
+
+def _means(centred: list[bool], counts: list[int]) -> tuple[Any, Any]:
+    """Matrices that take the mean (c, k) of the values of each centred quantity, and give it to each of them (k, c)."""
+    from scipy.sparse import csr_matrix
+
+    ends = np.cumsum(counts)
+    parts = [(end - n, n) for end, n, some in zip(ends, counts, centred, strict=True) if some and n]
+    means = csr_matrix((len(parts), int(ends[-1])))
+    if not parts:
+        return means, means.T
+    column = np.concatenate([first + np.arange(n) for first, n in parts])
+    row = np.repeat(np.arange(len(parts)), [n for _, n in parts])
+    each = np.concatenate([np.full(n, 1.0 / n) for _, n in parts])
+    means = csr_matrix((each, (row, column)), shape=means.shape)
+    return means, (means > 0.0).astype(np.float64).T.tocsr()
 
 
 def _solved(system: Any, soft: Floats, right: Floats, orders: Orders) -> Floats | None:

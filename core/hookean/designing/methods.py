@@ -59,18 +59,26 @@ def _levenberg_marquardt(search: Search) -> Ended:
 
 
 def _lbfgsb(search: Search) -> Ended:
+    """Again from the best so far where it ends at no minimum: one poor step is enough for that."""
     from scipy.optimize import minimize
 
-    settings = search.problem.settings
-    found = minimize(
-        search.objective, np.zeros(search.unknowns.count), jac=search.gradient, method="L-BFGS-B",
-        bounds=list(zip(*search.bounds, strict=True)),
-        options={"maxiter": settings.max_iterations, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12, "maxcor": 30,
-                 "maxfun": 20 * settings.max_iterations},
-    )  # fmt: skip
-    if found.status == 2 and not at_minimum(search):  # no step along the slope leads further
-        return int(found.nit), DesignStatus.STALLED, NO_STEP
-    return int(found.nit), DesignStatus.MAX_ITERATIONS if found.status == 1 else DesignStatus.CONVERGED, ""
+    settings, taken, start, before = search.problem.settings, 0, np.zeros(search.unknowns.count), np.inf
+    while True:
+        found = minimize(
+            search.objective, start, jac=search.gradient, method="L-BFGS-B",
+            bounds=list(zip(*search.bounds, strict=True)),
+            options={"maxiter": settings.max_iterations - taken, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12,
+                     "maxcor": 30, "maxfun": 20 * settings.max_iterations},
+        )  # fmt: skip
+        taken, (_, value, start) = taken + int(found.nit), search.best
+        search.check_end()
+        if taken >= settings.max_iterations and not at_minimum(search):
+            return taken, DesignStatus.MAX_ITERATIONS, ""
+        if at_minimum(search):
+            return taken, DesignStatus.CONVERGED, ""
+        if not before - value > settings.tolerance * abs(value):
+            return taken, *((DesignStatus.STALLED, NO_STEP) if found.status == 2 else (DesignStatus.CONVERGED, ""))
+        before = value
 
 
 class Margins:
@@ -120,6 +128,7 @@ def _slsqp(search: Search) -> Ended:
 
     settings, start, iterations = search.problem.settings, np.zeros(search.unknowns.count), 0
     bounds = list(zip(*search.bounds, strict=True))
+    before = np.inf
     for _ in range(ATTEMPTS):
         size = abs(search.objective(start)) or 1.0
         found = minimize(
@@ -135,9 +144,9 @@ def _slsqp(search: Search) -> Ended:
             iterations += nearer(search)
             if search.best[0] > 0.0:
                 return iterations, DesignStatus.INFEASIBLE, ""
-        elif found.status == 0:
+        elif found.status == 0 and (at_minimum(search) or not before - search.best[1] > settings.tolerance * size):
             return iterations, DesignStatus.CONVERGED, ""
-        start = search.best[2].copy()
+        before, start = search.best[1], search.best[2].copy()  # what it measures by was the objective at its start
     if at_minimum(search):
         return iterations, DesignStatus.CONVERGED, ""
     return iterations, DesignStatus.STALLED, NO_STEP

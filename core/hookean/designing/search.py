@@ -80,6 +80,11 @@ class Search:
         unknowns = self.unknowns
         return (unknowns.lower - unknowns.start) / self.scale, (unknowns.upper - unknowns.start) / self.scale
 
+    def given(self, y: Floats) -> Floats:
+        """Values (u,) of the unknowns; rounding does not take them beyond their bounds."""
+        unknowns = self.unknowns
+        return np.asarray(np.clip(unknowns.start + y * self.scale, unknowns.lower, unknowns.upper))
+
     def at(self, y: Floats) -> Equilibrium:
         """The equilibrium at scaled unknowns; if the run found none, its result reports that."""
         if self._at is not None and np.array_equal(self._at, y) and self.found is not None:
@@ -88,7 +93,7 @@ class Search:
             raise Stopped
         if self._resting is not None:
             self.state.x = self._resting.copy()
-        self.unknowns.put(self.system, self.state, self.unknowns.start + y * self.scale)
+        self.unknowns.put(self.system, self.state, self.given(y))
         followed = follow(self.found) if self.found is not None and self.found.converged else None
         self.found = followed or settle(self.system, self.state, self.orders)
         self._at = y.copy()
@@ -167,7 +172,7 @@ class Search:
         if np.isfinite(value) and (missed, value) < self.best[:2]:
             self.best = (missed, value, y.copy())
             if self.keep is not None:
-                self.keep(self.unknowns.start + y * self.scale)
+                self.keep(self.given(y))
         if self.progress is not None:
             self.progress(self.evaluations, self.best[1])
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.equilibrium import Equilibrium, settle
+from hookean.designing.kinks import kinks
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity
 from hookean.designing.unknowns import Unknowns
@@ -65,7 +66,8 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
         raise InputError("/scene/forces", f"{missing}, so nothing can be differentiated through its equilibrium")
     unknowns = Unknowns(problem, system)
     state = system.start()
-    unknowns.put(system, state, unknowns.start)
+    if unknowns.differ:
+        unknowns.put(system, state, unknowns.start)
     found = settle(system, state, once=True)
     values = [g.quantity.values(found, f"/goals/{i}") for i, g in enumerate(problem.goals)]
     total = sum(g.weight * each.sum() for g, each in zip(problem.goals, values, strict=True))
@@ -75,7 +77,10 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
     if not np.isfinite(gradient).all():
         raise InputError("/scene", f"the tangent at the equilibrium is singular; {found.result.message}")
     parts = [gradient[s].reshape(v.shape) for v, s in zip(unknowns.variables, unknowns.slices, strict=True)]
-    return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], warnings(found), found.result)
+    said = warnings(found)
+    if unknowns.clipped:
+        said.append(f"{unknowns.clipped} values of the scene are beyond the bounds; the shape has them at the bounds")
+    return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], said, found.result)
 
 
 def gradients(
@@ -85,6 +90,8 @@ def gradients(
     by_place, by_unknown = np.zeros(found.x.size), np.zeros(unknowns.count)
     for (quantity, pointer), weight in zip(quantities, weights, strict=True):
         placed, direct = quantity.slopes(found, unknowns, pointer)
+        if quantity.centred and len(weight):
+            weight = weight - weight.mean()
         by_place += placed.T @ weight
         by_unknown += direct.T @ weight
     forces, moves = unknowns.slopes(found)
@@ -106,9 +113,15 @@ def jacobian(found: Equilibrium, unknowns: Unknowns, quantities: list[tuple[Quan
     total = by_unknown.toarray() + (by_place @ moves).toarray()
     if by_place.shape[0] < unknowns.count:
         solved = np.array([found.solve(row, transposed=True) for row in by_place.toarray()]).reshape(by_place.shape)
-        return np.asarray(total + solved @ right)
-    solved = np.array([found.solve(right[:, [j]].toarray().ravel()) for j in range(unknowns.count)])
-    return np.asarray(total + by_place @ solved.T)
+        total = np.asarray(total + solved @ right)
+    else:
+        solved = np.array([found.solve(right[:, [j]].toarray().ravel()) for j in range(unknowns.count)])
+        total = np.asarray(total + by_place @ solved.T)
+    ends = np.cumsum([s[0].shape[0] for s in slopes])
+    for (quantity, _), end, (own, _) in zip(quantities, ends, slopes, strict=True):
+        if quantity.centred and own.shape[0]:
+            total[end - own.shape[0] : end] -= total[end - own.shape[0] : end].mean(axis=0)
+    return total
 
 
 def warnings(found: Equilibrium) -> list[str]:
@@ -120,4 +133,5 @@ def warnings(found: Equilibrium) -> list[str]:
         kind = "unstable" if found.result.stability is Stability.UNSTABLE else "a mechanism"
         said.append(f"the shape is {kind} ({found.result.stability_reason}); its derivatives are those of this shape")
     said += [f"{kind} have yielded; derivatives are those of elastic behaviour from here on" for kind in found.yielded]
+    said += found.resting.said + kinks(found)
     return said

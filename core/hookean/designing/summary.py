@@ -33,7 +33,7 @@ def answer(search: Search, method: str, iterations: int, ended: DesignStatus, sa
     if broken and ended in (DesignStatus.CONVERGED, DesignStatus.STALLED):
         ended = DesignStatus.INFEASIBLE
     gained = gains(search, found, y) if found.converged and not broken else None
-    variables = _variables(search, search.unknowns.start + y * search.scale, gained)
+    variables = _variables(search, search.given(y), gained)
     goals = _goals(search, found, gained)
     if not said:
         said = _sentence(ended, broken, iterations, value)

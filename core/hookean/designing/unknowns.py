@@ -110,6 +110,12 @@ class Unknowns:
         self.start = np.clip(given, self.lower, self.upper)
 
     @property
+    def differ(self) -> bool:
+        """Whether the scene has other values than the start: where variables tie, drive or are cut at bounds."""
+        entries = [(part, variable.entries) for variable, part in self.parts]
+        return any(not np.array_equal(e.with_values(self.start[part]), e.values) for part, e in entries)
+
+    @property
     def scale(self) -> Floats:
         """The size (u,) of each unknown: of its value, of its bounds, or of the mean of its variable."""
         found = np.empty(self.count)
@@ -144,14 +150,7 @@ class Unknowns:
 
     def scene(self, scene: Scene) -> Scene:
         """The scene with the anchors where they are held now; forces have their values already."""
-        anchors = list(scene.anchors)
-        for variable in self.variables:
-            if isinstance(variable, Moved) and variable.anchor.number >= 0:
-                number, targets = variable.anchor.number, variable.anchor.targets
-                given = anchors[number].particles if anchors[number].points is None else anchors[number].points
-                if given is not None and len(given) == len(targets):
-                    anchors[number] = anchors[number].replaced(targets=targets)
-        return scene.replaced(anchors=tuple(anchors))
+        return as_held(scene, [v.anchor for v in self.variables if isinstance(v, Moved)])
 
     def slopes(self, found: Equilibrium) -> tuple[Any, Any]:
         """df/du (3n, u) [force by unit] at fixed positions, and how held particles move, dx_h/du (3n, u)."""
@@ -171,6 +170,18 @@ class Unknowns:
             return coo_matrix((values, (rows, columns)), shape=shape).tocsc()
 
         return matrix(pushes), matrix(moves)
+
+
+def as_held(scene: Scene, held: list[Held]) -> Scene:
+    """A scene with these anchors where they are held."""
+    anchors = list(scene.anchors)
+    for anchor in held:
+        if anchor.number >= 0:
+            old = anchors[anchor.number]
+            given = old.particles if old.points is None else old.points
+            if given is not None and len(given) == len(anchor.targets):
+                anchors[anchor.number] = old.replaced(targets=anchor.targets)
+    return scene.replaced(anchors=tuple(anchors))
 
 
 def _led(variable: Moved) -> tuple[Ints, Ints, Floats]:

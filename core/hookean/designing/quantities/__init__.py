@@ -4,6 +4,9 @@ QUANTITIES."""
 from __future__ import annotations
 
 from hookean.designing.quantities.base import Quantity
+from hookean.designing.quantities.buckling import BucklingFactor
+from hookean.designing.quantities.curvature import Curvature
+from hookean.designing.quantities.direction import Direction
 from hookean.designing.quantities.energy import StrainEnergy
 from hookean.designing.quantities.faces import Fairness, Planarity
 from hookean.designing.quantities.frequency import Frequency
@@ -17,7 +20,7 @@ QUANTITIES: dict[str, type[Quantity]] = {
     cls.kind_name: cls
     for cls in (
         *(Position, Offset, Length, Force, ForceDensity, LoadPath, Output, StrainEnergy, Reaction, Volume, Area),
-        *(Planarity, Fairness, Frequency),
+        *(Planarity, Fairness, Frequency, BucklingFactor, Curvature, Direction),
     )
 }
 """All quantities by kind."""

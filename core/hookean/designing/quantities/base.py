@@ -42,8 +42,13 @@ class Quantity(Model):
         """Its values (k,) at an equilibrium; InputError at the pointer where it does not fit the scene."""
         raise TypeError(f"{type(self).__name__} does not define values()")
 
+    @property
+    def centred(self) -> bool:
+        """Whether values are less their mean; `slopes` are of the values themselves, so that they stay sparse."""
+        return False
+
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
-        """Their derivatives."""
+        """Their derivatives, before the mean is taken from them where they are `centred`."""
         raise TypeError(f"{type(self).__name__} does not define slopes()")
 
 
@@ -93,11 +98,3 @@ def summed(matrix: Any) -> Any:
     from scipy.sparse import csr_matrix
 
     return csr_matrix(matrix.sum(axis=0))
-
-
-def less_mean(matrix: Any) -> Any:
-    """Each row less the mean of all rows."""
-
-    from scipy.sparse import csr_matrix
-
-    return csr_matrix(matrix.toarray() - np.asarray(matrix.mean(axis=0)))

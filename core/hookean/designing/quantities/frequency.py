@@ -61,8 +61,11 @@ class Frequency(Quantity):
             group.cls.gathered(group.block, memory, found.x, None) is not None
             for group, memory in zip(system.groups, found.state.memory, strict=True)
         )
-        if system.films is not None or together or not found.symmetric:
-            said = "soap films, elements that feel one another and forces without an energy have no frequency goals"
+        if system.films is not None or together or found.resting.motions or not found.symmetric:
+            said = (
+                "soap films, elements that feel one another, forces without an energy and what rests on a floor have no"
+            )
+            said += " frequency goals"
             raise InputError(pointer, said)
         mass = system.mass[found.basis.indices // 3]
         if self.mode >= len(mass):

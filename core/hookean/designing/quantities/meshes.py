@@ -25,12 +25,12 @@ class Volume(Quantity):
 
     def values(self, found: Equilibrium, pointer: str) -> Floats:
         """Sums of a . (b x c) / 6 over triangles."""
-        a, b, c = found.x[_triangles(found, self.mesh, pointer)].transpose(1, 0, 2)
+        a, b, c = found.x[triangles(found, self.mesh, pointer)].transpose(1, 0, 2)
         return np.array([np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0])
 
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """Cross products of the other corners by 6."""
-        corners = _triangles(found, self.mesh, pointer)
+        corners = triangles(found, self.mesh, pointer)
         a, b, c = found.x[corners].transpose(1, 0, 2)
         normals = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1) / 6.0
         return _of_corners(found, unknowns, corners, normals)
@@ -45,12 +45,12 @@ class Area(Quantity):
 
     def values(self, found: Equilibrium, pointer: str) -> Floats:
         """The sum over its triangles."""
-        a, b, c = found.x[_triangles(found, self.mesh, pointer)].transpose(1, 0, 2)
+        a, b, c = found.x[triangles(found, self.mesh, pointer)].transpose(1, 0, 2)
         return np.array([0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()])
 
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """Half of the opposite side, turned about the normal, at each corner."""
-        corners = _triangles(found, self.mesh, pointer)
+        corners = triangles(found, self.mesh, pointer)
         a, b, c = found.x[corners].transpose(1, 0, 2)
         normal = np.cross(b - a, c - a)
         size = np.linalg.norm(normal, axis=1)[:, None]
@@ -59,7 +59,7 @@ class Area(Quantity):
         return _of_corners(found, unknowns, corners, turned)
 
 
-def _triangles(found: Equilibrium, mesh: str, pointer: str) -> Ints:
+def triangles(found: Equilibrium, mesh: str, pointer: str) -> Ints:
     """The triangles (m, 3) of a mesh, in particles."""
     faces = mesh_faces(found, mesh, pointer)
     both = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])

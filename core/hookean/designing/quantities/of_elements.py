@@ -13,7 +13,6 @@ from hookean.designing.quantities.base import (
     Quantity,
     Slopes,
     combined,
-    less_mean,
     matrix,
     nothing,
     summed,
@@ -59,13 +58,16 @@ class OfElements(Quantity):
             return np.asarray(self._joints(found, rows, pointer) @ chosen)
         return np.asarray(chosen - chosen.mean() if self.equal and len(chosen) else chosen)
 
+    @property
+    def centred(self) -> bool:
+        """Of `equal`."""
+        return self.equal
+
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """By differences of what the force measures, with all elements changed at once."""
         by_place, by_unknown = self._whole_slopes(found, unknowns, pointer)
         rows = self._rows(np.zeros(by_place.shape[0]), pointer)
         by_place, by_unknown = by_place[rows], by_unknown[rows]
-        if self.equal and len(rows):
-            by_place, by_unknown = less_mean(by_place), less_mean(by_unknown)
         if self.total:
             by_place, by_unknown = summed(by_place), summed(by_unknown)
         if self.smooth:
