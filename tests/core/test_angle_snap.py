@@ -26,6 +26,7 @@ def snapped(start: float, multiple: float, load: float = 0.0) -> Any:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "multiple", "end"),
     [

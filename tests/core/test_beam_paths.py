@@ -82,6 +82,7 @@ def test_williams_toggle_has_both_limit_points() -> None:
 LEE = 120.0, 4320.0, 1440.0  # length of both members, EA, EI; the load acts at a fifth of the beam
 
 
+@pytest.mark.slow
 def test_lees_frame_has_both_limit_points() -> None:
     """Lee, Manuel and Rossow, Large deflections and stability of elastic frames, 1968: two members on hinges, which
     snap through and back. Both are elasticas that share their corner; of the forces at the lower hinge the

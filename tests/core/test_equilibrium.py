@@ -91,6 +91,7 @@ def test_solvers_that_do_not_leave_report_that_it_is_unstable(solver: str) -> No
     assert found.converged and found.stability == "unstable" and found.soft_particle == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solver", ["auto", "newton", "relaxation"])
 @pytest.mark.parametrize(("part", "n", "bow"), [(1.3, 50, 0.0), (1.3, 50, 1e-4), (1.7, 50, 0.01)])
 def test_a_loose_tolerance_makes_no_mechanism_of_a_column(part: float, n: int, bow: float, solver: str) -> None:

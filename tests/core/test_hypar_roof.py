@@ -54,6 +54,7 @@ def test_the_roof_is_drawn_as_a_hypar() -> None:
     assert mesh.vertices[[0, 4, 20, 24], 2].tolist() == [0.0, 3.0, 3.0, 0.0]
 
 
+@pytest.mark.slow
 def test_one_page_takes_the_roof_from_form_to_workshop(
     page: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -76,6 +77,7 @@ def test_one_page_takes_the_roof_from_form_to_workshop(
     assert "displacement: largest" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_cases_side_by_side_have_the_same_bits() -> None:
     roof = scene(divisions=4)
     one, two = (hookean.load_cases(roof, ["ULS wind", "SLS snow and wind"], processes=n) for n in (1, 2))

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
@@ -37,6 +38,7 @@ def test_many_points_are_left_to_scipy():
     assert isinstance(tree(np.zeros((FEW + 1, 3))), cKDTree)
 
 
+@pytest.mark.slow
 def test_a_small_scene_of_lines_compiles_without_scipy():
     code = (
         "import sys; from hookean import Scene; from hookean.system.system import compile\n"

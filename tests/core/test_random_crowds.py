@@ -251,6 +251,7 @@ def solved(spec: Spec) -> Result:
     return relax(Scene.read({**{k: v for k, v in spec.items() if k != "_m"}, "forces": forces, "meshes": given}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(COUNT))
 def test_an_evaluator_of_its_own_agrees_with_the_status(seed: int) -> None:
     """Converged is at rest in every part, and none adrift; what is at rest is called so, unless iterations, accuracy or
@@ -267,6 +268,7 @@ def test_an_evaluator_of_its_own_agrees_with_the_status(seed: int) -> None:
         assert "Nothing supports" in found.message
 
 
+@pytest.mark.slow
 def test_the_evaluator_notices_what_is_not_at_rest() -> None:
     """Negative control: of 20 scenes at rest, one particle moved by a thousandth breaks the verdict."""
     seen = 0

@@ -197,6 +197,7 @@ def test_catenoids_near_the_last_one(half: float, start: str) -> None:
     assert slopes(errors) == pytest.approx([2], abs=0.3) and abs(errors[-1]) <= 2e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solver", ["auto", "relaxation"])
 @pytest.mark.parametrize("half", [0.7, 1.25])
 def test_rings_too_far_apart(half: float, solver: str) -> None:
