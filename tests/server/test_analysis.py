@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import io
 import json
+from pathlib import Path
 
 import ezdxf
 import httpx
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 import hookean
+from hookean.files.exchange.write import exchange
 from hookean.files.report import report
 from hookean_server.http.analysis_schemas import ANALYSIS_EXAMPLES, CASES_EXAMPLE, EXPORT_EXAMPLE, REPORT_EXAMPLE
 from hookean_server.workers.analysis_task import ANALYSES
@@ -134,8 +136,14 @@ def test_an_export_is_read_back_with_the_shape_of_its_case(client: httpx.Client)
     case = hookean.load_cases(hookean.Scene.read(EXPORT_EXAMPLE["scene"]), ["ULS 1"]).cases["ULS 1"].result
     wanted = sorted([tuple(case.particles[i]) for i in pair] for pair in ([0, 1], [1, 2]))
     np.testing.assert_allclose(found, wanted, atol=1e-6)
-    relaxed = client.post("/v1/analysis/export", json={"scene": EXPORT_EXAMPLE["scene"], "format": "compas.json"})
-    assert relaxed.status_code == 200 and relaxed.json()["dtype"].startswith("compas")
+
+
+@pytest.mark.parametrize("ending", ["vtu", "inp", "compas.json"])
+def test_an_export_is_the_file_that_python_writes(client: httpx.Client, ending: str, tmp_path: Path) -> None:
+    """To the byte; tests/files reads these back by meshio and compas."""
+    answer = client.post("/v1/analysis/export", json={"scene": EXPORT_EXAMPLE["scene"], "format": ending})
+    exchange(hookean.relax(hookean.Scene.read(EXPORT_EXAMPLE["scene"])), tmp_path / f"result.{ending}")
+    assert answer.status_code == 200 and answer.content == (tmp_path / f"result.{ending}").read_bytes()
 
 
 @pytest.mark.parametrize(
