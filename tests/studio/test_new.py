@@ -41,7 +41,7 @@ def test_a_model_is_made_and_solved(studio: Studio, name: str, typed: dict[str, 
 
 
 def test_parameters_are_changed_undone_and_refused_after_a_pin(studio: Studio):
-    """The number of faces makes the model anew with (n + 1)^2 particles; a pin forbids it until it is undone."""
+    """The number of faces makes the model again with (n + 1)^2 particles; a pin forbids it until it is undone."""
     page, service = studio.page, studio.service
     made = service.client.post("/v1/sessions", json=family("grid", across=4, along=4).model_dump(mode="json")).json()
     studio.open(made["key"])

@@ -18,10 +18,11 @@ from hookean.designing.resting import resting
 from hookean.forces.base import lengths
 from hookean.running.result import Result
 from hookean.running.run import relax_state
+from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.system.group import Group
 from hookean.system.state import State
-from hookean.system.system import System
+from hookean.system.system import Held, System
 
 Floats = NDArray[np.float64]
 
@@ -318,3 +319,15 @@ def _moved(system: System, group: Group, state: State, memory: Floats, corner: i
     private[corner::arity, axis] += step
     alone = replace(group.block, indices=np.arange(count * arity, dtype=np.int64).reshape(count, arity), plan=[])
     return system.element_forces(Group(group.cls, alone, []), replace(state, x=private), memory)
+
+
+def as_held(scene: Scene, held: list[Held]) -> Scene:
+    """A scene with these anchors where they are held."""
+    anchors = list(scene.anchors)
+    for anchor in held:
+        if anchor.number >= 0:
+            old = anchors[anchor.number]
+            given = old.particles if old.points is None else old.points
+            if given is not None and len(given) == len(anchor.targets):
+                anchors[anchor.number] = old.replaced(targets=anchor.targets)
+    return scene.replaced(anchors=tuple(anchors))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.columns import AXES, Column, Entries, shape_of, tied
-from hookean.designing.equilibrium import Equilibrium
+from hookean.designing.equilibrium import Equilibrium, as_held
 from hookean.designing.problem import Problem, Variable
 from hookean.errors import InputError
 from hookean.forces.base import Block, Force
@@ -170,18 +170,6 @@ class Unknowns:
             return coo_matrix((values, (rows, columns)), shape=shape).tocsc()
 
         return matrix(pushes), matrix(moves)
-
-
-def as_held(scene: Scene, held: list[Held]) -> Scene:
-    """A scene with these anchors where they are held."""
-    anchors = list(scene.anchors)
-    for anchor in held:
-        if anchor.number >= 0:
-            old = anchors[anchor.number]
-            given = old.particles if old.points is None else old.points
-            if given is not None and len(given) == len(anchor.targets):
-                anchors[anchor.number] = old.replaced(targets=anchor.targets)
-    return scene.replaced(anchors=tuple(anchors))
 
 
 def _led(variable: Moved) -> tuple[Ints, Ints, Floats]:

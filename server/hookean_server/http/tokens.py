@@ -91,8 +91,8 @@ class Tokens:
 
     @property
     def frame(self) -> str:
-        """What an address of the page has by which a client with the token lets pages of this machine show it in a
-        frame. It opens nothing: who is in the frame logs in there."""
+        """What an address of the page has by which a client with the token allows pages of this machine to show it in
+        a frame. It opens nothing: who is in the frame logs in there."""
         return self._mac("frame", "page")
 
     # codes

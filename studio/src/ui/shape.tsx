@@ -1,4 +1,4 @@
-// The parameters of the family that a model was made from. Each change makes the model anew and can be undone.
+// The parameters of the family that a model was made from. Each change makes the model again and can be undone.
 import { useEffect } from "preact/hooks";
 import type { Session } from "../session";
 import { Choice } from "./choice";
@@ -48,7 +48,7 @@ export function Shape({ session }: { session: Session }) {
           />
         );
       })}
-      <p class="note">A change makes the model anew. Values and loads on the whole net stay; pins have to be undone.</p>
+      <p class="note">A change makes the model again. Values and loads on the whole net stay; pins have to be undone.</p>
     </fieldset>
   );
 }

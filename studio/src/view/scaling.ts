@@ -15,7 +15,7 @@ export class Scaling {
   private scale: Scale = { kind: "auto", low: null, high: null };
   private outliers = 0;
 
-  /** Take another choice; numbers are judged anew. */
+  /** Take another choice; numbers are judged again. */
   choose(scale: Scale): void {
     this.scale = scale;
     this.forget();

@@ -35,20 +35,18 @@ class BucklingFactor(Quantity):
 
     def values(self, found: Equilibrium, pointer: str) -> Floats:
         """The factor."""
-        from hookean.designing.unknowns import as_held
+        from hookean.designing.equilibrium import as_held
 
         return np.array([self._factor(as_held(found.system.scene, found.system.held), pointer)])
 
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """Differences."""
-        from hookean.designing.unknowns import Unknowns
-
         if unknowns.count > UNKNOWNS:
             said = f"{unknowns.count} unknowns vary; buckling factors allow {UNKNOWNS}: tie elements to groups"
             raise InputError(pointer, said)
         scene = unknowns.scene(found.system.scene)
         system = compile(scene)
-        own = Unknowns(unknowns.problem.replaced(scene=scene), system)
+        own = type(unknowns)(unknowns.problem.replaced(scene=scene), system)
         state, by = system.start(), np.zeros(unknowns.count)
         for i, step in enumerate(STEP * own.scale):
             ways = (-1.0, 1.0) if own.start[i] - step >= own.lower[i] else (0.0, 1.0)
