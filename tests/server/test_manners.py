@@ -89,7 +89,7 @@ def test_allow_lists_every_method_and_no_other(served: Served, known: dict[str, 
     Oracle: the methods of the description's paths."""
     path = filled(template, known)
     methods = {m.upper() for m in DOCUMENT["paths"].get(template, {"get": {}})}
-    methods = {"POST"} if path == "/v1/discretize/busy" else methods
+    methods = {"POST"} if path in ("/v1/discretize/busy", "/v1/families/busy") else methods
     wanted = sorted(methods | ({"HEAD"} if "GET" in methods else set()))
     refused = served.client.request("BREW", path)
     problem(refused, 405, "method-not-allowed")

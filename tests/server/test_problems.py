@@ -11,6 +11,7 @@ from typing import Any
 import httpx
 import pytest
 
+from hookean.scene.families import FAMILIES
 from hookean_server.app import create_app
 from hookean_server.problems import CATALOGUE
 from hookean_server.settings import Settings
@@ -33,12 +34,14 @@ PATHS = {
     "/v1/examples": "GET",
     "/v1/examples/9.4-cable/picture": "GET",
     "/v1/examples/9.4-cable/scene": "GET",
+    "/v1/families": "GET",
     "/problems/busy": "GET",
     "/v1/openapi.json": "GET",
     "/metrics": "GET",
     "/": "GET",
     "/{function}": "GET",
     **{f"/v1/discretize/{name}": "POST" for name in OPERATIONS},
+    **{f"/v1/families/{name}": "POST" for name in FAMILIES},
     **{f"/v1/analysis/{name}": "POST" for name in (*ANALYSES, "load-cases", "report", "export")},
 }
 METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE")
