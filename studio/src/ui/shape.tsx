@@ -48,7 +48,7 @@ export function Shape({ session }: { session: Session }) {
           />
         );
       })}
-      <p class="note">A change makes the model again. Values and loads on the whole net stay; pins have to be undone.</p>
+      <p class="note">A change makes the model again. Values and loads on the whole net stay; undo pins first.</p>
     </fieldset>
   );
 }
