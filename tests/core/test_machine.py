@@ -71,8 +71,9 @@ def folder(stored: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(stored, tmp_path / "code"))
 
 
-def test_a_constant_compiles_no_code_of_its_own() -> None:
-    """Whole numbers have one code, written as a constant or given."""
+def test_a_constant_compiles_no_code_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whole numbers have one code, written as a constant or given; nothing is on the disk before."""
+    monkeypatch.setattr(dispatch, "cache_folder", lambda function: tmp_path)
     assert dispatch.dispatcher(after_seven)(4) == 13
     assert len(dispatch.dispatcher(next_one).overloads) == 1
 
