@@ -19,6 +19,7 @@ class Evaluated:
     loads: np.ndarray
     free: np.ndarray
     element_sizes: np.ndarray
+    moved: np.ndarray  # whether an element has a particle that can move
     slack: int
     cut: int
     yielded: int
@@ -30,17 +31,17 @@ class Evaluated:
 
     @property
     def scale(self) -> float:
-        """Mean load on loaded free particles, or the mean size of the element forces."""
+        """Mean load on loaded free particles, or the mean force of the elements that have a particle that can move."""
         sizes = np.linalg.norm(self.loads * self.free, axis=1)
         loaded = sizes > 0
-        return float(sizes[loaded].mean() if loaded.any() else self.element_sizes.mean())
+        return float(sizes[loaded].mean() if loaded.any() else self.element_sizes[self.moved].mean())
 
 
 def evaluate(spec: Spec, x: np.ndarray) -> Evaluated:
     """Forces at positions `x` (n, 3) of a scene of springs, hinges, loads and anchor springs, never yielded before."""
     start = np.asarray(spec["particles"], float)
     internal, soft, loads = (np.zeros_like(x) for _ in range(3))
-    sizes, counts = [np.zeros(0)], np.zeros(3, int)
+    sizes, ends, counts = [np.zeros(0)], [], np.zeros(3, int)
     for force in spec["forces"]:
         if force["kind"] == "springs":
             tension, direction, seen = _tension(force, start, x)
@@ -48,6 +49,7 @@ def evaluate(spec: Spec, x: np.ndarray) -> Evaluated:
             np.add.at(internal, force["particles"][:, 0], pull)
             np.add.at(internal, force["particles"][:, 1], -pull)
             sizes.append(np.abs(tension))
+            ends += list(force["particles"])
             counts += seen
         elif force["kind"] == "unary":
             np.add.at(loads, force["particles"], np.broadcast_to(force["vector"], (len(force["particles"]), 3)))
@@ -57,10 +59,12 @@ def evaluate(spec: Spec, x: np.ndarray) -> Evaluated:
             away = force["targets"] - x[force["particles"]]
             np.add.at(soft, force["particles"], force["strength"][:, None] * away)
             sizes.append(force["strength"] * np.linalg.norm(away, axis=1))
+            ends += [[i] for i in force["particles"]]
         elif force["kind"] == "hinge":
             pushes = _bending(force, start, x)
             np.add.at(internal, force["particles"], pushes)
             sizes.append(np.linalg.norm(pushes, axis=2).max(axis=1))
+            ends += list(force["particles"])
         else:
             raise KeyError(force["kind"])
     free = np.ones_like(x)
@@ -68,7 +72,8 @@ def evaluate(spec: Spec, x: np.ndarray) -> Evaluated:
         for axis in anchor.get("axes", "xyz"):
             free[np.asarray(anchor["particles"]), "xyz".index(axis)] = 0.0
     slack, cut, yielded = (int(c) for c in counts)
-    return Evaluated(internal, soft, loads, free, np.concatenate(sizes), slack, cut, yielded)
+    moved = np.array([free[at].any() for at in ends], dtype=bool)
+    return Evaluated(internal, soft, loads, free, np.concatenate(sizes), moved, slack, cut, yielded)
 
 
 def _tension(force: Spec, start: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
