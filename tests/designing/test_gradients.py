@@ -54,9 +54,9 @@ def difference(given: Problem, start: np.ndarray, lower: np.ndarray, unknown: in
 def test_the_adjoint_is_the_difference_of_whole_solves(kind: str) -> None:
     """dg/du = y . df/du with K y = dg/dx, for every force by its columns: the column and element of the largest
     derivative, and a random one. Differences of order 4 with steps of 1e-3 leave 1e-9 or less of smooth functions;
-    forces whose tangent is itself a difference add 1e-7 (see `Force.blur`): 1e-6 of the largest derivative. Where there
-    is a kink within such a step, there is none within a shorter one, or it is reported. Values are rounded to 1e-15 of
-    their sum, and of shapes to 1e-12 of the residual: by the step 1e-14 of them."""
+    forces whose tangent is itself a difference add 1e-7 (see `Force.blur`): 1e-6 of the largest derivative. A kink
+    within such a step lies outside a shorter one, or is reported. Values are rounded to 1e-15 of their sum, and of
+    shapes to 1e-12 of the residual: by the step 1e-14 of them."""
     for seed in SEEDS:
         rng = np.random.default_rng(seed)
         fields = [name for name in columns(KINDS[kind].example()[0]) if varies(kind, name)]

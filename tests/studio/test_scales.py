@@ -1,4 +1,4 @@
-"""Scales of colours: typed ends, symmetric, logarithmic; colours that are told apart by any eyes; what is picked stands
+"""Scales of colours: typed ends, symmetric, logarithmic; colours that differ for all kinds of eyes; what is picked stands
 out from all of them; guides are drawn."""
 
 from __future__ import annotations

@@ -293,7 +293,7 @@ class Simulation:
         return self.state.revision
 
     def redo(self) -> int:
-        """Redo the last undone edit; InputError if there is none."""
+        """Redo the last undone edit. Raises InputError if no edit was undone."""
         self._changed(lambda: self._put(self.history.redo(Setup.of(self.system))))
         return self.state.revision
 

@@ -56,7 +56,7 @@ def _started() -> Found:
 
 
 def _open(found: Found, page: Page) -> None:
-    """Open a browser on it; where there is none, print the address."""
+    """Open a browser on it, or print the address if this machine has no browser."""
     try:
         if open_page(found, f"&s={quote(page.key)}"):
             return

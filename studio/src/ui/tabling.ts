@@ -9,7 +9,7 @@ export interface Column {
   name: string;
   /** "" for none. */
   unit: string;
-  /** One number for each row; NaN where there is none. */
+  /** One number for each row; NaN for a row without a value. */
   values: ArrayLike<number>;
   /** Whether a sum means something. */
   adds?: boolean;
@@ -102,7 +102,7 @@ export interface Bin {
   places: number[];
 }
 
-/** The rows of a column in `count` ranges as wide as each other; one where all are equal, none where there are none. */
+/** The rows of a column in `count` ranges of equal width; one range if all values are equal, no range without rows. */
 export function bins(values: ArrayLike<number>, count: number): Bin[] {
   const known = Array.from(values).filter(Number.isFinite);
   if (!known.length) return [];

@@ -9,7 +9,7 @@ import type { Picked } from "./types";
 export class Highlights {
   private readonly marked: Marks;
   private readonly picked: Marks;
-  /** Light and dark below the colour of what is picked: told apart from any colour of a spring. */
+  /** Light and dark below the colour of what is picked: it differs from any colour of a spring. */
   private readonly rim: Marks;
   private readonly casing: Segments[];
   private readonly hovered: Marks;
