@@ -1,5 +1,5 @@
-"""Scales of colours: typed ends, symmetric, logarithmic; colours that differ for all kinds of eyes; what is picked stands
-out from all of them; guides are drawn."""
+"""Scales of colours: typed ends, symmetric, logarithmic; colours that differ for all kinds of eyes; what is picked
+stands out from all of them; guides are drawn."""
 
 from __future__ import annotations
 
