@@ -255,16 +255,18 @@ def gather(
         energy[kind] = energy.get(kind, 0.0) + float(value)
     energy["kinetic"] = kinetic(system, state) if moving else 0.0
     energy["total"] = sum(energy.values())
+    memories = zip(system.groups, state.memory, strict=True)
+    acting = [system.element_forces(group, state, memory) for group, memory in memories]
     return Result(
         status=status,
         message=message,
         particles=state.x[: system.slots.count].copy(),
         geometry=carried(system, state),
-        forces=_measures(system, state),
+        forces=_measures(system, state, acting),
         reactions=_reactions(system, state, found),
         rotations={"particles": system.slots.particles.copy(), "quaternions": system.slots.quaternions(state.x)},
         contacts=_contacts(found),
-        loads=applied(system, state),
+        loads=applied(system, state, acting),
         components=_components(found, rest),
         residual=found.residual,
         rounding_floor=found.floor,
@@ -314,11 +316,10 @@ def carried(system: System, state: State) -> list[dict[str, Any]]:
     return moved
 
 
-def _measures(system: System, state: State) -> list[dict[str, Any]]:
-    """Columns of every force of the scene, in its order; a floor has none."""
+def _measures(system: System, state: State, acting: list[Floats]) -> list[dict[str, Any]]:
+    """Columns of every force of the scene, in its order, by the element forces of every group; a floor has none."""
     entries: list[dict[str, Any]] = [{"kind": f.kind_name, "name": f.name} for f in system.scene.forces]
-    for group, memory in zip(system.groups, state.memory, strict=True):
-        forces = system.element_forces(group, state, memory)
+    for group, memory, forces in zip(system.groups, state.memory, acting, strict=True):
         for part in group.parts:
             block = group.of(part)
             block.memory = memory[part.rows]

@@ -19,6 +19,7 @@ BEGIN = 60  # factors of 4 between tensions that all springs could share
 HALVES = 10  # of a step
 POLISH = 4
 ROUNDING = 1e-15  # of the largest coordinate
+SAFE = 0.5  # of the goal: where rounding is as large as that, it is less at particles with small coordinates
 
 
 def begin(x, q, gap, ends, k, rest, ground, pull, first, starts, tension):  # type: ignore[no-untyped-def]
@@ -233,7 +234,8 @@ def polish(x, ends, k, rest, ground, pull, first, starts, tangent, goal, fine, s
             for c in range(3):
                 step[i, c] = next_step[3 * i + c]
                 largest = max(largest, abs(step[i, c]))
-        if worst <= goal and (largest <= fine or tried == POLISH) or (worst < np.inf and largest <= ROUNDING * reach):
+        enough = worst <= SAFE * goal and largest <= fine or worst <= goal and tried == POLISH
+        if enough or (worst < np.inf and largest <= ROUNDING * reach):
             return True
         if tried < POLISH:
             for i in range(free):

@@ -89,7 +89,7 @@ def groups_of(given: list[tuple[int, Force]], welded: Welded) -> tuple[list[Grou
         joined = {cls: [fitted(slots, cls, member) for member in found] for cls, found in joined.items()}
     for cls, found in list(joined.items()):
         if cls.rider is not None:
-            riding = [ride(slots, cls.rider, member) for member in found]
+            riding = [ride(slots, cls.rider, member) for member in found if len(slots) or not alone(cls.rider, member)]
             joined[cls.rider] = [member for member in riding if len(member[2].indices)]
     return *_joined({cls: found for cls, found in joined.items() if found}), slots
 
@@ -98,6 +98,11 @@ def fitted(slots: Slots, cls: type[Force], member: Member) -> Member:
     """The elements of a force with their slots."""
     number, force, block, inputs = member
     return number, force, slots.fitted(cls, block), inputs
+
+
+def alone(rider: type[Rider], member: Member) -> bool:
+    """Whether the elements of a force need none of its rider where no particle has an orientation."""
+    return not rider.missing(member[1], member[2])
 
 
 def ride(slots: Slots, rider: type[Rider], member: Member) -> Member:

@@ -100,7 +100,7 @@ class Slots:
 
     def quaternions(self, x: Floats) -> Floats:
         """Unit quaternions w, x, y, z (r, 4) of the orientations in folded rows, turned from the start."""
-        return quaternions(x[self.references] / self.lengths[:, None])
+        return quaternions(x[self.references] / self.lengths[:, None]) if len(self) else np.zeros((0, 4))
 
     def put(self, state: State, particles: Floats, quaternions: Floats) -> None:
         """Give a state positions (n, 3) [length] and orientations (r, 4) w, x, y, z, as results have them."""
