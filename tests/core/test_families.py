@@ -38,6 +38,15 @@ def test_a_family_remembers_its_parameters_and_rests(name: str) -> None:
     assert relax(scene).status == "converged"
 
 
+@pytest.mark.parametrize("name", ["grid", "saddle", "vault", "gridshell"])
+def test_a_family_as_small_as_its_bounds_allow_stays_whole(name: str) -> None:
+    """A net 0.01 m wide has points 2.5 mm or less apart: no two become one particle, and it comes to rest."""
+    sizes = {key: 0.01 for key in ("width", "depth", "rise") if key in FAMILIES[name].model.model_fields}
+    result = relax(family(name, across=20, along=20, **sizes))
+    assert len(result.particles) == 21 * 21
+    assert result.status == "converged", result.message
+
+
 def test_every_parameter_is_described_with_its_unit_and_has_a_default() -> None:
     for entry in families():
         assert entry["summary"].endswith(".")

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, get_type_hints
 
+import numpy as np
 from pydantic import create_model
 
 from hookean.errors import InputError
@@ -24,6 +25,10 @@ from hookean.scene.families import films, nets, prisms, shells
 from hookean.scene.scene import Origin, Scene
 from hookean.values.columns import Model
 from hookean.values.units import Units
+
+
+WELDS = 0.1  # of the least distance between points: nearer ones become one particle
+ROUNDING = 1e-9  # of the size
 
 
 @dataclass(frozen=True)
@@ -62,7 +67,19 @@ class Family:
         """The scene of these parameters, others at their defaults. InputError for what is not allowed."""
         given = dict(self.model.read(dict(parameters)))
         made = self.make(**given)
-        return made.replaced(units=units, family=Origin(name=self.name, parameters=given))
+        weld = min(made.weld_tolerance, WELDS * _spacing(made))
+        return made.replaced(units=units, weld_tolerance=weld, family=Origin(name=self.name, parameters=given))
+
+
+def _spacing(scene: Scene) -> float:
+    """The least distance [length] between points of a scene, but for those that rounding puts apart; infinite where
+    there is none."""
+    from scipy.spatial import cKDTree
+
+    points = np.concatenate([scene.particles, *(mesh.vertices for mesh in scene.meshes.values())])
+    nearest = cKDTree(np.unique(points, axis=0)).query(points, k=3)[0][:, 1:]
+    apart = nearest[np.isfinite(nearest) & (nearest > ROUNDING * np.ptp(points, axis=0).max())]
+    return float(apart.min(initial=np.inf))
 
 
 _ALL: tuple[Callable[..., Scene], ...] = (
