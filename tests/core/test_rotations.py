@@ -45,6 +45,14 @@ def test_folding_is_the_product_of_both_rotations() -> None:
     assert (x == before[0]).all() and (v == before[1]).all()
 
 
+def test_a_slot_has_the_radius_of_gyration_of_the_elements_there() -> None:
+    """l / sqrt(12) of a rod of length l about its middle, l the mean of the elements at the particle."""
+    size = np.linalg.norm(np.diff(KINKED, axis=0), axis=1)
+    mean = np.array([size[0], (size[0] + size[1]) / 2.0, (size[1] + size[2]) / 2.0, size[2]])
+    slots = compile(scene(KINKED, [row(3, STIFF)], [CLAMP])).slots
+    assert slots.lengths == pytest.approx(mean / np.sqrt(12.0), rel=1e-12)
+
+
 def moving(solver: str, step: float, anchors: list[Any]) -> Simulation:
     """Three beams that spin and bend, without drag."""
     velocities = np.cross([2.0, 1.0, 3.0], KINKED) + np.sin(np.arange(12.0)).reshape(4, 3)

@@ -223,6 +223,7 @@ def test_units_are_what_they_are_by_definition():
         ("mass", 1, -1, 2), ("moment", 1, 1, 0), ("energy", 1, 1, 0), ("stiffness", 1, -1, 0),
         ("force/length", 1, -1, 0), ("force length", 1, 1, 0), ("force length^2", 1, 2, 0),
         ("force time/length", 1, -1, 1), ("length/time", 0, 1, -1), ("length^2", 0, 2, 0), ("force/length^2", 1, -2, 0),
+        ("force/length^3", 1, -3, 0),
     ],
 )  # fmt: skip
 def test_a_number_changes_its_units_by_the_powers_of_its_dimension(dimension: str, force: int, length: int, time: int):
