@@ -8,7 +8,7 @@ model. The time of hookean includes all of `relax`: its own checks and the compi
 clocks of the other solvers are stopped while their residual is computed. Imports and the first (compiling) call are not
 timed. `work` is in passes over all springs: the number that the solver reports, otherwise its iterations. `times as
 fast` compares medians with numba-dr, a hand-written dynamic relaxation with kinetic damping. Peak memory is that of a
-process that does nothing else. A run marked missed ran out of time.
+process that does nothing else. A run marked missed ran out of time or, of Kratos, has another law of springs.
 """
 
 from __future__ import annotations

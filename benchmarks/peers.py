@@ -331,11 +331,19 @@ def shared_dr(folder: Path) -> Peer:
     return run
 
 
+def kratos(p: Problem, target: float, most: float) -> Run:
+    """Kratos Multiphysics, see kratos.py."""
+    from kratos import kratos as run
+
+    return run(p, target, most)
+
+
 PACKAGES: dict[str, tuple[str, Peer]] = {
     "ShapeOp": ("compas_shapeop", shapeop),
     "compas_dr": ("compas_dr", compas_dr),
     "compas_fd": ("compas_fd", compas_fd),
     "jax_fdm": ("jax_fdm", jax_fdm),
+    "Kratos": ("KratosMultiphysics", kratos),
 }
 
 
