@@ -74,6 +74,21 @@ def test_a_column_beyond_its_critical_load_buckles(part: float, solver: str) -> 
         assert expected == pytest.approx(0.0283, abs=1e-4)
 
 
+@pytest.mark.parametrize("light", [1e-6, 1e-10, 1e-12])
+def test_an_unstable_column_is_left_beside_one_that_is_so_stiff_that_its_energy_hides_the_other(light: float) -> None:
+    """A column of EI `light` under twice its critical load buckles as the shooting says, beside one of EI 1 at rest."""
+    n, heavy, small = 10, column(10, 0.5), column(10, 2.0)
+    for force, name in zip(small["forces"], ("stiffness", "stiffness", "vector"), strict=True):
+        force[name] = (light * np.asarray(force[name])).tolist()
+    for part in (*small["forces"], *small["anchors"]):
+        part["particles"] = (np.asarray(part["particles"]) + n + 1).tolist()
+    x = np.vstack([heavy["particles"], small["particles"] + [0.0, 5.0, 0.0]])
+    found = relax(Scene.read({key: heavy[key] + small[key] for key in ("forces", "anchors")} | {"particles": x}))
+    assert (found.status, found.stability) == ("converged", "stable"), found.message
+    height = np.abs(found.particles[n + 1 :, 1] - 5.0).max()
+    assert height == pytest.approx(np.abs(buckled(n, 2.0)), rel=1e-3)
+
+
 def test_an_unstable_column_is_kept_where_that_is_asked_for() -> None:
     found = relax(Scene.read(column(20, 2.0, allow_unstable=True)))
     assert found.converged and found.stability == "unstable"

@@ -12,7 +12,7 @@ from hookean.forces.base import Block, Floats, Force, OnFilm, Places
 from hookean.forces.elastic import area
 from hookean.forces.soapfilm import halves
 from hookean.forces.unary import unary_kernel
-from hookean.values.columns import IndexRows, Lines, Points, Reals, Vector, fault
+from hookean.values.columns import LARGEST, IndexRows, Lines, Points, Reals, Vector, fault
 from hookean.values.fields import Field, Maybe
 from hookean.values.materials import gravity
 
@@ -34,7 +34,9 @@ class SelfWeight(Force):
     points: Maybe[Points] = Field(default=None, description="Coordinates of particles")
     lines: Maybe[Lines] = Field(default=None, description="Straight lines, for a weight per length")
     mesh: str | None = Field(default=None, description="Name of a mesh: its vertices, or its edges")
-    total: float | None = Field(default=None, description="Total weight [force], shared equally")
+    total: float | None = Field(
+        default=None, ge=-LARGEST, le=LARGEST, description="Total weight [force], shared equally"
+    )
     per_length: Maybe[Reals] = Field(default=None, description="Weight per length [force/length]")
     material: str | None = Field(default=None, description="Name of a material that has the weight")
     section: str | None = Field(default=None, description="Name of a section, of a material along lines")

@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 
 NAME = "utilisation"
 """The column of results that has it."""
+LEAST = 1e-250  # strength [force] below which a force by it may have no value in float64
 
 
 def dimensions(kind: str) -> dict[str, str]:
@@ -48,7 +49,7 @@ def _strength(force: Any, places: Places) -> float | None:
 
 def _lines(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
     whole = breaking_force(force, places)
-    return None if whole is None else np.asarray(np.abs(columns["force"]) / whole)
+    return None if whole is None else np.asarray(np.abs(columns["force"]) / np.maximum(whole, LEAST))
 
 
 def _beams(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:

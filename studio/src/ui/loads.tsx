@@ -3,8 +3,9 @@ import { useSignal } from "@preact/signals";
 import type { Patch, Scene, SceneForce, Topology } from "../model";
 import type { Session } from "../session";
 import { amount, isValue } from "./amounts";
+import { kinds } from "./catalogue";
 import { refuse, tell } from "./notices";
-import { measured } from "./words";
+import { counted, measured } from "./words";
 
 export function AddLoad({ session }: { session: Session }) {
   const { busy, make } = useEdit(session);
@@ -28,6 +29,12 @@ export function AddLoad({ session }: { session: Session }) {
     const force = { kind: "self_weight", name: freeName(scene, "self weight"), total };
     void add(force, `Self weight of ${measured(total, unit)} in total acts on all particles.`);
   };
+  const turned = mirrored(scene);
+  const turn = () =>
+    make(
+      { forces: turned },
+      `${counted(Object.keys(turned).length, "load")} turned over: what pulled down pushes up. Solve finds the form.`,
+    );
   const disabled = busy || session.connection.value !== "live";
   return (
     <div class="row">
@@ -39,8 +46,36 @@ export function AddLoad({ session }: { session: Session }) {
           Add self weight
         </button>
       )}
+      {Object.keys(turned).length > 0 && (
+        <button
+          type="button"
+          disabled={disabled}
+          title="Mirror all loads in a horizontal plane: a net that hangs becomes the vault of the same forces"
+          onClick={() => void turn()}
+        >
+          Turn the loads over
+        </button>
+      )}
     </div>
   );
+}
+
+const TURNED = ["vector", "direction"];
+
+/** Loads of a scene mirrored in a horizontal plane, by force and column: those that have a part along z. */
+function mirrored(scene: Scene): Record<string, Record<string, unknown>> {
+  const flip = (row: number[]) => [row[0], row[1], row[2] && -row[2]];
+  const found: Record<string, Record<string, unknown>> = {};
+  scene.forces.forEach((force, number) => {
+    if (kinds.value?.get(force.kind)?.role !== "load") return;
+    for (const name of TURNED) {
+      const rows = force[name];
+      if (!isValue(rows) || typeof rows === "number") continue;
+      const turned = Array.isArray(rows[0]) ? (rows as number[][]).map(flip) : flip(rows as number[]);
+      if (JSON.stringify(turned) !== JSON.stringify(rows)) (found[String(number)] ??= {})[name] = turned;
+    }
+  });
+  return found;
 }
 
 /** Removes a force of the scene. */

@@ -26,7 +26,6 @@ from hookean.scene.scene import Origin, Scene
 from hookean.values.columns import Model
 from hookean.values.units import Units
 
-
 WELDS = 0.1  # of the least distance between points: nearer ones become one particle
 ROUNDING = 1e-9  # of the size
 
