@@ -62,6 +62,10 @@ export const edit = (key: string, patch: Patch) => send<Summary>("PATCH", at(key
 /** A new session of a scene. */
 export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1/sessions${labelled(label)}`, scene);
 
+/** Another session that goes on from where one is, paused. */
+export const branch = async (key: string, label: string) =>
+  (await (await ask(`${at(key)}/branches${labelled(label)}`, { method: "POST" })).json()) as Summary;
+
 /** Families of scenes, each with its parameters. */
 export const families = async () => (await read<{ families: Family[] }>("/v1/families")).families;
 

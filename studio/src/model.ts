@@ -93,6 +93,10 @@ export interface Result {
   forces: ({ kind: string; name: string } & Record<string, unknown>)[];
   reactions: { particles: number[]; force: Point[]; names: string[] };
   energy: Record<string, number>;
+  /** [-] */
+  residual: number;
+  /** The largest force on a free particle that nothing balances [force]. */
+  out_of_balance: number;
   stability: string;
   /** A sentence; "" for none. */
   stability_reason: string;

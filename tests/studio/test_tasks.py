@@ -138,3 +138,44 @@ def test_a_film_is_pulled_to_its_collapse_and_back(studio: Studio):
     tasks.pulled(studio, "-3")
     tasks.solved(studio)
     same_film(studio, key, truth, 5.0)
+
+
+def measures(result: Result) -> dict[str, float | str]:
+    """What the table of differences has of a result, with its units."""
+    reactions, force = np.asarray(result.reactions["force"]), forces(result)
+    return {
+        "Particles": len(result.particles),
+        "Springs": len(force),
+        "Highest particle, z [m]": result.particles[:, 2].max(),
+        "Lowest particle, z [m]": result.particles[:, 2].min(),
+        "Largest tension [kN]": force.max(),
+        "Largest compression [kN]": max(0.0, -force.min()),
+        "Largest reaction [kN]": np.linalg.norm(reactions, axis=1).max(),
+        "Sum of reactions, x [kN]": reactions[:, 0].sum(),
+        "Sum of reactions, y [kN]": reactions[:, 1].sum(),
+        "Sum of reactions, z [kN]": reactions[:, 2].sum(),
+        "Energy [kN·m]": result.energy["total"],
+        "Status": "converged",
+        "Stability": "stable",
+    }
+
+
+def test_two_variants_are_compared(studio: Studio):
+    """The table of differences has the numbers of the Python API for a saddle 4 m high, for its variant of 2 m, and
+    what the second has more, to the four digits shown; sums that cancel are nothing beside the largest reaction."""
+    tasks.variants(studio, unseen)
+    high, low = (
+        measures(relax(family("saddle", {"force": "kN"}, across=8, along=8, rise=rise))) for rise in (4.0, 2.0)
+    )
+    table = studio.page.get_by_role("region", name="Table of differences").locator("tbody tr")
+    shown = [row.locator("th, td").all_inner_texts() for row in table.all()]
+    rows = {" ".join(cells[0].split()): [cell.strip() for cell in cells[1:]] for cells in shown}
+    assert {*high} < {*rows}
+    nothing = 1e-3 * float(high["Largest reaction [kN]"])
+    for name, a in high.items():
+        if isinstance(a, str):
+            assert rows[name] == [a, low[name], ""]
+            continue
+        b = float(low[name])
+        told = [float(cell.replace("−", "-")) for cell in rows[name]]
+        assert told == pytest.approx([a, b, b - a], rel=1e-3, abs=nothing), name

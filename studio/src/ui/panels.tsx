@@ -1,6 +1,7 @@
 // What is beside the canvas, or below it where the screen is narrow.
 import type { ComponentChildren } from "preact";
 import { Charts } from "./charts";
+import { Compare } from "./compare";
 import { Forces } from "./forces";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
@@ -33,6 +34,9 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="Tables" isClosed>
         <Tables studio={studio} />
+      </Panel>
+      <Panel name="Compare" isClosed>
+        <Compare studio={studio} />
       </Panel>
       <Panel name="Out">
         <OutPanel studio={studio} title={title} />

@@ -2,6 +2,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { expose } from "../automation";
 import { createView } from "../view/view";
+import { BesideCanvas } from "./beside";
 import { dark } from "./theme";
 import { Readout } from "./readout";
 import { Report } from "./report";
@@ -35,7 +36,7 @@ export function Stage({ studio }: { studio: Studio }) {
   }, [studio, now]);
   return (
     <>
-      <div class="drawing">
+      <div class={studio.beside.value ? "drawing paired" : "drawing"}>
         <canvas
           ref={canvas}
           tabIndex={0}
@@ -56,6 +57,7 @@ export function Stage({ studio }: { studio: Studio }) {
             The form is out of view: zoom to it
           </button>
         )}
+        <BesideCanvas studio={studio} />
         <Selecting studio={studio} />
         <Looks studio={studio} />
         <LegendBox studio={studio} />

@@ -2,6 +2,7 @@
 import { effect, type Signal, signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { Session } from "../session";
+import type { Variant } from "../variants";
 import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
@@ -25,6 +26,8 @@ export interface Studio {
   view: Signal<View | null>;
   readings: Readings;
   rested: Rested;
+  /** The variant on a canvas of its own; null for none. */
+  beside: Signal<Variant | null>;
 }
 
 export function SessionPage({ name }: { name: string }) {
@@ -42,7 +45,7 @@ export function SessionPage({ name }: { name: string }) {
     ];
     const readings = new Readings(session, chosen);
     const rested = new Rested(session);
-    setStudio({ session, options: chosen, view: signal(null), readings, rested });
+    setStudio({ session, options: chosen, view: signal(null), readings, rested, beside: signal(null) });
     const stop = sharing(session, chosen);
     return () => {
       stop();

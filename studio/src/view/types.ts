@@ -1,6 +1,8 @@
 // What the view shows and receives: signals that panels set and the view follows, and what it gives back.
 import { type Signal, signal } from "@preact/signals";
 import type { Point } from "../model";
+import type { Place } from "./camera";
+import type { Dress } from "./picture";
 
 export type Colouring = "force" | "strain" | "plain" | "given";
 export type Lock = "view" | "x" | "y" | "z" | "xy" | "xz" | "yz";
@@ -31,6 +33,12 @@ export interface Given {
   title: string;
   unit: string;
   values: Float32Array;
+}
+
+/** The lines of a variant: x y z of its particles [length], and pairs of these. */
+export interface Shadow {
+  positions: Float32Array;
+  ends: Int32Array;
 }
 
 /** Which number a colour stands for. */
@@ -64,6 +72,8 @@ export interface Options {
   /** Rest length of each spring [length], for strain; null: not known yet. */
   restLengths: Signal<Float32Array | null>;
   given: Signal<Given | null>;
+  /** A variant that is drawn over the form. */
+  ghost: Signal<Shadow | null>;
   dark: Signal<boolean>;
 }
 
@@ -87,6 +97,7 @@ export const options = (): Options => ({
   marked: signal<number[]>([]),
   restLengths: signal<Float32Array | null>(null),
   given: signal<Given | null>(null),
+  ghost: signal<Shadow | null>(null),
   dark: signal(false),
 });
 
@@ -128,6 +139,13 @@ export interface View {
   beyond(): number[];
   /** How it is looked at now: what a saved model keeps. */
   kept(): Kept;
+  /** From where it is looked at. */
+  place(): Place;
+  put(place: Place): void;
+  /** Called when that changes; returns how to stop it. */
+  onMoved(watcher: () => void): () => void;
+  /** Colours, layers and sizes as they are drawn. */
+  dressing(): Dress;
   /** What is seen now, in full quality. */
   png(): Promise<Blob>;
   /** Where a particle is drawn [CSS pixels of the page]; null behind the eye. */

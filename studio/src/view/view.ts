@@ -6,16 +6,17 @@ import type { Scene } from "../model";
 import type { Session } from "../session";
 import { note, stats } from "../stats";
 import { acting } from "./acting";
-import { Eye } from "./camera";
+import { Eye, type Place as From } from "./camera";
 import { Hand, type Held } from "./dragging";
 import { form } from "./form";
+import { Ghost } from "./ghost";
 import { Guide } from "./guide";
 import { Guides } from "./guides";
 import { Highlights } from "./highlights";
 import { Keys } from "./keys";
 import { numbers, remember, remembered } from "./memory";
 import { Picker } from "./picking";
-import { Picture } from "./picture";
+import { type Dress, Picture } from "./picture";
 import { Scaling } from "./scaling";
 import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
@@ -42,6 +43,8 @@ class Drawing implements View {
   private readonly highlights: Highlights;
   private readonly guide: Guide;
   private readonly guides: Guides;
+  private readonly ghost: Ghost;
+  private readonly watchers = new Set<() => void>();
   private readonly triad: Triad;
   private readonly hand: Hand;
   private readonly keys: Keys;
@@ -76,6 +79,7 @@ class Drawing implements View {
     this.highlights = new Highlights(this.stage);
     this.guide = new Guide(this.stage);
     this.guides = new Guides(this.stage);
+    this.ghost = new Ghost(this.stage);
     this.triad = new Triad(this.stage);
     this.hand = new Hand(this.handles());
     const say = (sentence: string) => (this.announcement.value = sentence);
@@ -85,11 +89,30 @@ class Drawing implements View {
   }
 
   fit(): void {
-    if (this.drawn) this.eye.fit(this.picture.body(this.drawn));
+    if (this.drawn) this.eye.fit(this.body(this.drawn));
   }
 
   look(from: Look): void {
-    if (this.drawn) this.eye.fit(this.picture.body(this.drawn), from);
+    if (this.drawn) this.eye.fit(this.body(this.drawn), from);
+  }
+
+  place(): From {
+    return this.eye.place;
+  }
+
+  put(place: From): void {
+    this.eye.put(place);
+  }
+
+  onMoved(watcher: () => void): () => void {
+    this.watchers.add(watcher);
+    return () => this.watchers.delete(watcher);
+  }
+
+  dressing(): Dress {
+    const { options, scale, eye, stage } = this;
+    const [colouring, layers, dark] = [options.colouring.value, options.layers.value, options.dark.value];
+    return { colouring, layers, dark, ramp: scale.coloured(dark), pixel: eye.pixel(stage.height) };
   }
 
   show(particles: number[]): void {
@@ -149,7 +172,8 @@ class Drawing implements View {
     clearTimeout(this.counting);
     clearTimeout(this.pacing);
     this.undo.reverse().forEach((undo) => undo());
-    for (const part of [this.hand, this.keys, this.guide, this.guides, this.triad, this.highlights]) part.dispose();
+    const { hand, keys, guide, guides, ghost, triad, highlights } = this;
+    for (const part of [hand, keys, guide, guides, ghost, triad, highlights]) part.dispose();
     this.eye.dispose();
     this.picture.dispose();
     this.stage.dispose();
@@ -164,6 +188,7 @@ class Drawing implements View {
     picture.bear(acting(topology, session.scene.peek()));
     picture.hold(session.anchors.peek());
     picture.know(options.restLengths.peek());
+    this.ghost.put(options.ghost.peek(), true);
     this.drawn = null;
     this.scale.forget();
     this.dressed = 0;
@@ -266,6 +291,11 @@ class Drawing implements View {
         this.ask();
       }),
       effect(() => {
+        this.ghost.put(options.ghost.value);
+        this.dressed = 0;
+        this.ask();
+      }),
+      effect(() => {
         void session.topology.value;
         this.highlights.pick(options.picked.value, picture.form);
         this.highlights.mark(options.marked.value, picture.form);
@@ -295,6 +325,7 @@ class Drawing implements View {
 
   private readonly moved = (): void => {
     if (!this.following) this.untouched = false;
+    this.watchers.forEach((watcher) => watcher());
     this.ask();
   };
 
@@ -387,6 +418,13 @@ class Drawing implements View {
     this.eye.fit(this.picture.body(frame));
   }
 
+  /** All that is to be seen, with a variant that is drawn over it. */
+  private body(frame: Frame): ArrayLike<number> {
+    const own = this.picture.body(frame);
+    const other = this.options.ghost.peek()?.positions;
+    return other ? [...Array.from(own), ...other] : own;
+  }
+
   private numbers(frame: Frame): ArrayLike<number> {
     const { restLengths, colouring, given } = this.options;
     if (colouring.value === "force") return frame.springForces;
@@ -411,7 +449,7 @@ class Drawing implements View {
 
   /** Colours and sizes, where they may have changed. */
   private dress(): void {
-    const { options, picture, eye, stage, scale } = this;
+    const { options, picture, eye, stage } = this;
     const pixel = eye.pixel(stage.height);
     this.highlights.hover(this.hand.hovered, picture.form);
     const { held } = this.hand;
@@ -419,16 +457,11 @@ class Drawing implements View {
     this.guide.show(this.hand.led, picture.size, options.dark.value);
     if (pixel === this.dressed) return;
     this.dressed = pixel;
-    picture.dress({
-      colouring: options.colouring.value,
-      layers: options.layers.value,
-      dark: options.dark.value,
-      ramp: scale.coloured(options.dark.value),
-      pixel,
-    });
+    picture.dress(this.dressing());
     picture.lay(floorOf(this.session.scene.value), options.layers.value.floor);
     this.guides.put(this.session.scene.value, picture.size);
     this.guides.dress(options.dark.value, options.layers.value.guides, picture.size);
+    this.ghost.dress(options.dark.value);
     this.highlights.dress(options.dark.value);
     this.triad.dress(options.dark.value);
   }
