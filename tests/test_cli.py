@@ -174,7 +174,7 @@ def test_no_equilibrium_exits_with_3_and_writes_the_last_shape(folder: Path) -> 
     (folder / "recipe.toml").write_text(CABLE + "[settings]\nmax_iterations = 1\n", encoding="utf-8")
     result = run("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml")
     assert result.exit_code == 3
-    assert "Not in equilibrium after 1 iterations" in result.stderr
+    assert "Not in equilibrium after 1 iteration:" in result.stderr
     assert "The last good shape was written to out.3dm." in result.stderr
     assert len(threedm.read(folder / "out.3dm").objects) > 1
 

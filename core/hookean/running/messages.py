@@ -24,25 +24,26 @@ def sentence(watch: Watch, system: System, status: Status) -> str:
     """The message of a run that ended with `status`."""
     found, unit = watch.found, system.scene.units.force
     left = f"residual {found.residual:.3g}, {found.out_of_balance:.3g} {unit} out of balance"
-    spent = watch.last - watch.first
+    count = watch.last - watch.first
+    spent = f"{count} iteration{'s' * (count != 1)}"
     if status is Status.CONVERGED:
         rounding = " (the rounding floor)" if found.residual > watch.settings.tolerance else ""
-        return f"In equilibrium after {spent} iterations: {left}{rounding}.{_caveat(system, watch.rest)}"
+        return f"In equilibrium after {spent}: {left}{rounding}.{_caveat(system, watch.rest)}"
     if status is Status.DIVERGED and watch.collapse:
-        return f"Collapsed after {spent} iterations; the last good shape is returned. {watch.collapse}."
+        return f"Collapsed after {spent}; the last good shape is returned. {watch.collapse}."
     if status is Status.DIVERGED:
-        where = f" after {spent} iterations at {watch.fault}" if watch.fault else ""  # a state taken up knows no more
+        where = f" after {spent} at {watch.fault}" if watch.fault else ""  # a state taken up knows no more
         return f"Diverged{where}; the last good shape is returned. {_advice(watch, system)}."
     if status is Status.STALLED:
         worst = system.slots.owner(found.worst)
-        return f"Stalled after {spent} iterations at particle {worst}: {left}. {_obstacle(watch, system)}."
+        return f"Stalled after {spent} at particle {worst}: {left}. {_obstacle(watch, system)}."
     if status is Status.CANCELLED:
-        return f"Cancelled after {spent} iterations: {left}."
+        return f"Cancelled after {spent}: {left}."
     if status is Status.TIME_LIMIT:
         most = f"{watch.settings.time_limit:g} s"
-        return f"Time limit ({most}) reached after {spent} iterations: {left}. Raise time_limit."
+        return f"Time limit ({most}) reached after {spent}: {left}. Raise time_limit."
     advice = _adrift(system, found) or "Raise max_iterations"
-    return f"Not in equilibrium after {spent} iterations: {left}. {advice}."
+    return f"Not in equilibrium after {spent}: {left}. {advice}."
 
 
 def _advice(watch: Watch, system: System) -> str:

@@ -27,7 +27,12 @@ function Other({ studio, variant, view, name }: { studio: Studio; variant: Varia
   useEffect(() => {
     if (!canvas.current) return;
     try {
-      return drawBeside(canvas.current, variant, view, studio.options);
+      const end = drawBeside(canvas.current, variant, view, studio.options);
+      const turn = requestAnimationFrame(() => view.fit()); // into half of the room
+      return () => {
+        cancelAnimationFrame(turn);
+        end();
+      };
     } catch (error) {
       setFault(`This browser cannot draw the variant: ${error instanceof Error ? error.message : String(error)}`);
       return;
