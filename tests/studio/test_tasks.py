@@ -119,8 +119,8 @@ def same_film(studio: Studio, key: str, truth: Result, height: float) -> None:
 
 
 def test_a_film_is_pulled_to_its_collapse_and_back(studio: Studio):
-    """At 5 m between the rings and at 6 m the film is the catenoid of the Python API. At 8 m, beyond 1.325 radii, there
-    is none (Goldschmidt, 1831), and the page reports the collapse. Back at 5 m it is the catenoid again."""
+    """At 5 m between the rings and at 6 m the film is the catenoid of the Python API. At 8 m, beyond 1.325 radii, no
+    film spans them (Goldschmidt, 1831), and the page reports the collapse. Back at 5 m it is the catenoid again."""
     key = tasks.film(studio, unseen)
     scene = family("catenoid", {"force": "kN"}, rays=24, rings=8)
     simulation = Simulation(scene)

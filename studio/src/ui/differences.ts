@@ -11,7 +11,7 @@ export interface Row {
   unit: string;
   /** Of the model that is shown, and of the variant; words where it is no number. */
   values: [number | string, number | string];
-  /** Of the variant to the model; null where there is none. */
+  /** Of the variant to the model; null if they are words. */
   difference: number | null;
 }
 

@@ -71,8 +71,8 @@ class Family:
 
 
 def _spacing(scene: Scene) -> float:
-    """The least distance [length] between points of a scene, but for those that rounding puts apart; infinite where
-    there is none."""
+    """The least distance [length] between points of a scene, but for those that rounding puts apart; infinite if all
+    points coincide."""
     from scipy.spatial import cKDTree
 
     points = np.concatenate([scene.particles, *(mesh.vertices for mesh in scene.meshes.values())])
