@@ -74,9 +74,12 @@ class Block:
         table = np.empty((len(index), len(names)))
         at = 0
         for column in values.values():
-            rows = column if column.ndim > 1 else column.reshape(-1, 1)
-            table[:, at : at + rows.shape[1]] = rows
-            at += rows.shape[1]
+            if column.ndim > 1:
+                table[:, at : at + column.shape[1]] = column
+                at += column.shape[1]
+            else:
+                table[:, at] = column
+                at += 1
         return cls(index, table, np.zeros((len(index), memory)), names)
 
     def some(self, rows: Ints | slice) -> Block:

@@ -64,8 +64,9 @@ class Moments(Rider):
     @classmethod
     def missing(cls, force: Any, block: Block) -> str:
         """A moment needs a rotation."""
-        turned = block.parameters[:, 3:6].any(axis=1)
-        return NONE.format(block.indices[np.argmax(turned), 0]) if turned.any() else ""
+        if not block.parameters[:, 3:6].any():
+            return ""
+        return NONE.format(block.indices[np.argmax(block.parameters[:, 3:6].any(axis=1)), 0])
 
     @classmethod
     def measured(cls, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:

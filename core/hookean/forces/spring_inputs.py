@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -42,14 +42,16 @@ def one_way(springs: Springs) -> None:
 def resolved(springs: Springs, places: Places, index: Ints) -> tuple[Floats, Floats]:
     """k [force/length] and the rest length [length], before the rest factor, of elements (m, 2); InputError where
     there is none."""
+    if springs.stiffness is not None and springs.rest_length is not None and springs.temperature is None:
+        return _each(springs.stiffness, len(index)), _each(springs.rest_length, len(index))
     start = lengths(places.x.take(index[:, 1], axis=0) - places.x.take(index[:, 0], axis=0))
     if springs.stiffness is not None:
-        k = np.broadcast_to(np.asarray(springs.stiffness, dtype=np.float64), start.shape)
+        k = _each(springs.stiffness, len(index))
         return k, _rest(springs, places, start, k, None)
     axial = springs.axial_stiffness
     if axial is None:
         axial = elastic.axial_stiffness(springs, places)
-    whole = np.broadcast_to(np.asarray(axial, dtype=np.float64), start.shape)
+    whole = _each(axial, len(index))
     rest = _rest(springs, places, start, None, whole)
     own = rest * springs.rest_factor
     none = np.flatnonzero(~(own > 0.0))
@@ -70,7 +72,13 @@ def _rest(springs: Springs, places: Places, start: Floats, k: Floats | None, axi
         if expansion is None:
             raise InputError("", f"{springs.material} has no thermal expansion; give its expansion")
         rest = rest * (1.0 + expansion * np.asarray(springs.temperature))
-    return np.asarray(np.broadcast_to(rest, start.shape))
+    return _each(rest, len(start))
+
+
+def _each(value: Any, count: int) -> Floats:
+    """One value, or one for each element, as one for each (count,)."""
+    values = np.asarray(value, dtype=np.float64)
+    return values if values.shape == (count,) else np.full(count, values)
 
 
 def _of_force(force: Floats, start: Floats, k: Floats | None, axial: Floats | None) -> Floats:

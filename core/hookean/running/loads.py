@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.forces.base import lengths
+from hookean.compiled import dispatch
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -25,7 +25,7 @@ def applied(system: System, state: State, element_forces: list[Floats]) -> dict[
         if group.cls.role != "load":
             continue
         for part in group.parts:
-            at = state.x[group.block.indices[part.rows]].reshape(-1, 3)
+            at = state.x.take(group.block.indices[part.rows].ravel(), axis=0)
             rows[part.number] = resultant(forces[part.rows].reshape(-1, 3), at)
     numbers = sorted(rows)
     found = [np.array([rows[number][i] for number in numbers]).reshape(-1, 3) for i in range(3)]
@@ -46,12 +46,32 @@ def resultant(forces: Floats, at: Floats) -> tuple[Floats, Floats, Floats]:
     The centre is the mean of the points by the part of each force along the resultant, through which that of parallel
     forces goes; where forces cancel out, the mean by their size.
     """
-    total = forces.sum(axis=0)
-    size = lengths(forces)
-    square, whole = float(total @ total), float(size.sum())
-    if not whole > 0.0:
-        return total, at.mean(axis=0) if len(at) else np.zeros(3), np.zeros(3)
-    share = forces @ total / square if square > (LEAST * whole) ** 2 else size / whole
-    centre = share @ at
-    turning = np.einsum("ni,nj->ij", at - centre, forces)  # its skew part is the moment; np.cross takes 30 us
-    return total, centre, (turning - turning.T)[[1, 2, 0], [2, 0, 1]]
+    found = np.empty((3, 3))
+    dispatch.compiled(together)(np.ascontiguousarray(forces), at, LEAST, found)
+    return found[0], found[1], found[2]
+
+
+def together(forces, at, least, found):  # type: ignore[no-untyped-def]
+    """Write the resultant, the centre and the moment about it."""
+    n, whole = len(forces), 0.0
+    found[:] = 0.0
+    total, centre, moment = found[0], found[1], found[2]
+    for i in range(n):
+        for c in range(3):
+            total[c] += forces[i, c]
+        whole += np.sqrt(forces[i, 0] ** 2 + forces[i, 1] ** 2 + forces[i, 2] ** 2)
+    square = total[0] ** 2 + total[1] ** 2 + total[2] ** 2
+    along = square > (least * whole) ** 2
+    for i in range(n):
+        share = 1.0 / n
+        if whole > 0.0:
+            fx, fy, fz = forces[i, 0], forces[i, 1], forces[i, 2]
+            here = (fx * total[0] + fy * total[1] + fz * total[2]) / square if along else 0.0
+            share = here if along else np.sqrt(fx * fx + fy * fy + fz * fz) / whole
+        for c in range(3):
+            centre[c] += share * at[i, c]
+    for i in range(n):
+        x, y, z = at[i, 0] - centre[0], at[i, 1] - centre[1], at[i, 2] - centre[2]
+        moment[0] += y * forces[i, 2] - z * forces[i, 1]
+        moment[1] += z * forces[i, 0] - x * forces[i, 2]
+        moment[2] += x * forces[i, 1] - y * forces[i, 0]

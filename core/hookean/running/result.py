@@ -382,7 +382,7 @@ def _components(found: Balance, rest: Equilibrium) -> dict[str, Any]:
 
 
 def _contacts(found: Balance) -> dict[str, Any]:
-    touching = np.flatnonzero(_any(found.contact != 0))  # never slots
+    touching = np.flatnonzero(_any(found.contact != 0)) if len(found.planes) else np.zeros(0, np.int64)  # never slots
     return {"particles": touching, "force": found.contact[touching]}
 
 

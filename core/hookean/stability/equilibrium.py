@@ -201,9 +201,10 @@ def _concluded(modes: Modes, found: Balance) -> Equilibrium:
 
 def _largest(moved: Floats, found: Balance) -> Floats:
     """The largest movement in each component."""
-    label, size = found.components.label, lengths(moved)
+    size = lengths(moved)
     if len(found.scales) == 1:
         return np.array([size.max(initial=0.0)])
+    label = found.components.label
     errors = np.zeros(len(found.scales))
     np.maximum.at(errors, label[label >= 0], size[label >= 0])
     return errors

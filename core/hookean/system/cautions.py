@@ -63,7 +63,7 @@ def cautions(system: System) -> list[str]:
                     f"{int(np.argmax(closed))}), so their forces have no direction; move their ends apart"
                 )
     for anchor in system.held:
-        if (anchor.free == 0).all():
+        if not anchor.free.any():
             touched[anchor.particles] = 1
         if not anchor.turning.all() and (none := system.slots.rows(anchor.particles) < 0).any():
             warnings.append(

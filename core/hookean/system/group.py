@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -126,9 +126,11 @@ def _joined(joined: dict[type[Force], list[Member]]) -> tuple[list[Group], list[
             parts.append(Part(number, force, slice(start, start + len(block.indices)), inputs))
             start += len(block.indices)
         blocks = [block for _, _, block, _ in members]
-        indices = np.ascontiguousarray(np.concatenate([b.indices for b in blocks]))  # may be the scene's own
-        whole = replace(blocks[0], indices=indices, plan=[])
+        first = blocks[0]
+        # the indices may be the scene's own
+        whole = Block(first.indices.copy(), first.parameters, first.memory, first.names, rooms=first.rooms)
         if len(blocks) > 1:
+            whole.indices = np.concatenate([b.indices for b in blocks])
             whole.parameters = np.concatenate([b.parameters for b in blocks])
             whole.memory = np.concatenate([b.memory for b in blocks])
             whole.rooms = tuple(room for b in blocks for room in b.rooms)

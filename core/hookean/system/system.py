@@ -62,6 +62,7 @@ class System:
     slots: Slots
     drag: float = 0.0
     _components: Components | None = None
+    _size: float | None = None
     _films: Films | None = field(default=None, init=False, repr=False)
 
     @property
@@ -83,10 +84,12 @@ class System:
     def size(self) -> float:
         """Length scale of the model [length]: the diagonal of its start and its anchors' targets, or how far from
         the origin it is."""
-        box = np.full((2, 3), -np.inf)
-        for points in (self.points, *(anchor.targets for anchor in self.held)):
-            dispatch.compiled(widen)(points, box)
-        return math.hypot(*(box[0] + box[1]).tolist()) or float(np.abs(box).max()) or 1.0
+        if self._size is None:
+            box = np.full((2, 3), -np.inf)
+            for points in (self.points, *(anchor.targets for anchor in self.held)):
+                dispatch.compiled(widen)(points, box)
+            self._size = math.hypot(*(box[0] + box[1]).tolist()) or float(np.abs(box).max()) or 1.0
+        return self._size
 
     @property
     def steady(self) -> bool:
@@ -210,7 +213,7 @@ class System:
 
     def brace(self) -> None:
         """Let forces know which particles the scene's anchors hold on some axis, and the masses of those that move."""
-        self._components = None  # a patch may have changed which elements belong together
+        self._components = self._size = None  # a patch may have changed which elements belong together
         held, mass = np.zeros(len(self.x), dtype=bool), self.mass.copy()
         for anchor in self.held:
             if (anchor.free == 0).all():
@@ -265,12 +268,13 @@ def widen(points, box):  # type: ignore[no-untyped-def]
 def hold(state: State, anchor: Held, slots: Slots) -> None:
     """Hold an anchor's particles at its targets, on its axes, and their rotations as they are."""
     held, particles = anchor.free == 0, anchor.particles
+    whole = bool(held.all())
     if len(slots) and not anchor.turning.all():
         turned = slots.rows(particles)
         for values in (state.free, state.v):
             values[turned[turned >= 0]] *= anchor.turning
     for values, there in ((state.free, 0.0), (state.x, anchor.targets), (state.v, 0.0)):
-        values[particles] = there if held.all() else np.where(held, there, values[particles])
+        values[particles] = there if whole else np.where(held, there, values[particles])
 
 
 def compile(scene: Scene) -> System:
