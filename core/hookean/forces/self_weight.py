@@ -87,8 +87,8 @@ class SelfWeight(Force):
 
     @property
     def element_arity(self) -> int:
-        """Particles share a total; lines have a weight per length."""
-        return 2 if self._along else 1
+        """Particles share a total; lines have a weight per length, faces one per area."""
+        return 2 if self._along else 1 if self.total is not None else 3
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: one load for each particle that carries weight."""
@@ -98,10 +98,11 @@ class SelfWeight(Force):
             share = self.total / max(len(index), 1)  # of all points, also of those that met no particle
             return Block.of(index, vector=np.broadcast_to(share * down, (len(index), 3)))
         if self._along:
-            index = places.elements(self)
-            index = index[(index >= 0).all(axis=1)]
+            lines = places.elements(self)
+            met = (lines >= 0).all(axis=1)
+            index = lines[met]
             length = np.linalg.norm(places.x[index[:, 1]] - places.x[index[:, 0]], axis=1)
-            each = 0.5 * np.broadcast_to(self._per_length(places), length.shape) * length
+            each = 0.5 * np.broadcast_to(self._per_length(places), met.shape)[met] * length
         else:
             faces = places.faces(str(self.mesh))
             index, part, _ = halves(faces[(faces >= 0).all(axis=1)])

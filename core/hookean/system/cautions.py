@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
-from hookean.forces import Block
+from hookean.discretize import meshes
+from hookean.forces import Block, Force
 
 if TYPE_CHECKING:
     from hookean.system.system import System
+    from hookean.system.weld import Welded
 
 Floats = NDArray[np.float64]
 
@@ -46,6 +48,7 @@ def cautions(system: System) -> list[str]:
     touched = np.zeros(len(system.x), dtype=np.int8)
     for group in system.groups:
         if group.cls.role == "load":
+            warnings += [said for part in group.parts if (said := without_size(system, part.number, part.force))]
             continue
         for part in group.parts:
             block = group.of(part)
@@ -62,6 +65,11 @@ def cautions(system: System) -> list[str]:
                     f"/forces/{part.number}: {short} of {len(closed)} elements have zero length (first: element "
                     f"{int(np.argmax(closed))}), so their forces have no direction; move their ends apart"
                 )
+    for number, given in enumerate(system.scene.anchors):
+        places = given.points if given.particles is None else given.particles
+        if places is not None and not places.size:
+            said = "the anchor holds nothing: no points are given; give some, or remove it"
+            warnings.append(f"/anchors/{number}: {said}")
     for anchor in system.held:
         if not anchor.free.any():
             touched[anchor.particles] = 1
@@ -81,3 +89,37 @@ def cautions(system: System) -> list[str]:
 
         warnings += near_misses(system)
     return warnings
+
+
+def without_size(system: System, number: int, load: Force) -> str:
+    """Which elements of a load weld to less than they were drawn as, so that their load is lost; or that it has none.
+    Empty where all is well."""
+    place = f"/forces/{number}"
+    which, whole = _shrunk(system.places, load)
+    if not whole:
+        return f"{place}: {load.kind_name} acts on nothing: no elements are given; give some, or remove the force"
+    if not len(which):
+        return ""
+    less = "a line, which has no area" if load.element_arity > 2 else "one particle, which has no length"
+    return (
+        f"{place}: {len(which)} of {whole} elements (first: element {which[0]}) are no larger than weld_tolerance and "
+        f"become {less}, so their load is lost; lower weld_tolerance, or draw them larger"
+    )
+
+
+def _shrunk(places: Welded, load: Force) -> tuple[NDArray[np.int64], int]:
+    """Elements of a load whose corners became one particle, of faces two; and how many elements there are."""
+    mesh = getattr(load, "mesh", None)
+    if load.element_arity == 1 or (mesh is None and load.element_arity > 2):
+        return np.zeros(0, np.int64), len(places.elements(load))
+    if mesh is None:
+        corners = places.elements(load)
+    elif load.element_arity > 2:
+        corners = places.faces(mesh)
+    else:
+        find = meshes.naked_edges if getattr(load, "edges", "all") == "naked" else meshes.edges
+        corners = places.vertices(mesh)[find(places.scene.meshes[mesh])]
+    ordered = np.sort(corners, axis=1)
+    distinct = 1 + np.count_nonzero(np.diff(ordered, axis=1), axis=1)
+    shrunk = (distinct < min(corners.shape[1], 3)) & (ordered[:, 0] >= 0)
+    return np.flatnonzero(shrunk), len(corners)

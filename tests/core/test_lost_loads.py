@@ -1,0 +1,113 @@
+"""Loads that act on less than was drawn: what welding makes of small elements, and what is given without a place."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hookean import Scene, relax
+
+SMALL = 0.05  # width of the second face, below the tolerance
+MESH = {
+    "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [1 + SMALL, 0, 0], [1 + SMALL, 1, 0]],
+    "faces": [[0, 1, 2, 3], [1, 4, 5, 2]],
+}
+
+
+def told(load: dict[str, Any], *, tolerance: float) -> tuple[list[str], np.ndarray]:
+    """Warnings of a small net under a load, and the sum of its reactions."""
+    scene = Scene.read(
+        {
+            "weld_tolerance": tolerance,
+            "meshes": {"sheet": MESH},
+            "forces": [{"kind": "springs", "mesh": "sheet", "stiffness": 10.0}, load],
+            "anchors": [{"points": MESH["vertices"]}],
+        }
+    )
+    result = relax(scene)
+    return [said for said in result.report.warnings if said.startswith("/forces/1")], result.reactions["force"].sum(0)
+
+
+LOST = {
+    "line": ({"kind": "line_weight", "lines": [[[1, 0, 0], [1 + SMALL, 0, 0]]], "weight": 2.0}, "1 of 1", 2.0 * SMALL),
+    "edges": ({"kind": "self_weight", "mesh": "sheet", "per_length": 2.0}, "2 of 7", None),
+    "area": ({"kind": "self_weight", "mesh": "sheet", "material": "S235", "thickness": 0.01}, "1 of 2", None),
+    "pressure": ({"kind": "pressure", "mesh": "sheet", "pressure": 3.0}, "1 of 2", 3.0 * SMALL),
+}
+
+
+@pytest.mark.parametrize("name", LOST)
+def test_a_load_that_welding_loses_is_named(name: str) -> None:
+    """The warning says how many elements, and the reactions lack their load: of one line or face its length or area
+    times the load on each."""
+    load, count, missing = LOST[name]
+    warned, less = told(load, tolerance=2 * SMALL)
+    silent, whole = told(load, tolerance=SMALL / 50)
+    assert silent == []
+    assert len(warned) == 1 and f"{count} elements" in warned[0] and "their load is lost" in warned[0]
+    lost = float(np.linalg.norm(whole)) - float(np.linalg.norm(less))
+    assert lost > 0.0
+    if missing is not None:
+        assert lost == pytest.approx(missing, rel=1e-12)
+
+
+def test_a_face_that_keeps_an_area_is_not_named() -> None:
+    """A quadrilateral with one side at one particle is a triangle: its area is half, and the load acts on it."""
+    corner = {"vertices": [[0, 0, 0], [1, 0, 0], [1, SMALL, 0], [0, 1, 0]], "faces": [[0, 1, 2, 3]]}
+    scene = {
+        "weld_tolerance": 2 * SMALL,
+        "meshes": {"sheet": corner},
+        "forces": [
+            {"kind": "springs", "mesh": "sheet", "stiffness": 10.0},
+            {"kind": "pressure", "mesh": "sheet", "pressure": 3.0},
+        ],
+        "anchors": [{"points": corner["vertices"]}],
+    }
+    assert not any("their load is lost" in said for said in relax(Scene.read(scene)).report.warnings)
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"kind": "unary", "points": [], "vector": [0, 0, -1]},
+        {"kind": "self_weight", "points": [], "total": 9.0},
+        {"kind": "line_weight", "lines": [], "weight": 1.0},
+    ],
+    ids=lambda load: load["kind"],
+)
+def test_a_load_without_a_place_is_named(load: dict[str, Any]) -> None:
+    """What acts on nothing is given for something: the report says so."""
+    warned, total = told(load, tolerance=1e-6)
+    assert len(warned) == 1 and "acts on nothing" in warned[0]
+    assert not total.any()
+
+
+def test_an_anchor_without_a_place_is_named() -> None:
+    """An anchor that holds nothing is reported, beside one that does."""
+    scene = {
+        "forces": [{"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]]], "stiffness": 10.0}],
+        "anchors": [{"points": [[0, 0, 0]]}, {"points": []}],
+    }
+    warned = [said for said in relax(Scene.read(scene)).report.warnings if "holds nothing" in said]
+    assert len(warned) == 1 and warned[0].startswith("/anchors/1")
+
+
+def test_each_line_that_met_keeps_its_own_weight() -> None:
+    """Of lines with a weight per length each, one meets nothing: the others carry theirs, 2 N/m and 5 N/m on 1 m."""
+    ends = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
+    scene = {
+        "strict": False,
+        "forces": [
+            {"kind": "springs", "lines": [ends[:2], ends[1:]], "stiffness": 10.0},
+            {
+                "kind": "self_weight",
+                "lines": [ends[:2], [[0, 0, 9], [1, 0, 9]], ends[1:]],
+                "per_length": [2.0, 3.0, 5.0],
+            },
+        ],
+        "anchors": [{"points": ends}],
+    }
+    total = relax(Scene.read(scene)).reactions["force"].sum(0)
+    assert total == pytest.approx([0.0, 0.0, 7.0], rel=1e-12)
