@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean import Scene, relax
+from hookean import Scene, load_cases, relax
 
 SMALL = 0.05  # width of the second face, below the tolerance
 MESH = {
@@ -111,3 +111,17 @@ def test_each_line_that_met_keeps_its_own_weight() -> None:
     }
     total = relax(Scene.read(scene)).reactions["force"].sum(0)
     assert total == pytest.approx([0.0, 0.0, 7.0], rel=1e-12)
+
+
+def test_a_load_case_says_that_its_load_met_nothing() -> None:
+    """What is printed of load cases names a load that is left out, not only its reactions of 0."""
+    scene = {
+        "strict": False,
+        "forces": [
+            {"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [2, 0, 0]]], "force": 9, "stiffness": 9},
+            {"kind": "unary", "name": "snow", "points": [[1, 0, 0.2]], "vector": [0, 0, -1]},
+        ],
+        "anchors": [{"points": [[0, 0, 0], [2, 0, 0]]}],
+        "load_cases": {"snow": {"forces": ["snow"]}},
+    }
+    assert "its point met no particle" in repr(load_cases(Scene.read(scene)))

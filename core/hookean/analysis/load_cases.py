@@ -51,13 +51,14 @@ class CaseResult:
         return sum(len(rows) for rows in self.slack.values())
 
     def summary(self) -> list[str]:
-        """A few lines: factors, status, largest displacement, slack elements, forces, reactions."""
+        """A few lines: factors, status, largest displacement, slack elements, forces, reactions, and what the report
+        says."""
         unit, far = self.result.units.length, np.linalg.norm(self.displacements, axis=1)
         moved = f"moved by up to {far.max(initial=0.0):.4g} {unit}, at particle {int(far.argmax()) if len(far) else 0}"
         given = ", ".join(f"{factor:g} x {name}" for name, factor in self.factors.items())
         lines = [f"{given}: {self.result.status}, {self.result.stability}", moved]
         lines += [f"{self.slack_count} elements are slack"] if self.slack_count else []
-        return [*lines, *self.result.summary()[1:]]
+        return [*lines, *self.result.summary()[1:], *self.result.report.sentences()]
 
     def to_dict(self) -> dict[str, Any]:
         """As plain lists and numbers, by the names of the HTTP answer."""
