@@ -138,9 +138,9 @@ def test_an_export_is_read_back_with_the_shape_of_its_case(client: httpx.Client)
     np.testing.assert_allclose(found, wanted, atol=1e-6)
 
 
-@pytest.mark.parametrize("ending", ["vtu", "inp", "compas.json"])
+@pytest.mark.parametrize("ending", ["vtu", "inp", "ifc", "compas.json"])
 def test_an_export_is_the_file_that_python_writes(client: httpx.Client, ending: str, tmp_path: Path) -> None:
-    """To the byte; tests/files reads these back by meshio and compas."""
+    """To the byte; tests/files reads these back by meshio, ifcopenshell and compas."""
     answer = client.post("/v1/analysis/export", json={"scene": EXPORT_EXAMPLE["scene"], "format": ending})
     exchange(hookean.relax(hookean.Scene.read(EXPORT_EXAMPLE["scene"])), tmp_path / f"result.{ending}")
     assert answer.status_code == 200 and answer.content == (tmp_path / f"result.{ending}").read_bytes()
