@@ -9,7 +9,8 @@ shear areas, that of Timoshenko. What a section feels: N (tension +) and Mt, whi
 beam, My and Mz at its start (0) and end (1), and the shear forces Vz = (My1 - My0) / l, Vy = (Mz0 -
 Mz1) / l, as what lies behind a section acts on what lies before it, in the section's axes.
 
-Give E, G, A, Iy, Iz and J, or the names of a material and a section of the scene.
+Give E, G, A, Iy, Iz and J, or the names of a material and a section of the scene. With a
+`temperature` L is the drawn length times 1 + expansion x temperature; the section stays.
 
 The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. In
 motion a particle has an isotropic inertia, that of a rod of its mass and of the mean length of the
@@ -34,6 +35,7 @@ force = canvas.force(
     J=j_,
     material=material_,
     section=section_,
+    temperature=temperature_,
     shear_y=_shear_y_,
     shear_z=_shear_z_,
     normal=normal_,

@@ -5,7 +5,8 @@ Kirchhoff), with C^-1 = [[1/Ew, -nu/Ew, 0], [-nu/Ew, 1/Ef, 0], [0, 0, 1/G]]: sti
 width [force/length], and nu is how much the cloth contracts along the weft where the warp is
 pulled. A sheet of modulus E and thickness t has Ew = E t. Strain is constant in each triangle, and
 a quad is the mean of its two cuts. The start shape, or another `shape`, has the `prestress` along
-warp, weft and in shear, and is free of strain without one.
+warp, weft and in shear, and is free of strain without one. A `temperature` makes it larger by g = 1
++ expansion x temperature: the strain e less (g^2 - 1) / 2 along warp and weft counts.
 
 The warp runs along a vector that is projected on each triangle; along the nearest of some lines;
 or, without either, along the rows of the mesh, from the first edge of its first face, which needs
@@ -39,6 +40,7 @@ force = canvas.force(
     warp=warp_,
     warp_lines=warp_lines_,
     prestress=_prestress_,
+    temperature=temperature_,
     shape=shape_,
     wrinkling=_wrinkling_,
     name=name_,

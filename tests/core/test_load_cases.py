@@ -298,7 +298,7 @@ def test_warmth_lengthens_a_cable() -> None:
 
 def test_what_has_no_thermal_expansion_is_one_sentence() -> None:
     stages = cable()["stages"]
-    with pytest.raises(InputError, match="/load_cases/warm/temperature/cable: cable has no thermal expansion; freeze"):
+    with pytest.raises(InputError, match="/load_cases/warm/temperature/cable: cable has no thermal expansion; give"):
         hookean.load_cases(Scene.read(cable(**{**WARM, "stages": stages})), ["warm"])
 
 
@@ -365,7 +365,7 @@ def faces(load: Any) -> list[list[int]]:
         ({"load_cases": {"s": {}}}, "/load_cases/s: neither forces nor temperature given"),
         (
             {"load_cases": {"s": {"temperature": {"snow load": 5}}}},
-            "constant tension are called 'snow load'; the scene has cable",
+            "'snow load' names no springs, lines of constant tension, beams or membranes; the scene has cable",
         ),
         ({"load_cases": {"permanent": {"forces": ["unary"]}}}, "is a reserved name"),
         ({"combinations": {"ULS": {"fog": 1.0}}}, "/combinations/ULS/fog: no load case is called 'fog'"),

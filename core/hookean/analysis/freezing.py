@@ -20,7 +20,7 @@ from hookean.forces.springs import Springs
 from hookean.running.result import Result, Status, gather
 from hookean.running.run import relax_state
 from hookean.running.utilisation import breaking_force
-from hookean.scene.load_cases import ElasticLine, Stages, named
+from hookean.scene.load_cases import HEATED, ElasticLine, Stages, named
 from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.stability.equilibrium import assess
@@ -123,6 +123,8 @@ def freeze(scene: Scene) -> Frozen:
                 lengths[part.number], tensions[part.number] = line.length, line.tension
                 if (expansion := _expansion(line, system.places)) is not None:
                     expansions[part.number] = expansion
+            elif group.cls.kind_name in HEATED and (known := _own_expansion(part.force, system.places)) is not None:
+                expansions[part.number] = known
             elif group.cls.role == "internal" and group.cls.kind_name not in ELASTIC:
                 name = force.name or force.kind_name
                 notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
@@ -234,7 +236,13 @@ def _filled(wanted: ElasticLine, force: Force, places: Places, pointer: str) -> 
 
 def _expansion(line: Line, places: Places) -> float | None:
     """Thermal expansion [1/K] of a line, of the material that it becomes or has; None where it has none."""
-    material = line.wanted.material or getattr(line.force, "material", None)
+    if line.wanted.material is not None:
+        return places.material(line.wanted.material).expansion
+    return _own_expansion(line.force, places)
+
+
+def _own_expansion(force: Force, places: Places) -> float | None:
+    material = getattr(force, "material", None)
     return None if material is None else places.material(material).expansion
 
 

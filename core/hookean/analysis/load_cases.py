@@ -169,9 +169,7 @@ def case_scene(frozen: Frozen, name: str) -> Scene:
             acting[number] = acting.get(number, 0.0) + factor * scene.load_cases[case].factor
     forces = list(scene.forces)
     for i, degrees in _temperatures(frozen, given).items():
-        line = forces[i]
-        assert isinstance(line, Springs)
-        forces[i] = warmed(line, frozen.expansions[i], degrees)
+        forces[i] = warmed(forces[i], frozen.expansions[i], degrees)
     for i, force in enumerate(forces):
         if i in later and i not in acting:
             forces[i] = force.replaced(name=IDLE)
@@ -191,7 +189,7 @@ def _temperatures(frozen: Frozen, given: Mapping[str, float]) -> dict[int, float
         for line, degrees in case.temperature.items():
             for number in named(frozen.scene, line):
                 if number not in frozen.expansions:
-                    said = f"{line} has no thermal expansion; freeze it to a material that has one, with a section"
+                    said = f"{line} has no thermal expansion; give it, or freeze it to, a material that has one"
                     raise InputError(f"/load_cases/{name}/temperature/{line}", said)
                 found[number] = found.get(number, 0.0) + factor * case.factor * degrees
     return found

@@ -35,9 +35,12 @@ def scaled(load: Force, factor: float) -> Force:
     return load.replaced(**changed)
 
 
-def warmed(force: Springs, expansion: float, degrees: float) -> Springs:
-    """Frozen springs whose temperature changes: rest lengths L0 (1 + expansion x degrees) of the same EA; those that go
-    slack below their rest length go slack below the new one."""
+def warmed(force: Force, expansion: float, degrees: float) -> Force:
+    """A force of a frozen model whose temperature changes. Springs get rest lengths L0 (1 + expansion x degrees) of the
+    same EA; those that go slack below their rest length go slack below the new one."""
+    if not isinstance(force, Springs):
+        before = vars(force)["temperature"]
+        return force.replaced(temperature=degrees if before is None else degrees + before)
     growth = 1.0 + expansion * degrees
     rest = np.asarray(force.rest_length) * growth
     lower = np.where(np.asarray(force.lower_cutoff) >= np.asarray(force.rest_length), rest, force.lower_cutoff)

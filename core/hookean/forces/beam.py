@@ -22,8 +22,8 @@ from hookean.forces.beam_element import (
     energy_of,
 )
 from hookean.forces.beam_frames import drawn_frames, straight_frames
-from hookean.forces.elastic import one_way, section_columns
-from hookean.values.columns import Directions, IndexRows, Lines, NonNegatives, Positives, Vectors
+from hookean.forces.elastic import growth, one_way, section_columns
+from hookean.values.columns import Directions, IndexRows, Lines, NonNegatives, Positives, Reals, Vectors
 from hookean.values.fields import Field, Maybe
 
 Axes = Literal["", "x", "y", "z", "xy", "xz", "yz", "xyz"]
@@ -100,7 +100,8 @@ class Beam(Force):
     which are even along a beam, My and Mz at its start (0) and end (1), and the shear forces Vz = (My1 - My0) / l,
     Vy = (Mz0 - Mz1) / l, as what lies behind a section acts on what lies before it, in the section's axes.
 
-    Give E, G, A, Iy, Iz and J, or the names of a material and a section of the scene.
+    Give E, G, A, Iy, Iz and J, or the names of a material and a section of the scene. With a `temperature` L is the
+    drawn length times 1 + expansion x temperature; the section stays.
 
     The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. In motion a
     particle has an isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
@@ -119,6 +120,7 @@ class Beam(Force):
     J: Maybe[Positives] = Field(default=None, description="Torsion constant [length^4]")
     material: str | None = Field(default=None, description="Name of a material, with a section in their place")
     section: str | None = Field(default=None, description="Name of a section, with a material in their place")
+    temperature: Maybe[Reals] = Field(default=None, description="Change of temperature, of a material [K]")
     shear_y: NonNegatives = Field(default=0.0, description="Shear area along y [length^2]; 0: no shear deformation")
     shear_z: NonNegatives = Field(default=0.0, description="Shear area along z [length^2]; 0: no shear deformation")
     normal: Maybe[Directions] = Field(
@@ -164,6 +166,7 @@ class Beam(Force):
         if not np.isfinite(frames).all():
             at = int(np.argmax(~np.isfinite(frames).all(axis=(1, 2))))
             raise InputError("", f"the normal is along beam {at}; give a direction across it")
+        length = length * growth(self, places)
         start, end = (frames, frames) if self.curvature == "drawn" else straight_frames(index, chords, frames)
         bending, bowing = zip(*(own._plane(axis, length) for axis in "yz"), strict=True)
         return Block.of(

@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from hookean.errors import InputError
 from hookean.forces.base import Places
 from hookean.values.columns import fault
@@ -66,6 +68,22 @@ def section_columns(force: Any, places: Places) -> dict[str, float]:
     material = places.material(force.material)
     found = {"E": material.modulus(force.material), "G": material.shear_modulus(force.material)}
     return {**found, **{column: _quantity(force, places, name) for name, column in NAMES.items()}}
+
+
+def growth(force: Any, places: Places) -> Any:
+    """1 + expansion x temperature [-] of a force, one or one for each element; 1 without a temperature. InputError
+    where its material has no expansion, or nothing is left of its length."""
+    if force.temperature is None:
+        return 1.0
+    if force.material is None:
+        raise InputError("", "temperature needs a material with expansion; give material in the place of stiffnesses")
+    expansion = places.material(force.material).expansion
+    if expansion is None:
+        raise InputError("", f"{force.material} has no thermal expansion; give its expansion")
+    grown = 1.0 + expansion * np.asarray(force.temperature)
+    if not (grown > 0.0).all():
+        raise InputError("", f"a change of {np.min(force.temperature):g} K leaves no length of {force.material}")
+    return grown
 
 
 def _quantity(force: Any, places: Places, name: str) -> float:

@@ -11,6 +11,7 @@ from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.cloth import grain, made, numbers, one_way, stresses
+from hookean.forces.elastic import growth
 from hookean.forces.soapfilm import halves, yarns
 from hookean.forces.tension_field import respond, stiffen
 from hookean.values.columns import Directions, Lines, Points, Vectors
@@ -135,7 +136,8 @@ class Membrane(Force):
     C^-1 = [[1/Ew, -nu/Ew, 0], [-nu/Ew, 1/Ef, 0], [0, 0, 1/G]]: stiffnesses are per width [force/length], and nu is how
     much the cloth contracts along the weft where the warp is pulled. A sheet of modulus E and thickness t has Ew = E t.
     Strain is constant in each triangle, and a quad is the mean of its two cuts. The start shape, or another `shape`,
-    has the `prestress` along warp, weft and in shear, and is free of strain without one.
+    has the `prestress` along warp, weft and in shear, and is free of strain without one. A `temperature` makes it
+    larger by g = 1 + expansion x temperature: the strain e less (g^2 - 1) / 2 along warp and weft counts.
 
     The warp runs along a vector that is projected on each triangle; along the nearest of some lines; or, without
     either, along the rows of the mesh, from the first edge of its first face, which needs quads (or cloth that is alike
@@ -174,6 +176,7 @@ class Membrane(Force):
         description="Stress of the start shape along warp, along weft, in shear, one or one for each face, or for each "
         "triangle (a quad has four) [force/length]",
     )
+    temperature: float | None = Field(default=None, description="Change of temperature, of a material [K]")
     shape: Maybe[Points] = Field(
         default=None, description="Vertices of the mesh in the shape with the `prestress` [length]; default: the start"
     )
@@ -211,7 +214,12 @@ class Membrane(Force):
         slopes = yarns(x, at, along) / np.where(flat, 0.5 * double, 1.0)[:, None]
         warp, weft, shear, poisson = cloth
         first, second, third = stresses(self, face, len(faces)).T
-        strain = [first / warp - poisson * second / warp, second / weft - poisson * first / warp, third / shear]
+        free = 0.5 * (growth(self, places) ** 2 - 1.0)  # Green strain that meets no resistance
+        strain = [
+            first / warp - poisson * second / warp - free,
+            second / weft - poisson * first / warp - free,
+            third / shear,
+        ]
         return Block.of(
             corners,
             area=np.where(flat, 0.5 * double * share, 0.0),

@@ -67,12 +67,7 @@ def _rest(springs: Springs, places: Places, start: Floats, k: Floats | None, axi
         rest = start / (1.0 + np.asarray(springs.strain))
     if springs.force is not None:
         rest = _of_force(np.broadcast_to(springs.force, start.shape), start, k, axial)
-    if springs.temperature is not None:
-        expansion = places.material(str(springs.material)).expansion
-        if expansion is None:
-            raise InputError("", f"{springs.material} has no thermal expansion; give its expansion")
-        rest = rest * (1.0 + expansion * np.asarray(springs.temperature))
-    return _each(rest, len(start))
+    return _each(rest * elastic.growth(springs, places), len(start))
 
 
 def _each(value: Any, count: int) -> Floats:

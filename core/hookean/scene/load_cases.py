@@ -19,6 +19,8 @@ PRESTRESS, PERMANENT = "prestress", "permanent"
 """Names in combinations: what the form is stressed by, and the loads that are in no case."""
 LINES = ("springs", "constant_tension")
 """Kinds along lines that freeze into elastic ones, and so have changes of temperature."""
+HEATED = (*LINES, "beam", "membrane")
+"""Kinds that have changes of temperature in load cases."""
 
 
 class LoadCase(Model):
@@ -27,7 +29,7 @@ class LoadCase(Model):
 
     forces: tuple[str, ...] = Field(default=(), description="Names (or kinds) of loads")
     temperature: dict[str, float] = Field(
-        default={}, description="Change of temperature [K] by the name (or kind) of a force along lines"
+        default={}, description="Change of temperature [K] by the name (or kind) of springs, beams, membranes"
     )
     factor: float = Field(default=1.0, description="Factor on these loads and changes [-]")
 
@@ -126,11 +128,11 @@ def check(scene: Scene) -> None:
                 raise fault(f"no load is called {load!r}; {_listed(loads)}", f"{pointer}/forces/{i}")
             if any(KINDS[scene.forces[number].kind_name].role != "load" for number in found):
                 raise fault(f"{load!r} is not a load; {_listed(loads)}", f"{pointer}/forces/{i}")
-        lines = [f.name or f.kind_name for f in scene.forces if f.kind_name in LINES]
+        heated = [f.name or f.kind_name for f in scene.forces if f.kind_name in HEATED]
         for line in case.temperature:
             found = named(scene, line)
-            if not found or any(scene.forces[number].kind_name not in LINES for number in found):
-                said = f"no springs or lines of constant tension are called {line!r}; {_listed(lines)}"
+            if not found or any(scene.forces[number].kind_name not in HEATED for number in found):
+                said = f"{line!r} names no springs, lines of constant tension, beams or membranes; {_listed(heated)}"
                 raise fault(said, f"{pointer}/temperature/{_escaped(line)}")
     for name, factors in scene.combinations.items():
         _check_combination(scene, name, factors)
