@@ -31,7 +31,7 @@ SUMS = 4  # of each sphere what a kernel sums: its force and a zero; then, apart
 PER_ELEMENT = 24  # pairs of an element that there is place for, on average
 LOCAL = 2.0  # how much longer than layer by layer the way through elements as given may be
 LEAST, FIRST, MOST = 1.25, 2.0, 8.0  # the range of a list in skins
-BALANCE = 75.0  # range in skins times uses of a list at which making it costs as much as the pairs it has too many
+BALANCE = 45.0  # range in skins times uses of a list at which making it costs as much as the pairs it has too many
 LOW, ONE = np.uint64(0xFFFFFFFF), np.uint64(1)
 STEP = 1.5  # by which the range changes
 
@@ -280,17 +280,16 @@ def list_pairs(here: Any, parameters: Any, start: Any, order: Any, room: Any, be
     seen = seen_in(room)[:count]
     picky = note(here, parameters, start, order, seen)
     pairs, reach = pairs_in(room)
-    found = reach.view(np.int64)  # until the reach is written
-    met = find_pairs(seen, parameters, start, order, beyond, picky, found)
+    aside = reach.view(np.int64)  # until the reach is written
+    met = find_pairs(seen, parameters, start, order, beyond, picky, pairs)
     if met < 0:
         return False
-    sort_by(found, met, np.uint64(32), count, pairs)
-    sort_by(pairs, met, np.uint64(0), count, found)
+    sort_by(pairs, met, np.uint64(32), count, aside)
+    sort_by(aside, met, np.uint64(0), count, pairs)
     radius = 3 if seen.shape[1] == SEEN else SEEN + 3
     for n in range(met):
-        i, j = ends(found[n])
-        pairs[n] = found[n]
-        reach[n] = seen[i, radius] + seen[j, radius]  # in the place of the pair
+        i, j = ends(pairs[n])
+        reach[n] = seen[i, radius] + seen[j, radius]
     head[0, COUNT], head[0, FOUND] = count, met
     return True
 
