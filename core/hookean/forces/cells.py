@@ -21,10 +21,10 @@ PARALLEL = 1e-12  # square of the angle of two segments below which they are par
 FARTHEST = 1e15  # cells from the origin
 FEWEST = 3  # cells along an axis, so that the two beside one are different
 PER_CELL = 2.0  # cells of an element that there is place for, at most
-ABREAST = 8  # elements that are compared at once
+ABREAST, BITS = 4, 64  # elements that are compared at once, bits of a number
 ONE, BRUIJN = np.uint64(1), np.uint64(0x03F79D71B4CB0A89)  # the upper six bits of this times a power of 2 are unique
-LOWEST = np.zeros(64, np.uint64)  # which bit is set, by these six
-LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(64)]] = np.arange(64)
+LOWEST = np.zeros(BITS, np.uint64)  # which bit is set, by these six
+LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(BITS)]] = np.arange(BITS)
 
 
 @device
@@ -142,7 +142,7 @@ def meet(xs, ys, zs, radii, number, one, runs, several, beyond, found, count, be
     for n in range(several):
         begin, end = (runs[n, 0] if n else one + 1), runs[n, 1]
         while begin < end:
-            if full == 64 // ABREAST:
+            if full == BITS // ABREAST:
                 count = write_bits(bits, begins, number[i], number, found, count)
                 bits, full = np.uint64(0), 0
             near = np.uint64(near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach))
@@ -246,7 +246,8 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, found) -> Any: 
     beside = np.zeros((4, size + ABREAST))
     xs, ys, zs, radii = beside[0], beside[1], beside[2], beside[3]
     sort_cells(spheres, width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
-    first, columns, runs, begins = first[1:], np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(8, np.int64)
+    columns, runs, begins = np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(BITS // ABREAST, np.int64)
+    first = first[1:]
     count, k = 0, -1
     for a in range(side[0]):
         for b in range(side[1]):
