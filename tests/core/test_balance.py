@@ -218,6 +218,18 @@ def test_a_run_whose_energy_still_falls_has_not_stalled() -> None:
         assert watch.look(system, state) == status
 
 
+def test_a_part_that_falls_stalls() -> None:
+    """Nothing supports two spheres beside a stiff spring: they fall and have less energy, which is no progress."""
+    spec = {"particles": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0.05, -0.19]], "anchors": [{"particles": [0]}]}
+    forces = [
+        {"kind": "unary", "particles": [1], "vector": [0, 0, -1.0]},
+        {"kind": "springs", "particles": [[0, 2]], "stiffness": 1e6, "rest_length": 0.5},
+        {"kind": "collide", "particles": [1, 3], "radius": 0.1, "strength": 1e5},
+    ]
+    found = relax(Scene.read({**spec, "forces": forces, "settings": {"solver": "relaxation"}}))
+    assert found.status == "stalled" and "Nothing supports" in found.message
+
+
 def test_a_spring_that_begins_without_length_is_told() -> None:
     """Its ends are two particles at one place: in balance, and the highest energy of all."""
     springs = {"kind": "springs", "particles": [[0, 1], [1, 2]], "rest_length": [1.0, 2.0]}

@@ -151,9 +151,9 @@ class Watch:
             self.found = replace(self.found, energies=system.evaluate(state)[2])
 
     def _note_energy(self, system: System, state: State) -> None:
-        """Note when the energy has fallen by more than the work of the goal's force along the size of the model; not of
-        films: what keeps them even does work."""
-        if system.films is not None or not all(group.conservative for group in system.groups):
+        """Note when the energy has fallen by more than the work of the goal's force along the size of the model; not
+        where a part that nothing supports falls, nor of films: what keeps them even does work."""
+        if self.found.falls or system.films is not None or not all(group.conservative for group in system.groups):
             return
         energy = float(self.found.energies.sum())
         if energy < self._lowest - self.goal * self.size:
