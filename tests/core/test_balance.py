@@ -10,6 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from hookean import Scene, Simulation, relax
+from hookean.running.watch import PATIENCE, Watch
+from hookean.solvers import solver
 from hookean.system.balance import BEYOND, NOISE, OUT, ROUNDING, Balance, balance
 from hookean.system.state import State
 from hookean.system.system import System, compile
@@ -195,6 +197,37 @@ def test_a_run_that_stalls_returns_its_best_shape(load: float, solver: str) -> N
     found = relax(Scene.read({**spec, "settings": {"solver": solver}}), progress=lambda _, left: seen.append(left))
     assert found.status == "stalled" and found.residual == min(seen) < max(seen)
     assert found.out_of_balance == pytest.approx(load)
+
+
+def test_a_run_whose_energy_still_falls_has_not_stalled() -> None:
+    """Spheres that settle have less energy long before they have a better residual. A load of 3 N on a spring goes down
+    by 0.01, by 1e-9 more, up, and down by 0.02. Only the first and the last lower the energy by more than the work of
+    the goal's force along the model."""
+    spec = {"particles": [[0, 0, 0], [0, 0, -1]], "anchors": [{"particles": [0]}]}
+    weight = {"kind": "unary", "particles": [1], "vector": [0.0, 0.0, -3.0]}
+    springs = {"kind": "springs", "particles": [[0, 1]], "stiffness": 100, "rest_length": 1.0}
+    system = compile(Scene.read({**spec, "forces": [springs, weight]}))
+    state = system.start()
+    watch = Watch(system, state, solver("relaxation"))
+    state.iteration = 1
+    watch.look(system, state)
+    watch.best = 0.0  # a residual that is never reached again
+    for down, status in ((0.01, "running"), (0.01 + 1e-9, "stalled"), (0.0, "stalled"), (0.02, "running")):
+        state.x[1, 2] = -1.0 - down
+        state.iteration += PATIENCE + 3
+        assert watch.look(system, state) == status
+
+
+def test_a_part_that_falls_stalls() -> None:
+    """Nothing supports two spheres beside a stiff spring: they fall and have less energy, which is no progress."""
+    spec = {"particles": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0.05, -0.19]], "anchors": [{"particles": [0]}]}
+    forces = [
+        {"kind": "unary", "particles": [1], "vector": [0, 0, -1.0]},
+        {"kind": "springs", "particles": [[0, 2]], "stiffness": 1e6, "rest_length": 0.5},
+        {"kind": "collide", "particles": [1, 3], "radius": 0.1, "strength": 1e5},
+    ]
+    found = relax(Scene.read({**spec, "forces": forces, "settings": {"solver": "relaxation"}}))
+    assert found.status == "stalled" and "Nothing supports" in found.message
 
 
 def test_a_spring_that_begins_without_length_is_told() -> None:

@@ -200,12 +200,16 @@ def test_patches_take_no_memory_and_can_be_undone() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("count", "least", "most"), [(150, 0.5, 0.6), pytest.param(2000, 0.58, 0.65, marks=pytest.mark.soak)]
+    ("count", "seed", "least", "most"),
+    [(150, 0, 0.5, 0.6), *(pytest.param(2000, seed, 0.58, 0.65, marks=pytest.mark.soak) for seed in (0, 5))],
 )
-def test_spheres_dropped_into_a_box_come_to_rest_at_a_random_packing(count: int, least: float, most: float) -> None:
+def test_spheres_dropped_into_a_box_come_to_rest_at_a_random_packing(
+    count: int, seed: int, least: float, most: float
+) -> None:
     """Without friction between loose and close random packing, 0.55 to 0.64 of the volume, less beside walls (Scott and
-    Kilgour, "The density of random close packing of spheres", 1969); none passes a wall, or half into another."""
-    r, rng = 0.5, np.random.default_rng(0)
+    Kilgour, "The density of random close packing of spheres", 1969); none passes a wall, or half into another. With
+    seed 5 the residual gets no better for 36,000 iterations, while the energy falls."""
+    r, rng = 0.5, np.random.default_rng(seed)
     side = (count * np.pi / 6.0 / 0.6) ** (1 / 3)
     across = int(np.ceil(side / 1.1))
     layers = int(np.ceil(count / across**2))

@@ -159,6 +159,22 @@ def test_a_box_on_another_rests_below_the_angle_of_friction(tangent: float) -> N
     assert np.abs(state.x - rest).max() < 1e-3 * known
 
 
+def test_more_boxes_than_a_slab_has_corners_stay_on_it() -> None:
+    """Twelve boxes of weight 1 on a held slab of eight corners, each pushed by 0.3 with friction 0.5: all sink by
+    1 / (k A), and none slides in time, by 1e-6 of that. A box without friction would by 0.3 t^2 / 16, 0.019."""
+    slab, boxes = CUBE * [26, 4, 1] + [11.5, 0, -0.5], [CUBE + [2.0 * i, 0, 0.5] for i in range(12)]
+    load = {"kind": "unary", "particles": range(8, 104), "vector": [0.3 / 8.0, 0.0, -1.0 / 8.0]}
+    given = {"tolerance": 1e-9, "time_step": 0.002, "drag": 0.0}
+    system = compile(solids([slab, *boxes], given, [0], [load], strength=1e4, friction=0.5))
+    state = system.start()
+    assert relax_state(system, state, solver("relaxation")).converged
+    sunk = (system.x - state.x)[8:, 2].reshape(12, 8).mean(axis=1)
+    assert sunk == pytest.approx(np.full(12, 1e-4), rel=1e-3)
+    rest = state.x.copy()
+    solver("verlet").advance(system, state, 500, 0.0)
+    assert np.abs(state.x - rest).max() < 1e-6 * 1e-4
+
+
 def test_a_box_on_another_slides_above_the_angle_of_friction() -> None:
     """By g (sin a - 0.5 cos a) t^2 / 2 (Coulomb): the second difference of three places, which it vibrates about as it
     is let go, by up to some 8e-4 each; 2 per cent of it."""

@@ -21,6 +21,10 @@ PARALLEL = 1e-12  # square of the angle of two segments below which they are par
 FARTHEST = 1e15  # cells from the origin
 FEWEST = 3  # cells along an axis, so that the two beside one are different
 PER_CELL = 2.0  # cells of an element that there is place for, at most
+ABREAST, BITS = 4, 64  # elements that are compared at once, bits of a number
+ONE, BRUIJN = np.uint64(1), np.uint64(0x03F79D71B4CB0A89)  # the upper six bits of this times a power of 2 are unique
+LOWEST = np.zeros(BITS, np.uint64)  # which bit is set, by these six
+LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(BITS)]] = np.arange(BITS)
 
 
 @device
@@ -48,11 +52,12 @@ def sides(spheres: Any, width: Any, low: Any, side: Any) -> Any:
     """Write the lowest cell of the grid, and how many cells it has along each axis; returns their number."""
     count = spheres.shape[0]
     for c in range(3):
-        high = low[c] = cell_of(spheres[0, c], width)
+        least, most = np.inf, -np.inf
         for i in range(count):
-            k = cell_of(spheres[i, c], width)
-            low[c], high = min(low[c], k), max(high, k)
-        side[c] = min(max(high - low[c] + 1, FEWEST), max(count, FEWEST))
+            along = spheres[i, c] if abs(spheres[i, c]) < np.inf else 0.0
+            least, most = min(least, along), max(most, along)
+        low[c] = cell_of(least, width)
+        side[c] = min(max(cell_of(most, width) - low[c] + 1, FEWEST), max(count, FEWEST))
     most = max(PER_CELL * count, float(FEWEST**3))
     while float(side[0]) * float(side[1]) * float(side[2]) > most:
         longest = 0
@@ -63,9 +68,9 @@ def sides(spheres: Any, width: Any, low: Any, side: Any) -> Any:
 
 
 @device
-def sort_cells(spheres: Any, width: Any, low: Any, side: Any, most: Any, first: Any, number: Any, at: Any) -> None:
-    """All elements but the large ones in the order of their cells, x y z and radius in `at`, their rows in `number`;
-    `first`: where each cell starts."""
+def sort_cells(spheres, width, low, side, most, first, number, xs, ys, zs, radii) -> None:  # type: ignore[no-untyped-def]
+    """All elements but the large ones in the order of their cells: their coordinates and radii, each in an array of
+    their own, and their rows in `number`; `first`: where each cell starts."""
     count = spheres.shape[0]
     cell = np.empty(count, np.int64)
     for i in range(count):
@@ -83,70 +88,82 @@ def sort_cells(spheres: Any, width: Any, low: Any, side: Any, most: Any, first: 
         k = cell[i] + 1
         if k > 0:  # from the end, so that `first` ends as the start of the cell, one place too far
             first[k] -= 1
-            s = first[k]
+            s = np.uint64(first[k])
             number[s] = i
-            for c in range(4):
-                at[s, c] = spheres[i, c]
+            xs[s], ys[s], zs[s], radii[s] = spheres[i, 0], spheres[i, 1], spheres[i, 2], spheres[i, 3]
 
 
 @device
-def runs_about(a: Any, b: Any, c: Any, side: Any, first: Any, runs: Any) -> Any:
-    """The elements of cell (a, b, c), the next along z, and the three in each of four columns beside them, as runs in
-    the order of cells; how many runs."""
-    k, layer = (a * side[1] + b) * side[2] + c, side[1] * side[2]
-    runs[0, 0], runs[0, 1], count = first[k], first[k + 1], 1
-    if a + 1 < side[0] and 0 < b < side[1] - 1 and 0 < c < side[2] - 1:
-        runs[0, 0], runs[0, 1] = first[k], first[k + 2]
-        runs[1, 0], runs[1, 1] = first[k + side[2] - 1], first[k + side[2] + 2]
-        for n in range(3):
-            q = k + layer + (n - 1) * side[2]
-            runs[2 + n, 0], runs[2 + n, 1] = first[q - 1], first[q + 2]
+def columns_about(a: Any, b: Any, side: Any, columns: Any) -> None:
+    """Where the column of cells (a, b) along z starts, and the four of the eight beside it that its elements look in;
+    behind the last column comes the first."""
+    after, up, down = (a + 1) % side[0], (b + 1) % side[1], (b + side[1] - 1) % side[1]
+    columns[0], columns[1] = (a * side[1] + b) * side[2], (a * side[1] + up) * side[2]
+    columns[2] = (after * side[1] + down) * side[2]
+    columns[3] = (after * side[1] + b) * side[2]
+    columns[4] = (after * side[1] + up) * side[2]
+
+
+@device
+def runs_about(c: Any, length: Any, columns: Any, first: Any, runs: Any) -> Any:
+    """The elements of cell c of the first column and the next one, and of three cells of each other column, as runs in
+    the order of cells; how many runs. Behind the last cell of a column comes its first."""
+    for n in range(5):
+        k = columns[n]
+        runs[n, 0], runs[n, 1] = first[k + (c if n == 0 else max(c - 1, 0))], first[k + min(c + 2, length)]
+    if 0 < c < length - 1:
         return 5
-    for n in range(13):
-        # (0, 0, 1), then (0, 1), (1, -1), (1, 0), (1, 1) with -1, 0, 1 along z
-        column = (n + 2) // 3
-        da, db, dc = (1 if column > 1 else 0), (column - 3 if column > 1 else column), ((n + 2) % 3 - 1 if n else 1)
-        p, q, r = a + da, b + db, c + dc
-        p = 0 if p == side[0] else p
-        q = 0 if q == side[1] else (side[1] - 1 if q < 0 else q)
-        r = 0 if r == side[2] else (side[2] - 1 if r < 0 else r)
-        k = (p * side[1] + q) * side[2] + r
-        if first[k] == first[k + 1]:
-            continue
-        if runs[count - 1, 1] == first[k]:
-            runs[count - 1, 1] = first[k + 1]
-        else:
-            runs[count, 0], runs[count, 1] = first[k], first[k + 1]
-            count += 1
-    return count
-
-
-@device
-def collect(at, number, begin, end, xs, ys, zs, radii, who, count) -> Any:  # type: ignore[no-untyped-def]
-    """Lay the elements of a run side by side; how many lie there then."""
-    for s in range(begin, end):
-        t, k = np.uint64(s), np.uint64(count)
-        who[k] = number[t]
-        xs[k] = at[t, 0]
-        ys[k] = at[t, 1]
-        zs[k] = at[t, 2]
-        radii[k] = at[t, 3]
+    count, other = 5, (length - 1 if c == 0 else 0)
+    for n in range(1 if c == 0 else 0, 5):
+        runs[count, 0], runs[count, 1] = first[columns[n] + other], first[columns[n] + other + 1]
         count += 1
     return count
 
 
 @device
-def meet(xs, ys, zs, radii, who, first, size, beyond, found, count) -> Any:  # type: ignore[no-untyped-def]
-    """List the first of some elements that lie side by side with all later ones that are within `beyond` of its reach;
-    how many pairs are listed then, -1 if there is no place."""
-    if count < 0 or count + size - first > found.shape[0]:
-        return -1
-    x, y, z, reach, own = xs[first], ys[first], zs[first], radii[first] + beyond, who[first] << 32
-    for n in range(first + 1, size):
-        t = np.uint64(n)
+def near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach) -> Any:  # type: ignore[no-untyped-def]
+    """Which of the `ABREAST` elements from `begin` on, but none from `end` on, are within their radius and `reach` of a
+    point: a bit for each. All are compared at once, without a branch."""
+    bits = 0
+    for k in range(ABREAST):
+        t = np.uint64(begin) + np.uint64(k)
         dx, dy, dz, apart = xs[t] - x, ys[t] - y, zs[t] - z, radii[t] + reach
-        found[np.uint64(count)] = own | who[t]  # overwritten unless it counts: quicker than a branch
-        count += 1 if dx * dx + dy * dy + dz * dz < apart * apart else 0
+        bits |= 1 << k if dx * dx + dy * dy + dz * dz < apart * apart else 0
+    return bits & ((1 << min(end - begin, ABREAST)) - 1)
+
+
+@device
+def meet(xs, ys, zs, radii, number, one, runs, several, beyond, found, count, begins) -> Any:  # type: ignore[no-untyped-def]
+    """List an element with all in some runs, in the first with the later ones, that are within `beyond` of its reach;
+    how many pairs are listed then, -1 if there is no place. Bits of several comparisons are read together, since the
+    end of each reading is a branch that no processor foresees."""
+    i, bits, full = np.uint64(one), np.uint64(0), 0
+    x, y, z, reach = xs[i], ys[i], zs[i], radii[i] + beyond
+    for n in range(several):
+        begin, end = (runs[n, 0] if n else one + 1), runs[n, 1]
+        while begin < end:
+            if full == BITS // ABREAST:
+                count = write_bits(bits, begins, number[i], number, found, count)
+                bits, full = np.uint64(0), 0
+            near = np.uint64(near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach))
+            bits |= near << np.uint64(ABREAST * full)
+            begins[np.uint64(full)] = begin
+            full, begin = full + 1, begin + ABREAST
+    return write_bits(bits, begins, number[i], number, found, count)
+
+
+@device
+def write_bits(bits, begins, own, number, found, count) -> Any:  # type: ignore[no-untyped-def]
+    """List an element with those of set bits, `ABREAST` bits from each of `begins`; how many pairs are listed then, -1
+    if there is no place."""
+    while bits:
+        lowest = LOWEST[(bits & (~bits + ONE)) * BRUIJN >> np.uint64(58)]
+        bits &= bits - ONE
+        if count < 0 or count >= found.shape[0]:
+            return -1
+        other = begins[lowest // np.uint64(ABREAST)] + np.int64(lowest % np.uint64(ABREAST))
+        found[np.uint64(count)] = both(own, number[np.uint64(other)])
+        count += 1
     return count
 
 
@@ -225,28 +242,26 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, found) -> Any: 
         widest = max(widest, spheres[i, 3]) if spheres[i, 3] <= LARGE * mean else widest
     width, low, side = 2.0 * widest + beyond, np.empty(3, np.int64), np.empty(3, np.int64)
     cells = sides(spheres, width, low, side)
-    first, number, at = np.zeros(cells + 2, np.int64), np.empty(size, np.int64), np.empty((size, 4))
-    sort_cells(spheres, width, low, side, LARGE * mean, first, number, at)
-    first, runs, count = first[1:], np.empty((13, 2), np.int64), 0
-    beside, who = np.empty((4, size)), np.empty(size, np.int64)
+    first, number = np.zeros(cells + 2, np.int64), np.empty(size + ABREAST, np.int64)
+    beside = np.zeros((4, size + ABREAST))
     xs, ys, zs, radii = beside[0], beside[1], beside[2], beside[3]
+    sort_cells(spheres, width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
+    columns, runs, begins = np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(BITS // ABREAST, np.int64)
+    first = first[1:]
+    count, k = 0, -1
     for a in range(side[0]):
         for b in range(side[1]):
+            columns_about(a, b, side, columns)
             for c in range(side[2]):
-                k = (a * side[1] + b) * side[2] + c
+                k += 1
                 if first[k] == first[k + 1]:
                     continue
-                several = 0
-                for n in range(runs_about(a, b, c, side, first, runs)):
-                    several = collect(at, number, runs[n, 0], runs[n, 1], xs, ys, zs, radii, who, several)
-                for s in range(first[k + 1] - first[k]):
+                several = runs_about(c, side[2], columns, first, runs)
+                for s in range(first[k], first[k + 1]):
                     before = count
-                    count = meet(xs, ys, zs, radii, who, s, several, beyond, found, count)
+                    count = meet(xs, ys, zs, radii, number, s, runs, several, beyond, found, count, begins)
                     if picky:
                         count = thin(spheres, parameters, start, order, beyond, found, before, count)
-    for n in range(count):
-        i, j = ends(found[n])
-        found[n] = both(i, j)
     if first[cells] < size:
         count = meet_large(spheres, parameters, start, order, LARGE * mean, beyond, picky, found, count)
     return count

@@ -31,8 +31,8 @@ SUMS = 4  # of each sphere what a kernel sums: its force and a zero; then, apart
 PER_ELEMENT = 24  # pairs of an element that there is place for, on average
 LOCAL = 2.0  # how much longer than layer by layer the way through elements as given may be
 LEAST, FIRST, MOST = 1.25, 2.0, 8.0  # the range of a list in skins
-BALANCE = 75.0  # range in skins times uses of a list at which making it costs as much as the pairs it has too many
-LOW, ONE = np.uint64(0xFFFFFFFF), np.uint64(1)
+BALANCE = 45.0  # range in skins times uses of a list at which making it costs as much as the pairs it has too many
+ONE = np.uint64(1)
 STEP = 1.5  # by which the range changes
 
 
@@ -257,17 +257,30 @@ def note(here: Any, parameters: Any, start: Any, order: Any, seen: Any) -> Any:
 
 
 @device
-def sort_by(given: Any, count: Any, shift: Any, size: Any, to: Any) -> None:
-    """Write pairs in the order of one of their rows, without changing that of pairs with the same one."""
-    first = np.zeros(size + 1, np.int64)
+def sort_pairs(pairs: Any, count: Any, size: Any, aside: Any) -> None:
+    """Sort pairs of some rows by their first row, then by their second: by counting, with a copy in `aside`."""
+    starts, of_first, of_second = np.zeros((2, size + 1), np.int64), 0, 0
+    first, second = starts[0], starts[1]
     for n in range(count):
-        first[(np.uint64(given[n]) >> shift & LOW) + ONE] += 1
-    for i in range(size):
-        first[i + 1] += first[i]
+        i, j = ends(pairs[n])
+        first[i + ONE] += 1
+        second[j + ONE] += 1
+    for n in range(size):
+        i = np.uint64(n) + ONE
+        of_first, of_second = of_first + first[i], of_second + second[i]
+        first[i], second[i] = of_first, of_second
     for n in range(count):
-        i = np.uint64(given[n]) >> shift & LOW
-        to[first[i]] = given[n]
-        first[i] += 1
+        pair = pairs[n]
+        _, j = ends(pair)
+        k = second[j]
+        second[j] = k + 1
+        aside[np.uint64(k)] = pair
+    for n in range(count):
+        pair = aside[n]
+        i, _ = ends(pair)
+        k = first[i]
+        first[i] = k + 1
+        pairs[np.uint64(k)] = pair
 
 
 @device
@@ -280,17 +293,14 @@ def list_pairs(here: Any, parameters: Any, start: Any, order: Any, room: Any, be
     seen = seen_in(room)[:count]
     picky = note(here, parameters, start, order, seen)
     pairs, reach = pairs_in(room)
-    found = reach.view(np.int64)  # until the reach is written
-    met = find_pairs(seen, parameters, start, order, beyond, picky, found)
+    met = find_pairs(seen, parameters, start, order, beyond, picky, pairs)
     if met < 0:
         return False
-    sort_by(found, met, np.uint64(32), count, pairs)
-    sort_by(pairs, met, np.uint64(0), count, found)
+    sort_pairs(pairs, met, count, reach.view(np.int64))  # the reach is written after that
     radius = 3 if seen.shape[1] == SEEN else SEEN + 3
     for n in range(met):
-        i, j = ends(found[n])
-        pairs[n] = found[n]
-        reach[n] = seen[i, radius] + seen[j, radius]  # in the place of the pair
+        i, j = ends(pairs[n])
+        reach[n] = seen[i, radius] + seen[j, radius]
     head[0, COUNT], head[0, FOUND] = count, met
     return True
 

@@ -2,8 +2,9 @@
 
 What holds them is as stiff along the area of contact as across it: a force by how far one has moved along the other
 where they press, and a moment by how far it has turned about the normal. Neither is larger than Coulomb's law allows,
-mu N and mu N r, r the radius of gyration of the area. Of each contact the body that comes first remembers in one of its
-rows where it would be on the other without these forces. Before a step has ended that is where both were at the start.
+mu N and mu N r, r the radius of gyration of the area. Where the first of two bodies would be on the other without these
+forces is kept in a row of the first, or of the second where the first has none left. Before a step has ended that is
+where both were at the start.
 Source: Cundall and Strack, "A discrete numerical model for granular assemblies", 1979.
 """
 
@@ -38,6 +39,28 @@ def slot(memory: Any, parameters: Any, first: Any, partner: Any) -> Any:
         if memory[e, PARTNER] == partner:
             return e
         e = following(parameters, e)
+    return -1
+
+
+@device
+def row_of(memory: Any, parameters: Any, bodies: Any, a: Any, b: Any, sign: Any) -> Any:
+    """The row that remembers the contact of two bodies, of the first or of the second; -1 if none does."""
+    row = slot(memory, parameters, int(bodies[a, HEAD]), sign * (b + 1.0))
+    return row if row >= 0 else slot(memory, parameters, int(bodies[b, HEAD]), sign * (a + 1.0))
+
+
+@device
+def claim(memory: Any, parameters: Any, bodies: Any, a: Any, b: Any, row: Any) -> Any:
+    """Mark the row that is to remember the contact of two bodies: the one that does, else a free one of the first, else
+    of the second. A slab under many bodies has too few for all of them. -1 if there is none."""
+    if row >= 0:
+        memory[row, PARTNER] = -memory[row, PARTNER]
+        return row
+    for body, other in ((a, b), (b, a)):
+        free = slot(memory, parameters, int(bodies[body, HEAD]), 0.0)
+        if free >= 0:
+            memory[free, PARTNER] = other + 1.0
+            return free
     return -1
 
 
@@ -105,7 +128,7 @@ def allowed(hit: Any, rough: Any, turned: Any, room: Any) -> Any:
 def grip(parameters: Any, memory: Any, bodies: Any, a: Any, b: Any, origin: Any, k: Any, rough: Any, desk: Any) -> None:
     """Add the friction of two bodies that touch."""
     hit, room = desk[1][0], desk[2]
-    row = slot(memory, parameters, int(bodies[a, HEAD]), b + 1.0)
+    row = row_of(memory, parameters, bodies, a, b, 1.0)
     turned = apart(parameters, memory, bodies, a, b, origin, row, hit, room)
     slip, twist = allowed(hit, rough, turned, room)
     for i in range(3):
@@ -123,14 +146,12 @@ def grip(parameters: Any, memory: Any, bodies: Any, a: Any, b: Any, origin: Any,
 def hold_on(parameters: Any, memory: Any, bodies: Any, a: Any, b: Any, origin: Any, rough: Any, desk: Any) -> None:
     """Remember where the first body would be on the other without friction, up to what that can hold."""
     hit, room = desk[1][0], desk[2]
-    first = int(bodies[a, HEAD])
-    row = slot(memory, parameters, first, -b - 1.0)
+    row = row_of(memory, parameters, bodies, a, b, -1.0)
     turned = apart(parameters, memory, bodies, a, b, origin, row, hit, room)
     slip, twist = allowed(hit, rough, turned, room)
-    row = slot(memory, parameters, first, 0.0) if row < 0 else row
+    row = claim(memory, parameters, bodies, a, b, row)
     if row < 0:
         return
-    memory[row, PARTNER] = b + 1.0
     sine = -twist * turned
     less = 1.0 - np.sqrt(max(1.0 - sine * sine, 0.0))
     for i in range(3):  # the normal in the frame of the other

@@ -24,7 +24,8 @@ UTMOST = 10**12  # parts of a step that is far too long
 FIRST_LOOK = 25  # iterations before the first look at the balance; later looks come at growing distances
 LEAVES = 20  # unstable equilibria that a run leaves
 TRIES = 5  # tighter tolerances that a run takes without half the position error
-PATIENCE = 20_000  # iterations without a better residual before a run counts as stalled, on top of those spent
+PATIENCE = 20_000  # iterations without a better residual before a run counts as stalled, on top of those spent; and
+# without less energy: spheres that settle have less long before they have a better residual
 
 
 def seldom(system: System) -> int:
@@ -47,6 +48,7 @@ class Watch:
         self.started = time.monotonic()
         self.first = self.last = state.iteration
         self.best, self.best_at = np.inf, state.iteration
+        self._lowest, self._fell_at = np.inf, state.iteration  # the least energy, and when it was noted
         self.good = state.copy()
         self.found: Balance = balance(system, state)
         self.size = system.size
@@ -104,7 +106,8 @@ class Watch:
         rests = self.found.still(self.tolerance) and self._resting(system, state)
         if rests and not amiss(system, state):  # else the solver may go on, and mend it
             return Status.CONVERGED if self.found.met(self.tolerance) else Status.STALLED
-        stuck = state.iteration > 2 * self.best_at - self.first + PATIENCE
+        self._note_energy(system, state)
+        stuck = state.iteration > max(2 * self.best_at - self.first, self._fell_at) + PATIENCE
         if idle or (stuck and not self.method.physical):  # what swings may swing for long
             return Status.STALLED
         if state.iteration - self.first >= self.settings.max_iterations:
@@ -146,6 +149,15 @@ class Watch:
         system.remember(state)
         if system.yields:
             self.found = replace(self.found, energies=system.evaluate(state)[2])
+
+    def _note_energy(self, system: System, state: State) -> None:
+        """Note when the energy has fallen by more than the work of the goal's force along the size of the model; not
+        where a part that nothing supports falls, nor of films: what keeps them even does work."""
+        if self.found.falls or system.films is not None or not all(group.conservative for group in system.groups):
+            return
+        energy = float(self.found.energies.sum())
+        if energy < self._lowest - self.goal * self.size:
+            self._lowest, self._fell_at = energy, state.iteration
 
     def _exploding(self, system: System, state: State, found: Balance, *, driven: bool) -> bool:
         """Whether time steps are too long for the motion; else records which particle and force."""
