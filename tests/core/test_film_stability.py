@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq, root
 
 from hookean import relax
 from hookean.running.result import Status
@@ -103,3 +104,40 @@ def test_a_film_is_no_mechanism_along_itself(solver: str) -> None:
     result = relax(scene(x, faces, held, anchors=plane, settings={"solver": solver}))
     assert result.converged and np.array_equal(result.particles, x)
     assert (result.stability, result.position_error) == (Stability.STABLE, 0.0)
+
+
+@pytest.mark.parametrize("height", [0.3, 0.5, 0.64])
+def test_a_film_that_collapses_on_one_side_rests_on_the_other(height: float) -> None:
+    """Between two rings hang two catenoids r = c cosh(z / c): the slim one is unstable, and on one side of it lies
+    collapse, on the other the stout one, which is stable. `auto` arrives there, whichever side it tries first; its
+    waist is that of the same rows at equal heights to 1 %, as particles may slide along the film.
+    """
+    least = height / 1.19967864025773  # the waist where both are one: x tanh x = 1
+    slim, stout = (
+        _rows(height, brentq(lambda c: c * np.cosh(height / c) - 1.0, *b)) for b in ((0.02, least), (least, 1))
+    )
+    x, faces, rings = tube(16, 10, height, "quads")
+    x[:, :2] *= (np.repeat(slim, 16) / np.linalg.norm(x[:, :2], axis=1))[:, None]
+    kept = relax(scene(x, faces, rings, settings={"allow_unstable": True}))
+    assert (kept.status, kept.stability) == (Status.CONVERGED, Stability.UNSTABLE)
+    left = relax(scene(x, faces, rings))
+    assert (left.status, left.stability) == (Status.CONVERGED, Stability.STABLE)
+    assert np.linalg.norm(left.particles[16 * 5, :2]) == pytest.approx(stout[5], rel=0.01)
+
+
+def _rows(height: float, waist: float) -> np.ndarray:
+    """Radii of 11 rows of 16 particles at equal heights where the area of the trapezoids between them, sums of
+    (r + r') s with the slant height s^2 = h^2 + k^2 (r' - r)^2, has no slope; near the catenoid of this waist."""
+    k, high = np.cos(np.pi / 16), 2.0 * height / 10
+
+    def slope(inner: np.ndarray) -> np.ndarray:
+        r = np.concatenate([[1.0], inner, [1.0]])
+        wide, apart = r[1:] + r[:-1], np.diff(r)
+        slant = np.sqrt(high**2 + (k * apart) ** 2)
+        pull = wide * k**2 * apart / slant
+        return slant[:-1] + slant[1:] + pull[:-1] - pull[1:]
+
+    z = np.linspace(-height, height, 11)[1:-1]
+    found = root(slope, waist * np.cosh(z / waist), tol=1e-13)
+    assert np.abs(found.fun).max() < 1e-10
+    return np.concatenate([[1.0], found.x, [1.0]])

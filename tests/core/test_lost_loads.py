@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean import Scene, load_cases, relax
+from hookean import InputError, Scene, load_cases, relax
 
 SMALL = 0.05  # width of the second face, below the tolerance
 MESH = {
@@ -118,10 +118,51 @@ def test_a_load_case_says_that_its_load_met_nothing() -> None:
     scene = {
         "strict": False,
         "forces": [
-            {"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [2, 0, 0]]], "force": 9, "stiffness": 9},
+            {"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [2, 0, 0]]], "force": 9, "stiffness": 99},
             {"kind": "unary", "name": "snow", "points": [[1, 0, 0.2]], "vector": [0, 0, -1]},
         ],
         "anchors": [{"points": [[0, 0, 0], [2, 0, 0]]}],
         "load_cases": {"snow": {"forces": ["snow"]}},
     }
     assert "its point met no particle" in repr(load_cases(Scene.read(scene)))
+
+
+def row(*loads: dict[str, Any], **more: Any) -> Scene:
+    """Three particles on a line, at 0, 1 and 2 m, with springs between them; the first and last are held."""
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
+        "forces": [{"kind": "springs", "particles": [[0, 1], [1, 2]], "stiffness": 100.0, "rest_factor": 0.8}, *loads],
+        "anchors": [{"particles": [0, 2]}],
+    }
+    return Scene.read({**scene, **more})
+
+
+def test_a_point_that_is_nearer_to_another_particle_is_named() -> None:
+    """A point at 0.9 m meets particle 0, the first within 0.95 m, although particle 1 is 0.1 m away."""
+    load = {"kind": "unary", "points": [[0.9, 0, 0], [1, 0, 0]], "vector": [0, 0, -1]}
+    (said,) = (one for one in relax(row(load, weld_tolerance=0.95)).report.warnings if "nearer" in one)
+    assert said.startswith("/forces/1/points: 1 of 2 points")
+    assert "point 0 met particle 0, 0.9 m away, and particle 1 is 0.1 m away" in said
+    wide = relax(row({**load, "points": [[0.9, 0, 0]]}, weld_tolerance=0.45))
+    assert not any("nearer" in one for one in wide.report.warnings)
+
+
+def test_a_load_on_a_held_particle_that_nothing_touches_is_named() -> None:
+    """Of 12 N on four particles, 3 N go straight into the anchor of one that is no part of the net."""
+    lonely = {"particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 5, 0]], "anchors": [{"particles": [0, 2, 3]}]}
+    result = relax(row({"kind": "self_weight", "total": 12.0}, **lonely))
+    assert any(said.startswith("particle 3 passes its load straight to its anchor") for said in result.report.warnings)
+    assert result.reactions["force"][list(result.reactions["particles"]).index(3), 2] == pytest.approx(3.0)
+    assert not any(
+        "straight to its anchor" in said for said in relax(row({"kind": "self_weight", "total": 12.0})).report.warnings
+    )
+
+
+def test_a_load_of_a_case_that_meets_nothing_is_an_error_before_the_case_runs() -> None:
+    """The form alone is refused, too: a scene that cannot do what it says is none; not with strict false."""
+    snow = {"kind": "unary", "name": "snow", "points": [[1, 0, 0.2]], "vector": [0, 0, -1]}
+    cases = {"load_cases": {"snow": {"forces": ["snow"]}}}
+    with pytest.raises(InputError, match="snow: its point met no particle"):
+        relax(row(snow, **cases))
+    assert relax(row(snow, strict=False, **cases)).status == "converged"
+    assert relax(row({**snow, "points": [[1, 0, 0]]}, **cases)).status == "converged"

@@ -45,6 +45,7 @@ class Watch:
         self.tolerance = self.settings.tolerance  # of the residual; tighter where the shape is to be known better
         self.rest: Equilibrium | None = None  # what is known of the equilibrium that was found
         self._left, self._tries, self._least = 0, 0, np.inf
+        self._other: tuple[State, Equilibrium, float] | None = None  # an unstable film, and the side it was not left to
         self.started = time.monotonic()
         self.first = self.last = state.iteration
         self.best, self.best_at = np.inf, state.iteration
@@ -90,7 +91,7 @@ class Watch:
         if not self._sane(system, state):
             return self._burst(system, state, driven=driven)
         if self._collapsed(system, state, known=known):
-            return self._fallen(system)
+            return self._turned_back(system, state) or self._fallen(system)
         found = self.found if known else balance(system, state)
         if self._exploding(system, state, found, driven=driven) and not self._cooled(system, state, found):
             return self._burst(system, state, driven=driven)
@@ -122,8 +123,11 @@ class Watch:
         shape is known to the position tolerance; else CONVERGED, or STALLED where neither can be had."""
         rest = self.rest = assess(system, state, self.found, self.method)
         leaves = self.method.leaves and not self.settings.allow_unstable and self._left < LEAVES
-        if leaves and rest.stability is Stability.UNSTABLE and leave(system, state, rest):
+        leaves = leaves and rest.stability is Stability.UNSTABLE
+        before = state.copy() if leaves else state
+        if leaves and (side := leave(system, state, rest)):
             self._left += 1
+            self._other = (before, rest, -side) if self.films is not None else None
             self.tolerance *= 0.1  # near an instability forces are small long before rest
             self.method.depart(system, state)
             self.found, self.rest = balance(system, state), None
@@ -211,6 +215,18 @@ class Watch:
         if self.films is not None and self.films.good is not None:
             self.good, self.found = self.films.good, balance(system, self.films.good)
         return Status.DIVERGED
+
+    def _turned_back(self, system: System, state: State) -> Status | None:
+        """RUNNING where a film that collapsed on one side of an unstable shape is given the other side of it."""
+        if self._other is None:
+            return None
+        (before, rest, side), self._other = self._other, None
+        state.x, state.v, state.memory = before.x, before.v, before.memory
+        if not leave(system, state, rest, (side,)):
+            return None
+        self.method.depart(system, state)
+        self.collapse, self.good, self.found = "", state.copy(), balance(system, state)
+        return self._again(state)
 
     def _collapsed(self, system: System, state: State, *, known: bool) -> bool:
         """Whether films are no longer a valid shape, or have no equilibrium to begin with."""

@@ -224,24 +224,24 @@ def excess(system: System, state: State, found: Balance, rest: Equilibrium) -> f
     return float((errors / (tolerance * np.where(sizes > 0.0, sizes, 1.0))).max(initial=0.0))
 
 
-def leave(system: System, state: State, rest: Equilibrium) -> bool:
-    """Move along the softest mode to where the energy is lower, as far as it goes on falling; False where it is lower
-    nowhere."""
+def leave(system: System, state: State, rest: Equilibrium, sides: tuple[float, ...] = (1.0, -1.0)) -> float:
+    """Move along the softest mode, or against it, to where the energy is lower: the side that was taken, 0 where it is
+    lower nowhere."""
     if rest.mode is None:
-        return False
+        return 0.0
     start, energy, noise = state.x.copy(), *_energy(system, state)
     length = 0.01 * system.size
     for _ in range(20):
-        for sign in (1.0, -1.0):
-            step = sign * length * rest.mode
+        for side in sides:
+            step = side * length * rest.mode
             state.x = start + step
             fall = energy - _energy(system, state)[0]
             if fall > noise or (fall >= -noise and _gains(system, replace(state, x=start), step)):
                 system.slots.fold(state)
-                return True
+                return side
         length *= 0.5
     state.x = start
-    return False
+    return 0.0
 
 
 def _gains(system: System, state: State, step: Floats) -> bool:

@@ -65,6 +65,7 @@ def cautions(system: System) -> list[str]:
                     f"/forces/{part.number}: {short} of {len(closed)} elements have zero length (first: element "
                     f"{int(np.argmax(closed))}), so their forces have no direction; move their ends apart"
                 )
+    idle = np.flatnonzero(((system.load_count > 0) & (touched == 0))[: system.slots.count])
     for number, given in enumerate(system.scene.anchors):
         places = given.points if given.particles is None else given.particles
         if places is not None and not places.size:
@@ -78,7 +79,14 @@ def cautions(system: System) -> list[str]:
                 f"/anchors/{anchor.number}/rotations: particle {anchor.particles[none][0]} has no rotation to hold: no "
                 "beam ends there" + (f" (nor have {none.sum() - 1} more)" if none.sum() > 1 else "")
             )
-    alone = np.flatnonzero(((system.load_count > 0) & (touched == 0))[: system.slots.count])
+    alone = idle[touched[idle] == 0]
+    if len(alone) < len(idle):
+        direct = idle[touched[idle] > 0]
+        more = f" (and {len(direct) - 1} more)" if len(direct) > 1 else ""
+        warnings.append(
+            f"particle {direct[0]} passes its load straight to its anchor{more}: no spring or other force touches it; "
+            "leave it out of the load, or connect it"
+        )
     if len(alone) and not system.contacts:
         warnings.append(
             f"particle {alone[0]} carries a load but is unsupported: no spring, other force or anchor holds it"

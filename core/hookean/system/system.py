@@ -289,6 +289,9 @@ def compile(scene: Scene) -> System:
     given = [(i, force) for i, force in enumerate(scene.forces) if i not in later]
     if scene.settings.floor is not None:
         given.append((-1, scene.settings.floor))
+    if scene.strict:
+        for number in later:
+            welded.check_place(scene.forces[number], f"/forces/{number}")
     groups, contacts, impulses, slots = groups_of(given, welded)
     x = slots.extended(welded.x)
     load_count = np.zeros(len(x))
@@ -325,6 +328,7 @@ def _anchors(welded: Welded) -> list[Held]:
             points = np.asarray(anchor.points)
             particles = welded.meet(points)
             welded.check(f"/anchors/{i}/points", anchor.name, points, particles, "point", "anchor")
+            welded.check_nearest(f"/anchors/{i}/points", points, particles)
         met = particles >= 0
         targets = welded.x[particles] if anchor.targets is None else np.asarray(anchor.targets)
         free, turning = (axes_free(axes) for axes in (anchor.axes, anchor.rotations))

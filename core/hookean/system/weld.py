@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 
 from hookean.errors import InputError
 from hookean.forces import Block, Force
-from hookean.forces.base import PLACES
+from hookean.forces.base import PLACES, lengths
 from hookean.scene.report import Missed, Report, Unmatched
 from hookean.scene.scene import Scene
 from hookean.values import materials, near
@@ -24,6 +24,8 @@ from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+NEARER = 0.01  # part of a distance that does not count
 
 
 class Welded:
@@ -207,6 +209,12 @@ class Welded:
         found = near.first(self.x, points.reshape(-1, 3), self.tolerance)
         return np.ascontiguousarray(found.reshape(points.shape[:-1]))
 
+    def check_place(self, force: Force, pointer: str) -> None:
+        """Report what of a load that does not act yet has met no particle."""
+        if force.element_arity < 3 and vars(force).get("mesh") is None:
+            self.elements(force)
+        self.check_force(force, pointer)
+
     def check_force(self, force: Force, pointer: str) -> None:
         """Report the points, lines or vertices of a force that met no particle."""
         kinds: tuple[tuple[str, Literal["point", "line"]], ...] = (("points", "point"), ("lines", "line"))
@@ -214,6 +222,8 @@ class Welded:
             points = vars(force).get(name)  # asking a model for what it has not takes long
             if points is not None and id(force) in self._rows:
                 self.check(f"{pointer}/{name}", force.name, points, self._rows[id(force)], what, force.role)
+                if not force.creates:
+                    self.check_nearest(f"{pointer}/{name}", points, self._rows[id(force)])
         mesh = vars(force).get("mesh")
         if mesh is not None and (self.vertices(mesh) < 0).any():
             data, found = self.scene.meshes[mesh], self.vertices(mesh)
@@ -251,6 +261,24 @@ class Welded:
             if where not in self._lost:  # two forces may name the same mesh
                 self._lost.add(where)
                 self.report.unmatched.append(Unmatched(where, name, spot, int(i), float(away)))
+
+    def check_nearest(self, pointer: str, points: Floats, found: Ints) -> None:
+        """Report points that met the first particle within the tolerance, as welding has it, beside a nearer one."""
+        spots, rows = points.reshape(-1, 3), found.ravel()
+        away = lengths(spots - self.x[rows])
+        apart = np.flatnonzero((rows >= 0) & (away > NEARER * self.tolerance))
+        if not len(apart):
+            return
+        distance, nearest = (column.ravel() for column in self._tree.query(spots[apart], k=1))
+        nearer = np.flatnonzero(distance < (1.0 - NEARER) * away[apart])
+        if len(nearer):
+            i, unit = nearer[0], self.scene.units.length
+            one = apart[i]
+            self.report.warnings.append(
+                f"{pointer}: {len(nearer)} of {len(spots)} points met a particle although another is nearer (first: "
+                f"point {one} met particle {rows[one]}, {away[one]:.3g} {unit} away, and particle {nearest[i]} is "
+                f"{distance[i]:.3g} {unit} away); lower weld_tolerance"
+            )
 
     @cached_property
     def _tree(self) -> Any:
