@@ -80,6 +80,29 @@ def test_the_adjoint_is_the_difference_of_whole_solves(kind: str) -> None:
             assert close, (seed, field, unknown, gradient[unknown], expected)
 
 
+@pytest.mark.parametrize("kind", sorted(FOUND))
+def test_products_by_elements_are_those_of_the_matrices(kind: str) -> None:
+    """y . df/du and some rows of K^T y, summed element by element, are products with the sparse df/du and the
+    tangent: sums of the same products, so that they differ by rounding. Derivatives of columns are differences of
+    values that are rounded to 1e-16 of their sum, by a step of 1e-5: 1e-11 of forces that may be a hundred times as
+    large as what changes, 1e-9 of the largest."""
+    fields = [name for name in columns(KINDS[kind].example()[0]) if varies(kind, name)]
+    given = problem(kind, fields[:2], 3) if fields else pytest.skip("its columns do not vary")
+    system = compile(given.scene)
+    unknowns, state = Unknowns(given, system), system.start()
+    found = settle(system, state, once=True)
+    y = np.random.default_rng(3).normal(size=state.x.shape)
+    forces, _ = unknowns.slopes(found)
+    work, largest = unknowns.work(found, y), np.abs(forces.T @ np.abs(y.ravel())).max()
+    assert work == pytest.approx(forces.T @ y.ravel(), abs=1e-9 * largest)
+    places = np.arange(0, y.size, 2)
+    resisted = found.resisted(y.ravel(), places)
+    whole = found.tangent.T @ y.ravel()
+    size = np.abs(found.tangent).sum(axis=0).max() * np.abs(y).max()
+    assert resisted[places] == pytest.approx(whole[places], abs=1e-13 * size)
+    assert not np.delete(resisted, places).any()
+
+
 def varies(kind: str, field: str) -> bool:
     """Whether a column can be differentiated at all."""
     try:

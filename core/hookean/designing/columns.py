@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Give = Callable[[Force | None, Block], Floats]
 
 STEP = 1e-5  # of a value, and of the mean of its column: the error is its square, and rounding 1e-11
 JUMP = 1e-9  # part of the values: what is less is rounding
@@ -183,7 +184,7 @@ class Column:
         ]
         return force
 
-    def differences(self, system: System, give: Callable[[Force, Block], Floats]) -> Iterator[tuple[Ints, Floats]]:
+    def differences(self, system: System, give: Give) -> Iterator[tuple[Ints, Floats]]:
         """Derivatives (m, ...) of what `give` says of each element, with the unknown (m,) by which, -1 for none: a pair
         for each number that an element has in the column."""
         values, tie = self.entries.values, self.entries.tie
@@ -205,7 +206,7 @@ class Column:
         mean = float(np.abs(self.entries.start).mean()) or 1.0
         return STEP * max(abs(float(self.entries.start[unknown])), mean)
 
-    def slope(self, system: System, change: Floats, give: Callable[[Force, Block], Floats]) -> Floats:
+    def slope(self, system: System, change: Floats, give: Give) -> Floats:
         """By how much what `give` says changes with a change (m, c) of the values: differences of second order, on one
         side where the other is not allowed. InputError where it jumps at a value."""
         values = self.entries.values

@@ -6,7 +6,8 @@ K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films move a
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Iterator
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from hookean.system.state import State
 from hookean.system.system import Held, System
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 TIGHT = 1e-11  # residual [-] to which shapes are brought
 SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
@@ -80,6 +82,18 @@ class Equilibrium:
         if self._tangent is None:
             self._tangent = tangent(self.system, self.state)
         return self._tangent
+
+    def resisted(self, y: Floats, places: Ints) -> Floats:
+        """K^T y (3n,) at some coordinates, of all axes, for a motion y (3n,); 0 at the others."""
+        total = np.zeros(len(y))
+        if self._tangent is not None:
+            total[places] = (self._tangent.T @ y)[places]
+            return total
+        for axes, blocks in _blocks(self.system, self.state, np.unique(places // 3)):
+            total += np.bincount(axes.ravel(), np.einsum("eab,ea->eb", blocks, y[axes]).ravel(), len(total))
+        kept = np.zeros(len(total))
+        kept[places] = total[places]
+        return kept
 
     @cached_property
     def _cycles(self) -> Cycles | None:
@@ -278,19 +292,27 @@ def tangent(system: System, state: State) -> Any:
 
     n = len(state.x)
     total = csc_matrix((3 * n, 3 * n))
-    for group, memory in system.elements(state.x, state.memory):
-        if group.cls.constant or not len(group.block.indices):
-            continue
-        blocks = (
-            system.stiffness_blocks(group, state, memory)
-            if group.cls.conservative
-            else _slopes(system, group, state, memory)
-        )
-        axes = (3 * group.block.indices[:, :, None] + np.arange(3)).reshape(len(blocks), -1)
+    for axes, blocks in _blocks(system, state, None):
         rows = np.broadcast_to(axes[:, :, None], blocks.shape)
         columns = np.broadcast_to(axes[:, None, :], blocks.shape)
         total = total + coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=total.shape).tocsc()
     return total
+
+
+def _blocks(system: System, state: State, particles: Ints | None) -> Iterator[tuple[Ints, Floats]]:
+    """The axes (m, 3 arity) and tangents (m, 3 arity, 3 arity) of the elements of each group; of those alone that have
+    some of the `particles`, if given."""
+    for group, memory in system.elements(state.x, state.memory):
+        if group.cls.constant or not len(group.block.indices):
+            continue
+        if particles is not None and group.cls.tangent is None:
+            some = np.zeros(len(state.x), dtype=bool)
+            some[particles] = True
+            rows = np.flatnonzero(some[group.block.indices].any(axis=1))
+            group, memory = Group(group.cls, group.block.some(rows), []), memory[rows]
+        given = system.stiffness_blocks if group.cls.conservative else partial(_slopes, system)
+        blocks = given(group, state, memory)
+        yield (3 * group.block.indices[:, :, None] + np.arange(3)).reshape(len(blocks), -1), blocks
 
 
 def _slopes(system: System, group: Group, state: State, memory: Floats) -> Floats:

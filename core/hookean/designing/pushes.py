@@ -1,0 +1,93 @@
+"""How forces change with columns at fixed positions, df/du: as entries of a matrix, or times a motion of all particles,
+where no matrix is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.designing.columns import Column
+from hookean.forces.base import Block, Force
+from hookean.running.patch import lead_forces
+from hookean.system.group import Group
+
+if TYPE_CHECKING:
+    from hookean.designing.equilibrium import Equilibrium
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+NOTHING = np.zeros(0, np.int64)
+
+
+def pushes(found: Equilibrium, variable: Column) -> tuple[Ints, Ints, Floats]:
+    """df/du of a column [force by unit]: places in (3n, unknowns), and values."""
+    rows, columns, values = [NOTHING], [NOTHING], [np.zeros(0)]
+    if _alone(found, variable):
+        index = variable.group.block.indices[variable.part.rows]
+        for unknown, slope in variable.differences(found.system, _forces(found, variable)):
+            kept = unknown >= 0
+            place = 3 * index[kept][:, :, None] + np.arange(3)
+            rows.append(place.ravel())
+            columns.append(np.repeat(unknown[kept], 3 * index.shape[1]))
+            values.append(slope[kept].ravel())
+    else:
+        for number, slope in _together(found, variable):
+            place = np.flatnonzero(slope)
+            rows.append(place)
+            columns.append(np.full(len(place), number))
+            values.append(slope[place])
+    return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+
+
+def work(found: Equilibrium, variable: Column, moved: Floats) -> Floats:
+    """y . df/du of a column (unknowns,) for a motion y (n, 3) of the particles."""
+    total = np.zeros(variable.entries.count)
+    if not _alone(found, variable):
+        for number, slope in _together(found, variable):
+            total[number] = slope @ moved.ravel()
+        return total
+    forces = _forces(found, variable)
+    index = variable.group.block.indices[variable.part.rows]
+    along = moved.take(index.ravel(), axis=0).reshape(len(index), -1)  # many times quicker than an index
+
+    def powers(force: Force | None, block: Block) -> Floats:
+        return np.asarray(np.einsum("ec,ec->e", forces(force, block).reshape(along.shape), along))
+
+    for unknown, slope in variable.differences(found.system, powers):
+        kept = unknown >= 0
+        total += np.bincount(unknown[kept], slope[kept], len(total))
+    return total
+
+
+def _alone(found: Equilibrium, variable: Column) -> bool:
+    """Whether the elements of a column's force do not feel one another, and are in one group."""
+    system, state, group = found.system, found.state, variable.group
+    several = sum(part.number == variable.number for other in system.groups for part in other.parts) > 1
+    memory = state.memory[system.groups.index(group)]
+    return not several and group.cls.gathered(group.block, memory, state.x, None) is None
+
+
+def _forces(found: Equilibrium, variable: Column) -> Callable[[Force | None, Block], Floats]:
+    """What gives the forces (m, arity, 3) of all elements of a column's force with other numbers in their block."""
+    system, state, group = found.system, found.state, variable.group
+    memory = state.memory[system.groups.index(group)][variable.part.rows]
+    return lambda _, block: system.element_forces(Group(group.cls, block, []), state, memory)
+
+
+def _together(found: Equilibrium, variable: Column) -> Iterator[tuple[int, Floats]]:
+    """Derivatives (3n,) of all forces by one unknown at a time, where elements feel one another."""
+    system, first = found.system, variable.force
+
+    def forces(force: Force | None, block: Block) -> Floats:
+        lead_forces(system, {variable.number: force})
+        return system.evaluate(found.state)[0]
+
+    for unknown in range(variable.entries.count):
+        step = variable.step(unknown)
+        change = np.where(variable.entries.tie == unknown, step, 0.0)
+        yield unknown, variable.factor * variable.slope(system, change, forces).ravel() / step
+    lead_forces(system, {variable.number: first})
