@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean.designing.equilibrium import settle
+from hookean.designing.columns import Column
+from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.problem import Problem
 from hookean.designing.sensitivity import sensitivity
 from hookean.designing.unknowns import Unknowns
@@ -101,6 +102,22 @@ def test_products_by_elements_are_those_of_the_matrices(kind: str) -> None:
     size = np.abs(found.tangent).sum(axis=0).max() * np.abs(y).max()
     assert resisted[places] == pytest.approx(whole[places], abs=1e-13 * size)
     assert not np.delete(resisted, places).any()
+
+
+@pytest.mark.parametrize("kind", sorted(kind for kind, cls in KINDS.items() if cls.linear))
+def test_forces_that_are_linear_in_a_column_are_exact(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`Force.linear` is a column that multiplies all of the force, so that forces at 1 are the derivatives: those that
+    differences give, within 1e-9 of the largest as above, and at every shape."""
+    given = problem(kind, [KINDS[kind].linear], 5)
+    system = compile(given.scene)
+    unknowns, state = Unknowns(given, system), system.start()
+    state.x = state.x + 0.02 * system.size * np.random.default_rng(5).normal(size=state.x.shape)
+    found = Equilibrium(system, state, None, once=True)
+    assert unknowns.variables[0]._units()
+    exact = unknowns.slopes(found)[0].toarray()
+    monkeypatch.setattr(Column, "_units", lambda self: [])
+    differences = unknowns.slopes(found)[0].toarray()
+    assert exact == pytest.approx(differences, abs=1e-9 * np.abs(differences).max())
 
 
 def varies(kind: str, field: str) -> bool:

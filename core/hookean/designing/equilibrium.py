@@ -20,7 +20,7 @@ from hookean.forces.base import lengths
 from hookean.running.result import Result
 from hookean.running.run import relax_state
 from hookean.scene.scene import Scene
-from hookean.solvers import solver
+from hookean.solvers import Solver, solver
 from hookean.system.group import Group
 from hookean.system.state import State
 from hookean.system.system import Held, System
@@ -49,15 +49,26 @@ class Equilibrium:
     """
 
     def __init__(
-        self, system: System, state: State, result: Result | None, orders: Orders | None = None, *, once: bool = False
+        self,
+        system: System,
+        state: State,
+        result: Result | None,
+        orders: Orders | None = None,
+        *,
+        once: bool = False,
+        method: Solver | None = None,
     ) -> None:
-        self.system, self.state, self._result, self.once = system, state, result, once
+        self.system, self.state, self._result, self.once, self._method = system, state, result, once, method
         self.orders = orders or Orders()
         self._tangent = None if once else tangent(system, state)  # later the system has other values
         self.resting = resting(system, state)
         self.basis = _basis(system, state, self.resting.motions)
         self._factor: Factored | None = None
         self.yielded: list[str] = []  # kinds of forces that have yielded on the way here
+
+    def again(self) -> Equilibrium:
+        """That of the state as it is now."""
+        return Equilibrium(self.system, self.state, self._result, self.orders, once=self.once, method=self._method)
 
     @property
     def x(self) -> Floats:
@@ -68,7 +79,7 @@ class Equilibrium:
     def result(self) -> Result:
         """The result of the run that found the shape, or of one that starts from it."""
         if self._result is None:
-            self._result = _relaxed(self.system, self.state)
+            self._result = _relaxed(self.system, self.state)[0]
         return self._result
 
     @property
@@ -100,7 +111,7 @@ class Equilibrium:
         """What solves without factors."""
         if not self.once or self.resting.motions or len(self.basis.indices) < np.count_nonzero(self.state.free):
             return None
-        cycles = Cycles(self.system, self.state)
+        cycles = Cycles(self.system, self.state, self._method)
         return cycles if cycles.usable else None
 
     @property
@@ -184,18 +195,21 @@ def follow(before: Equilibrium) -> Equilibrium | None:
 def settle(system: System, state: State, orders: Orders | None = None, *, once: bool = False) -> Equilibrium:
     """Bring a state to rest with the scene's solver, and to the last digit by exact steps; `once`: see Equilibrium."""
     before = [memory.copy() for memory in state.memory]
-    found = _polished(system, state, _relaxed(system, state), orders or Orders(), once)
+    result, method = _relaxed(system, state)
+    found = _polished(Equilibrium(system, state, result, orders, once=once, method=method))
     found.yielded = _yielded(system, state, before)
     return found
 
 
-def _relaxed(system: System, state: State) -> Result:
+def _relaxed(system: System, state: State) -> tuple[Result, Solver]:
+    """The result of a run to a tight tolerance, and the solver with what it ended with."""
     settings = system.scene.settings
     tight = settings.replaced(tolerance=min(settings.tolerance, TIGHT), position_tolerance=None)
     system.scene = system.scene.replaced(settings=tight)
-    result = relax_state(system, state, solver(settings.solver))
+    method = solver(settings.solver)
+    result = relax_state(system, state, method)
     system.scene = system.scene.replaced(settings=settings)
-    return result
+    return result, method
 
 
 def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
@@ -209,10 +223,10 @@ def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
     return found
 
 
-def _polished(system: System, state: State, result: Result, orders: Orders, once: bool) -> Equilibrium:
+def _polished(found: Equilibrium) -> Equilibrium:
     """Exact steps, while each leaves less out of balance; one is enough where it is slight, for the next is its
     square."""
-    found = Equilibrium(system, state, result, orders, once=once)
+    system, state, once, result = found.system, found.state, found.once, found.result
     left = _left(system, state)
     rounding = once and result.residual <= ROUNDING * result.rounding_floor  # nothing is left that a step would meet
     for _ in range(0 if rounding else POLISH):
@@ -231,7 +245,7 @@ def _polished(system: System, state: State, result: Result, orders: Orders, once
         if slight and once:
             break
         if not slight:
-            before, found = found, Equilibrium(system, state, result, orders, once=once)
+            before, found = found, found.again()
             if not once:
                 found.take_factor(before)
     result.particles = state.x.copy()

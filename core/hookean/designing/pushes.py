@@ -3,7 +3,7 @@ where no matrix is needed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+CHUNK = 4096  # elements at a time: what is known of them stays in the nearest cache
 NOTHING = np.zeros(0, np.int64)
 
 
@@ -27,8 +28,13 @@ def pushes(found: Equilibrium, variable: Column) -> tuple[Ints, Ints, Floats]:
     """df/du of a column [force by unit]: places in (3n, unknowns), and values."""
     rows, columns, values = [NOTHING], [NOTHING], [np.zeros(0)]
     if _alone(found, variable):
-        index = variable.group.block.indices[variable.part.rows]
-        for unknown, slope in variable.differences(found.system, _forces(found, variable)):
+        state, group, own = found.state, variable.group, variable.part.rows
+        index, memory = group.block.indices[own], state.memory[found.system.groups.index(group)][own]
+
+        def forces(force: Force | None, block: Block) -> Floats:
+            return found.system.element_forces(Group(group.cls, block, []), state, memory)
+
+        for unknown, slope in variable.differences(found.system, forces):
             kept = unknown >= 0
             place = 3 * index[kept][:, :, None] + np.arange(3)
             rows.append(place.ravel())
@@ -50,12 +56,18 @@ def work(found: Equilibrium, variable: Column, moved: Floats) -> Floats:
         for number, slope in _together(found, variable):
             total[number] = slope @ moved.ravel()
         return total
-    forces = _forces(found, variable)
-    index = variable.group.block.indices[variable.part.rows]
-    along = moved.take(index.ravel(), axis=0).reshape(len(index), -1)  # many times quicker than an index
+    state, cls = found.state, variable.group.cls
+    memory = state.memory[found.system.groups.index(variable.group)][variable.part.rows]
 
     def powers(force: Force | None, block: Block) -> Floats:
-        return np.asarray(np.einsum("ec,ec->e", forces(force, block).reshape(along.shape), along))
+        given = np.empty(len(memory))
+        for first in range(0, len(memory), CHUNK):
+            part = slice(first, first + CHUNK)
+            some = block.some(part)
+            forces = found.system.element_forces(Group(cls, some, []), state, memory[part])
+            along = moved.take(some.indices.ravel(), axis=0).reshape(forces.shape)
+            given[part] = np.einsum("eac,eac->e", forces, along)
+        return given
 
     for unknown, slope in variable.differences(found.system, powers):
         kept = unknown >= 0
@@ -69,13 +81,6 @@ def _alone(found: Equilibrium, variable: Column) -> bool:
     several = sum(part.number == variable.number for other in system.groups for part in other.parts) > 1
     memory = state.memory[system.groups.index(group)]
     return not several and group.cls.gathered(group.block, memory, state.x, None) is None
-
-
-def _forces(found: Equilibrium, variable: Column) -> Callable[[Force | None, Block], Floats]:
-    """What gives the forces (m, arity, 3) of all elements of a column's force with other numbers in their block."""
-    system, state, group = found.system, found.state, variable.group
-    memory = state.memory[system.groups.index(group)][variable.part.rows]
-    return lambda _, block: system.element_forces(Group(group.cls, block, []), state, memory)
 
 
 def _together(found: Equilibrium, variable: Column) -> Iterator[tuple[int, Floats]]:

@@ -139,6 +139,7 @@ class Force(Model):
     # the column that bounds an element's stiffness in every shape (K <= k times the identity, of two particles k times
     # that of a spring); "" where stiffness has no such bound
     steady: ClassVar[str] = ""
+    linear: ClassVar[str] = ""  # a column that multiplies all of the force: derivatives by it are exact
     damped: ClassVar[bool] = False  # the kernel reads the velocities; its column `damping` bounds that likewise
     remembers: ClassVar[bool] = False  # memory changes at the end of a step
     yielding: ClassVar[tuple[str, ...]] = ("plasticity",)  # only where one of these columns is not 0, if it has them

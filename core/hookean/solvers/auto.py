@@ -91,7 +91,7 @@ class Method(Solver):
         """Some iterations of whatever is due."""
         done = self._advance(system, state, count, goal)
         if self._last is not None:
-            self.certain, self.tangent = self._last.certain, self._last.tangent
+            self.certain, self.tangent, self.solved = self._last.certain, self._last.tangent, self._last.solved
         return done
 
     def _advance(self, system: System, state: State, count: int, goal: float) -> int:
