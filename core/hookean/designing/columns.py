@@ -184,11 +184,11 @@ class Column:
         ]
         return force
 
-    def differences(self, system: System, give: Give) -> Iterator[tuple[Ints, Floats]]:
+    def differences(self, system: System, give: Give, *, linear: bool = False) -> Iterator[tuple[Ints, Floats]]:
         """Derivatives (m, ...) of what `give` says of each element, with the unknown (m,) by which, -1 for none: a pair
-        for each number that an element has in the column."""
+        for each number that an element has in the column. `linear`: what `give` says is in proportion to forces."""
         values, tie = self.entries.values, self.entries.tie
-        exact = self._units()
+        exact = self._units() if linear else []
         for column, block in exact:
             yield (
                 np.broadcast_to(tie[:, column], self.elements)[self.part.inputs],

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.cycles import LEFT, Cycles
-from hookean.designing.factors import Factored, Orders
+from hookean.designing.factors import Factored, Orders, Patterned
 from hookean.designing.resting import resting
 from hookean.forces.base import lengths
 from hookean.running.result import Result
@@ -114,6 +114,16 @@ class Equilibrium:
         cycles = Cycles(self.system, self.state, self._method)
         return cycles if cycles.usable else None
 
+    @cached_property
+    def _patterned(self) -> Patterned | None:
+        """What solves by the solver's pattern, where that has all free motions and no others."""
+        known = None if self._method is None else self._method.pattern
+        if not self.once or known is None or self.system.contacts or not self.symmetric:
+            return None
+        found = Patterned(self.system, self.state, known)
+        usable = found.factor is not None and len(found.pattern.dofs) == self.basis.shape[1]
+        return found if usable else None
+
     @property
     def symmetric(self) -> bool:
         """Whether forces come from an energy, so that the tangent is symmetric."""
@@ -155,6 +165,8 @@ class Equilibrium:
             found = self._cycles.solve(b, left)
             if found is not None:
                 return found.ravel()
+        if self._factor is None and self._patterned is not None:
+            return self._patterned.solve(b)
         right = self.basis.T @ b
         if not len(right):
             return np.zeros(len(b))

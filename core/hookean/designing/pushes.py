@@ -34,7 +34,7 @@ def pushes(found: Equilibrium, variable: Column) -> tuple[Ints, Ints, Floats]:
         def forces(force: Force | None, block: Block) -> Floats:
             return found.system.element_forces(Group(group.cls, block, []), state, memory)
 
-        for unknown, slope in variable.differences(found.system, forces):
+        for unknown, slope in variable.differences(found.system, forces, linear=True):
             kept = unknown >= 0
             place = 3 * index[kept][:, :, None] + np.arange(3)
             rows.append(place.ravel())
@@ -69,7 +69,7 @@ def work(found: Equilibrium, variable: Column, moved: Floats) -> Floats:
             given[part] = np.einsum("eac,eac->e", forces, along)
         return given
 
-    for unknown, slope in variable.differences(found.system, powers):
+    for unknown, slope in variable.differences(found.system, powers, linear=True):
         kept = unknown >= 0
         total += np.bincount(unknown[kept], slope[kept], len(total))
     return total

@@ -97,6 +97,10 @@ class Places(Protocol):
         """Faces `(m, 4)` of the scene's mesh `name`, in particles; a triangle repeats its last corner."""
         ...
 
+    def warp(self, faces: Ints) -> Ints:
+        """Edges (k, 2) of quads (m, 4) that run along the warp (see `discretize.warp_weft`)."""
+        ...
+
     def geometry(self, name: str) -> tuple[Floats, Ints]:
         """Vertices (n, 3) and faces (m, 4) of the scene's mesh `name`, as drawn; raises InputError if it does not
         exist."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hookean.stability.limit import Limit
 
 if TYPE_CHECKING:
+    from hookean.linear.pattern import Pattern
     from hookean.linear.tangent import Tangent
     from hookean.solvers.force_density import Solved
     from hookean.system.balance import Balance
@@ -32,6 +33,7 @@ class Solver(ABC):
     work: float = 0.0  # passes over all springs since its start; 0: one an iteration
     certain: bool = False  # whether it knows that the tangent of the shape it came to is positive definite
     tangent: Tangent | None = None  # what it solves with by multigrid, if it does
+    pattern: Pattern | None = None  # of the tangent that it solves with by factors, if it does
     solved: Sequence[Solved] = ()  # what it solved a linear net with, for each set of axes
     leaves: ClassVar[bool] = False  # a run goes on from an unstable equilibrium, along the mode in which energy falls
     refines: ClassVar[bool] = False  # and while the shape is not known to the scene's position tolerance
