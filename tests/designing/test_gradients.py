@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean.designing.equilibrium import settle
+from hookean.designing.columns import Column
+from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.problem import Problem
 from hookean.designing.sensitivity import sensitivity
 from hookean.designing.unknowns import Unknowns
@@ -78,6 +79,45 @@ def test_the_adjoint_is_the_difference_of_whole_solves(kind: str) -> None:
                 if close:
                     break
             assert close, (seed, field, unknown, gradient[unknown], expected)
+
+
+@pytest.mark.parametrize("kind", sorted(FOUND))
+def test_products_by_elements_are_those_of_the_matrices(kind: str) -> None:
+    """y . df/du and some rows of K^T y, summed element by element, are products with the sparse df/du and the
+    tangent: sums of the same products, so that they differ by rounding. Derivatives of columns are differences of
+    values that are rounded to 1e-16 of their sum, by a step of 1e-5: 1e-11 of forces that may be a hundred times as
+    large as what changes, 1e-9 of the largest."""
+    fields = [name for name in columns(KINDS[kind].example()[0]) if varies(kind, name)]
+    given = problem(kind, fields[:2], 3) if fields else pytest.skip("its columns do not vary")
+    system = compile(given.scene)
+    unknowns, state = Unknowns(given, system), system.start()
+    found = settle(system, state, once=True)
+    y = np.random.default_rng(3).normal(size=state.x.shape)
+    forces, _ = unknowns.slopes(found)
+    work, largest = unknowns.work(found, y), np.abs(forces.T @ np.abs(y.ravel())).max()
+    assert work == pytest.approx(forces.T @ y.ravel(), abs=1e-9 * largest)
+    places = np.arange(0, y.size, 2)
+    resisted = found.resisted(y.ravel(), places)
+    whole = found.tangent.T @ y.ravel()
+    size = np.abs(found.tangent).sum(axis=0).max() * np.abs(y).max()
+    assert resisted[places] == pytest.approx(whole[places], abs=1e-13 * size)
+    assert not np.delete(resisted, places).any()
+
+
+@pytest.mark.parametrize("kind", sorted(kind for kind, cls in KINDS.items() if cls.linear))
+def test_forces_that_are_linear_in_a_column_are_exact(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`Force.linear` is a column that multiplies all of the force, so that forces at 1 are the derivatives: those that
+    differences give, within 1e-9 of the largest as above, and at every shape."""
+    given = problem(kind, [KINDS[kind].linear], 5)
+    system = compile(given.scene)
+    unknowns, state = Unknowns(given, system), system.start()
+    state.x = state.x + 0.02 * system.size * np.random.default_rng(5).normal(size=state.x.shape)
+    found = Equilibrium(system, state, None, once=True)
+    assert unknowns.variables[0]._units()
+    exact = unknowns.slopes(found)[0].toarray()
+    monkeypatch.setattr(Column, "_units", lambda self: [])
+    differences = unknowns.slopes(found)[0].toarray()
+    assert exact == pytest.approx(differences, abs=1e-9 * np.abs(differences).max())
 
 
 def varies(kind: str, field: str) -> bool:

@@ -49,9 +49,9 @@ def frozen_film(system: System, stages: Stages, part: Part, x: Floats, element_f
     try:
         if cloth.warp is None and cloth.warp_lines is None:
             threads = film.warp > 0.0 or film.weft > 0.0
-            own = x[faces[:, 1]] - x[faces[:, 0]] if threads else grain(cloth, x, faces, numbers(cloth, places))
+            own = x[faces[:, 1]] - x[faces[:, 0]] if threads else grain(cloth, x, faces, numbers(cloth, places), places)
             cloth = cloth.replaced(warp=own)
-        along = grain(cloth, x, faces, numbers(cloth, places))
+        along = grain(cloth, x, faces, numbers(cloth, places), places)
     except InputError as error:
         raise InputError(pointer, error.sentence) from None
     corners, share, face = halves(faces)

@@ -6,7 +6,7 @@ Derivatives come from differences of the compiled kernel with all elements chang
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Give = Callable[[Force | None, Block], Floats]
 
 STEP = 1e-5  # of a value, and of the mean of its column: the error is its square, and rounding 1e-11
 JUMP = 1e-9  # part of the values: what is less is rounding
@@ -183,11 +184,17 @@ class Column:
         ]
         return force
 
-    def differences(self, system: System, give: Callable[[Force, Block], Floats]) -> Iterator[tuple[Ints, Floats]]:
+    def differences(self, system: System, give: Give, *, linear: bool = False) -> Iterator[tuple[Ints, Floats]]:
         """Derivatives (m, ...) of what `give` says of each element, with the unknown (m,) by which, -1 for none: a pair
-        for each number that an element has in the column."""
+        for each number that an element has in the column. `linear`: what `give` says is in proportion to forces."""
         values, tie = self.entries.values, self.entries.tie
-        for column in range(values.shape[1]) if self.by_element else ():
+        exact = self._units() if linear else []
+        for column, block in exact:
+            yield (
+                np.broadcast_to(tie[:, column], self.elements)[self.part.inputs],
+                self.factor * give(self.force, block),
+            )
+        for column in range(values.shape[1]) if self.by_element and not exact else ():
             if (tie[:, column] >= 0).any():
                 steps = STEP * np.maximum(np.abs(values[:, column]), np.abs(values[:, column]).mean() or 1.0)
                 change = np.zeros(values.shape)
@@ -200,12 +207,30 @@ class Column:
             slope = self.slope(system, np.where(tie == number, step, 0.0), give)
             yield np.full(len(slope), number), self.factor * slope / step
 
+    def _units(self) -> list[tuple[int, Block]]:
+        """Where forces are linear in the column: each number of it that varies, with a block in which that is 1 and the
+        others are 0, so that forces are derivatives by it."""
+        whole, entries = self.group.block.some(self.part.rows), self.entries
+        own = [i for i, name in enumerate(whole.names) if name == self.variable.field]
+        if not self.by_element or self.group.cls.linear != self.variable.field or len(own) != entries.values.shape[1]:
+            return []
+        given = np.broadcast_to(entries.values, (self.elements, len(own)))[self.part.inputs]
+        if not np.array_equal(whole.parameters[:, own], given):  # worked out from another column
+            return []
+        found = []
+        for column in np.flatnonzero((entries.tie >= 0).any(axis=0)):
+            parameters = whole.parameters.copy()
+            parameters[:, own] = 0.0
+            parameters[:, own[column]] = 1.0
+            found.append((int(column), replace(whole, parameters=parameters)))
+        return found
+
     def step(self, unknown: int) -> float:
         """A change of one unknown, small for derivatives."""
         mean = float(np.abs(self.entries.start).mean()) or 1.0
         return STEP * max(abs(float(self.entries.start[unknown])), mean)
 
-    def slope(self, system: System, change: Floats, give: Callable[[Force, Block], Floats]) -> Floats:
+    def slope(self, system: System, change: Floats, give: Give) -> Floats:
         """By how much what `give` says changes with a change (m, c) of the values: differences of second order, on one
         side where the other is not allowed. InputError where it jumps at a value."""
         values = self.entries.values
@@ -213,6 +238,9 @@ class Column:
         ways = ((0.5, 1.0), (-0.5, -1.0)) if both else ((-1.5, 0.0), (2.0, 1.0), (-0.5, 2.0))
         given = []
         for _, way in ways:
+            if way == 0.0:
+                given.append(give(self.force, self.group.block.some(self.part.rows)))
+                continue
             force = self._with(system.scene, values + way * change)
             given.append(give(force, compiled(system, self.group, self.number, force)))
         if not both:
@@ -237,7 +265,8 @@ def shape_of(columns: int, count: int, wide: Any) -> tuple[int, ...]:
 def compiled(system: System, group: Group, number: int, force: Force) -> Block:
     """The block of a changed force in a group, rows that met particles alone, in its own room, with its slots."""
     fresh = system.places.recompile(number, force)
-    fresh = fresh.some(np.flatnonzero((fresh.indices >= 0).all(axis=1)))
+    if fresh.indices.min(initial=0) < 0:
+        fresh = fresh.some(np.flatnonzero((fresh.indices >= 0).all(axis=1)))
     made = number, force, fresh, np.arange(len(fresh.indices))
     if issubclass(group.cls, Rider):
         return ride(system.slots, group.cls, made)[2]

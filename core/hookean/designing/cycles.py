@@ -3,14 +3,18 @@ quicker than factors where it is the only one."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean.solvers import force_density, multilevel
+from hookean.solvers.force_density import Solved
 
 if TYPE_CHECKING:
+    from hookean.linear.tangent import Tangent
+    from hookean.solvers.base import Solver
     from hookean.system.state import State
     from hookean.system.system import System
 
@@ -22,18 +26,19 @@ MOST = 500  # steps
 
 
 class Cycles:
-    """What solves with the tangent K of a shape; `usable` where it has one that is positive definite."""
+    """What solves with the tangent K of a shape, by what the solver that found it ended with; `usable` where K is
+    positive definite."""
 
-    def __init__(self, system: System, state: State) -> None:
+    def __init__(self, system: System, state: State, method: Solver | None) -> None:
         self.system, self.state = system, state
-        self._scalar: list[tuple[Any, Any, Any]] = []
-        self._tangent: Any = None
-        self.usable = len(state.x) >= MANY and self._ready()
+        self._solved: Sequence[Solved] = ()
+        self._tangent: Tangent | None = None
+        self.usable = len(state.x) >= MANY and self._ready(method)
 
-    def _ready(self) -> bool:
+    def _ready(self, method: Solver | None) -> bool:
         system, state = self.system, self.state
         if not force_density.Method().refuse(system):
-            return self._scalars()
+            return self._linear(() if method is None else method.solved)
         groups = zip(system.groups, state.memory, strict=True)
         alone = all(group.cls.gathered(group.block, memory, state.x, None) is None for group, memory in groups)
         conservative = all(group.cls.conservative or group.cls.constant for group in system.groups)
@@ -41,26 +46,18 @@ class Cycles:
             return False
         from hookean.linear.tangent import Tangent
 
-        self._tangent = Tangent(system, state)
+        known = None if method is None else method.tangent
+        self._tangent = known or Tangent(system, state)
         return bool(self._tangent.take_up(system, state, 0.0))
 
-    def _scalars(self) -> bool:
-        """A hierarchy for each set of axes on which the same particles are free."""
-        from hookean.linear.laplacian import laplacian
-        from hookean.linear.scalar_hierarchy import Hierarchy
-
-        free, left = self.state.free, [0, 1, 2]
-        while left:
-            axes = [axis for axis in left if np.array_equal(free[:, axis], free[:, left[0]])]
-            left = [axis for axis in left if axis not in axes]
-            if not free[:, axes[0]].any():
-                continue
-            net, particles = laplacian(self.system, free[:, axes[0]])
-            hierarchy = Hierarchy(net)
-            if not hierarchy.held or len(particles) < np.count_nonzero(free[:, axes[0]]):
-                return False
-            self._scalar.append((hierarchy, particles, axes))
-        return True
+    def _linear(self, known: Sequence[Solved]) -> bool:
+        """What solves on each set of axes on which the same particles are free: known, or by cycles."""
+        free = self.state.free
+        sets = [(own, axes) for own, axes in force_density.alike(free) if own.any()]
+        self._solved = known or [Solved.ready(self.system, own, axes) for own, axes in sets]
+        held = all(solved.hierarchy is None or solved.hierarchy.held for solved in self._solved)
+        rows = sum(len(solved.particles) * len(solved.axes) for solved in self._solved)
+        return held and rows == np.count_nonzero(free)
 
     def solve(self, b: Floats, left: float = LEFT) -> Floats | None:
         """K^-1 b (n, 3) on the free axes, of which a part may be left; None where that did not come to an end."""
@@ -68,16 +65,5 @@ class Cycles:
         if self._tangent is not None:
             found, positive = self._tangent.solve(b, left, MOST)
             return found if positive and found is not None and np.isfinite(found).all() else None
-        from hookean.linear.scalar_cg import solve
-
         total = np.zeros_like(b)
-        for hierarchy, particles, axes in self._scalar:
-            right = np.zeros((len(particles), 4))
-            right[:, axes] = b[particles][:, axes]
-            goal = left * float(np.sqrt((right**2).sum(axis=0).max()))
-            if goal > 0.0:
-                found = solve(hierarchy, right, goal)
-                if found is None:
-                    return None
-                total[particles[:, None], axes] = found[:, axes]
-        return total
+        return total if all(solved.add(b, total, left) for solved in self._solved) else None

@@ -6,25 +6,27 @@ K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films move a
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Iterator
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.cycles import LEFT, Cycles
-from hookean.designing.factors import Factored, Orders
+from hookean.designing.factors import Factored, Orders, Patterned
 from hookean.designing.resting import resting
 from hookean.forces.base import lengths
 from hookean.running.result import Result
 from hookean.running.run import relax_state
 from hookean.scene.scene import Scene
-from hookean.solvers import solver
+from hookean.solvers import Solver, solver
 from hookean.system.group import Group
 from hookean.system.state import State
 from hookean.system.system import Held, System
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 TIGHT = 1e-11  # residual [-] to which shapes are brought
 SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
@@ -47,15 +49,26 @@ class Equilibrium:
     """
 
     def __init__(
-        self, system: System, state: State, result: Result | None, orders: Orders | None = None, *, once: bool = False
+        self,
+        system: System,
+        state: State,
+        result: Result | None,
+        orders: Orders | None = None,
+        *,
+        once: bool = False,
+        method: Solver | None = None,
     ) -> None:
-        self.system, self.state, self._result, self.once = system, state, result, once
+        self.system, self.state, self._result, self.once, self._method = system, state, result, once, method
         self.orders = orders or Orders()
         self._tangent = None if once else tangent(system, state)  # later the system has other values
         self.resting = resting(system, state)
         self.basis = _basis(system, state, self.resting.motions)
         self._factor: Factored | None = None
         self.yielded: list[str] = []  # kinds of forces that have yielded on the way here
+
+    def again(self) -> Equilibrium:
+        """That of the state as it is now."""
+        return Equilibrium(self.system, self.state, self._result, self.orders, once=self.once, method=self._method)
 
     @property
     def x(self) -> Floats:
@@ -66,7 +79,7 @@ class Equilibrium:
     def result(self) -> Result:
         """The result of the run that found the shape, or of one that starts from it."""
         if self._result is None:
-            self._result = _relaxed(self.system, self.state)
+            self._result = _relaxed(self.system, self.state)[0]
         return self._result
 
     @property
@@ -81,13 +94,35 @@ class Equilibrium:
             self._tangent = tangent(self.system, self.state)
         return self._tangent
 
+    def resisted(self, y: Floats, places: Ints) -> Floats:
+        """K^T y (3n,) at some coordinates, of all axes, for a motion y (3n,); 0 at the others."""
+        total = np.zeros(len(y))
+        if self._tangent is not None:
+            total[places] = (self._tangent.T @ y)[places]
+            return total
+        for axes, blocks in _blocks(self.system, self.state, np.unique(places // 3)):
+            total += np.bincount(axes.ravel(), np.einsum("eab,ea->eb", blocks, y[axes]).ravel(), len(total))
+        kept = np.zeros(len(total))
+        kept[places] = total[places]
+        return kept
+
     @cached_property
     def _cycles(self) -> Cycles | None:
         """What solves without factors."""
         if not self.once or self.resting.motions or len(self.basis.indices) < np.count_nonzero(self.state.free):
             return None
-        cycles = Cycles(self.system, self.state)
+        cycles = Cycles(self.system, self.state, self._method)
         return cycles if cycles.usable else None
+
+    @cached_property
+    def _patterned(self) -> Patterned | None:
+        """What solves by the solver's pattern, where that has all free motions and no others."""
+        known = None if self._method is None else self._method.pattern
+        if not self.once or known is None or self.system.contacts or not self.symmetric:
+            return None
+        found = Patterned(self.system, self.state, known)
+        usable = found.factor is not None and len(found.pattern.dofs) == self.basis.shape[1]
+        return found if usable else None
 
     @property
     def symmetric(self) -> bool:
@@ -130,6 +165,8 @@ class Equilibrium:
             found = self._cycles.solve(b, left)
             if found is not None:
                 return found.ravel()
+        if self._factor is None and self._patterned is not None:
+            return self._patterned.solve(b)
         right = self.basis.T @ b
         if not len(right):
             return np.zeros(len(b))
@@ -170,18 +207,21 @@ def follow(before: Equilibrium) -> Equilibrium | None:
 def settle(system: System, state: State, orders: Orders | None = None, *, once: bool = False) -> Equilibrium:
     """Bring a state to rest with the scene's solver, and to the last digit by exact steps; `once`: see Equilibrium."""
     before = [memory.copy() for memory in state.memory]
-    found = _polished(system, state, _relaxed(system, state), orders or Orders(), once)
+    result, method = _relaxed(system, state)
+    found = _polished(Equilibrium(system, state, result, orders, once=once, method=method))
     found.yielded = _yielded(system, state, before)
     return found
 
 
-def _relaxed(system: System, state: State) -> Result:
+def _relaxed(system: System, state: State) -> tuple[Result, Solver]:
+    """The result of a run to a tight tolerance, and the solver with what it ended with."""
     settings = system.scene.settings
     tight = settings.replaced(tolerance=min(settings.tolerance, TIGHT), position_tolerance=None)
     system.scene = system.scene.replaced(settings=tight)
-    result = relax_state(system, state, solver(settings.solver))
+    method = solver(settings.solver)
+    result = relax_state(system, state, method)
     system.scene = system.scene.replaced(settings=settings)
-    return result
+    return result, method
 
 
 def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
@@ -195,10 +235,10 @@ def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
     return found
 
 
-def _polished(system: System, state: State, result: Result, orders: Orders, once: bool) -> Equilibrium:
+def _polished(found: Equilibrium) -> Equilibrium:
     """Exact steps, while each leaves less out of balance; one is enough where it is slight, for the next is its
     square."""
-    found = Equilibrium(system, state, result, orders, once=once)
+    system, state, once, result = found.system, found.state, found.once, found.result
     left = _left(system, state)
     rounding = once and result.residual <= ROUNDING * result.rounding_floor  # nothing is left that a step would meet
     for _ in range(0 if rounding else POLISH):
@@ -217,7 +257,7 @@ def _polished(system: System, state: State, result: Result, orders: Orders, once
         if slight and once:
             break
         if not slight:
-            before, found = found, Equilibrium(system, state, result, orders, once=once)
+            before, found = found, found.again()
             if not once:
                 found.take_factor(before)
     result.particles = state.x.copy()
@@ -278,19 +318,27 @@ def tangent(system: System, state: State) -> Any:
 
     n = len(state.x)
     total = csc_matrix((3 * n, 3 * n))
-    for group, memory in system.elements(state.x, state.memory):
-        if group.cls.constant or not len(group.block.indices):
-            continue
-        blocks = (
-            system.stiffness_blocks(group, state, memory)
-            if group.cls.conservative
-            else _slopes(system, group, state, memory)
-        )
-        axes = (3 * group.block.indices[:, :, None] + np.arange(3)).reshape(len(blocks), -1)
+    for axes, blocks in _blocks(system, state, None):
         rows = np.broadcast_to(axes[:, :, None], blocks.shape)
         columns = np.broadcast_to(axes[:, None, :], blocks.shape)
         total = total + coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=total.shape).tocsc()
     return total
+
+
+def _blocks(system: System, state: State, particles: Ints | None) -> Iterator[tuple[Ints, Floats]]:
+    """The axes (m, 3 arity) and tangents (m, 3 arity, 3 arity) of the elements of each group; of those alone that have
+    some of the `particles`, if given."""
+    for group, memory in system.elements(state.x, state.memory):
+        if group.cls.constant or not len(group.block.indices):
+            continue
+        if particles is not None and group.cls.tangent is None:
+            some = np.zeros(len(state.x), dtype=bool)
+            some[particles] = True
+            rows = np.flatnonzero(some[group.block.indices].any(axis=1))
+            group, memory = Group(group.cls, group.block.some(rows), []), memory[rows]
+        given = system.stiffness_blocks if group.cls.conservative else partial(_slopes, system)
+        blocks = given(group, state, memory)
+        yield (3 * group.block.indices[:, :, None] + np.arange(3)).reshape(len(blocks), -1), blocks
 
 
 def _slopes(system: System, group: Group, state: State, memory: Floats) -> Floats:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.linear.film_tangent import patterned
+from hookean.linear.pattern import Pattern
 from hookean.linear.sparse_factors import Factor, Factors
+
+if TYPE_CHECKING:
+    from hookean.system.state import State
+    from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -68,6 +74,20 @@ class Factored:
         for rows, factor in self._parts:
             found[rows] = factor.solve(b[rows])
         return found
+
+
+class Patterned:
+    """The tangent of a shape in factors, by a pattern that the solver which found it worked out; `factor` is None where
+    it is singular."""
+
+    def __init__(self, system: System, state: State, known: Pattern) -> None:
+        self.pattern = patterned(system, state, state.free, known)
+        self.factor = self.pattern.factors.factor(self.pattern.tangent(system, state))
+
+    def solve(self, b: Floats) -> Floats:
+        """A^-1 b (3n,) on the axes of the pattern."""
+        assert self.factor is not None
+        return self.pattern.spread(self.factor.solve(self.pattern.gather(b.reshape(-1, 3)))).ravel()
 
 
 def _blocks(matrix: Any, axes: Ints | None) -> list[tuple[Ints, int]]:

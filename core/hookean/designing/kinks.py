@@ -38,9 +38,13 @@ def kinks(found: Equilibrium) -> list[str]:
 def _unlike(given: list[Floats]) -> NDArray[np.bool_]:
     """Rows that change on the way from the first to the second otherwise than from there to the third."""
     before, after = given[1] - given[0], given[2] - given[1]
-    size = np.maximum(np.linalg.norm(before, axis=1), np.linalg.norm(after, axis=1))
+    size = np.maximum(_sizes(before), _sizes(after))
     rounding = 1e-13 * max(float(np.abs(each).max(initial=0.0)) for each in given)
-    return np.asarray(np.linalg.norm(after - before, axis=1) > UNLIKE * size + rounding)
+    return np.asarray(_sizes(after - before) > UNLIKE * size + rounding)
+
+
+def _sizes(rows: Floats) -> Floats:
+    return np.asarray(np.sqrt(np.einsum("ij,ij->i", rows, rows)))
 
 
 def _sentence(kind: str, first: str, count: int) -> str:

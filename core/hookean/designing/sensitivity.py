@@ -94,11 +94,10 @@ def gradients(
             weight = weight - weight.mean()
         by_place += placed.T @ weight
         by_unknown += direct.T @ weight
-    forces, moves = unknowns.slopes(found)
     adjoint = found.solve(by_place, transposed=True)
-    if moves.nnz:
-        by_unknown += moves.T @ (by_place - found.tangent.T @ adjoint)
-    return np.asarray(forces.T @ adjoint + by_unknown)
+    if len(led := unknowns.led):
+        by_unknown += unknowns.lead(by_place - found.resisted(adjoint, led))
+    return np.asarray(unknowns.work(found, adjoint.reshape(-1, 3)) + by_unknown)
 
 
 def jacobian(found: Equilibrium, unknowns: Unknowns, quantities: list[tuple[Quantity, str]]) -> Floats:

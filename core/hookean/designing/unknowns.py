@@ -11,18 +11,16 @@ from numpy.typing import NDArray
 from hookean.designing.columns import AXES, Column, Entries, shape_of, tied
 from hookean.designing.equilibrium import Equilibrium, as_held
 from hookean.designing.problem import Problem, Variable
+from hookean.designing.pushes import NOTHING, pushes, work
 from hookean.errors import InputError
-from hookean.forces.base import Block, Force
+from hookean.forces.base import Force
 from hookean.running.patch import lead_forces, named
 from hookean.scene.scene import Scene
-from hookean.system.group import Group
 from hookean.system.state import State
 from hookean.system.system import Held, System, hold
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-NOTHING = np.zeros(0, np.int64)
 
 
 class Moved:
@@ -154,69 +152,51 @@ class Unknowns:
 
     def slopes(self, found: Equilibrium) -> tuple[Any, Any]:
         """df/du (3n, u) [force by unit] at fixed positions, and how held particles move, dx_h/du (3n, u)."""
-        from scipy.sparse import coo_matrix
+        entries = [
+            (pushes(found, variable) if isinstance(variable, Column) else _led(variable), part.start)
+            for variable, part in self.parts
+        ]
+        columns = [isinstance(variable, Column) for variable, _ in self.parts]
+        shape = found.x.size, self.count
+        given, moved = ([e for e, own in zip(entries, columns, strict=True) if own == which] for which in (True, False))
+        return _matrix(given, shape), _matrix(moved, shape)
 
-        pushes: list[tuple[Ints, Ints, Floats]] = []
-        moves: list[tuple[Ints, Ints, Floats]] = []
+    def work(self, found: Equilibrium, moved: Floats) -> Floats:
+        """y . df/du (u,) at fixed positions, for a motion y (n, 3)."""
+        total = np.zeros(self.count)
         for variable, part in self.parts:
-            rows = _pushed(found, variable) if isinstance(variable, Column) else _led(variable)
-            (pushes if isinstance(variable, Column) else moves).append((rows[0], rows[1] + part.start, rows[2]))
-        shape = (found.x.size, self.count)
+            if isinstance(variable, Column):
+                total[part] += work(found, variable, moved)
+        return total
 
-        def matrix(entries: list[tuple[Ints, Ints, Floats]]) -> Any:
-            if not entries:
-                return coo_matrix(shape).tocsc()
-            rows, columns, values = (np.concatenate(each) for each in zip(*entries, strict=True))
-            return coo_matrix((values, (rows, columns)), shape=shape).tocsc()
+    def lead(self, pulls: Floats) -> Floats:
+        """r . dx_h/du (u,), for what r (3n,) [goal by length] it is worth to move held particles."""
+        total = np.zeros(self.count)
+        for variable, part in self.parts:
+            if isinstance(variable, Moved):
+                places, unknown, _ = _led(variable)
+                total[part] += np.bincount(unknown, pulls[places], variable.entries.count)
+        return total
 
-        return matrix(pushes), matrix(moves)
+    @property
+    def led(self) -> Ints:
+        """The coordinates, of (3n,), that anchors among the variables move."""
+        rows = [_led(variable)[0] for variable, _ in self.parts if isinstance(variable, Moved)]
+        return np.unique(np.concatenate([NOTHING, *rows]))
+
+
+def _matrix(entries: list[tuple[tuple[Ints, Ints, Floats], int]], shape: tuple[int, int]) -> Any:
+    """Entries, each with its first column, as a sparse matrix."""
+    from scipy.sparse import coo_matrix
+
+    if not entries:
+        return coo_matrix(shape).tocsc()
+    rows, columns, values = zip(*((row, column + first, value) for (row, column, value), first in entries), strict=True)
+    places = np.concatenate(rows), np.concatenate(columns)
+    return coo_matrix((np.concatenate(values), places), shape=shape).tocsc()
 
 
 def _led(variable: Moved) -> tuple[Ints, Ints, Floats]:
     """How an anchor's particles move: places in (3n, unknowns), and ones."""
     row, axis = np.nonzero(variable.entries.tie >= 0)
     return (3 * variable.anchor.particles[row] + axis, variable.entries.tie[row, axis], np.ones(len(row)))
-
-
-def _pushed(found: Equilibrium, variable: Column) -> tuple[Ints, Ints, Floats]:
-    """df/du of a column: places in (3n, unknowns), and values."""
-    system, state = found.system, found.state
-    group, part = variable.group, variable.part
-    memory = state.memory[system.groups.index(group)]
-    several = sum(part.number == variable.number for other in system.groups for part in other.parts) > 1
-    if several or group.cls.gathered(group.block, memory, state.x, None) is not None:
-        return _pushed_together(found, variable)
-
-    def forces(force: Force, block: Block) -> Floats:
-        return system.element_forces(Group(group.cls, block, []), state, memory[part.rows])
-
-    index = group.block.indices[part.rows]
-    rows, columns, values = [NOTHING], [NOTHING], [np.zeros(0)]
-    for unknown, slope in variable.differences(system, forces):
-        kept = unknown >= 0
-        place = 3 * index[kept][:, :, None] + np.arange(3)
-        rows.append(place.ravel())
-        columns.append(np.repeat(unknown[kept], 3 * index.shape[1]))
-        values.append(slope[kept].ravel())
-    return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
-
-
-def _pushed_together(found: Equilibrium, variable: Column) -> tuple[Ints, Ints, Floats]:
-    """The same where elements feel one another: all forces, for one unknown at a time."""
-    system, first = found.system, variable.force
-
-    def forces(force: Force, block: Block) -> Floats:
-        lead_forces(system, {variable.number: force})
-        return system.evaluate(found.state)[0]
-
-    rows, columns, values = [NOTHING], [NOTHING], [np.zeros(0)]
-    for unknown in range(variable.entries.count):
-        step = variable.step(unknown)
-        change = np.where(variable.entries.tie == unknown, step, 0.0)
-        slope = variable.factor * variable.slope(system, change, forces).ravel() / step
-        place = np.flatnonzero(slope)
-        rows.append(place)
-        columns.append(np.full(len(place), unknown))
-        values.append(slope[place])
-    lead_forces(system, {variable.number: first})
-    return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)

@@ -100,6 +100,10 @@ class Places(Protocol):
         """Faces `(m, 4)` of the scene's mesh `name`, in particles; a triangle repeats its last corner."""
         ...
 
+    def warp(self, faces: Ints) -> Ints:
+        """Edges (k, 2) of quads (m, 4) that run along the warp (see `discretize.warp_weft`)."""
+        ...
+
     def geometry(self, name: str) -> tuple[Floats, Ints]:
         """Vertices (n, 3) and faces (m, 4) of the scene's mesh `name`, as drawn; raises InputError if it does not
         exist."""
@@ -142,6 +146,7 @@ class Force(Model):
     # the column that bounds an element's stiffness in every shape (K <= k times the identity, of two particles k times
     # that of a spring); "" where stiffness has no such bound
     steady: ClassVar[str] = ""
+    linear: ClassVar[str] = ""  # a column that multiplies all of the force: derivatives by it are exact
     damped: ClassVar[bool] = False  # the kernel reads the velocities; its column `damping` bounds that likewise
     remembers: ClassVar[bool] = False  # memory changes at the end of a step
     yielding: ClassVar[tuple[str, ...]] = ("plasticity",)  # only where one of these columns is not 0, if it has them

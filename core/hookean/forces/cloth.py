@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hookean.discretize.warpweft import warp_weft
 from hookean.errors import InputError
 from hookean.forces.base import Floats, Ints, Places, units
 from hookean.values.columns import fault
-from hookean.values.mesh import Mesh
 
 if TYPE_CHECKING:
     from hookean.forces.membrane import Membrane
@@ -94,7 +92,7 @@ def stresses(force: Membrane, face: Ints, faces: int) -> Floats:
     raise InputError("", said)
 
 
-def grain(force: Membrane, x: Floats, faces: Ints, cloth: tuple[float, float, float, float]) -> Floats:
+def grain(force: Membrane, x: Floats, faces: Ints, cloth: tuple[float, float, float, float], places: Places) -> Floats:
     """Direction of the warp (m, 3) in every face of a shape with points (n, 3); InputError where it has none."""
     corners = x[faces]
     if force.warp is not None:
@@ -107,7 +105,7 @@ def grain(force: Membrane, x: Floats, faces: Ints, cloth: tuple[float, float, fl
     first, last = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 3]
     triangles = faces[:, 2] == faces[:, 3]
     if not triangles.any():
-        warp = warp_weft(Mesh(x, faces))[0]
+        warp = places.warp(faces)
         size = len(x)
         known = np.unique(np.sort(warp, axis=1) @ [size, 1])
         side = np.isin(np.sort(faces[:, :2], axis=1) @ [size, 1], known)

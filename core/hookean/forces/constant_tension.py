@@ -52,6 +52,7 @@ class ConstantTension(LineForce):
     tension: Reals = Field(default=1.0, description="T [force]; negative: compression")
 
     formula: ClassVar[str] = "E = T l"
+    linear: ClassVar[str] = "tension"
     kernel: ClassVar[Any] = staticmethod(constant_tension_kernel)
     hessian: ClassVar[Any] = staticmethod(constant_tension_hessian)
     central: ClassVar[Any] = staticmethod(constant_tension_central)

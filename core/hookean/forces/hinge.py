@@ -90,6 +90,7 @@ class Hinge(Force):
     yielding: ClassVar[tuple[str, ...]] = ("limit",)
     creates: ClassVar[bool] = False
     arity: ClassVar[int] = 4
+    linear: ClassVar[str] = "strength"
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     kernel: ClassVar[Any] = staticmethod(hinge_kernel)
     hessian: ClassVar[Any] = staticmethod(hinge_hessian)

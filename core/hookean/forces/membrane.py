@@ -208,7 +208,7 @@ class Membrane(Force):
         x, faces = made(self, places)
         at = halves(faces)[0]
         cloth = numbers(self, places)
-        along = grain(self, x, faces, cloth)[face]
+        along = grain(self, x, faces, cloth, places)[face]
         double = twice_area(x, at)
         flat = _flat(x, at, double)
         slopes = yarns(x, at, along) / np.where(flat, 0.5 * double, 1.0)[:, None]

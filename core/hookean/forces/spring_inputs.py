@@ -42,9 +42,9 @@ def one_way(springs: Springs) -> None:
 def resolved(springs: Springs, places: Places, index: Ints) -> tuple[Floats, Floats]:
     """k [force/length] and the rest length [length], before the rest factor, of elements (m, 2); InputError where
     there is none."""
-    if springs.stiffness is not None and springs.rest_length is not None and springs.temperature is None:
-        return _each(springs.stiffness, len(index)), _each(springs.rest_length, len(index))
-    start = lengths(places.x.take(index[:, 1], axis=0) - places.x.take(index[:, 0], axis=0))
+    start = np.zeros(len(index))
+    if springs.rest_length is None or springs.strain is not None or springs.force is not None:
+        start = lengths(places.x.take(index[:, 1], axis=0) - places.x.take(index[:, 0], axis=0))
     if springs.stiffness is not None:
         k = _each(springs.stiffness, len(index))
         return k, _rest(springs, places, start, k, None)

@@ -269,6 +269,7 @@ class Springs(Force):
 
     formula: ClassVar[str] = "E = k (l - L0)²/2"
     arity: ClassVar[int] = 2
+    linear: ClassVar[str] = "stiffness"
     steady: ClassVar[str] = "stiffness"  # across it is k (1 - L0 / l), which is less
     damped: ClassVar[bool] = True
     remembers: ClassVar[bool] = True

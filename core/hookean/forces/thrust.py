@@ -58,6 +58,7 @@ class Thrust(Force):
     conservative: ClassVar[bool] = False
     creates: ClassVar[bool] = False
     arity: ClassVar[int] = 2
+    linear: ClassVar[str] = "thrust"
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(thrust_kernel)
     hessian: ClassVar[Any] = staticmethod(thrust_hessian)

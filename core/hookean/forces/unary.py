@@ -39,6 +39,7 @@ class Unary(Force):
     moment: Vectors = Field(default=np.zeros(3), description="M [force length], on particles with rotations (beams)")
 
     formula: ClassVar[str] = "E = -F·x"
+    linear: ClassVar[str] = "vector"
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     creates: ClassVar[bool] = False
     constant: ClassVar[bool] = True

@@ -50,7 +50,7 @@ class Method(Solver):
     longest: ClassVar[int] = 1
 
     def __init__(self) -> None:
-        self._across: Across | None = None
+        self.pattern: Across | None = None
         self._spread: Spread | None = None
         self._factor: Factor | None = None
 
@@ -63,7 +63,7 @@ class Method(Solver):
 
     def start(self, system: System, state: State) -> None:
         """Start from rest, with spreading."""
-        self._across = self._spread = self._factor = None
+        self.pattern = self._spread = self._factor = None
         self.certain = False
         state.v[:] = 0.0
         state.scratch = {"film": np.array([float(LAPS), 0.0, float(STEPS)])}
@@ -117,10 +117,10 @@ class Method(Solver):
 
     def _newton(self, system: System, state: State, here: Shape, shift: float) -> tuple[bool, float]:
         """One Newton step, and the shift for the next; False where none helps."""
-        self._across = across(system, state, state.free, self._across)
+        self.pattern = across(system, state, state.free, self.pattern)
         spread = self._spreading(system, state)
         sides, far = spread.sides(state.x), 0.0
-        tangent = Tangent(system, state, self._across, spread)
+        tangent = Tangent(system, state, self.pattern, spread)
         length = 0.0
         while length == 0.0:
             step, shift = tangent.step(here.left, shift)
@@ -140,9 +140,9 @@ class Method(Solver):
 
     def correction(self, system: System, state: State, found: Balance) -> Floats | None:
         """By the factors of the last step."""
-        if not self.certain or self._across is None or self._factor is None:
+        if not self.certain or self.pattern is None or self._factor is None:
             return None
-        return self._across.spread(self._factor.solve(self._across.gather(found.forces)))
+        return self.pattern.spread(self._factor.solve(self.pattern.gather(found.forces)))
 
 
 class Shape:

@@ -91,7 +91,9 @@ class Method(Solver):
         """Some iterations of whatever is due."""
         done = self._advance(system, state, count, goal)
         if self._last is not None:
-            self.certain, self.tangent = self._last.certain, self._last.tangent
+            last = self._last
+            self.certain, self.tangent = last.certain, last.tangent
+            self.pattern, self.solved = last.pattern, last.solved
         return done
 
     def _advance(self, system: System, state: State, count: int, goal: float) -> int:

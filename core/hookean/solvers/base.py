@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -11,7 +12,9 @@ from numpy.typing import NDArray
 from hookean.stability.limit import Limit
 
 if TYPE_CHECKING:
+    from hookean.linear.pattern import Pattern
     from hookean.linear.tangent import Tangent
+    from hookean.solvers.force_density import Solved
     from hookean.system.balance import Balance
     from hookean.system.state import State
     from hookean.system.system import System
@@ -30,6 +33,8 @@ class Solver(ABC):
     work: float = 0.0  # passes over all springs since its start; 0: one an iteration
     certain: bool = False  # whether it knows that the tangent of the shape it came to is positive definite
     tangent: Tangent | None = None  # what it solves with by multigrid, if it does
+    pattern: Pattern | None = None  # of the tangent that it solves with by factors, if it does
+    solved: Sequence[Solved] = ()  # what it solved a linear net with, for each set of axes
     leaves: ClassVar[bool] = False  # a run goes on from an unstable equilibrium, along the mode in which energy falls
     refines: ClassVar[bool] = False  # and while the shape is not known to the scene's position tolerance
     physical: ClassVar[bool] = False  # advances physical time with the scene's masses, damping and drag

@@ -8,6 +8,7 @@ Source: Schek, "The force density method for form finding and computation of gen
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -45,13 +46,13 @@ class Method(Solver):
         return nonlinear(system)
 
     def __init__(self) -> None:
-        self._solved: list[Solved] = []
+        self.solved: list[Solved] = []
 
     def start(self, system: System, state: State) -> None:
         """Start from rest."""
         state.scratch.clear()
         state.v[:] = 0.0
-        self.certain, self._solved = False, []
+        self.certain, self.solved = False, []
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """Solve K dx = f on the free axes; none done if some particles are unsupported."""
@@ -59,16 +60,12 @@ class Method(Solver):
             return 0
         f, _, _ = system.evaluate(state)
         x = state.x.copy()
-        self._solved, left = [], [0, 1, 2]
-        self.certain = False
-        while left:
-            free = np.ascontiguousarray(state.free[:, left[0]])
-            axes = [axis for axis in left if np.array_equal(state.free[:, axis], free)]
-            left = [axis for axis in left if axis not in axes]
-            solved = Solved.of(system, free, np.array(axes), f, x)
+        self.solved, self.certain = [], False
+        for free, axes in alike(state.free):
+            solved = Solved.of(system, free, axes, f, x)
             if solved is None:
                 return 0
-            self._solved.append(solved)
+            self.solved.append(solved)
         if not np.isfinite(x).all():
             return 0
         state.x[:] = x
@@ -79,7 +76,7 @@ class Method(Solver):
     def correction(self, system: System, state: State, found: Balance) -> Floats | None:
         """The next solve, by the factors of the last one, or one cycle."""
         moved = np.zeros(state.x.shape)
-        for solved in self._solved:
+        for solved in self.solved:
             solved.correct(found.forces, moved)
         return moved if self.certain else None
 
@@ -105,6 +102,16 @@ def nonlinear(system: System, *, weights: bool = False) -> str:
             return "a spring has a rest length, a cutoff or plasticity; force_density supports rest length 0 only"
         linear = linear or bool(len(p))
     return "" if linear else "there is no spring"
+
+
+def alike(free: Floats) -> Iterator[tuple[Floats, Ints]]:
+    """Which particles (n,) are free on axes on which the same ones are, and these axes."""
+    left = [0, 1, 2]
+    while left:
+        own = np.ascontiguousarray(free[:, left[0]])
+        axes = [axis for axis in left if np.array_equal(free[:, axis], own)]
+        left = [axis for axis in left if axis not in axes]
+        yield own, np.array(axes)
 
 
 class Solved:
@@ -158,6 +165,35 @@ class Solved:
         if self.factor is None or not self.factor.sound:
             return False
         self.factor.solve(b, b)
+        return True
+
+    @classmethod
+    def ready(cls, system: System, free: Floats, axes: Ints) -> Solved:
+        """Ready for cycles."""
+        from hookean.linear import laplacian as _laplacian
+        from hookean.linear.scalar_hierarchy import Hierarchy
+
+        self = cls(*_laplacian.laplacian(system, free), axes)
+        self.hierarchy = Hierarchy(self.net)
+        return self
+
+    def add(self, f: Floats, x: Floats, left: float) -> bool:
+        """Add K^-1 f to x (n, 3), where a part `left` of f may remain; whether that was possible."""
+        from hookean.linear import laplacian as _laplacian
+        from hookean.linear import scalar_cg as _gradients
+
+        b = self._rows(f)
+        goal = left * float(np.sqrt((b * b).sum(axis=0).max()))
+        if goal == 0.0:
+            return True
+        if self.factor is not None:
+            self.factor.solve(b, b)
+        elif self.hierarchy is not None:
+            found = _gradients.solve(self.hierarchy, b, goal)
+            if found is None:
+                return False
+            b = found
+        dispatch.compiled(_laplacian.put)(self.particles, self.axes, b, x)
         return True
 
     def correct(self, f: Floats, moved: Floats) -> None:

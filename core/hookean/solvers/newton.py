@@ -36,7 +36,7 @@ class Method(Solver):
     leaves: ClassVar[bool] = True
 
     def __init__(self) -> None:
-        self._pattern: Pattern | None = None
+        self.pattern: Pattern | None = None
 
     def refuse(self, system: System) -> str:
         """A sentence where a force has no tangent."""
@@ -44,7 +44,7 @@ class Method(Solver):
 
     def start(self, system: System, state: State) -> None:
         """Start from rest with a small shift."""
-        self._pattern = None
+        self.pattern = None
         state.v[:] = 0.0
         _, w, _ = system.evaluate(state)
         state.scratch = {"shift": np.array([1e-4]), "unit": np.where(w > 0.0, w, w.mean() or 1.0)}
@@ -57,8 +57,8 @@ class Method(Solver):
             return 0
         now, done, helped = Judged.of(system, state), 0, False
         while done < count and now.largest > goal:
-            self._pattern = patterned(system, state, free, self._pattern)
-            step, shift = _step(self._pattern, system, state, now.left, shift)
+            self.pattern = patterned(system, state, free, self.pattern)
+            step, shift = _step(self.pattern, system, state, now.left, shift)
             if step is None:
                 break
             length, after = _search(system, state, step, now)

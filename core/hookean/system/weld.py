@@ -46,6 +46,7 @@ class Welded:
         self._lost: set[str] = set()  # pointers of points that met no particle
         self._meshes: dict[str, Ints] = {}
         self._families: dict[str, tuple[Ints, Ints]] = {}  # warp and weft of meshes
+        self._warps: list[tuple[Ints, Ints]] = []  # faces, and edges along their warp
         self._edges: dict[tuple[str, str], Ints] = {}
         self._pointer: dict[int, str] = {id(f): f"/forces/{i}" for i, f in enumerate(scene.forces)}
         self._weld()
@@ -176,6 +177,17 @@ class Welded:
     def faces(self, name: str) -> Ints:
         """Faces `(m, 4)` of the scene's mesh `name`, in particles; a triangle repeats its last corner."""
         return np.ascontiguousarray(self.vertices(name)[self.scene.meshes[name].faces])
+
+    def warp(self, faces: Ints) -> Ints:
+        """Edges (k, 2) of quads (m, 4) that run along the warp, found once for each mesh."""
+        for known, warp in self._warps:
+            if np.array_equal(known, faces):
+                return warp
+        from hookean.discretize.warpweft import warp_weft
+
+        points = np.zeros((int(faces.max(initial=-1)) + 1, 3))  # only which faces share an edge counts
+        self._warps.append((faces.copy(), warp_weft(Mesh(points, faces))[0]))
+        return self._warps[-1][1]
 
     def geometry(self, name: str) -> tuple[Floats, Ints]:
         """Vertices (n, 3) and faces (m, 4) of the scene's mesh `name`, as drawn; InputError if there is none."""
