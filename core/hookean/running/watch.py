@@ -107,7 +107,8 @@ class Watch:
         rests = self.found.still(self.tolerance) and self._resting(system, state)
         if rests and not amiss(system, state):  # else the solver may go on, and mend it
             return Status.CONVERGED if self.found.met(self.tolerance) else Status.STALLED
-        self._note_energy(system, state)
+        if state.iteration > self.best_at:
+            self._note_energy(system, state)
         stuck = state.iteration > max(2 * self.best_at - self.first, self._fell_at) + PATIENCE
         if idle or (stuck and not self.method.physical):  # what swings may swing for long
             return Status.STALLED

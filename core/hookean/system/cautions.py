@@ -48,7 +48,8 @@ def cautions(system: System) -> list[str]:
     touched = np.zeros(len(system.x), dtype=np.int8)
     for group in system.groups:
         if group.cls.role == "load":
-            warnings += [said for part in group.parts if (said := without_size(system, part.number, part.force))]
+            sized = [part for part in group.parts if part.force.element_arity > 1 or not len(part.inputs)]
+            warnings += [said for part in sized if (said := without_size(system, part.number, part.force))]
             continue
         for part in group.parts:
             block = group.of(part)
@@ -79,7 +80,7 @@ def cautions(system: System) -> list[str]:
                 f"/anchors/{anchor.number}/rotations: particle {anchor.particles[none][0]} has no rotation to hold: no "
                 "beam ends there" + (f" (nor have {none.sum() - 1} more)" if none.sum() > 1 else "")
             )
-    alone = idle[touched[idle] == 0]
+    alone = idle[touched[idle] == 0] if len(idle) else idle
     if len(alone) < len(idle):
         direct = idle[touched[idle] > 0]
         more = f" (and {len(direct) - 1} more)" if len(direct) > 1 else ""
