@@ -62,7 +62,7 @@ def points_from(feature: str, *, divided: bool) -> tuple[Callable[[Item], bool],
     if not feature:
         hint = "points; put ends: or vertices: in front for those of curves, naked:, corners: or vertices: for meshes"
         return (lambda item: is_point(item) or (divided and is_curve(item))), hint
-    if feature in ("start", "ends"):
+    if feature in ("start", "ends", "loose"):
         return is_curve, "curves; for points of meshes and surfaces write corners:, naked: or vertices:"
     if feature == "vertices":
         return (lambda item: is_point(item) or is_curve(item) or is_mesh(item)), "points, curves, meshes or surfaces"
@@ -213,6 +213,14 @@ def mesh_points(shape: Shape, feature: str, tolerance: float) -> Shape:
     else:
         chosen = np.arange(len(kept))
     return Shape(shape.items, mesh.vertices[chosen], shape.owner[kept][chosen])
+
+
+def loose(lines: Shape, others: Shape, tolerance: float) -> Shape:
+    """The ends of lines that no other of these lines and none of the others meets."""
+    ends = np.concatenate([lines.array, others.array]).reshape(-1, 3)
+    kept, place = unique_points(ends, tolerance)
+    alone = np.bincount(place, minlength=len(kept))[place[: 2 * len(lines.array)]] == 1
+    return Shape(lines.items, ends[: len(alone)][alone], np.repeat(lines.owner, 2)[alone])
 
 
 def concatenated(shapes: Sequence[Shape], rank: int) -> Shape:
