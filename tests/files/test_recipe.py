@@ -178,8 +178,8 @@ def test_points_of_meshes_and_surfaces(draw: Callable[..., Any]) -> None:
 
 
 def test_loose_ends_are_those_that_no_spring_meets(draw: Callable[..., Any]) -> None:
-    """Three lines from (0, 0, 0) and a ring have three loose ends, the far ones. A line drawn over one of them makes its
-    end loose no more only where it is of a force, too."""
+    """Three lines from (0, 0, 0) and a ring have three loose ends, the far ones. A line that goes on from one of them
+    makes its end loose no more only where it is of a force, too."""
     rays = [NewObject(np.array([[0.0, 0, 0], np.eye(3)[i]]), "rays") for i in range(3)]
     ring = NewObject(np.array([[5.0, 0, 0], [6, 0, 0], [6, 1, 0], [5, 0, 0]]), "rays", "ring")
     over = NewObject(np.array([[1.0, 0, 0], [2, 0, 0]]), "axes")

@@ -172,6 +172,13 @@ def points_of(item: Item, feature: str, split: Split | None, pointer: str) -> Fl
     return points[1:-1] if feature == "inner" else points
 
 
+def direction(item: Item) -> Floats:
+    """The direction from the start of a curve to its end; zero where they meet."""
+    start, end = end_points(item.geometry)
+    along: Floats = (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
+    return along
+
+
 def controls_of(item: Item) -> tuple[Floats, dict[str, Any]]:
     """Control points `(n, 3)` of a curve in file units, and its degree, knots and weights."""
     curve = item.geometry.ToNurbsCurve()
