@@ -374,5 +374,5 @@ def usable(role: Role, item: Item) -> str:
         elif role.family == "surfaces":
             shapes.mesh_of(item, role.split(item), "")
     except InputError as error:
-        return error.sentence.removeprefix(item.label).lstrip(": ")
+        return shapes.short(error.sentence.removeprefix(item.label).lstrip(": "))
     return ""

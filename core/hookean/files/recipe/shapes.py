@@ -26,6 +26,9 @@ Split = tuple[int, int]
 """Pieces of a curve (the first number), or faces of a surface along u and v."""
 
 
+TRIMMED = "trimmed faces without a render mesh; save the file shaded, untrim them, or mesh them in Rhino"
+
+
 @dataclass(frozen=True, eq=False)
 class Shape:
     """Points `(n, 3)`, lines `(m, 2, 3)` or a mesh, and for each point or line (of a mesh: each vertex) the
@@ -177,6 +180,11 @@ def direction(item: Item) -> Floats:
     start, end = end_points(item.geometry)
     along: Floats = (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
     return along
+
+
+def short(why: str) -> str:
+    """A reason why an object is left out, the same for all trimmed faces."""
+    return TRIMMED if "trimmed and without a cached" in why else why
 
 
 def controls_of(item: Item) -> tuple[Floats, dict[str, Any]]:
