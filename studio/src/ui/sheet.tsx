@@ -9,7 +9,8 @@ import { tell } from "./notices";
 import { NumberField } from "./number";
 import { go, met } from "./place";
 import { SheetRow } from "./sheetrow";
-import { busy, chooseUnits, chooseWeld, close, draft, edited, file, recipe, refused, undo, undoable } from "./sheetstate";
+import { busy, chooseUnits, chooseWeld, close, draft, edited } from "./sheetstate";
+import { file, recipe, refused, undo, undoable } from "./sheetstate";
 import { counted, plain } from "./words";
 
 export function Sheet() {
