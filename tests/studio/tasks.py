@@ -221,3 +221,21 @@ def imported(studio: Studio, file: Path, folder: Path, see: See) -> Path:
     saved = folder / "relaxed.3dm"
     saving.value.save_as(saved)
     return saved
+
+
+def skin(studio: Studio, file: Path, see: See) -> None:
+    """The model of Basento: a skin drawn tight between four feet and six fingers, in kN."""
+    chosen(studio, file)
+    studio.page.get_by_role("dialog").get_by_label("Unit of force").select_option("kN")
+    counted(studio)
+    see("import-proposal")
+    values = {"Stiffness": "100", "Held": "nothing", "Divide_u": "32", "Divide_v": "8"}
+    given(studio, "skin, surfaces", "Net", **values)
+    given(studio, "feet, points", "Anchors")
+    given(studio, "fingers, points", "Anchors")
+    see("import-sheet")
+    studio.press("Make the model")
+    studio.drawing()
+    solved(studio)
+    studio.press("Fit")
+    see("import-form")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from hookean import relax
+from hookean.commands.examples import find
 from hookean.files.readers import read_path
 from hookean.files.recipe.draft import draft
 from hookean.files.rhino import threedm
@@ -94,6 +96,22 @@ def test_roles_values_and_units_are_chosen(studio: Studio, roof: Path) -> None:
         for name in ("force", "tension"):
             if name in other:
                 assert np.allclose(one[name], other[name], rtol=1e-3, atol=1e-3 * np.abs(other[name]).max())
+
+
+def test_a_skin_is_drawn_tight_between_feet_and_fingers(studio: Studio) -> None:
+    """The model of the tutorial is that of the figure's recipe, but for the edge cables that this has: made here by
+    the Python API without them."""
+    path = find("basento").folder / "model.3dm"
+    tasks.skin(studio, path, lambda name: None)
+    recipe = tomllib.loads((path.parent / "recipe.toml").read_text())
+    recipe["forces"] = [table for table in recipe["forces"] if table["name"] == "skin"]
+    found = relax(read_path(path, (json.dumps(recipe), "recipe")).scene)
+    assert len(found.particles) == 33 * 9
+    size = np.ptp(found.particles, axis=0).max()
+    assert np.abs(studio.service.particles(studio.key) - found.particles).max() < 1e-4 * size
+    state = studio.service.state(studio.key)
+    assert len(state["reactions"]["particles"]) == 10
+    assert np.allclose(state["forces"][0]["force"], found.forces[0]["force"], rtol=1e-3, atol=1e-3 * 100)
 
 
 def test_choices_are_undone_by_button_and_by_key(studio: Studio, roof: Path) -> None:
