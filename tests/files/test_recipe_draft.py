@@ -203,6 +203,24 @@ def test_unknown_choices_are_refused(draw: Callable[..., Any], choices: Any, poi
     assert caught.value.pointer == pointer and said in caught.value.sentence
 
 
+@pytest.mark.parametrize(
+    ("layer", "text", "said"),
+    [
+        ("cables", {"stiffness": "stiff"}, 'user text stiffness: "stiff" given'),
+        ("cables", {"divide": "0"}, "user text divide"),
+        ("cables", {"divide": "90000"}, "user text divide: 90000 given; at most 2000 allowed"),
+        ("anchors", {"axes": "q"}, 'user text axes: "q" given'),
+        ("loads", {"load": "down"}, 'user text load: "down" given'),
+    ],
+)
+def test_user_text_that_cannot_be_read_is_refused_by_object(
+    draw: Callable[..., Any], layer: str, text: dict[str, str], said: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        draft(draw(NewObject(LINE, layer, "one", user_text=text)))
+    assert '"one"' in str(caught.value) and said in str(caught.value)
+
+
 @pytest.mark.parametrize("path", sorted(SHARED.glob("*.3dm")), ids=lambda path: path.stem)
 def test_files_of_others_have_a_draft(path: Path) -> None:
     """It means what the file means without it; where that is nothing, the draft says so."""

@@ -8,6 +8,7 @@ from typing import Any
 import httpx
 import numpy as np
 
+from fuzz import damage
 from hookean.commands.examples import find
 from hookean.files.recipe.draft import draft
 from hookean.files.relax_file import relax_file
@@ -66,3 +67,13 @@ def test_faulty_requests(client: httpx.Client) -> None:
     form["data"] = {"recipe": "{}"}
     found = problem(client.post("/v1/recipes/3dm", **form), 422, "invalid-input")
     assert found["errors"][0]["pointer"] == "/recipe" and "file and choices" in found["detail"]
+
+
+def test_damaged_files_are_the_files_fault(client: httpx.Client) -> None:
+    files = damage.seeds()
+    for number in range(0, 2000, 500):
+        _, _, data = damage.mutant(files, number)
+        answer = asked(client, data=data)
+        assert answer.status_code in (200, 422), (number, answer.text[:300])
+        if answer.status_code == 422:
+            assert answer.json()["errors"][0]["pointer"] == "/file"

@@ -189,7 +189,7 @@ def test_what_is_no_model_is_explained(studio: Studio, roof: Path) -> None:
     page.get_by_text('Layer "Edge ropes": "loose:layer:Edge ropes" gives no points').wait_for()
     field = page.get_by_label("Stiffness of Edge ropes, curves [N/m]")
     tasks.enter(studio, field, "-1")
-    page.get_by_role("alert").filter(has_text="more than 0 allowed").wait_for()
+    page.get_by_role("alert").filter(has_text="at least 0 allowed").wait_for()
 
 
 def test_the_recipe_is_edited_and_saved(studio: Studio, roof: Path, tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ FAMILIES = {"points": shapes.is_point, "curves": shapes.is_curve, "surfaces": sh
 """What a family of objects is, by its name."""
 SI = Units()
 
-Stiffness = Annotated[float, Field(gt=0, le=LARGEST, description="Force that stretches it by one unit [force/length]")]
+Stiffness = Annotated[float, Field(ge=0, le=LARGEST, description="Force that stretches it by one unit [force/length]")]
 RestFactor = Annotated[float, Field(ge=0, le=10, description="Rest length / drawn length; 0: as a soap film [-]")]
 Pieces = Annotated[
     int,

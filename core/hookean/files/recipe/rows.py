@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from hookean.errors import InputError
 from hookean.files.recipe import convention, shapes
 from hookean.files.recipe.drawing import Drawing, Item, above
 from hookean.files.recipe.roles import FAMILIES, FLOOR, IGNORE, ROLES, Role, SpringRole, told, usable
@@ -150,6 +151,10 @@ def own(row: Row, units: Units) -> None:
         if entry.role is not None:
             continue
         values = {**row.values, **told(kind, entry.item, units)}
+        try:
+            role = kind.read(values)
+        except InputError as error:
+            raise InputError(f"{entry.item.label}, user text {error.pointer.strip('/')}", error.sentence) from None
         if values != row.values:
             entry.role, entry.values = row.role, values
-        entry.why = usable(kind.read(values), entry.item)
+        entry.why = usable(role, entry.item)
