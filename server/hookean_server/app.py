@@ -29,7 +29,19 @@ from hookean_server.jobs import routes as job_routes
 from hookean_server.jobs.manager import Jobs
 from hookean_server.lifecycle import ending
 from hookean_server.problems import Problem
-from hookean_server.routes import about, analysis, design, discretize, docs, examples, families, geometry, page, relax
+from hookean_server.routes import (
+    about,
+    analysis,
+    design,
+    discretize,
+    docs,
+    examples,
+    families,
+    geometry,
+    page,
+    recipes,
+    relax,
+)
 from hookean_server.sessions import frames, shown
 from hookean_server.sessions import routes as session_routes
 from hookean_server.sessions.manager import Manager
@@ -88,6 +100,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         discretize,
         docs,
         geometry,
+        recipes,
         examples,
         families,
         routes_hops,

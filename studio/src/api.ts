@@ -1,5 +1,5 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
-import type { Action, Anchor, Example, Family, Kind, Parameters, Patch, Result } from "./model";
+import type { Action, Anchor, Choices, Draft, Example, Family, Kind, Parameters, Patch, Result } from "./model";
 import type { Scene, Shared, Store, Summary, Topology } from "./model";
 
 /** What the service refused, in its own words; status 0: it could not be reached. */
@@ -73,12 +73,21 @@ export const families = async () => (await read<{ families: Family[] }>("/v1/fam
 export const familyScene = (name: string, units: object, parameters: Parameters) =>
   send<Scene>("POST", `/v1/families/${encodeURIComponent(name)}`, { units, parameters });
 
-/** A new session of a file: .3dm, .obj, COMPAS JSON, a scene or a saved simulation. */
-export async function open(file: File): Promise<Summary & { warnings?: string[] }> {
+/** A new session of a file: .3dm (by a recipe, or as drawn), .obj, COMPAS JSON, a scene or a saved simulation. */
+export async function open(file: File, recipe = ""): Promise<Summary & { warnings?: string[] }> {
   const body = new FormData();
   body.append("file", file, file.name);
+  if (recipe) body.append("recipe", recipe);
   const answer = await ask(`/v1/sessions${labelled(file.name.replace(/\.hookean$/, ""))}`, { method: "POST", body });
   return (await answer.json()) as Summary;
+}
+
+/** The layers of a .3dm file with a role for each, by guess or by choice. */
+export async function draft(file: File, choices?: Choices): Promise<Draft> {
+  const body = new FormData();
+  body.append("file", file, file.name);
+  if (choices) body.append("choices", JSON.stringify(choices));
+  return (await (await ask("/v1/recipes/3dm", { method: "POST", body })).json()) as Draft;
 }
 
 export type Format = "hookean" | "scene" | "3dm" | "obj" | "compas" | "csv" | "npz";

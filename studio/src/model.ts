@@ -187,3 +187,61 @@ export interface Example {
   sentence: string;
   picture: string;
 }
+
+/** What objects of a family (points, curves, surfaces) may become, with its values. */
+export interface Role {
+  role: string;
+  family: string;
+  summary: string;
+  fields: Field[];
+}
+
+export type Values = Record<string, number | string>;
+
+/** An object of a file; a role of null is that of its row. */
+export interface Drawn {
+  id: string;
+  name: string;
+  kind: string;
+  role: string | null;
+  values: Values;
+  why?: string;
+}
+
+/** The objects of one family on one layer of a file. */
+export interface Row {
+  layer: string;
+  family: string;
+  kinds: string;
+  roles: string[];
+  role: string;
+  values: Values;
+  becomes: string[];
+  objects: Drawn[];
+}
+
+/** What is on the layers of a file, a role for each, and the recipe of these roles. */
+export interface Draft {
+  name: string;
+  said: string;
+  size: string;
+  unit: string;
+  units: Units;
+  weld_tolerance: number;
+  rows: Row[];
+  roles: Role[];
+  recipe: unknown;
+  fault: string;
+  notes: string[];
+  particles: number;
+  held: number;
+}
+
+/** What somebody chose of a draft. */
+export interface Choices {
+  units: Units;
+  values_in: Units;
+  weld_tolerance: number | null;
+  rows: { layer: string; family: string; role: string; values: Values }[];
+  objects: { id: string; role: string; values: Values }[];
+}

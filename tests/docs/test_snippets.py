@@ -58,6 +58,14 @@ def test_a_picture_is_made_by_the_code_of_its_page(page: Path) -> None:
         assert f'"{name}"' in code and (page.parent / "pictures" / name).is_file(), name
 
 
+@pytest.mark.parametrize("page", snippets.PAGES, ids=lambda page: page.stem)
+def test_a_screen_is_taken_by_a_task_of_the_studio(page: Path) -> None:
+    """Every picture of the studio is of a step that the tests drive, and is there."""
+    steps = (Path(__file__).parents[1] / "studio" / "tasks.py").read_text("utf-8")
+    for name in re.findall(r"!\[[^\]]+\]\(screens/([^)]+)\.png\)", page.read_text("utf-8")):
+        assert f'see("{name}")' in steps and (page.parent / "screens" / f"{name}.png").is_file(), name
+
+
 def test_there_are_pages() -> None:
     assert {"start", "cable", "membrane-roof", "live-session"} <= {page.stem for page in snippets.PAGES}
     assert all(len(snippets.blocks(page)) >= 2 for page in snippets.PAGES if page.stem != "index")

@@ -177,6 +177,25 @@ def test_points_of_meshes_and_surfaces(draw: Callable[..., Any]) -> None:
     assert "naked:" in error.sentence
 
 
+def test_loose_ends_are_those_that_no_spring_meets(draw: Callable[..., Any]) -> None:
+    """Three lines from (0, 0, 0) and a ring have three loose ends, the far ones. A line that goes on from one of them
+    makes its end loose no more only where it is of a force, too."""
+    rays = [NewObject(np.array([[0.0, 0, 0], np.eye(3)[i]]), "rays") for i in range(3)]
+    ring = NewObject(np.array([[5.0, 0, 0], [6, 0, 0], [6, 1, 0], [5, 0, 0]]), "rays", "ring")
+    over = NewObject(np.array([[1.0, 0, 0], [2, 0, 0]]), "axes")
+    model = draw(*rays, ring, over)
+
+    def held(lines: str, points: str = "loose:layer:rays") -> Any:
+        return scene_of(model, {**springs(lines=lines), "anchors": [{"points": points}]}).anchors[0].points.tolist()
+
+    assert held("layer:rays") == np.eye(3).tolist()
+    assert held("layer:rays", "loose:layer:rays, loose:layer:axes") == [*np.eye(3).tolist(), [2, 0, 0]]
+    assert held("*") == np.eye(3).tolist()[1:]
+    assert held("*", "loose:*") == [*np.eye(3).tolist()[1:], [2, 0, 0]]
+    error = refused(model, {**springs(lines="*"), "anchors": [{"points": "loose:name:ring"}]})
+    assert "whose ends all meet" in error.sentence
+
+
 def test_meshes_that_meet_are_one(draw: Callable[..., Any]) -> None:
     beside = Mesh(SQUARE.vertices + [2, 0, 0], SQUARE.faces)
     model = draw(NewObject(SQUARE, "net", "a"), NewObject(beside, "net", "b"))

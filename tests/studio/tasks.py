@@ -176,3 +176,66 @@ def variants(studio: Studio, see: See) -> tuple[str, str]:
     see("variants-beside")
     [other] = [one["key"] for one in service.summaries() if one["label"] == "Saddle · low"]
     return first, other
+
+
+def chosen(studio: Studio, file: Path) -> None:
+    """A file opened from the start page, until the import sheet shows its layers."""
+    studio.page.get_by_label("File to open").set_input_files(file)
+    studio.page.get_by_role("dialog", name=f"Import {file.name}").wait_for()
+
+
+def counted(studio: Studio) -> None:
+    """Wait until the service has counted what the roles of the import sheet become."""
+    studio.page.get_by_text("Counting what these roles become").wait_for(state="detached")
+
+
+def given(studio: Studio, row: str, role: str, **values: str) -> None:
+    """A role for a row of the import sheet, and values by the names of their fields."""
+    sheet = studio.page.get_by_role("dialog")
+    sheet.get_by_label(f"Role of {row}", exact=True).select_option(label=role)
+    counted(studio)
+    for name, value in values.items():
+        enter(studio, sheet.get_by_label(re.compile(f"^{name.replace('_', ' ')} of {re.escape(row)}")), value)
+        counted(studio)
+
+
+def imported(studio: Studio, file: Path, folder: Path, see: See) -> Path:
+    """A curve of a Rhino file as a cable of 24 pieces in inches that hangs from its ends, other layers left out; its
+    form found, and saved as a Rhino file."""
+    page = studio.page
+    chosen(studio, file)
+    page.get_by_role("dialog").get_by_label("Unit of length").select_option("in")
+    counted(studio)
+    given(studio, "line layer, curves", "Left out")
+    given(studio, "blue circles, curves", "Left out")
+    given(studio, "green NURBS wiggle, curves", "Cables", Divide="24", Stiffness="50", Load="-2")
+    page.get_by_text("24 springs, 25 loads, 2 held points").wait_for()
+    see("import-sheet")
+    studio.press("Make the model")
+    studio.drawing()
+    solved(studio)
+    see("import-form")
+    opened(studio, "Out")
+    with page.expect_download() as saving:
+        studio.press("Rhino .3dm")
+    saved = folder / "relaxed.3dm"
+    saving.value.save_as(saved)
+    return saved
+
+
+def skin(studio: Studio, file: Path, see: See) -> None:
+    """The model of Basento: a skin drawn tight between four feet and six fingers, in kN."""
+    chosen(studio, file)
+    studio.page.get_by_role("dialog").get_by_label("Unit of force").select_option("kN")
+    counted(studio)
+    see("import-proposal")
+    values = {"Stiffness": "100", "Held": "nothing", "Divide_u": "32", "Divide_v": "8"}
+    given(studio, "skin, surfaces", "Net", **values)
+    given(studio, "feet, points", "Anchors")
+    given(studio, "fingers, points", "Anchors")
+    see("import-sheet")
+    studio.press("Make the model")
+    studio.drawing()
+    solved(studio)
+    studio.press("Fit")
+    see("import-form")

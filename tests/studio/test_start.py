@@ -135,6 +135,7 @@ def test_a_rhino_file_is_dropped_and_becomes_a_session(studio: Studio):
         pytest.skip("the files of Rhino are not here")
     name = "v7_my_curves.3dm"
     drop(studio, name, (RHINO / name).read_bytes())
+    studio.press("Make the model")
     studio.drawing()
     drawn = studio.service.particles(studio.key)
     assert len(drawn) > 1
@@ -143,6 +144,7 @@ def test_a_rhino_file_is_dropped_and_becomes_a_session(studio: Studio):
 
 def test_a_model_of_a_figure_is_dropped_and_becomes_a_session(studio: Studio):
     drop(studio, "model.3dm", (ROOT / "gh_examples" / "9.4-cable" / "model.3dm").read_bytes())
+    studio.press("Make the model")
     studio.drawing()
     assert len(studio.particles()) == len(studio.service.particles(studio.key))
 

@@ -8,13 +8,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rhino3dm as _rhino3dm
 from scipy.optimize import brentq
 
-from hookean import AreaWeight, Result, Scene, Simulation, family, relax
+from hookean import Anchor, AreaWeight, Result, Scene, Simulation, Springs, Unary, family, relax
+from hookean import open as open_scene
+from hookean.discretize import divide
 
 from . import tasks
 from .browser import Studio
 
+rhino3dm: Any = _rhino3dm
+
+WIGGLE = Path(__file__).parents[3] / "shared" / "data" / "rhino" / "v7_my_curves.3dm"
 NEAR = 1e-4
 """Of a length or force: both solve to a residual of 1e-6 of the loads, from different starts."""
 
@@ -99,6 +105,28 @@ def test_a_tensegrity_finds_its_twist(studio: Studio):
     shown = column(studio, "Force")
     assert shown == pytest.approx(forces(truth), rel=1e-3)
     assert sum(force < 0 for force in shown) == 4
+
+
+@pytest.mark.skipif(not WIGGLE.is_file(), reason="the files of Rhino are not here")
+def test_a_rhino_file_is_imported_with_roles(studio: Studio, tmp_path: Path):
+    """The cable is that of the Python API, made without a recipe: 24 equal arcs of the curve, in the inches of the
+    file. The file that is saved holds the same scene, and its lines are the cable at rest."""
+    saved = tasks.imported(studio, WIGGLE, tmp_path, unseen)
+    drawn = rhino3dm.File3dm.Read(str(WIGGLE)).Objects
+    [curve] = [item.Geometry for item in drawn if isinstance(item.Geometry, rhino3dm.NurbsCurve)]
+    points = divide(curve, 24)
+    cable = Springs(lines=np.stack([points[:-1], points[1:]], 1), stiffness=50, tension_only=True)
+    load, ends = Unary(points=points, vector=(0, 0, -2)), Anchor(points=points[[0, -1]])
+    truth = relax(Scene(forces=(cable, load), anchors=(ends,), units={"length": "in"}))
+    same(studio, studio.key, truth)
+    assert open_scene(saved).model_dump(mode="json") == studio.service.scene(studio.key)
+    lines = [item.Geometry for item in rhino3dm.File3dm.Read(str(saved)).Objects]
+    ends_of = [(line.PointAtStart, line.PointAtEnd) for line in lines if isinstance(line, rhino3dm.LineCurve)]
+    written = np.array([[(p.X, p.Y, p.Z) for p in pair] for pair in ends_of])
+    assert {len(written)} <= {24, 24 + 2}  # the cable, and the reactions at its ends
+    middles = truth.particles[:-1] / 2 + truth.particles[1:] / 2
+    away = np.linalg.norm(written.mean(axis=1)[:, None] - middles, axis=2).min(axis=0)
+    assert away.max() < NEAR * np.ptp(truth.particles, axis=0).max()
 
 
 def errors(particles: Any, area: Any, height: float) -> np.ndarray[Any, Any]:

@@ -105,6 +105,34 @@ def geometry_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) 
     return Done(answers.dump(found, options["arrays"]), timing=clock.parts)
 
 
+def recipe_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
+    """The rows of an uploaded .3dm file with a role for each, and the recipe of these roles; options as `relax_upload`.
+    The form has a part `file`, and may have a part `choices` (JSON). Raises InputError naming the part."""
+    from hookean.files.recipe.draft import draft
+    from hookean.files.rhino.read import parse as parse_model
+    from hookean.scene.text import parse
+
+    clock = Clock()
+    data, choices, name = parts(Path(options["path"]), options["content_type"], "choices")
+    clock.lap("decode")
+    try:
+        given = None if choices is None else parse(choices)
+        with limited(options["read_seconds"]):
+            model = parse_model(data, name or "the file").model
+    except InputError as error:
+        raise InputError("/choices" if error.pointer.startswith("/") else "/file", error.sentence) from None
+    clock.lap("read")
+    try:
+        with limited(options["read_seconds"]):
+            found = draft(model, given).to_dict()
+    except InputError as error:
+        if not error.pointer.startswith("/"):
+            raise InputError("/file", str(error)) from None
+        raise InputError(f"/choices{error.pointer}".rstrip("/"), error.sentence) from None
+    clock.lap("draft")
+    return Done(answers.dump(found, "list"), timing=clock.parts)
+
+
 @contextlib.contextmanager
 def _beside(path: str) -> Iterator[str]:
     """A folder for what is written meanwhile, beside the body: the server takes both away, also where this process is
@@ -118,8 +146,9 @@ def _beside(path: str) -> Iterator[str]:
         tempfile.tempdir = before
 
 
-def parts(path: Path, content_type: str) -> tuple[bytes, str | None, str]:
-    """The bytes of the part `file`, the text of the part `recipe` and the file's name of a multipart form on disk."""
+def parts(path: Path, content_type: str, beside: str = "recipe") -> tuple[bytes, str | None, str]:
+    """The bytes of the part `file`, the text of the part `beside` it and the file's name of a multipart form on
+    disk."""
     from python_multipart import exceptions, parse_form
 
     found: dict[str, bytes] = {}
@@ -127,11 +156,11 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None, str]:
 
     def put(name: bytes | None, value: bytes) -> None:
         key = (name or b"").decode("utf-8", "replace")
-        if key not in ("file", "recipe") or key in found:
+        if key not in ("file", beside) or key in found:
             why = (
                 "this part is given twice"
                 if key in found
-                else "unknown part; the form may have the parts file and recipe"
+                else f"unknown part; the form may have the parts file and {beside}"
             )
             raise InputError(f"/{key[:80]}", why)
         found[key] = value
@@ -157,13 +186,13 @@ def parts(path: Path, content_type: str) -> tuple[bytes, str | None, str]:
         raise InputError("/file", "the file is empty; send a file with content")
     if "file" not in found:
         raise InputError("/file", "the form needs a part named file with the file in it")
-    recipe = found.get("recipe")
-    if recipe is not None and len(recipe) > RECIPE_LIMIT:
-        raise InputError("/recipe", f"longer than {RECIPE_LIMIT} bytes")
+    text = found.get(beside)
+    if text is not None and len(text) > RECIPE_LIMIT:
+        raise InputError(f"/{beside}", f"longer than {RECIPE_LIMIT} bytes")
     try:
-        return found["file"], recipe.decode("utf-8") if recipe else None, name
+        return found["file"], text.decode("utf-8") if text else None, name
     except UnicodeDecodeError:
-        raise InputError("/recipe", "the text is not UTF-8") from None
+        raise InputError(f"/{beside}", "the text is not UTF-8") from None
 
 
 def _place(pointer: str, recipe: str | None) -> str:

@@ -50,6 +50,7 @@ def _tasks() -> dict[str, Callable[[dict[str, Any], bytes, Cancelled], Done]]:
         "file": file_tasks.relax_upload,
         "scene": file_tasks.scene_upload,
         "geometry": file_tasks.geometry_upload,
+        "recipe": file_tasks.recipe_upload,
         "example": example_task.read_example,
         "family": family_task.make_family,
         "job": work.check,

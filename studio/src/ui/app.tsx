@@ -3,6 +3,7 @@ import { Entry } from "./entry";
 import { Notices } from "./notices";
 import { Dropping, Opening } from "./opening";
 import { entries, entry, place } from "./place";
+import { Sheet } from "./sheet";
 import { Start } from "./start";
 import { SessionPage } from "./studio";
 
@@ -20,6 +21,7 @@ export function App() {
         <Notices />
       </div>
       <Dropping />
+      <Sheet />
     </>
   );
 }

@@ -1,6 +1,8 @@
 // One of several words.
 interface Told {
+  /** Its name; `seen` is what stands before it, where that is shorter. */
   name: string;
+  seen?: string;
   value: string;
   choices: string[];
   hint?: string;
@@ -8,10 +10,10 @@ interface Told {
   done: (value: string) => void;
 }
 
-export function Choice({ name, value, choices, hint, disabled, done }: Told) {
+export function Choice({ name, seen, value, choices, hint, disabled, done }: Told) {
   return (
     <label class="field">
-      <span>{name}</span>
+      <span>{seen ?? name}</span>
       <select
         aria-label={name}
         title={hint}

@@ -9,8 +9,8 @@ import { refuse } from "./notices";
 import { NumberField } from "./number";
 import { go, met } from "./place";
 
-const LENGTHS = ["m", "cm", "mm", "ft", "in"];
-const FORCES = ["N", "kN"];
+export const LENGTHS = ["m", "cm", "mm", "ft", "in"];
+export const FORCES = ["N", "kN"];
 
 export function New() {
   const chosen = useSignal("saddle");

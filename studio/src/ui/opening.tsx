@@ -5,6 +5,7 @@ import * as api from "../api";
 import { keepView, viewOf } from "../view/kept";
 import { quiet, refuse, tell } from "./notices";
 import { go, met } from "./place";
+import { drafted } from "./sheetstate";
 
 const over = signal(false);
 /** What is being opened; "" for nothing. */
@@ -12,11 +13,12 @@ export const opening = signal("");
 
 const KINDS = ".3dm,.obj,.json,.npz,.hookean";
 
-/** Open a file as a new session and go there. */
+/** Open a file as a new session and go there; a Rhino model gets its roles in the import sheet first. */
 async function openFile(file: File): Promise<void> {
   opening.value = file.name;
   quiet();
   try {
+    if (/\.3dm$/i.test(file.name) && (await drafted(file))) return;
     const made = await api.open(file);
     keepView(made.key, await viewOf(file));
     go(made.key);

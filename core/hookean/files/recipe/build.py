@@ -213,6 +213,7 @@ class _Builder:
         if not sum(len(shape.array) for shape in found):
             asked = {t.feature for t in terms(value, pointer)}
             closed = "; closed meshes have none" if asked & {"naked", "corners"} else ""
+            closed = "; closed curves, and curves whose ends all meet, have none" if "loose" in asked else closed
             why = next((f": {w}" for w in (*self.left.values(), *self.misfits)), closed)
             raise InputError(pointer, f"{listed([str(t) for t in terms(value, pointer)])} gives no {name}{why}")
         if name == "points":
@@ -229,6 +230,8 @@ class _Builder:
         meshes = shapes.is_mesh
         fits, hint = shapes.points_from(term.feature, divided=own is not None)
         items = self._fitting(term, fits, hint, pointer)
+        if term.feature == "loose":
+            return [self._loose(items, term, own, pointer)]
         found: list[Shape] = []
         for item in (i for i in items if not meshes(i)):
             split = self._split_for(item, own)
@@ -242,13 +245,29 @@ class _Builder:
                 found.append(shapes.mesh_points(shape, term.feature, self.tolerance))
         return found
 
+    def _loose(self, items: Sequence[Item], term: Term, own: Split | None, pointer: str) -> Shape:
+        """Ends of curves that meet neither another of them nor another line of a force."""
+        others = [item for item in self._springs() if item not in items]
+        mine, rest = self._pieces(items, term, own, pointer), self._pieces(others, None, None, pointer)
+        return shapes.loose(shapes.concatenated(mine, 3), shapes.concatenated(rest, 3), self.tolerance)
+
+    def _springs(self) -> list[Item]:
+        """The curves that become lines of forces."""
+        given = [(i, t.get("lines")) for i, t in enumerate(self._tables("forces")) if is_selector(t.get("lines"))]
+        where = [(term, f"/forces/{i}/lines") for i, value in given for term in terms(value, f"/forces/{i}/lines")]
+        found = [item for term, pointer in where for item in select(self.drawing, term, pointer)]
+        return [item for item in dict.fromkeys(found) if shapes.is_curve(item)]
+
     def _lines(self, term: Term, own: Split | None, pointer: str) -> list[Shape]:
         _plain(term, pointer)
-        found = []
         hint = "lines and curves; for the edges of a mesh or surface give mesh = instead of lines ="
-        for item in self._fitting(term, shapes.is_curve, hint, pointer):
-            split = self._split_for(item, own)
-            lines = self._try(item, term, shapes.lines_of, split, pointer)
+        return self._pieces(self._fitting(term, shapes.is_curve, hint, pointer), term, own, pointer)
+
+    def _pieces(self, items: Sequence[Item], term: Term | None, own: Split | None, pointer: str) -> list[Shape]:
+        """The lines of curves, a shape for each."""
+        found = []
+        for item in items:
+            lines = self._try(item, term, shapes.lines_of, self._split_for(item, own), pointer)
             if lines is not None:
                 found.append(Shape((item,), lines * self.drawing.factor, np.zeros(len(lines), np.int64)))
         return found

@@ -32,7 +32,6 @@ from typing import Any, get_args
 
 import numpy as np
 
-from hookean.discretize.curves import end_points
 from hookean.discretize.duplicates import unique_points
 from hookean.errors import InputError
 from hookean.files.recipe import shapes
@@ -169,9 +168,9 @@ def _elastic(item: Item, role: str, reading: _Reading) -> None:
     table: dict[str, Any] = {"kind": "springs", "name": item.layer.replace(SEPARATOR, " ") or role}
     table.update({"rest_factor": 0.0} if role == "membrane" else {})
     table.update({"tension_only": True} if role == "cables" else {})
-    table.update({key: _number(item, key) for key in NUMBERS if key in item.text})
+    table.update({key: number_of(item, key) for key in NUMBERS if key in item.text})
     if "edges" in item.text and not curve:
-        table["edges"] = _edges(item)
+        table["edges"] = edges_of(item)
     if split is not None:
         table["divide"] = list(split)
     place = "lines" if curve else "mesh"
@@ -179,10 +178,11 @@ def _elastic(item: Item, role: str, reading: _Reading) -> None:
     entry[place].append(f"id:{item.ids[-1]}")
     reading.elastic.append(item)
     if "load" in item.text:
-        _add_load(item, f"vertices:id:{item.ids[-1]}", _vector(item, None), reading)
+        _add_load(item, f"vertices:id:{item.ids[-1]}", vector_of(item, None), reading)
 
 
-def _edges(item: Item) -> str:
+def edges_of(item: Item) -> str:
+    """The edges of a mesh that its user text names. InputError for another word."""
     given = item.text["edges"].strip().lower()
     allowed = get_args(Edges)
     if given not in allowed:
@@ -227,11 +227,9 @@ def _load(item: Item, reading: _Reading) -> None:
     if "load" not in item.text:
         reading.left[item] = 'has no user text "load", such as "0, 0, -20"'
     elif shapes.is_point(item):
-        _add_load(item, f"id:{item.ids[-1]}", _vector(item, None), reading)
+        _add_load(item, f"id:{item.ids[-1]}", vector_of(item, None), reading)
     elif shapes.is_curve(item):
-        start, end = end_points(item.geometry)
-        along = (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
-        _add_load(item, f"start:id:{item.ids[-1]}", _vector(item, along), reading)
+        _add_load(item, f"start:id:{item.ids[-1]}", vector_of(item, shapes.direction(item)), reading)
     else:
         reading.left[item] = f"{item.kind} cannot be a load; draw a point or a line"
 
@@ -306,7 +304,8 @@ def _recipe(drawing: Drawing, reading: _Reading, given: Mapping[str, Any]) -> di
     return recipe
 
 
-def _number(item: Item, key: str) -> float:
+def number_of(item: Item, key: str) -> float:
+    """The number of at least 0 that an item's user text gives. InputError for anything else."""
     text = item.text[key].strip()
     try:
         value = float(text.replace(",", ".") if text.count(",") == 1 else text)
@@ -321,7 +320,7 @@ def _numbers(text: str) -> Iterable[float]:
     return [float(part) for part in re.split(r"[\s,;]+", text.strip(" {}()[]"))]
 
 
-def _vector(item: Item, along: Any) -> list[float]:
+def vector_of(item: Item, along: Any) -> list[float]:
     """The load an item's user text gives: three components, or one along z or along its line."""
     text = item.text["load"]
     try:

@@ -33,13 +33,11 @@ def notes(seen: Drawing, built: Built, *, conventional: bool) -> list[str]:
 
 def _left(seen: Drawing, built: Built) -> list[str]:
     from hookean.files.recipe.convention import FLOOR
-    from hookean.files.recipe.shapes import counted
+    from hookean.files.recipe.shapes import counted, short
 
     groups: dict[tuple[str, str], list[Item]] = {}
     for item in seen.items:
-        why = built.left.get(item, FLOOR)
-        if "trimmed and without a cached" in why:  # one sentence for all of them; --explain names the faces
-            why = "trimmed faces without a render mesh; save the file shaded, untrim them, or mesh them in Rhino"
+        why = short(built.left.get(item, FLOOR))  # --explain names the faces
         if item not in built.uses and why != FLOOR:
             groups.setdefault((item.layer or NO_LAYER, why), []).append(item)
     for item in seen.hidden:

@@ -29,9 +29,10 @@ stands for anything inside a name. Several are joined by commas or in a list.
 * `lines`: lines and polylines give their segments, any curve with `divide = N` N equal arcs.
 * `mesh`: meshes; surfaces, Breps, extrusions with `divide = [u, v]` or `divide_u`, `divide_v`. Several objects
   are one mesh, welded where they meet.
-* `points`, of forces and anchors: points and point clouds; `start:`, `ends:` of curves; `vertices:`, `inner:` of
-  curves and meshes; `naked:`, `corners:` of meshes and surfaces. How one table divides an object holds for all tables
-  without another one, and so does the user text `divide` of the object.
+* `points`, of forces and anchors: points and point clouds; `start:`, `ends:` of curves, `loose:` for those ends that no
+  other curve of the selector and no line of a force meets; `vertices:`, `inner:` of curves and meshes; `naked:`,
+  `corners:` of meshes and surfaces. How one table divides an object holds for all tables without another one, and so
+  does the user text `divide` of the object.
 * `on = "layer:beams"` keeps the points that lie on these curves. `pull_to_curve` selects its `curve`; bent ones with
   `curve_divide = N`; of several each pulls the points nearest to it.
 * `warp_lines` of a membrane: lines and polylines, curves with the user text `divide`.

@@ -26,6 +26,9 @@ Split = tuple[int, int]
 """Pieces of a curve (the first number), or faces of a surface along u and v."""
 
 
+TRIMMED = "trimmed faces without a render mesh; save the file shaded, untrim them, or mesh them in Rhino"
+
+
 @dataclass(frozen=True, eq=False)
 class Shape:
     """Points `(n, 3)`, lines `(m, 2, 3)` or a mesh, and for each point or line (of a mesh: each vertex) the
@@ -62,7 +65,7 @@ def points_from(feature: str, *, divided: bool) -> tuple[Callable[[Item], bool],
     if not feature:
         hint = "points; put ends: or vertices: in front for those of curves, naked:, corners: or vertices: for meshes"
         return (lambda item: is_point(item) or (divided and is_curve(item))), hint
-    if feature in ("start", "ends"):
+    if feature in ("start", "ends", "loose"):
         return is_curve, "curves; for points of meshes and surfaces write corners:, naked: or vertices:"
     if feature == "vertices":
         return (lambda item: is_point(item) or is_curve(item) or is_mesh(item)), "points, curves, meshes or surfaces"
@@ -172,6 +175,18 @@ def points_of(item: Item, feature: str, split: Split | None, pointer: str) -> Fl
     return points[1:-1] if feature == "inner" else points
 
 
+def direction(item: Item) -> Floats:
+    """The direction from the start of a curve to its end; zero where they meet."""
+    start, end = end_points(item.geometry)
+    along: Floats = (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
+    return along
+
+
+def short(why: str) -> str:
+    """A reason why an object is left out, the same for all trimmed faces."""
+    return TRIMMED if "trimmed and without a cached" in why else why
+
+
 def controls_of(item: Item) -> tuple[Floats, dict[str, Any]]:
     """Control points `(n, 3)` of a curve in file units, and its degree, knots and weights."""
     curve = item.geometry.ToNurbsCurve()
@@ -213,6 +228,14 @@ def mesh_points(shape: Shape, feature: str, tolerance: float) -> Shape:
     else:
         chosen = np.arange(len(kept))
     return Shape(shape.items, mesh.vertices[chosen], shape.owner[kept][chosen])
+
+
+def loose(lines: Shape, others: Shape, tolerance: float) -> Shape:
+    """The ends of lines that no other of these lines and none of the others meets."""
+    ends = np.concatenate([lines.array, others.array]).reshape(-1, 3)
+    kept, place = unique_points(ends, tolerance)
+    alone = np.bincount(place, minlength=len(kept))[place[: 2 * len(lines.array)]] == 1
+    return Shape(lines.items, ends[: len(alone)][alone], np.repeat(lines.owner, 2)[alone])
 
 
 def concatenated(shapes: Sequence[Shape], rank: int) -> Shape:
