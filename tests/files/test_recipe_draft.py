@@ -179,6 +179,10 @@ def test_a_fault_names_the_layer(draw: Callable[..., Any]) -> None:
     assert 'layer "ring": ' in draft(draw(NewObject(ring, "ring")), {"rows": [row]}).fault
 
 
+def test_one_particle_is_a_fault(draw: Callable[..., Any]) -> None:
+    assert "all points become one particle" in draft(draw(NewObject(LINE, "cables")), {"weld_tolerance": 50}).fault
+
+
 ROW = {"layer": "cables", "family": "curves", "role": "cables"}
 
 
@@ -192,12 +196,19 @@ ROW = {"layer": "cables", "family": "curves", "role": "cables"}
         ({"rows": [{**ROW, "values": {"held": "rim"}}]}, "/rows/0/values/held", "loose ends"),
         ({"rows": [{"layer": "cables"}]}, "/rows/0/family", "required"),
         ({"objects": [{"id": "x", "role": "cables"}]}, "/objects/0/id", '"x"'),
+        ({"rows": [ROW, {**ROW, "role": "springs"}]}, "/rows/1", "have a role already, by /rows/0"),
+        ({"rows": [{**ROW, "role": "ignore", "values": {"load": 1}}]}, "/rows/0/values", '"ignore" has no values'),
+        (
+            {"values_in": {"force": "MN"}, "rows": [{**ROW, "values": {"stiffness": 1e11}}]},
+            "/rows/0/values/stiffness",
+            "1e+17 given",
+        ),
         ({"units": {"length": "mile"}}, "/units/length", "mile"),
         ({"weld_tolerance": -1}, "/weld_tolerance", "-1"),
         ([], "/", "object"),
     ],
 )
-def test_unknown_choices_are_refused(draw: Callable[..., Any], choices: Any, pointer: str, said: str) -> None:
+def test_choices_that_cannot_be_are_refused(draw: Callable[..., Any], choices: Any, pointer: str, said: str) -> None:
     with pytest.raises(InputError) as caught:
         draft(draw(NewObject(LINE, "cables")), choices)
     assert caught.value.pointer == pointer and said in caught.value.sentence

@@ -155,6 +155,9 @@ def _picked(rows: Sequence[Row], chosen: Choices) -> list[tuple[int, RowChoice] 
             given = f'no objects of the family "{choice.family}" on layer "{choice.layer}"'
             raise InputError(f"/rows/{number}/layer", f"the file has {given}; it has {there or 'none'}")
         _known_role(rows[place].family, choice.role, f"/rows/{number}/role")
+        if (other := found[place]) is not None:
+            said = f'the {choice.family} on layer "{choice.layer}" have a role already, by /rows/{other[0]}; give one'
+            raise InputError(f"/rows/{number}", said)
         found[place] = (number, choice)
     return found
 
@@ -167,15 +170,19 @@ def _known_role(family: str, role: str, pointer: str) -> None:
 def _values(
     family: str, role: str, given: Mapping[str, Any], defaults: Mapping[str, Any], chosen: Choices, pointer: str
 ) -> dict[str, Any]:
-    """Chosen values over others. InputError for one that is unknown or not allowed."""
+    """Chosen values over others. InputError for one that is unknown or not allowed, in its units or the recipe's."""
     kind = ROLES.get((family, role))
     if kind is None:
+        if given:
+            raise InputError(f"{pointer}/values", f'{next(iter(given))} given; the role "{role}" has no values')
         return {}
     try:
         read = kind.read(dict(given)).model_dump(include=set(given))
+        values = converted(kind, read, chosen.values_in or chosen.units, chosen.units)
+        kind.read(values)
     except InputError as error:
         raise InputError(f"{pointer}/values{error.pointer}".rstrip("/"), error.sentence) from None
-    return {**defaults, **converted(kind, read, chosen.values_in or chosen.units, chosen.units)}
+    return {**defaults, **values}
 
 
 def _single_out(rows: Sequence[Row], chosen: Choices) -> None:
@@ -184,8 +191,11 @@ def _single_out(rows: Sequence[Row], chosen: Choices) -> None:
     for row in rows:
         for entry in row.entries:
             known.setdefault(str(entry.item.ids[-1]), []).append((row, entry))
+    first: dict[str, int] = {}
     for number, choice in enumerate(chosen.objects):
         pointer = f"/objects/{number}"
+        if first.setdefault(choice.id, number) != number:
+            raise InputError(pointer, f"the object has a role already, by /objects/{first[choice.id]}; give one")
         if choice.id not in known:
             raise InputError(f"{pointer}/id", f'the file has no visible object "{choice.id}"; give the id of one')
         for row, entry in known[choice.id]:
@@ -224,6 +234,9 @@ def _solvable(found: Draft, sources: Mapping[str, list[int]]) -> None:
         for part in group.parts:
             elements[part.number] += part.rows.stop - part.rows.start
     _count(found, built, sources, elements)
+    if found.particles == 1:
+        weld, unit = found.weld_tolerance, found.drawing.units.length
+        found.fault = f"all points become one particle, as weld_tolerance is {weld:g} {unit}; lower it"
 
 
 def _placed(error: InputError, found: Draft, sources: Mapping[str, list[int]]) -> str:
