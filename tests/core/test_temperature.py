@@ -143,3 +143,50 @@ def test_what_has_no_expansion_has_no_temperature() -> None:
         )
     with pytest.raises(InputError, match="leaves no length"):
         relax(column(-1e5, ends="one"))
+
+
+def test_a_film_that_becomes_cloth_has_a_temperature() -> None:
+    """A flat film in a square frame, frozen to cloth of E t and nu = 0.3: 20 K less add -E t (a + a^2/2) / (1 - nu) to
+    its tension in all directions."""
+    cloth = {"material": "plate", "thickness": 0.002}
+    film = {"kind": "soapfilm", "name": "roof", "mesh": "sheet", "tension": 500.0}
+    cases = {"stages": {"films": {"roof": cloth}}, "load_cases": {"winter": {"temperature": {"roof": -20.0}}}}
+    scene = sheet(None, held=True, forces=[film], **cases)
+    a = -2.3e-5 * 20.0
+    wanted = 500.0 - 70e9 * 0.002 * (a + 0.5 * a * a) / 0.7
+    found = load_cases(scene).cases["winter"].result.forces[0]
+    assert found["warp"] == pytest.approx(wanted, rel=1e-9) and found["weft"] == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_rope_is_named_by_its_kind() -> None:
+    """Of constant tension when the form is found, it is named so in its load cases: N = (T - EA a) / (1 + a)."""
+    found = load_cases(rope(30.0)).cases["warm"].result.forces[0]["force"]
+    a = 1.2e-5 * 30.0
+    assert found == pytest.approx((1e6 - 200e9 * AREA * a) / (1 + a), rel=1e-9)
+
+
+def rope(degrees: float) -> Scene:
+    """Two pieces under 1 MN between supports 2 m apart, frozen to rods of steel; a load case changes their
+    temperature."""
+    return Scene.read(
+        {
+            "particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
+            "materials": {"steel": STEEL},
+            "sections": {"rod": ROD},
+            "forces": [{"kind": "constant_tension", "particles": [[0, 1], [1, 2]], "tension": 1e6}],
+            "anchors": [{"particles": [0, 2]}],
+            "stages": {"freeze": {"constant_tension": {"material": "steel", "section": "rod"}}},
+            "load_cases": {"warm": {"temperature": {"constant_tension": degrees}}},
+        }
+    )
+
+
+def test_changes_of_temperature_that_cannot_be_are_one_sentence() -> None:
+    """Two for one force; more than its length."""
+    twice = {"load_cases": {"winter": {"temperature": {"rod": -20.0, "beam": -10.0}}}}
+    with pytest.raises(InputError, match="'beam' and 'rod' name the same force"):
+        column(None, ends="both", **twice)
+    with pytest.raises(InputError, match="temperature"):
+        sheet(1e300, held=True)
+    with pytest.raises(InputError, match="leaves no length of springs"):
+        load_cases(rope(-1e5))

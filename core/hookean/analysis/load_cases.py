@@ -182,12 +182,16 @@ def case_scene(frozen: Frozen, name: str) -> Scene:
 def _temperatures(frozen: Frozen, given: Mapping[str, float]) -> dict[int, float]:
     """Changes of temperature [K] by the numbers of forces; InputError where a force has no thermal expansion."""
     found = dict[int, float]()
+    form = frozen.form
+    drawn = (
+        frozen.scene if form is None or form.scene is None else form.scene
+    )  # its forces have the kinds that are named
     for name, factor in given.items():
         if name not in frozen.scene.load_cases:
             continue
         case = frozen.scene.load_cases[name]
         for line, degrees in case.temperature.items():
-            for number in named(frozen.scene, line):
+            for number in named(drawn, line):
                 if number not in frozen.expansions:
                     said = f"{line} has no thermal expansion; give it, or freeze it to, a material that has one"
                     raise InputError(f"/load_cases/{name}/temperature/{line}", said)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hookean.errors import InputError
 from hookean.forces import Force
 from hookean.forces.springs import Springs
 
@@ -42,6 +43,9 @@ def warmed(force: Force, expansion: float, degrees: float) -> Force:
         before = vars(force)["temperature"]
         return force.replaced(temperature=degrees if before is None else degrees + before)
     growth = 1.0 + expansion * degrees
+    if not growth > 0.0:
+        name = force.name or force.kind_name
+        raise InputError("/load_cases", f"a change of {degrees:g} K leaves no length of {name}")
     rest = np.asarray(force.rest_length) * growth
     lower = np.where(np.asarray(force.lower_cutoff) >= np.asarray(force.rest_length), rest, force.lower_cutoff)
     return force.replaced(stiffness=np.asarray(force.stiffness) / growth, rest_length=rest, lower_cutoff=lower)

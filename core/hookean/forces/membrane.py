@@ -176,7 +176,9 @@ class Membrane(Force):
         description="Stress of the start shape along warp, along weft, in shear, one or one for each face, or for each "
         "triangle (a quad has four) [force/length]",
     )
-    temperature: float | None = Field(default=None, description="Change of temperature, of a material [K]")
+    temperature: float | None = Field(
+        default=None, ge=-1e12, le=1e12, description="Change of temperature, of a material [K]"
+    )
     shape: Maybe[Points] = Field(
         default=None, description="Vertices of the mesh in the shape with the `prestress` [length]; default: the start"
     )

@@ -19,8 +19,8 @@ PRESTRESS, PERMANENT = "prestress", "permanent"
 """Names in combinations: what the form is stressed by, and the loads that are in no case."""
 LINES = ("springs", "constant_tension")
 """Kinds along lines that freeze into elastic ones, and so have changes of temperature."""
-HEATED = (*LINES, "beam", "membrane")
-"""Kinds that have changes of temperature in load cases."""
+HEATED = (*LINES, "beam", "membrane", "soapfilm")
+"""Kinds that have changes of temperature in load cases: where they are elastic when the form is frozen."""
 
 
 class LoadCase(Model):
@@ -128,11 +128,15 @@ def check(scene: Scene) -> None:
                 raise fault(f"no load is called {load!r}; {_listed(loads)}", f"{pointer}/forces/{i}")
             if any(KINDS[scene.forces[number].kind_name].role != "load" for number in found):
                 raise fault(f"{load!r} is not a load; {_listed(loads)}", f"{pointer}/forces/{i}")
+        by = dict[int, str]()
         heated = [f.name or f.kind_name for f in scene.forces if f.kind_name in HEATED]
         for line in case.temperature:
             found = named(scene, line)
             if not found or any(scene.forces[number].kind_name not in HEATED for number in found):
                 said = f"{line!r} names no springs, lines of constant tension, beams or membranes; {_listed(heated)}"
+                raise fault(said, f"{pointer}/temperature/{_escaped(line)}")
+            if twice := next((by[number] for number in found if by.setdefault(number, line) != line), ""):
+                said = f"{line!r} and {twice!r} name the same force; give one change of temperature for it"
                 raise fault(said, f"{pointer}/temperature/{_escaped(line)}")
     for name, factors in scene.combinations.items():
         _check_combination(scene, name, factors)
