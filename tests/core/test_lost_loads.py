@@ -166,3 +166,10 @@ def test_a_load_of_a_case_that_meets_nothing_is_an_error_before_the_case_runs() 
         relax(row(snow, **cases))
     assert relax(row(snow, strict=False, **cases)).status == "converged"
     assert relax(row({**snow, "points": [[1, 0, 0]]}, **cases)).status == "converged"
+
+
+def test_what_is_drawn_without_a_size_loses_nothing() -> None:
+    """A point given twice makes a line of no length, which has no load to lose."""
+    twice = [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [1, 0, 0]], [[1, 0, 0], [2, 0, 0]]]
+    warned = relax(row({"kind": "line_weight", "lines": twice, "weight": 1.0})).report.warnings
+    assert not any("load is lost" in said for said in warned)

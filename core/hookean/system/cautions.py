@@ -117,18 +117,21 @@ def without_size(system: System, number: int, load: Force) -> str:
 
 
 def _shrunk(places: Welded, load: Force) -> tuple[NDArray[np.int64], int]:
-    """Elements of a load whose corners became one particle, of faces two; and how many elements there are."""
-    mesh = getattr(load, "mesh", None)
-    if load.element_arity == 1 or (mesh is None and load.element_arity > 2):
+    """Elements of a load that are drawn with a size, and whose corners became one particle, of faces two; and how many
+    elements there are."""
+    mesh, lines = getattr(load, "mesh", None), getattr(load, "lines", None)
+    if load.element_arity == 1 or (mesh is None and lines is None):
         return np.zeros(0, np.int64), len(places.elements(load))
-    if mesh is None:
-        corners = places.elements(load)
-    elif load.element_arity > 2:
-        corners = places.faces(mesh)
+    if lines is not None:
+        corners, drawn = places.elements(load), np.asarray(lines)
     else:
+        data = places.scene.meshes[str(mesh)]
         find = meshes.naked_edges if getattr(load, "edges", "all") == "naked" else meshes.edges
-        corners = places.vertices(mesh)[find(places.scene.meshes[mesh])]
+        of = data.faces if load.element_arity > 2 else find(data)
+        corners, drawn = places.vertices(str(mesh))[of], data.vertices[of]
     ordered = np.sort(corners, axis=1)
     distinct = 1 + np.count_nonzero(np.diff(ordered, axis=1), axis=1)
-    shrunk = (distinct < min(corners.shape[1], 3)) & (ordered[:, 0] >= 0)
-    return np.flatnonzero(shrunk), len(corners)
+    shrunk = np.flatnonzero((distinct < min(corners.shape[1], 3)) & (ordered[:, 0] >= 0))
+    sides = drawn[shrunk] - np.roll(drawn[shrunk], 1, axis=1)
+    sizes = np.cross(sides[:, :1], sides[:, 1:]) if load.element_arity > 2 else sides
+    return shrunk[(sizes != 0.0).any(axis=(1, 2))], len(corners)
