@@ -17,11 +17,21 @@ See = Callable[[str], None]
 
 def made(studio: Studio, shape: str, **typed: str) -> None:
     """A new model of a family, with what is typed into the fields of its parameters, by their labels."""
+    filled(studio, shape, **typed)
+    create(studio, shape)
+
+
+def filled(studio: Studio, shape: str, **typed: str) -> None:
+    """The form of a new model."""
     page = studio.page
     page.get_by_text("New model").click()
     page.get_by_label("Shape").select_option(label=shape)
     for name, value in typed.items():
         enter(studio, page.locator("form").get_by_label(name.replace("_", " ")), value)
+
+
+def create(studio: Studio, shape: str) -> None:
+    """The model of a form that is filled in."""
     studio.press(f"Make the {shape.lower()}")
     studio.drawing()
 
@@ -76,7 +86,9 @@ def add(studio: Studio, kind: str, place: str, **values: str) -> None:
 def roof(studio: Studio, folder: Path, see: See) -> tuple[str, str]:
     """A hypar 10 x 10 m with edge cables, its form found; then snow of 0.6 kN/m2 of its plan; saved and reopened."""
     page, service = studio.page, studio.service
-    made(studio, "Saddle", Rise="2.5", Edge_stiffness="60")
+    filled(studio, "Saddle", Rise="2.5", Edge_stiffness="60")
+    see("roof-new")
+    create(studio, "Saddle")
     first = studio.key
     solved(studio)
     see("roof-form")
@@ -94,12 +106,14 @@ def roof(studio: Studio, folder: Path, see: See) -> tuple[str, str]:
     page.get_by_label("File to open").set_input_files(file)
     page.wait_for_url(lambda url: re.search(r"#s=[0-9a-f]{32}$", url) is not None and first not in url)
     studio.drawing()
+    see("roof-reopened")
     return first, studio.key
 
 
 def hanging(studio: Studio) -> str:
     """A net on a plan of 8 x 6 m that hangs from its edges."""
-    made(studio, "Grid", Width="8", Depth="6", Across="8", Along="6", Rest_factor="0", Load="2", Held="edges")
+    size = {"Width": "8", "Depth": "6", "Across": "8", "Along": "6"}
+    made(studio, "Grid", **size, Held="edges", Stiffness="4", Rest_factor="0", Load="2")
     solved(studio)
     return studio.key
 
@@ -139,6 +153,7 @@ def film(studio: Studio, see: See) -> str:
     page.mouse.move(right + 25, top + 25, steps=8)
     page.mouse.up()
     page.get_by_text("24 particles selected").wait_for()
+    see("film-ring")
     return studio.key
 
 
@@ -150,6 +165,23 @@ def pulled(studio: Studio, by: str) -> None:
     studio.press("Close the notice")
 
 
+def collapsed(studio: Studio, see: See) -> None:
+    """The film, 6 m high, pulled until no film spans the rings."""
+    pulled(studio, "2")
+    studio.press("Solve")
+    studio.page.get_by_label("Status").get_by_text("the film has collapsed").wait_for()
+    studio.press("Fit")
+    see("film-collapse")
+
+
+def restored(studio: Studio, see: See) -> None:
+    """The rings as near as at first, and the film between them again."""
+    pulled(studio, "-3")
+    solved(studio)
+    studio.press("Fit")
+    see("film-back")
+
+
 def variants(studio: Studio, see: See) -> tuple[str, str]:
     """A roof kept as a variant, then with more rise; the variant over it, the table, and both side by side."""
     page, service = studio.page, studio.service
@@ -159,16 +191,16 @@ def variants(studio: Studio, see: See) -> tuple[str, str]:
     opened(studio, "Compare")
     page.get_by_label("Name of the variant").fill("low")
     studio.press("Keep as a variant")
-    picture = page.get_by_role("button", name="low", exact=True)
-    picture.wait_for()
+    page.get_by_role("button", name="low", exact=True).wait_for()
     opened(studio, "Shape")
     enter(studio, page.get_by_role("group", name="Saddle").get_by_role("spinbutton", name="Rise"), "4")
     studio.until(lambda: service.scene(first)["family"]["parameters"]["rise"] == 4)
     solved(studio)
     opened(studio, "Compare")
-    picture.click()
+    studio.press("low")
     page.get_by_role("region", name="Table of differences").wait_for()
     studio.press("Front")
+    page.get_by_role("group", name="Legend").get_by_text("Variant low").wait_for()
     see("variants-overlay")
     page.get_by_role("radio", name="Side by side").check()
     page.get_by_role("img", name="The variant low").wait_for()

@@ -3,6 +3,7 @@ finds of the same model. `tasks.py` has the steps, `tutorial.py` takes pictures 
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +87,8 @@ def test_a_roof_is_formed_loaded_with_snow_saved_and_reopened(studio: Studio, tm
 def test_a_hanging_net_is_turned_over(studio: Studio):
     """Loads mirrored in the plane of the supports give the mirrored form with the same forces (Hooke, 1676)."""
     key = tasks.hanging(studio)
-    scene = family("grid", {"force": "kN"}, width=8, depth=6, across=8, along=6, rest_factor=0, load=2, held="edges")
+    net = {"stiffness": 4, "rest_factor": 0, "load": 2, "held": "edges"}
+    scene = family("grid", {"force": "kN"}, width=8, depth=6, across=8, along=6, **net)
     hanging = relax(scene)
     same(studio, key, hanging)
     tasks.turned(studio, unseen)
@@ -159,12 +161,9 @@ def test_a_film_is_pulled_to_its_collapse_and_back(studio: Studio):
     tasks.pulled(studio, "1")
     tasks.solved(studio)
     same_film(studio, key, simulation.relax(), 6.0)
-    tasks.pulled(studio, "2")
-    studio.press("Solve")
-    studio.page.get_by_label("Status").get_by_text("the film has collapsed").wait_for()
+    tasks.collapsed(studio, unseen)
     assert studio.service.summary(key)["status"] == "diverged"
-    tasks.pulled(studio, "-3")
-    tasks.solved(studio)
+    tasks.restored(studio, unseen)
     same_film(studio, key, truth, 5.0)
 
 
@@ -190,8 +189,13 @@ def measures(result: Result) -> dict[str, float | str]:
 
 def test_two_variants_are_compared(studio: Studio):
     """The table of differences has the numbers of the Python API for a saddle 4 m high, for its variant of 2 m, and
-    what the second has more, to the four digits shown; sums that cancel are nothing beside the largest reaction."""
-    tasks.variants(studio, unseen)
+    what the second has more, to the four digits shown; sums that cancel are nothing beside the largest reaction. The
+    legend names the variant while it is drawn over the form."""
+    legends: dict[str, str] = {}
+    legend = studio.page.get_by_role("group", name="Legend")
+    tasks.variants(studio, lambda step: legends.update({step: legend.inner_text()}))
+    assert re.match(r"This model\s+Variant low\s+Force", legends["variants-overlay"])
+    assert "Variant" not in legends["variants-beside"]
     high, low = (
         measures(relax(family("saddle", {"force": "kN"}, across=8, along=8, rise=rise))) for rise in (4.0, 2.0)
     )

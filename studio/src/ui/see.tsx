@@ -119,9 +119,11 @@ export function LegendBox({ studio: { view, session, options } }: { studio: Stud
   const force = session.topology.value?.units.force ?? "";
   const colours = palette(dark.value);
   const stale = session.connection.value !== "live";
-  if (!legend && !load && !reaction) return null;
+  const variant = options.ghost.value;
+  if (!legend && !load && !reaction && !variant) return null;
   return (
     <div class={stale ? "legend stale" : "legend"} role="group" aria-label="Legend">
+      {variant && <Overlaid name={variant.name} own={legend?.colours ?? [colours.plain]} colour={colours.variant} />}
       {legend && <Ramp legend={legend} mark={() => (options.marked.value = view.value?.beyond() ?? [])} />}
       {loads && load > 0 && <Arrow name="Load" size={load} unit={force} colour={colours.load} />}
       {reactions && reaction > 0 && <Arrow name="Reaction" size={reaction} unit={force} colour={colours.reaction} />}
@@ -158,6 +160,24 @@ function Ramp({ legend: { title, unit, low, high, beyond, equal, colours }, mark
           {counted(beyond, "value")} beyond
         </button>
       )}
+    </div>
+  );
+}
+
+/** Which colours are the model's, and which a variant's over it. */
+function Overlaid({ name, own, colour }: { name: string; own: string[]; colour: string }) {
+  const both: [string, string][] = [
+    ["This model", own.length > 1 ? `linear-gradient(to right, ${own.join(", ")})` : own[0]!],
+    [`Variant ${name}`, colour],
+  ];
+  return (
+    <div class="overlaid">
+      {both.map(([seen, background]) => (
+        <p key={seen} class="arrow" title={seen}>
+          <span class="stroke" style={{ background }} aria-hidden="true" />
+          <span class="name">{seen}</span>
+        </p>
+      ))}
     </div>
   );
 }

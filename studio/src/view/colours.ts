@@ -19,6 +19,8 @@ export interface Palette {
   /** What forces pull to. */
   guide: string;
   accent: string;
+  /** A variant over the form. */
+  variant: string;
   warning: string;
   cold: string[];
   middle: string;
@@ -38,6 +40,7 @@ const LIGHT: Palette = {
   floor: "#b4bec8",
   guide: "#8a6d1f",
   accent: "#e08a00",
+  variant: "#00857a",
   warning: "#d6186b",
   cold: ["#06306e", "#1f66b0", "#5ea2d6", "#a9c9e2"],
   middle: "#d3d3d3",
@@ -58,6 +61,7 @@ const DARK: Palette = {
   floor: "#4a5764",
   guide: "#d6b656",
   accent: "#ffb84d",
+  variant: "#3fd9c8",
   warning: "#ff6fae",
   cold: ["#cfe6ff", "#86c0ff", "#4d94e6", "#3d6fa8"],
   middle: "#6a737c",

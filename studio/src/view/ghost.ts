@@ -28,7 +28,7 @@ export class Ghost {
   dress(dark: boolean): void {
     if (!this.lines) return;
     this.lines.style.width.value = 1.5;
-    this.lines.style.plain.value = [...channels(palette(dark).accent), 0.75];
+    this.lines.style.plain.value = [...channels(palette(dark).variant), 0.9];
   }
 
   dispose(): void {

@@ -35,8 +35,9 @@ export interface Given {
   values: Float32Array;
 }
 
-/** The lines of a variant: x y z of its particles [length], and pairs of these. */
+/** The lines of a variant: its name, x y z of its particles [length], and pairs of these. */
 export interface Shadow {
+  name: string;
   positions: Float32Array;
   ends: Int32Array;
 }

@@ -34,7 +34,13 @@ from hookean.values.fields import Field
 from hookean.values.units import Units
 
 MANY = {"face of membrane": "faces of membrane"}
-NOTHING = "nothing becomes springs or a membrane yet; give a layer one of these roles"
+NOTHING = "nothing becomes springs or a membrane yet"
+CHOOSE = f"{NOTHING}; give a layer one of these roles"
+UNCONNECTED = (
+    "the file has points that can be anchors or loads, but no curves or surfaces that connect them; draw lines or a "
+    "mesh between the points in Rhino, save the file, and open it again"
+)
+UNDRAWN = "the file has no points, curves or surfaces; draw lines or a mesh in Rhino, save the file, and open it again"
 
 
 class RowChoice(Described):
@@ -213,10 +219,8 @@ def _solvable(found: Draft, sources: Mapping[str, list[int]]) -> None:
     from hookean.running.result import held_particles
     from hookean.system.system import compile
 
-    if not any(
-        found.rows[row].role and table for row, table in zip(sources["forces"], found.recipe["forces"], strict=True)
-    ):
-        found.fault = NOTHING
+    if all(table.get("kind", "unary") == "unary" for table in found.recipe["forces"]):
+        found.fault = _nothing(found.rows)
         return
     try:
         built = build(found.drawing, found.recipe)
@@ -237,6 +241,18 @@ def _solvable(found: Draft, sources: Mapping[str, list[int]]) -> None:
     if found.particles == 1:
         weld, unit = found.weld_tolerance, found.drawing.units.length
         found.fault = f"all points become one particle, as weld_tolerance is {weld:g} {unit}; lower it"
+
+
+def _nothing(rows: Sequence[Row]) -> str:
+    """Why no object becomes springs or a membrane, and what to do."""
+    families = {row.family for row in rows}
+    if not families & {"curves", "surfaces"}:
+        return UNCONNECTED if "points" in families else UNDRAWN
+    for row in rows:
+        kind = ROLES.get((row.family, row.role))
+        if kind is not None and kind.elastic and row.entries[0].why:
+            return f'{NOTHING}; layer "{row.layer}": {row.entries[0].why}'
+    return CHOOSE
 
 
 def _placed(error: InputError, found: Draft, sources: Mapping[str, list[int]]) -> str:
