@@ -265,6 +265,10 @@ def test_the_list_of_an_even_motion_serves_longer(speed: float) -> None:
             least, most = 0.5 * before[0] / speed, 0.5 * (before[0] + 0.9 * (before[0] - skin)) / speed
             uses.append((before[1] + 1.0, least, most))
         before = room[0, [neighbours.RANGE, neighbours.USED]].copy()
+    x = x + way * (1.5 / speed)  # farther at once than a list may range: its half would be too far ahead
+    packed(block, x, np.zeros_like(x))
+    off = np.sqrt(((neighbours.seen_in(room.ctypes.data)[:, :3] - x) ** 2).sum(axis=1)).max()
+    assert 0.0 < off <= 0.5 * (room[0, neighbours.RANGE] - skin)
     found = np.array(uses[-5:])  # the first lists learn the motion
     assert (found[:, 0] > 1.4 * found[:, 1]).all()
     assert (np.abs(found[:, 0] - found[:, 2]) <= 1.5 + 0.05 * found[:, 2]).all()
@@ -277,7 +281,8 @@ def test_a_motion_that_turns_back_shows_no_age_of_the_list(seed: int) -> None:
     rng = np.random.default_rng(seed)
     x = cloud(seed, 300, ordered=seed % 2 == 0)
     block, fresh, still = spheres(x), spheres(x), np.zeros_like(x)
-    way, ahead = 0.02 * rng.normal(size=x.shape), 0
+    way, ahead = rng.normal(size=x.shape), 0
+    way *= 0.03 / np.sqrt((way**2).sum(axis=1))[:, None]
     for step in range(60):
         x = x + way
         if step % 20 == 13 + seed:
