@@ -245,4 +245,69 @@ def test_a_motion_of_all_together_needs_no_new_list() -> None:
     apart = moved.copy()
     apart[0, 0] += 5.0
     whole(block, apart)
-    assert room[0, kept] == apart[0, 0]
+    left = 0.5 * (room[0, neighbours.RANGE] - 0.075)  # of a new list all are as near to their places
+    assert abs(room[0, kept] - apart[0, 0]) <= left < 5.0
+
+
+@pytest.mark.parametrize("speed", [0.01, 0.05])
+def test_the_list_of_an_even_motion_serves_longer(speed: float) -> None:
+    """Half of a range of R skins s allows a way of R s / 2 from where spheres are, and before it that to their places,
+    0.9 (R - 1) s / 2 at most: uses are these by the way of each use, to one and a half (whole numbers) and 5 % (speeds
+    are counted from their mean, that of 300 directions)."""
+    x = cloud(11, 300, ordered=True)
+    block, way = spheres(x), np.random.default_rng(12).normal(size=x.shape)
+    way *= speed / np.sqrt((way**2).sum(axis=1))[:, None]
+    room, skin, before, uses = block.rooms[0], 0.075, np.zeros(2), []
+    for _ in range(400):
+        x = x + way
+        packed(block, x, np.zeros_like(x))
+        if room[0, neighbours.USED] == 0.0:
+            least, most = 0.5 * before[0] / speed, 0.5 * (before[0] + 0.9 * (before[0] - skin)) / speed
+            uses.append((before[1] + 1.0, least, most))
+        before = room[0, [neighbours.RANGE, neighbours.USED]].copy()
+    x = x + way * (1.5 / speed)  # farther at once than a list may range: its half would be too far ahead
+    packed(block, x, np.zeros_like(x))
+    off = np.sqrt(((neighbours.seen_in(room.ctypes.data)[:, :3] - x) ** 2).sum(axis=1)).max()
+    assert 0.0 < off <= 0.5 * (room[0, neighbours.RANGE] - skin)
+    found = np.array(uses[-5:])  # the first lists learn the motion
+    assert (found[:, 0] > 1.4 * found[:, 1]).all()
+    assert (np.abs(found[:, 0] - found[:, 2]) <= 1.5 + 0.05 * found[:, 2]).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_motion_that_turns_back_shows_no_age_of_the_list(seed: int) -> None:
+    """Spheres that fly evenly, so that their places are ahead, and that turn back at any step: all pairs in reach, and
+    forces of loops those of a list made for the step, to the bit."""
+    rng = np.random.default_rng(seed)
+    x = cloud(seed, 300, ordered=seed % 2 == 0)
+    block, fresh, still = spheres(x), spheres(x), np.zeros_like(x)
+    way, ahead = rng.normal(size=x.shape), 0
+    way *= 0.03 / np.sqrt((way**2).sum(axis=1))[:, None]
+    for step in range(60):
+        x = x + way
+        if step % 20 == 13 + seed:
+            way = np.where(rng.random(len(x))[:, None] < 0.5, -way, way)
+        fresh.rooms[0][0, neighbours.COUNT] = -1.0
+        assert (packed(block, x, still) == packed(fresh, x, still)).all()
+        ahead += block.rooms[0][0, neighbours.AHEAD] > 0.5
+        if step % 5 == 0:
+            expected, _ = of_all_pairs(x, np.full(len(x), 0.5), 10.0)
+            assert np.abs(whole(block, x)[0] - expected).max() <= 1e-12 * np.abs(expected).max()
+    assert ahead > 20
+
+
+def test_spheres_that_swing_keep_their_places() -> None:
+    """To and fro by less than the range allows, after a flight that made a list ahead: places come back to where the
+    spheres are, and the list is made no more."""
+    x = cloud(13, 300, ordered=True)
+    block, way = spheres(x), np.random.default_rng(14).normal(size=x.shape)
+    way *= 0.03 / np.sqrt((way**2).sum(axis=1))[:, None]
+    room, still, made = block.rooms[0], np.zeros_like(x), 0
+    for _ in range(20):
+        x = x + way
+        packed(block, x, still)
+    assert room[0, neighbours.AHEAD] > 0.5
+    for step in range(100):
+        packed(block, x + (0.8 * way if step % 2 else -0.8 * way), still)
+        made += step >= 20 and room[0, neighbours.USED] == 0.0
+    assert made <= 4  # of a range that settles

@@ -97,6 +97,63 @@ def test_crossed_edges_push_each_other_apart() -> None:
     assert push[2] == pytest.approx(4.0 * found[1] / 0.1, rel=1e-9)
 
 
+def crossed_logs(tilt: float = 90.0) -> tuple[list[np.ndarray], float]:
+    """Two logs 8 x 1 x 1 on their edges, the second across the first at an angle [degree], both about the origin; how
+    far apart their axes are as the edges touch.
+
+    Crossed at right angles and h deep, the overlap at a height z below the upper edge of the first is 2 z by 2 (h - z),
+    and z / sqrt(2) below a face on average: E = k int 4 z^2 (h - z) / sqrt(2) dz = k h^4 / (3 sqrt(2)), and
+    F = dE/dh = 2 sqrt(2) k h^3 / 3."""
+    log = CUBE @ np.diag([8.0, 1.0, 1.0]) @ Rotation.from_euler("x", 45, degrees=True).as_matrix().T
+    return [log, log @ Rotation.from_euler("z", tilt, degrees=True).as_matrix().T], math.sqrt(2.0)
+
+
+def test_a_log_on_the_edge_of_another_sinks_by_its_weight() -> None:
+    """A weight on a keel keeps the upper one from rolling. One face presses, so the force is beside the edges by less
+    than the depth h; the keel, 7.3 below, leans by less than h / 7.3, and all lengths of the overlap change by less
+    than that part. The lower log carries the weight, to the residual."""
+    (lower, upper), high = crossed_logs()
+    k, load = 1e4, 5.0
+    h = (3.0 * load / (2.0 * math.sqrt(2.0) * k)) ** (1.0 / 3.0)
+    x = np.vstack([lower, upper + [0, 0, high - 0.5 * h], [[0.0, 0.0, -8.0 + high - 0.5 * h]]])
+    group = np.repeat([0, 1], [8, 9])
+    forces = [
+        {"kind": "rigid_body", "particles": range(17), "group": group, "strength": 1e5},
+        {"kind": "rigid_collide", "particles": range(16), "group": group[:16], "strength": k},
+        {"kind": "unary", "particles": [16], "vector": [0.0, 0.0, -load]},
+    ]
+    result = relax(Scene.read({"particles": x, "forces": forces, "anchors": [{"particles": range(8)}]}))
+    assert result.status == "converged"
+    deep = high - result.particles[8:16].mean(axis=0)[2]
+    assert deep == pytest.approx(h, rel=h / 7.3)
+    total = result.reactions["force"].sum(axis=0)  # on the lower log: it carries the weight
+    assert total == pytest.approx([0.0, 0.0, load], abs=1e-3 * load)
+
+
+@pytest.mark.parametrize("step", [1e-3, 5e-4])
+def test_logs_that_hit_edge_on_edge_keep_the_energy(step: float) -> None:
+    """A free log hits the edge of one that is held, m u^2 / 2 = k h^4 / (3 sqrt(2)). It comes as deep as h. All energy
+    is kept, to the second order of the step: less than (omega dt)^2 / 4, omega^2 = E'' / m at the deepest. It parts
+    with its speed, but for what turns: an impulse 2 m u less than h / 2 beside its axis takes 4 m (h / 2)^2 / I of the
+    energy, m = 8 and I = 8 / 2 about that axis."""
+    (lower, upper), high = crossed_logs()
+    k, h, mass = 1e4, 0.1, 8.0
+    kinetic = k * h**4 / (3.0 * math.sqrt(2.0))
+    settings = {"solver": "verlet", "time_step": step, "drag": 0.0}
+    system = compile(solids([lower, upper + [0, 0, high + 0.01]], settings, [0], strength=k))
+    state = system.start()
+    state.v[8:] = [0.0, 0.0, -math.sqrt(2.0 * kinetic / mass)]
+    deepest, whole, method = 0.0, [], solver("verlet")
+    for _ in range(round(1.6 / step / 20)):
+        method.advance(system, state, 20, 0.0)
+        whole.append(float(system.evaluate(state)[2].sum() + 0.5 * (state.v[8:] ** 2).sum()))
+        deepest = max(deepest, high - state.x[8:].mean(axis=0)[2])
+    omega = math.sqrt(2.0 * math.sqrt(2.0) * k * h**2 / mass)
+    assert np.abs(np.array(whole) / kinetic - 1.0).max() <= (omega * step) ** 2 / 4.0
+    assert deepest == pytest.approx(h, rel=1e-3)
+    assert 1.0 - 8.0 * (0.5 * h) ** 2 < 0.5 * mass * (state.v[8:].mean(axis=0) ** 2).sum() / kinetic <= 1.0
+
+
 def on_slab(load: Any, k: float = 1e5, **columns: Any) -> tuple[np.ndarray, np.ndarray]:
     """Where the centre of a cube of 1 comes to rest on a held slab, and its rotation, by what is on its top corners."""
     slab, cube = CUBE * [4, 4, 1] - [0, 0, 0.5], CUBE + [0.3, -0.2, 0.5]

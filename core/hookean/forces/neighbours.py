@@ -1,11 +1,14 @@
 """Neighbours: which of many elements are near enough to touch.
 
 An element is a sphere about a particle or a capsule about two. The list is kept in a room beside the kernel
-(`make_room`) and holds all pairs that are within a range beyond their reach. It serves as long as nothing has moved by
-half of what the range has beyond what is asked for, but for a motion that all spheres have in common, or has another
-size. Pairs are listed by their first row, then by their second, and those that are too far away count nothing, so that
-sums do not depend on when the list was made, or how far it ranges. The range follows the motion: a list that lasts long
-has fewer pairs, one that lasts briefly more.
+(`make_room`) and holds all pairs whose places are within a range beyond their reach. It serves as long as nothing is
+farther from its place than half of what the range has beyond what is asked for, but for a motion that all spheres have
+in common, or has another size. Two that are within a margin of their reach then have places within the range, by the
+triangle inequality, wherever the places are: the places of spheres that keep moving are ahead of them, where they are
+expected at half of the time of the list, which so serves up to twice as long (`course`). Pairs are listed by their
+first row, then by their second, and those that are too far away count nothing, so that sums do not depend on when the
+list was made, or how far it ranges. The range follows the motion: a list that lasts long has fewer pairs, one that
+lasts briefly more.
 
 Rows are elements in the order in which they are given, if neighbours are then near in memory; else layer by layer from
 where they are at the start (`in_layers`). Source: Verlet, "Computer experiments on classical fluids", 1967 (the list).
@@ -22,18 +25,21 @@ from hookean.compiled.marks import device
 from hookean.forces.cells import GROUP, RADIUS, SEEN, SEEN_CAPSULE, both, ends, find_pairs, ignore
 
 # the head of a room: elements and pairs it has place for; range beyond the reach, elements listed, particles of an
-# element; pairs listed, how often the list was used, whether rows are elements as given
-SIZE, PAIRS, RANGE, COUNT, ENDS, FOUND, USED, AS_GIVEN = range(8)
-HEAD = 8
+# element; pairs listed, how often the list was used, whether rows are elements as given; how many uses ahead places are
+SIZE, PAIRS, RANGE, COUNT, ENDS, FOUND, USED, AS_GIVEN, AHEAD = range(9)
+HEAD = 9
 HERE = 4  # of each element now: x y z and a zero
 HERE_CAPSULE = 16  # the sphere, half axis, radius, force at the start, at the end, nothing, stiffness
 SUMS = 4  # of each sphere what a kernel sums: its force and a zero; then, apart, how often it counts for the stiffness
+BEGAN = 3  # of each sphere: where it was as the list was made
 PER_ELEMENT = 24  # pairs of an element that there is place for, on average
 LOCAL = 2.0  # how much longer than layer by layer the way through elements as given may be
 LEAST, FIRST, MOST = 1.25, 2.0, 8.0  # the range of a list in skins
 BALANCE = 45.0  # range in skins times uses of a list at which making it costs as much as the pairs it has too many
 ONE = np.uint64(1)
 STEP = 1.5  # by which the range changes
+# of the way that a list allows: how far spheres are from their places as it is made, at most and at least
+MOST_AHEAD, LEAST_AHEAD = 0.9, 1e-3
 
 
 def make_room(corners: Any) -> np.ndarray:
@@ -44,8 +50,8 @@ def make_room(corners: Any) -> np.ndarray:
     order = in_layers(middles)
     as_given = way(middles) <= LOCAL * way(middles[order])
     words = HERE + SUMS + 1 + SEEN if size == 1 else HERE_CAPSULE + SEEN_CAPSULE
-    room = np.zeros((1, HEAD + (words + 1 + 2 * PER_ELEMENT) * count))
-    room[0, :HEAD] = count, PER_ELEMENT * count, 0.0, -1.0, size, 0.0, 0.0, as_given
+    room = np.zeros((1, HEAD + (words + 1 + 2 * PER_ELEMENT + BEGAN) * count))
+    room[0, :HEAD] = count, PER_ELEMENT * count, 0.0, -1.0, size, 0.0, 0.0, as_given, 0.0
     start = HEAD + words * count
     room[0, start : start + count] = np.arange(count) if as_given else order
     return room
@@ -110,9 +116,17 @@ def pairs_listed(room: Any) -> Any:
 
 @device
 def seen_in(room: Any) -> Any:
-    """The elements in the room at an address as they were when the list was made."""
+    """The elements in the room at an address as they were when the list was made, at their places."""
     seen, _, _, _, columns = parts(room)
     return rows(seen, rows(room, 1.0, HEAD)[0, SIZE], columns)
+
+
+@device
+def began_in(room: Any) -> Any:
+    """Where the spheres in the room at an address were when the list was made."""
+    head = rows(room, 1.0, HEAD)
+    _, _, _, reach, _ = parts(room)
+    return rows(reach + 8.0 * head[0, PAIRS], head[0, SIZE], BEGAN)
 
 
 @device
@@ -144,7 +158,7 @@ def tables(room: Any, count: Any) -> Any:
 
 @device
 def unmoved(at: Any, seen: Any, most: Any) -> Any:
-    """Whether no sphere has moved by more than the root of `most` since the list was made, but for a motion of all."""
+    """Whether no sphere is farther from its place than the root of `most`, but for a motion of all."""
     return near_seen(at, seen, most, 0.0, 0.0, 0.0) or near_seen(at, seen, most, *drift(at, seen))
 
 
@@ -163,7 +177,7 @@ def near_seen(at: Any, seen: Any, most: Any, x: Any, y: Any, z: Any) -> Any:
 
 @device
 def drift(at: Any, seen: Any) -> Any:
-    """How far all spheres have moved alike: the middle of the box about their ways since the list was made."""
+    """How far all spheres have moved alike: the middle of the box about their ways from their places."""
     x0 = x1 = at[0, 0] - seen[0, 0]
     y0 = y1 = at[0, 1] - seen[0, 1]
     z0 = z1 = at[0, 2] - seen[0, 2]
@@ -284,14 +298,55 @@ def sort_pairs(pairs: Any, count: Any, size: Any, aside: Any) -> None:
 
 
 @device
-def list_pairs(here: Any, parameters: Any, start: Any, order: Any, room: Any, beyond: Any) -> Any:
-    """Make the list of all pairs of the elements gathered within a range of their reach; whether there is place."""
+def course(here: Any, room: Any) -> Any:
+    """How many uses ahead the places of a new list are to be, and the greatest speed [length/use]; the speeds, beside
+    the mean one, replace where spheres were.
+
+    A sphere of speed u and a place t ahead is within s of it from t before until s / u after: for T uses, half of them
+    is best. T is what the last list had. What swings does not keep its speed: t is less by the cosine of the speeds of
+    the last list, as the places show them, and of the one before."""
     head, count = rows(room, 1.0, HEAD), here.shape[0]
-    head[0, COUNT], head[0, USED], head[0, RANGE] = -1.0, 0.0, beyond
+    if here.shape[1] != HERE or head[0, COUNT] != count or head[0, USED] < 1.0:
+        return 0.0, 0.0
+    seen, began, used, before = seen_in(room), began_in(room), head[0, USED], head[0, AHEAD]
+    m0 = m1 = m2 = along = now = then = fastest = 0.0
+    for n in range(count):
+        i = np.uint64(n)
+        m0 += here[i, 0] - began[i, 0]
+        m1 += here[i, 1] - began[i, 1]
+        m2 += here[i, 2] - began[i, 2]
+    m0, m1, m2 = m0 / count, m1 / count, m2 / count
+    for n in range(count):
+        i = np.uint64(n)
+        u0, u1, u2 = here[i, 0] - began[i, 0] - m0, here[i, 1] - began[i, 1] - m1, here[i, 2] - began[i, 2] - m2
+        w0, w1, w2 = seen[i, 0] - began[i, 0], seen[i, 1] - began[i, 1], seen[i, 2] - began[i, 2]
+        square = u0 * u0 + u1 * u1 + u2 * u2
+        along, now, then = along + u0 * w0 + u1 * w1 + u2 * w2, now + square, then + w0 * w0 + w1 * w1 + w2 * w2
+        fastest = max(fastest, square)
+        began[i, 0], began[i, 1], began[i, 2] = u0 / used, u1 / used, u2 / used
+    if not 0.0 < now < np.inf:
+        return 0.0, 0.0
+    alike = max(along / np.sqrt(now * then), 0.0) if before > 0.0 and 0.0 < then < np.inf else 0.0
+    return 0.5 * used * alike, np.sqrt(fastest) / used
+
+
+@device
+def list_pairs(here, parameters, start, order, room, beyond, ahead, fastest) -> Any:  # type: ignore[no-untyped-def]
+    """Make the list of all pairs of the elements gathered whose places are within a range of their reach, places being
+    some uses ahead, with the greatest speed of a sphere (`course`); whether there is place."""
+    head, count = rows(room, 1.0, HEAD), here.shape[0]
+    head[0, COUNT], head[0, USED], head[0, RANGE], head[0, AHEAD] = -1.0, 0.0, beyond, ahead
     if count > head[0, SIZE]:
         return False
     seen = seen_in(room)[:count]
     picky = note(here, parameters, start, order, seen)
+    if fastest > 0.0:
+        began = began_in(room)
+        for n in range(count):
+            i = np.uint64(n)
+            seen[i, 0] += ahead * began[i, 0]
+            seen[i, 1] += ahead * began[i, 1]
+            seen[i, 2] += ahead * began[i, 2]
     pairs, reach = pairs_in(room)
     met = find_pairs(seen, parameters, start, order, beyond, picky, pairs)
     if met < 0:
@@ -327,10 +382,28 @@ def renew(here: Any, parameters: Any, start: Any, order: Any, room: Any, skin: A
         beyond /= STEP
     elif uses * beyond * STEP < BALANCE * skin:
         beyond *= STEP
-    beyond = min(max(beyond, LEAST * skin), MOST * skin)
-    if list_pairs(here, parameters, start, order, room, beyond):
-        return True
-    return beyond > LEAST * skin and list_pairs(here, parameters, start, order, room, LEAST * skin)
+    beyond, least = min(max(beyond, LEAST * skin), MOST * skin), LEAST * skin
+    ahead, fastest = course(here, room)
+    if list_pairs(here, parameters, start, order, room, beyond, limited(ahead, fastest, beyond - skin), fastest):
+        made = True
+    else:
+        ahead = limited(ahead, fastest, least - skin)
+        made = beyond > least and list_pairs(here, parameters, start, order, room, least, ahead, fastest)
+    if made and here.shape[1] == HERE:
+        began = began_in(room)
+        for i in range(here.shape[0]):
+            for c in range(3):
+                began[i, c] = here[i, c]
+    return made
+
+
+@device
+def limited(ahead: Any, fastest: Any, left: Any) -> Any:
+    """How many uses ahead places are to be, with a greatest speed [length/use], in a list that ranges `left` [length]
+    beyond the skin: near enough for the list to serve at once, far enough for the next one to know this motion."""
+    if fastest == 0.0:
+        return 0.0
+    return 0.5 * min(max(2.0 * ahead * fastest, LEAST_AHEAD * left), MOST_AHEAD * left) / fastest
 
 
 @device
