@@ -10,7 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hookean.designing.problem import Problem
 from hookean.designing.search import design
+from hookean.designing.unknowns import Unknowns
+from hookean.errors import InputError
+from hookean.scene.scene import Scene
+from hookean.system.system import compile
 from soak import SOAK
 
 from .test_gradients import cable, sag
@@ -165,3 +170,22 @@ def test_the_status_of_random_problems_is_true(seed: int) -> None:
         for other in np.clip(q + steps, chain.low, chain.high):
             over, value = chain.judged(problem, other)
             assert over > 0.0 or value >= objective - 1e-4 * (abs(objective) + 1e-3)
+
+
+@pytest.mark.parametrize(("kind", "field"), [("springs", "stiffness"), ("springs", "rest_length"), ("unary", "vector")])
+def test_a_column_is_at_least_0_where_the_force_refuses_less(kind: str, field: str) -> None:
+    """The bound, from the field alone where that suffices, is what the whole force says of a negative number."""
+    forces: list[dict[str, Any]] = [
+        {"kind": "springs", "particles": [[0, 1]], "stiffness": [2.0], "rest_length": [0.5]},
+        {"kind": "unary", "particles": [1], "vector": [[1.0, 2.0, 3.0]]},
+    ]
+    scene = {"particles": [[0, 0, 0], [1, 0, 0]], "forces": forces, "anchors": [{"particles": [0]}]}
+    problem = Problem.read({"scene": scene, "variables": [{"force": kind, "field": field}], "goals": [level()]})
+    wanted = 0.0
+    forces[kind == "unary"][field] = [[-1.0, 2.0, 3.0]] if kind == "unary" else [-1.0]
+    try:
+        Scene.read(scene)
+        wanted = -np.inf
+    except InputError:
+        pass
+    assert Unknowns(problem, compile(problem.scene)).lower[0] == wanted

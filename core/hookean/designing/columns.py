@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import TypeAdapter, ValidationError
 
 from hookean.errors import InputError
 from hookean.forces.base import PLACES, Block, Force, Rider
@@ -158,6 +160,8 @@ class Column:
         values = self.entries.values
         if (values < 0.0).any() or not values.size:
             return -np.inf
+        if _refuses_negatives(type(self.force), self.variable.field):
+            return 0.0
         shifted = values - 1.0 - 2.0 * values.max()  # all together: of the vertices of a solid it stays one
         return -np.inf if self._accepts(system, self._field(shifted)) else 0.0
 
@@ -255,6 +259,23 @@ class Column:
             name = self.variable.field
             said = f"{name} is {self.lower:g}, where {self.force.kind_name} changes by a jump; give it a value beyond,"
             raise InputError(f"{self.pointer}/field", f"{said} or leave such elements out by tie")
+
+
+@cache
+def _refuses_negatives(cls: type[Force], field: str) -> bool:
+    """Whether a field by itself takes the number 1, and not -1; the force as a whole may refuse more."""
+    info = cls.model_fields[field]
+    given: Any = Annotated[info.annotation, info]
+    check: TypeAdapter[Any] = TypeAdapter(given)
+    try:
+        check.validate_python(1.0)
+    except ValidationError:
+        return False
+    try:
+        check.validate_python(-1.0)
+    except ValidationError:
+        return True
+    return False
 
 
 def shape_of(columns: int, count: int, wide: Any) -> tuple[int, ...]:

@@ -24,6 +24,7 @@ Bools = NDArray[np.bool_]
 
 START = 1e-3  # of the mean square slope: the first damping
 LEAST, MOST = 1e-14, 1e16  # of it
+BOLD, GENTLE = 0.01, 0.3  # falls of the damping: after steps that were right at once, and after others
 PASSES = 4  # of one step, each with more unknowns held at bounds
 ROUNDING = 1e-15  # of the targets: residuals below are nothing
 
@@ -45,7 +46,7 @@ def levenberg(search: Search, lower: Floats, upper: Floats) -> tuple[int, Design
         if not reach > ROUNDING * cost:
             return iteration, DesignStatus.CONVERGED
         unit = unit or START * float(slope @ slope) / cost
-        found = None
+        found, start = None, factor
         while found is None and factor <= MOST:
             found = _better(search, model, r, y, unit * factor, held, (lower, upper))
             if found is None:
@@ -53,7 +54,8 @@ def levenberg(search: Search, lower: Floats, upper: Floats) -> tuple[int, Design
         if found is None:
             return iteration, DesignStatus.CONVERGED  # no step of any length leads further
         new, r_new, quality = found
-        factor = max(factor * (0.01 if quality > 0.7 else 0.3 if quality > 0.25 else 2.0), LEAST)
+        fall = BOLD if factor == start else GENTLE  # in a long valley each bold fall costs steps that are refused
+        factor = max(factor * (fall if quality > 0.7 else GENTLE if quality > 0.25 else 2.0), LEAST)
         fell, moved = cost - float(r_new @ r_new), float(np.abs(new - y).max(initial=0.0))
         y, r = new, r_new
         if fell <= settings.tolerance * cost and quality > 0.25 and moved <= np.sqrt(settings.tolerance):

@@ -15,6 +15,7 @@ chapter 16 (2006).
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -75,7 +76,7 @@ class Linearised:
         """The damped step (u,) of the free unknowns for residuals r (k,), None if it has none."""
         from scipy.sparse import bmat, identity, vstack
 
-        goals, tangent, direct, pushes = self._with_means()
+        goals, tangent, direct, pushes = self._with_means
         spread = vstack([direct, -pushes]).tocsc()[:, np.flatnonzero(free)]
         wide = np.diff(spread.indptr) > DENSE
         thin, thick = spread[:, np.flatnonzero(~wide)], spread[:, np.flatnonzero(wide)]
@@ -101,6 +102,7 @@ class Linearised:
         step[np.flatnonzero(free)] = -(spread.T @ both) / np.sqrt(damping)
         return step if np.isfinite(step).all() else None
 
+    @cached_property
     def _with_means(self) -> tuple[Any, Any, Any, Any]:
         """G, K, D and F with the means of centred values as further motions, so that all stay sparse: m = mean(G x + D
         u), residuals G x + D u - m."""
