@@ -49,9 +49,9 @@ class Watch:
         self.started = time.monotonic()
         self.first = self.last = state.iteration
         self.best, self.best_at = np.inf, state.iteration
-        self._lowest, self._fell_at = np.inf, state.iteration  # the least energy, and when it was noted
         self.good = state.copy()
         self.found: Balance = balance(system, state)
+        self._lowest, self._fell_at = float(self.found.energies.sum()), state.iteration  # least energy, when noted
         self.size = system.size
         self.top, self.top_found = self.good, self.found  # of the best residual
         self.back = 0  # iterations that the last look took back
