@@ -25,6 +25,8 @@ interface Led {
 }
 
 const IN_A_ROW = 1000;
+/** How long a value that was accepted is shown until the session tells it. */
+const TOLD = 30_000;
 
 /** Whether Shift is down: sliders go wide. */
 const wide = signal(false);
@@ -99,8 +101,8 @@ function useHand(session: Session, value: number, patch: (value: number) => Patc
   const settle = () => {
     clearTimeout(timer.current);
     void edits.settled().then(() => {
-      // the scene with the new value is read within a second; where it was refused, the old one stands
-      timer.current = window.setTimeout(() => (wanted.value = null), session.said.value ? 0 : IN_A_ROW);
+      // where it was refused, the old one stands
+      timer.current = window.setTimeout(() => (wanted.value = null), session.said.value ? 0 : TOLD);
     });
   };
   const press = () => {
