@@ -73,7 +73,7 @@ def cautions(system: System) -> list[str]:
             said = "the anchor holds nothing: no points are given; give some, or remove it"
             warnings.append(f"/anchors/{number}: {said}")
     for anchor in system.held:
-        if not anchor.free.all():
+        if not anchor.free.any():
             touched[anchor.particles] = 1
         if not anchor.turning.all() and (none := system.slots.rows(anchor.particles) < 0).any():
             warnings.append(
