@@ -40,8 +40,8 @@ LOST = {
 
 @pytest.mark.parametrize("name", LOST)
 def test_a_load_that_welding_loses_is_named(name: str) -> None:
-    """The warning says how many elements, and the reactions lack their load: of one line or face its length or area
-    times the load on each."""
+    """The warning counts the elements. The reactions are smaller by the load of these elements: length times load per
+    length, area times pressure."""
     load, count, missing = LOST[name]
     warned, less = told(load, tolerance=2 * SMALL)
     silent, whole = told(load, tolerance=SMALL / 50)
@@ -78,7 +78,7 @@ def test_a_face_that_keeps_an_area_is_not_named() -> None:
     ids=lambda load: load["kind"],
 )
 def test_a_load_without_a_place_is_named(load: dict[str, Any]) -> None:
-    """What acts on nothing is given for something: the report says so."""
+    """The report names a load that has no points, lines or faces."""
     warned, total = told(load, tolerance=1e-6)
     assert len(warned) == 1 and "acts on nothing" in warned[0]
     assert not total.any()
@@ -159,7 +159,7 @@ def test_a_load_on_a_held_particle_that_nothing_touches_is_named() -> None:
 
 
 def test_a_load_of_a_case_that_meets_nothing_is_an_error_before_the_case_runs() -> None:
-    """The form alone is refused, too: a scene that cannot do what it says is none; not with strict false."""
+    """`relax` raises the error although the case does not act in the form. With `strict` false it does not."""
     snow = {"kind": "unary", "name": "snow", "points": [[1, 0, 0.2]], "vector": [0, 0, -1]}
     cases = {"load_cases": {"snow": {"forces": ["snow"]}}}
     with pytest.raises(InputError, match="snow: its point met no particle"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import uuid
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import rhino3dm as _rhino3dm
 
+from hookean.files.rhino import threedm
 from hookean.files.rhino.archive import scan
 from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, Points
 from hookean.values.mesh import Mesh
@@ -110,3 +111,15 @@ def unknown() -> Callable[[bytes], tuple[bytes, uuid.UUID]]:
         return data[:at] + new + data[at + 20 :], odd
 
     return change
+
+
+@pytest.fixture
+def draw(tmp_path: Path) -> Callable[..., Any]:
+    """Writes objects to a file as a person would draw them, and reads it."""
+
+    def build(*objects: NewObject, unit: str = "Meters", layers: Sequence[NewLayer] = ()) -> Any:
+        path = tmp_path / "drawn.3dm"
+        threedm.write_new(path, Additions(layers, objects), unit=unit, own=False)
+        return threedm.read(path)
+
+    return build

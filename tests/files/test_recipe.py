@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from hookean.errors import InputError
 from hookean.files.recipe.recipe import understand
 from hookean.files.recipe.select import terms
 from hookean.files.rhino import threedm
-from hookean.files.rhino.threedm import Additions, NewLayer, NewObject, Points
+from hookean.files.rhino.threedm import NewLayer, NewObject, Points
 from hookean.scene.text import parse_tables
 from hookean.values.mesh import Mesh
 
@@ -25,18 +25,6 @@ SQUARE = Mesh(
     np.array([[0, 3, 4, 1], [1, 4, 5, 2], [3, 6, 7, 4], [4, 7, 8, 5]]),
 )
 LINE = np.array([[0.0, 0, 0], [10, 0, 0]])
-
-
-@pytest.fixture
-def draw(tmp_path: Path) -> Callable[..., Any]:
-    """Writes objects to a file as a person would draw them, and reads it."""
-
-    def build(*objects: NewObject, unit: str = "Meters", layers: Sequence[NewLayer] = ()) -> Any:
-        path = tmp_path / "drawn.3dm"
-        threedm.write_new(path, Additions(layers, objects), unit=unit, own=False)
-        return threedm.read(path)
-
-    return build
 
 
 def springs(**table: Any) -> dict[str, Any]:

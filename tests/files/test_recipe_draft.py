@@ -15,7 +15,7 @@ from hookean.errors import InputError
 from hookean.files.recipe.draft import draft
 from hookean.files.recipe.recipe import understand
 from hookean.files.rhino import threedm
-from hookean.files.rhino.threedm import Additions, NewLayer, NewObject
+from hookean.files.rhino.threedm import NewObject
 from hookean.system.system import compile
 from hookean.values.mesh import Mesh
 
@@ -28,18 +28,6 @@ BOX = Mesh(
 LINE = np.array([[0.0, 0, 0], [10, 0, 0]])
 POLYLINE = np.array([[0.0, 0, 0], [5, 0, -1], [10, 0, 0]])
 SHARED = Path(__file__).parents[3] / "shared" / "data" / "rhino"
-
-
-@pytest.fixture
-def draw(tmp_path: Path) -> Callable[..., Any]:
-    """Writes objects to a file as a person would draw them, and reads it."""
-
-    def build(*objects: NewObject, unit: str = "Meters", layers: Sequence[NewLayer] = ()) -> Any:
-        path = tmp_path / "drawn.3dm"
-        threedm.write_new(path, Additions(layers, objects), unit=unit, own=False)
-        return threedm.read(path)
-
-    return build
 
 
 def start(scene: Any) -> np.ndarray[Any, Any]:
@@ -234,7 +222,8 @@ def test_user_text_that_cannot_be_read_is_refused_by_object(
 
 @pytest.mark.parametrize("path", sorted(SHARED.glob("*.3dm")), ids=lambda path: path.stem)
 def test_files_of_others_have_a_draft(path: Path) -> None:
-    """It means what the file means without it; where that is nothing, the draft says so."""
+    """The recipe of the draft gives the same model as the file without a recipe. Where that has no model, the draft has
+    a fault."""
     model = threedm.read(path)
     found = draft(model)
     assert found.to_dict()["rows"]

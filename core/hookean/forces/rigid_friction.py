@@ -51,8 +51,8 @@ def row_of(memory: Any, parameters: Any, bodies: Any, a: Any, b: Any, sign: Any)
 
 @device
 def claim(memory: Any, parameters: Any, bodies: Any, a: Any, b: Any, row: Any) -> Any:
-    """Mark the row that is to remember the contact of two bodies: the one that does, else a free one of the first, else
-    of the second. A slab under many bodies has too few for all of them. -1 if there is none."""
+    """Mark the row that remembers the contact of two bodies: the row that has it, or a free row of the first, or a free
+    row of the second. -1 if no row is free, as under a slab that more bodies touch than there are rows."""
     if row >= 0:
         memory[row, PARTNER] = -memory[row, PARTNER]
         return row

@@ -6,6 +6,7 @@ fields are its values, with defaults in m, N and s; user text of an object (see 
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
@@ -95,9 +96,9 @@ class Role(Model):
         split = self.split(item)
         return {} if split is None else {"divide": list(split)}
 
+    @abstractmethod
     def parts(self, item: Item, units: Units) -> list[Part]:
         """The tables that an object gives; InputError where it cannot have this role."""
-        raise NotImplementedError
 
 
 def converted(role: type[Role], values: Mapping[str, Any], given: Units, wanted: Units) -> dict[str, Any]:
