@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hookean import Scene, relax
 from hookean.designing.columns import Column
 from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.problem import Problem
@@ -113,9 +114,9 @@ def test_forces_that_are_linear_in_a_column_are_exact(kind: str, monkeypatch: py
     unknowns, state = Unknowns(given, system), system.start()
     state.x = state.x + 0.02 * system.size * np.random.default_rng(5).normal(size=state.x.shape)
     found = Equilibrium(system, state, None, once=True)
-    assert unknowns.variables[0]._units()
+    assert unknowns.variables[0]._units(system)
     exact = unknowns.slopes(found)[0].toarray()
-    monkeypatch.setattr(Column, "_units", lambda self: [])
+    monkeypatch.setattr(Column, "_units", lambda self, system: [])
     differences = unknowns.slopes(found)[0].toarray()
     assert exact == pytest.approx(differences, abs=1e-9 * np.abs(differences).max())
 
@@ -283,3 +284,36 @@ def test_yielded_springs_are_reported() -> None:
     assert sensitivity(scene, goals=goals, variables=variables).warnings == []
     scene["forces"][0]["plasticity"] = 0.05
     assert "yielded" in sensitivity(scene, goals=goals, variables=variables).warnings[0]
+
+
+@pytest.mark.parametrize(
+    "prestress", [{}, {"force": 5.0}, {"strain": 0.02}, {"rest_length": 0.9}, {"rest_length": 0.9, "rest_factor": 0.97}]
+)
+def test_stiffness_of_prestressed_springs_by_differences_of_solves(prestress: dict[str, Any]) -> None:
+    """The rest length of springs with a given force depends on their stiffness; with a given strain or length it does
+    not. Central differences of whole solves, steps of 1e-4: 1e-8 and the accuracy of the solves, within 1e-6."""
+
+    def scene(stiffness: np.ndarray) -> dict[str, Any]:
+        chain = {"kind": "springs", "name": "chain", "particles": [[i, i + 1] for i in range(5)], **prestress}
+        return {
+            "particles": [[i, 0.0, 0.3 * (i % 2)] for i in range(6)],
+            "forces": [
+                {**chain, "stiffness": stiffness.tolist()},
+                {"kind": "unary", "particles": [1, 2, 3, 4], "vector": [0, 0, -1]},
+            ],
+            "anchors": [{"particles": [0, 5]}],
+            "settings": {"tolerance": 1e-12},
+        }
+
+    stiffness = np.array([50.0, 60.0, 70.0, 55.0, 45.0])
+    found = sensitivity(
+        scene(stiffness),
+        goals=[{"kind": "position", "particles": [2], "axes": "z"}],
+        variables=[{"force": "chain", "field": "stiffness"}],
+    ).gradient[0]
+    wanted = []
+    for i, step in enumerate(1e-4 * stiffness):
+        change = step * (np.arange(5) == i)
+        up, down = (relax(Scene.read(scene(stiffness + way * change))).particles[2, 2] for way in (1.0, -1.0))
+        wanted.append((up - down) / (2.0 * step))
+    np.testing.assert_allclose(found, wanted, atol=1e-6 * np.abs(wanted).max())

@@ -192,7 +192,7 @@ class Column:
         """Derivatives (m, ...) of what `give` says of each element, with the unknown (m,) by which, -1 for none: a pair
         for each number that an element has in the column. `linear`: what `give` says is in proportion to forces."""
         values, tie = self.entries.values, self.entries.tie
-        exact = self._units() if linear else []
+        exact = self._units(system) if linear else []
         for column, block in exact:
             yield (
                 np.broadcast_to(tie[:, column], self.elements)[self.part.inputs],
@@ -200,7 +200,7 @@ class Column:
             )
         for column in range(values.shape[1]) if self.by_element and not exact else ():
             if (tie[:, column] >= 0).any():
-                steps = STEP * np.maximum(np.abs(values[:, column]), np.abs(values[:, column]).mean() or 1.0)
+                steps = self._steps(column)
                 change = np.zeros(values.shape)
                 change[:, column] = np.where(tie[:, column] >= 0, steps, 0.0)
                 slope, unknown = self.slope(system, change, give), np.broadcast_to(tie[:, column], self.elements)
@@ -211,15 +211,25 @@ class Column:
             slope = self.slope(system, np.where(tie == number, step, 0.0), give)
             yield np.full(len(slope), number), self.factor * slope / step
 
-    def _units(self) -> list[tuple[int, Block]]:
+    def _steps(self, column: int) -> Floats:
+        """Changes of the numbers (m,) of the column, small for derivatives."""
+        size = np.abs(self.entries.values[:, column])
+        return np.asarray(STEP * np.maximum(size, size.mean() or 1.0))
+
+    def _units(self, system: System) -> list[tuple[int, Block]]:
         """Where forces are linear in the column: each number of it that varies, with a block in which that is 1 and the
-        others are 0, so that forces are derivatives by it."""
+        others are 0, so that forces are derivatives by it. None where other parameters change with the column, such as
+        the rest length of springs of a given prestress with their stiffness."""
         whole, entries = self.group.block.some(self.part.rows), self.entries
         own = [i for i, name in enumerate(whole.names) if name == self.variable.field]
         if not self.by_element or self.group.cls.linear != self.variable.field or len(own) != entries.values.shape[1]:
             return []
         given = np.broadcast_to(entries.values, (self.elements, len(own)))[self.part.inputs]
         if not np.array_equal(whole.parameters[:, own], given):  # worked out from another column
+            return []
+        moved = entries.values + np.column_stack([self._steps(column) for column in range(len(own))])
+        fresh = compiled(system, self.group, self.number, self._with(system.scene, moved)).parameters
+        if not np.array_equal(np.delete(fresh, own, axis=1), np.delete(whole.parameters, own, axis=1)):
             return []
         found = []
         for column in np.flatnonzero((entries.tie >= 0).any(axis=0)):
