@@ -19,6 +19,11 @@ def sampled(values: Iterable[Any], every: int) -> list[Any]:
     return [pytest.param(v, marks=[pytest.mark.soak] if i % every else []) for i, v in enumerate(values)]
 
 
+def examples(count: int) -> int:
+    """How many examples hypothesis draws: `count` in `make soak`, elsewhere a third of them, at least 10."""
+    return count if SOAK else max(10, count // 3)
+
+
 Test = Callable[..., None]
 
 

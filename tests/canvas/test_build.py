@@ -48,6 +48,21 @@ def shape(chunk: Chunk) -> dict[str, str]:
     return {item.name: item.type.name for item in chunk.items}
 
 
+def test_building_some_again_gives_the_same_bytes(dist, tmp_path):
+    """User objects from another process: no date, no chance, no order of files or hashed strings."""
+    told = (
+        "import sys; from pathlib import Path; from hookean_canvas.components.build import build;"
+        "from hookean_canvas.components.bundles import read_all; build(Path(sys.argv[1]), read_all()[::20])"
+    )
+    command, environment = [sys.executable, "-c", told, str(tmp_path)], {**os.environ, "PYTHONHASHSEED": "7"}
+    subprocess.run(command, env=environment, check=True, timeout=HANG)
+    made = sorted(tmp_path.rglob("*.ghuser"))
+    assert len(made) > 8
+    for path in made:
+        assert path.read_bytes() == (dist / path.relative_to(tmp_path)).read_bytes(), path.name
+
+
+@pytest.mark.soak
 def test_building_again_gives_the_same_bytes(dist, tmp_path):
     """User objects and packages, from another process: no date, no chance, no order of files or hashed strings."""
     told = "import sys; from hookean_canvas.command import app; app(['build', '--output', sys.argv[1]])"

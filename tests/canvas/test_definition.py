@@ -15,6 +15,7 @@ from hookean_canvas.definitions import layout
 from hookean_canvas.definitions.write import Definition, flat
 from hookean_canvas.inspect import lint
 from hookean_canvas.run import graph
+from soak import examples
 
 
 def line(key: str = "line") -> Definition:
@@ -127,7 +128,7 @@ def test_groups_are_objects_after_all_others() -> None:
 sizes = st.tuples(st.floats(20, 200), st.floats(20, 120))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.lists(sizes, min_size=2, max_size=14), st.data())
 def test_any_wiring_is_laid_out_left_to_right_without_overlaps(measures, data) -> None:
     boxes: layout.Boxes = {i: layout.Box(*size) for i, size in enumerate(measures)}

@@ -24,6 +24,7 @@ from hookean_canvas.components import bundles
 from hookean_canvas.run import stand_in
 from hookean_client import canvas_engine, canvas_file, canvas_geometry
 from serving import Home
+from soak import examples
 
 OURS = ("Divide", "Shatter", "Catenary", "MeshSurface", "MeshEdges", "MeshVertices", "MeshCorners", "NakedVertices",
         "WarpWeft", "Diagonals", "RemoveDuplicateLines", "Interpolate", "Sweep", "RhinoFile", "RemoveDuplicatePoints",
@@ -145,7 +146,7 @@ corner = st.tuples(*[st.floats(-100, 100).map(lambda x: round(x, 2))] * 3)
 polyline = st.lists(corner, min_size=2, max_size=5, unique=True)
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(15), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(rows=st.lists(polyline, min_size=1, max_size=4), counts=st.lists(st.integers(1, 30), max_size=6))
 def test_any_curves_and_counts_are_matched_by_the_longest_list(rhino: Any, rows: Any, counts: list[int]) -> None:
     given_curves = [rhino.PolylineCurve([point(*place) for place in row]) for row in rows]

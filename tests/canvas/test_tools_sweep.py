@@ -19,6 +19,7 @@ from hookean_canvas.run import stand_in
 from hookean_client import canvas_link, canvas_sweep
 from server.conftest import endless
 from serving import SWING, Home, wait_for
+from soak import examples
 
 pytestmark = pytest.mark.usefixtures("canvas")
 
@@ -97,7 +98,7 @@ def test_loads_and_anchors_that_meet_no_particle_are_warnings_or_an_error(home: 
     assert sentences(none.ghenv, "Error")[0].startswith("Anchor 0 of anchors_, branch {0}: its point met no particle")
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(40), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.lists(st.integers(), min_size=1, max_size=4), min_size=1, max_size=4))
 def test_items_are_counted_with_the_last_parameter_fastest(rows: list[list[int]]) -> None:
     assert list(zip(*canvas_sweep._columns(rows, "product"), strict=True)) == list(itertools.product(*rows))

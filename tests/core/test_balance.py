@@ -15,6 +15,7 @@ from hookean.solvers import solver
 from hookean.system.balance import BEYOND, NOISE, OUT, ROUNDING, Balance, balance
 from hookean.system.state import State
 from hookean.system.system import System, compile
+from soak import examples
 
 
 def judged(seed: int, *, loads: bool, floor: bool) -> tuple[System, State, Balance]:
@@ -37,7 +38,7 @@ def judged(seed: int, *, loads: bool, floor: bool) -> tuple[System, State, Balan
     return system, state, balance(system, state)
 
 
-@settings(max_examples=60, derandomize=True, deadline=None)
+@settings(max_examples=examples(60), derandomize=True, deadline=None)
 @given(seed=some.integers(0, 2**32 - 1), loads=some.booleans(), floor=some.booleans())
 def test_the_residual_is_what_its_definition_says(seed: int, loads: bool, floor: bool) -> None:
     """max |out of balance| / mean |load| on the free axes; reactions and what is left add up to all forces; the floor
@@ -103,7 +104,7 @@ def test_what_nothing_strains_is_measured_by_a_millionth_of_what_it_resists(coun
 some_parts = some.lists(some.tuples(*[some.sampled_from([0.0, 0.5, 1.0, 2.0, 3.0])] * 3), min_size=1, max_size=4)
 
 
-@settings(max_examples=200, derandomize=True, deadline=None)
+@settings(max_examples=examples(200), derandomize=True, deadline=None)
 @given(parts=some_parts, scale=some.sampled_from([0.5, 1.0, 4.0]), tolerance=some.sampled_from([0.1, 1.0, 2.5]))
 def test_the_goal_is_the_least_force_that_meets_the_tolerance(
     parts: list[tuple[float, float, float]], scale: float, tolerance: float

@@ -15,10 +15,11 @@ from scipy.special import ellipe, ellipk
 from hookean import Scene, relax
 from hookean.forces import Bend, Springs, Unary
 from hookean.system.system import compile
+from soak import examples
 
 EPS = float(np.finfo(float).eps)
 EA = 1e7  # axial stiffness in units of EI / L^2: strains P / EA ~ 1e-6 or less
-seeded = settings(derandomize=True, deadline=None, max_examples=100, database=None)
+seeded = settings(derandomize=True, deadline=None, max_examples=examples(100), database=None)
 
 
 def chain(headings: Any, length: float) -> np.ndarray:

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 
 from hookean.discretize.catenary import catenary, catenary_of, parameter, sag, tensions
 from hookean.errors import InputError
+from soak import examples
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=200, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(200), database=None)
 EPS = float(np.finfo(float).eps)
 
 

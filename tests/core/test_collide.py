@@ -14,6 +14,7 @@ from hookean.compiled import dispatch
 from hookean.errors import InputError
 from hookean.forces import KINDS, neighbours
 from hookean.system.system import System, compile
+from soak import examples
 
 FORCE = KINDS["collide"]
 
@@ -39,7 +40,7 @@ def of_all_pairs(x: np.ndarray, radius: np.ndarray, group: np.ndarray, k: float)
     return force, 0.25 * k * float((overlap**2).sum())
 
 
-@settings(derandomize=True, deadline=None, max_examples=40, database=None)
+@settings(derandomize=True, deadline=None, max_examples=examples(40), database=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
     count=st.integers(2, 60),

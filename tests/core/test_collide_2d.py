@@ -13,8 +13,9 @@ from core.test_collide_curve import turning
 from hookean import Scene, relax
 from hookean.errors import InputError
 from hookean.system.system import compile
+from soak import examples
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=40, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(40), database=None)
 
 
 def loops(counts: Any) -> np.ndarray:

@@ -14,8 +14,9 @@ from hookean import Scene, relax
 from hookean.errors import InputError
 from hookean.forces import CollideCurve
 from hookean.system.system import compile
+from soak import examples
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=60, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(60), database=None)
 SQUARE = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]
 
 

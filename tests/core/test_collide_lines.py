@@ -15,6 +15,7 @@ from hookean.forces import CollideLines, neighbours
 from hookean.system.system import compile
 from laws import laws
 from laws.cases import case_of
+from soak import examples
 
 
 def sticks(rng: np.random.Generator, count: int, size: float) -> np.ndarray:
@@ -58,7 +59,7 @@ def of_all_pairs(x: np.ndarray, radius: np.ndarray, group: np.ndarray, k: float)
     return f, energy
 
 
-@settings(derandomize=True, deadline=None, max_examples=25, database=None)
+@settings(derandomize=True, deadline=None, max_examples=examples(25), database=None)
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(2, 25), density=st.floats(0.1, 2.0))
 def test_forces_are_those_of_all_pairs(seed: int, count: int, density: float) -> None:
     """However the capsules move: by the formula, pair by pair. Where lines are nearly parallel, the place of a contact
@@ -104,7 +105,7 @@ def test_a_bundle_of_long_capsules_is_listed() -> None:
     assert system.groups[0].block.rooms[0][0, neighbours.COUNT] == 400
 
 
-@settings(derandomize=True, deadline=None, max_examples=25, database=None)
+@settings(derandomize=True, deadline=None, max_examples=examples(25), database=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_the_tangent_of_a_heap_is_the_gradient_of_its_forces_and_has_a_bound(seed: int) -> None:
     """Crossing lines, ends on lines and ends on ends: K = -df/dx by differences of order 4, to 1e-5 of the largest

@@ -16,8 +16,9 @@ from hookean.forces import CollideSolid
 from hookean.system.system import compile
 from laws import laws
 from laws.cases import case_of
+from soak import examples
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=60, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(60), database=None)
 seeds = st.integers(0, 2**32 - 1)
 SIDES = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
 

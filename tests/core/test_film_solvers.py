@@ -17,11 +17,12 @@ from hookean.solvers import solver
 from hookean.stability.equilibrium import Stability
 from hookean.system.balance import balance
 from hookean.system.system import compile
+from soak import examples
 
 from .film_meshes import area, disc, film, inside, patch, scene, slopes, square, thinnest, triangles, tube
 from .test_soapfilm import off_scherk, scherk
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=30, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(30), database=None)
 
 
 def area_gradient(x: np.ndarray, faces: Any) -> np.ndarray:

@@ -11,10 +11,11 @@ from hookean import Scene, relax
 from hookean.forces import Hinge, Springs, Unary
 from hookean.forces.dihedral import fold_angles
 from hookean.system.system import compile
+from soak import examples
 
 EPS = float(np.finfo(float).eps)
 FLAT = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.7, 1.5, 0.0], [1.2, -0.6, 0.0]])
-seeded = settings(derandomize=True, deadline=None, max_examples=100, database=None)
+seeded = settings(derandomize=True, deadline=None, max_examples=examples(100), database=None)
 seeds = st.integers(0, 2**32 - 1)
 
 

@@ -15,6 +15,7 @@ from hookean.forces import KINDS
 from hookean.forces.groups import Grouped
 from hookean.system import near_misses
 from hookean.system.system import System, compile
+from soak import examples
 
 
 def polyline(start: Any, end: Any, pieces: int) -> Any:
@@ -249,7 +250,7 @@ def pairs(system: System) -> Any:
         )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 10**6), st.integers(2, 60))
 def test_cells_lose_no_pair(seed: int, count: int) -> None:
     """Elements of lengths from 0.01 to 1: what is compared, in cells, is all that is near."""

@@ -15,6 +15,7 @@ from hookean.compiled import dispatch
 from hookean.forces import KINDS, cells, neighbours
 from hookean.forces.base import Block
 from hookean.system.system import compile
+from soak import examples
 
 FORCE = KINDS["collide"]
 
@@ -67,7 +68,7 @@ def pairs_of(block: Block) -> np.ndarray:
     return found
 
 
-@settings(derandomize=True, deadline=None, max_examples=60, database=None)
+@settings(derandomize=True, deadline=None, max_examples=examples(60), database=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
     count=st.integers(1, 200),

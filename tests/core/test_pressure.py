@@ -15,8 +15,9 @@ from hookean.discretize import grid, naked_vertices, quads
 from hookean.forces import Pressure, SoapFilm, Springs
 from hookean.running.result import Result
 from hookean.system.system import compile
+from soak import examples
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(50), database=None)
 seeds = st.integers(0, 2**32 - 1)
 
 

@@ -16,8 +16,9 @@ from hookean.discretize import NurbsSurface, nurbs_surface
 from hookean.errors import InputError
 from hookean.forces import PullToSurface
 from hookean.system.system import compile
+from soak import examples
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=25, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(25), database=None)
 H = np.sqrt(0.5)
 CIRCLE = np.array([[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0.0]])
 ROUND = np.array([1, H, 1, H, 1, H, 1, H, 1])

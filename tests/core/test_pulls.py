@@ -17,8 +17,9 @@ from hookean.errors import InputError
 from hookean.forces import PullToCurve, PullToMesh, Unary
 from hookean.running.simulation import Simulation
 from hookean.system.system import compile
+from soak import examples
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=60, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(60), database=None)
 seeds = st.integers(0, 2**32 - 1)
 EPS = float(np.finfo(float).eps)
 

@@ -19,6 +19,7 @@ from hookean.forces.rigid_body import TURN, poses
 from hookean.running.run import relax_state
 from hookean.solvers import solver
 from hookean.system.system import compile
+from soak import examples
 
 CUBE = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)]) - 0.5
 
@@ -71,7 +72,7 @@ def two(seed: int) -> list[np.ndarray]:
     return [bodies[0], bodies[1] + rng.uniform(0.6, 1.4) * rng.normal(size=3)]
 
 
-@settings(derandomize=True, deadline=None, max_examples=100, database=None)
+@settings(derandomize=True, deadline=None, max_examples=examples(100), database=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_the_energy_is_the_integral_of_the_depth_below_the_nearest_face(seed: int) -> None:
     """k V d: V the volume of the overlap, d the depth of its centroid below the nearest face, both by scipy; to 1e-6,

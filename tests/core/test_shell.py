@@ -15,11 +15,12 @@ from hookean.errors import InputError
 from hookean.forces import Block, Shell, Springs, Unary
 from hookean.forces.shell import triangles
 from hookean.system.system import System, compile
+from soak import examples
 
 from .film_meshes import concentric
 
 EPS = float(np.finfo(float).eps)
-seeded = settings(derandomize=True, deadline=None, max_examples=25, database=None)
+seeded = settings(derandomize=True, deadline=None, max_examples=examples(25), database=None)
 seeds = st.integers(0, 2**32 - 1)
 
 

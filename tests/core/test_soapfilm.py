@@ -14,11 +14,11 @@ from hookean.forces import SoapFilm
 from hookean.forces.soapfilm import shapes
 from hookean.running.result import Result, Status
 from hookean.system.system import compile
-from soak import SOAK
+from soak import SOAK, examples
 
 from .film_meshes import Heights, area, disc, film, inside, patch, scene, slopes, square, thinnest, tube
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(50), database=None)
 EPS = float(np.finfo(float).eps)
 
 

@@ -15,8 +15,9 @@ from hookean.errors import InputError
 from hookean.forces import KINDS
 from hookean.running.simulation import Simulation
 from hookean.system.system import compile
+from soak import examples
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=25, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(25), database=None)
 BALL = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1.0]])
 SIDES = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
 BLOCK = np.array([[x, y, z] for z in (0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))])

@@ -17,10 +17,11 @@ from hookean.discretize import area, edges, grid, naked_vertices
 from hookean.discretize.catenary import catenary, catenary_of, parameter
 from hookean.system.system import compile
 from samples import cable
+from soak import examples
 
 HOOKE, ARC, HYPAR = (figure(name).scene for name in ("9.12-hooke", "9.17-arc-to-catenary", "9.28-rest-factor-zero"))
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=50, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(50), database=None)
 EPS = float(np.finfo(float).eps)
 
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from hookean import InputError, Scene, relax
 from hookean.running.sweep import MOST, Sweep, Table, columns, parameters, solve
+from soak import examples
 
 NET: dict[str, Any] = {
     "particles": [[float(i), 0.0, 0.1 * (i % 2)] for i in range(6)],
@@ -105,7 +106,7 @@ def test_counting_a_huge_sweep_costs_nothing() -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(st.lists(patches, min_size=1, max_size=4), st.data())
 def test_a_row_is_the_same_whatever_was_solved_before(several: list[dict[str, Any]], data: st.DataObject) -> None:
     first = [text(TABLE.row(patch)) for patch in several]
@@ -117,7 +118,7 @@ def test_a_row_is_the_same_whatever_was_solved_before(several: list[dict[str, An
     assert text(solve(Scene.read(NET), several[0])) == first[0]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(numbers, numbers, st.tuples(numbers, numbers, numbers))
 def test_a_row_is_that_of_the_scene_with_these_values(
     stiffness: float, factor: float, vector: tuple[float, ...]

@@ -11,6 +11,7 @@ from hookean import InputError, Scene, relax
 from hookean.discretize import grid
 from hookean.system.system import compile
 from hookean.system.weld import weld
+from soak import examples
 
 
 def lines(*ends: tuple[float, float]) -> list[list[list[float]]]:
@@ -32,7 +33,7 @@ def test_particles_come_in_order_of_first_appearance():
     assert system.report.merged == 3
 
 
-@settings(derandomize=True, deadline=None, max_examples=60)
+@settings(derandomize=True, deadline=None, max_examples=examples(60))
 @given(st.lists(st.tuples(*[st.integers(0, 6)] * 3), min_size=1, max_size=40), st.sampled_from([0.0, 0.5, 1.1, 2.0]))
 def test_welding_is_the_plain_greedy_rule(points: list[tuple[int, int, int]], tolerance: float):
     """Each point joins the first kept point within the tolerance, else it is kept: checked against two loops."""
@@ -238,7 +239,7 @@ def test_a_spring_without_length_is_told():
 few = st.sets(st.integers(0, 5))
 
 
-@settings(derandomize=True, deadline=None, max_examples=200, database=None)
+@settings(derandomize=True, deadline=None, max_examples=examples(200), database=None)
 @given(loads=few, sprung=few, pulled=few, held=few, sliding=few, floor=st.booleans())
 def test_a_load_on_what_nothing_touches_is_a_warning(
     loads: set[int], sprung: set[int], pulled: set[int], held: set[int], sliding: set[int], floor: bool
@@ -294,7 +295,7 @@ def test_corners_that_meet_nothing_create_no_particles(kind: str):
     assert "/forces/1/points: 1 of" in left.report.left_out()[0]
 
 
-@settings(derandomize=True, deadline=None, max_examples=60)
+@settings(derandomize=True, deadline=None, max_examples=examples(60))
 @given(
     st.lists(st.tuples(*[st.integers(0, 4)] * 3), min_size=1, max_size=60),
     st.lists(st.tuples(*[st.integers(0, 4)] * 3), min_size=1, max_size=60),

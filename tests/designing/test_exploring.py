@@ -19,6 +19,7 @@ from typer.testing import CliRunner
 import hookean
 from hookean.commands.explore import app
 from hookean.designing.exploring import Exploration, pareto
+from soak import examples
 
 
 def problem(**changes: Any) -> dict[str, Any]:
@@ -82,7 +83,7 @@ def test_samples_that_miss_constraints_are_not_on_the_front() -> None:
     assert some.met[some.front].all()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.lists(st.lists(st.integers(0, 4), min_size=3, max_size=3), min_size=1, max_size=12))
 def test_the_front_is_what_nothing_beats(rows: list[list[int]]) -> None:
     values = np.array(rows, dtype=float)

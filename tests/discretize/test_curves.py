@@ -18,9 +18,10 @@ from scipy.special import ellipe
 
 from hookean.discretize import divide, end_points, explode, length, shatter
 from hookean.errors import InputError
+from soak import examples
 
 EPS = np.finfo(float).eps
-few = settings(derandomize=True, deadline=None, max_examples=40)
+few = settings(derandomize=True, deadline=None, max_examples=examples(40))
 
 # a knot of degree + 1 fold multiplicity inside tears the curve
 BROKEN = SimpleNamespace(
@@ -99,7 +100,7 @@ def test_polyline_is_cut_where_interpolation_says(corners: list[tuple[int, int, 
     assert np.array_equal(lines, np.stack([points[:-1], points[1:]], 1)[np.diff(upto) > 0])
 
 
-@settings(few, max_examples=25)
+@settings(few, max_examples=examples(25))
 @given(st.integers(0, 10**6), st.integers(1, 5), st.integers(0, 6), st.booleans())
 def test_nurbs_pieces_are_equal_by_quadrature(seed: int, degree: int, more: int, kink: bool) -> None:
     rng = np.random.default_rng(seed)

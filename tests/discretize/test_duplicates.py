@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from hookean.discretize import duplicates as module
 from hookean.discretize import remove_duplicate_lines, remove_duplicate_points, unique_lines, unique_points
 from hookean.errors import InputError
+from soak import examples
 
-few = settings(derandomize=True, deadline=None, max_examples=150)
+few = settings(derandomize=True, deadline=None, max_examples=examples(150))
 # a coarse lattice with a fine shift: many coincide, many nearly do, none is within rounding of the tolerance
 coordinate = st.tuples(st.integers(0, 3), st.sampled_from([0.0, 0.3, 0.55])).map(lambda c: c[0] + c[1])
 point = st.tuples(coordinate, coordinate, st.sampled_from([0.0, 0.2]))

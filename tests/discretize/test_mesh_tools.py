@@ -14,8 +14,9 @@ from discretize.shapes import CUBE, OCTAHEDRON, euler, grid, oriented, strip
 from hookean.discretize.mapping import Closest
 from hookean.errors import InputError
 from hookean.values.mesh import Mesh
+from soak import examples
 
-few = settings(derandomize=True, deadline=None, max_examples=25)
+few = settings(derandomize=True, deadline=None, max_examples=examples(25))
 
 
 def turn(seed: int) -> np.ndarray:

@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 import hookean.discretize as hd
 from hookean.errors import InputError
 from hookean.values.mesh import Mesh
+from soak import examples
 
-few = settings(derandomize=True, deadline=None, max_examples=40)
+few = settings(derandomize=True, deadline=None, max_examples=examples(40))
 size = st.integers(1, 8)
 CUBE = (
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from hookean.discretize import divide, mesh_surface, nurbs_curve, nurbs_surface
 from hookean.errors import InputError
+from soak import examples
 
 SQUARE = [[[0.0, 0.0, 0.0], [0.0, 2.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 2.0, 1.0]]]
 numbers = st.floats(-10, 10).map(lambda x: round(x, 3))
@@ -36,7 +37,7 @@ def surface(draw: st.DrawFn) -> tuple[Any, dict[str, Any]]:
     return made, {"degree_u": p, "degree_v": q, "points": points, "weights": heavy, **knots}
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(surface(), st.integers(1, 7), st.integers(1, 7))
 def test_a_surface_as_numbers_is_the_surface(pair: tuple[Any, dict[str, Any]], u: int, v: int) -> None:
     made, form = pair

@@ -11,8 +11,9 @@ import hookean.discretize as hd
 from discretize.shapes import CUBE, OCTAHEDRON, euler, grid, oriented, strip
 from hookean.errors import InputError
 from hookean.values.mesh import Mesh
+from soak import examples
 
-few = settings(derandomize=True, deadline=None, max_examples=25)
+few = settings(derandomize=True, deadline=None, max_examples=examples(25))
 MIXED = Mesh(
     np.array([[0, 0, 0], [1, 0, 0], [2, 0.5, 0.2], [0, 1, 0], [1, 1, 0.4]], float),
     np.array([[0, 1, 4, 3], [1, 2, 4, 4]]),

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from hookean.discretize import edges, mesh_faces, mesh_surface, naked_edges, triangles
 from hookean.errors import InputError
 from hookean.values.mesh import Mesh
+from soak import examples
 
-few = settings(derandomize=True, deadline=None, max_examples=25)
+few = settings(derandomize=True, deadline=None, max_examples=examples(25))
 counts = st.integers(3, 12)
 
 

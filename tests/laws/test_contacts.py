@@ -13,11 +13,12 @@ from hookean.compiled import dispatch
 from hookean.forces import KINDS
 from hookean.forces.floor import Floor
 from hookean.system.system import compile
+from soak import examples
 
 from .cases import scene_of
 from .laws import guarded
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=200, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(200), database=None)
 CONTACTS = {kind: cls for kind, cls in KINDS.items() if cls.support is not None or cls.impact is not None}
 every = pytest.mark.parametrize("kind", CONTACTS)
 seeds = st.integers(0, 2**32 - 1)

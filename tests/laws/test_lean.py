@@ -15,11 +15,11 @@ from hookean.forces.springs import SEVERAL
 from hookean.solvers import solver
 from hookean.system.packing import Desk, lean
 from hookean.system.system import System, compile
-from soak import seeds
+from soak import examples, seeds
 
 from .cases import example_system
 
-SEEDED = settings(derandomize=True, deadline=None, max_examples=30, database=None)
+SEEDED = settings(derandomize=True, deadline=None, max_examples=examples(30), database=None)
 EPS = float(np.finfo(float).eps)
 
 

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from hookean import Scene, relax
 from hookean_server.hops.functions import FUNCTIONS
 from serving import CABLE, HANG
+from soak import examples
 
 from .conftest import Served
 
@@ -194,7 +195,7 @@ def test_an_unknown_unit_is_told(hops: httpx.Client) -> None:
     assert said == ["The unit of this model is unknown; its lengths are read as metres."]
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(25), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_any_tree_of_the_same_values_gives_the_same(hops: httpx.Client, data: st.DataObject) -> None:
     """Grafted, nested, cut into branches: the values count, not their paths (the reference server fails on {0;0})."""
