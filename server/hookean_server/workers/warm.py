@@ -22,5 +22,8 @@ def warm() -> None:
         "hookean_server.workers.relax_task",
         "hookean_server.workers.discretize_task",
         "hookean.files.compas_json",
+        "hookean.files.recipe.draft",
+        "hookean.files.rhino.read",
+        "scipy.spatial",  # near points, which most drawings need: it takes longer than all the others
     ):
         __import__(name)
