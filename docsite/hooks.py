@@ -31,6 +31,8 @@ PLACES: dict[str, str] = {}
 FENCE = re.compile(r"(^ *```.*?^ *```$)", re.S | re.M)
 SIGNS = {"φ": r"\varphi", "θ": r"\theta", "μ": r"\mu", "≥": r"\ge", "≤": r"\le", "·": r" \cdot "}
 FIGURE = re.compile(r"^## \[(.*?)\]\((.*?)\): (.*)$", re.M)
+LONG = re.compile(r"(?<=<code>)[^<]{20,}(?=</code>)")
+"""Code that would make a column of a table too wide for the others."""
 LINK = re.compile(r"(?<=\[)([^\[\]]*)\]\(([^)\s#:]+)(#[^)\s]*)?\)")
 
 
@@ -139,13 +141,19 @@ def tex(formula: str) -> str:
 
 
 def on_page_content(content: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Formulas as MathML, which browsers draw without a script."""
+    """Formulas as MathML, which browsers draw without a script; long code of tables with places where it may break."""
+    content = re.sub(r"(<td[^>]*>)(.*?)(?=</td>)", lambda m: m[1] + LONG.sub(_breakable, m[2]), content, flags=re.S)
     content = re.sub(
         r'<span class="arithmatex">\\\((.*?)\\\)</span>', lambda m: _math(m[1], "inline"), content, flags=re.S
     )
     return re.sub(
         r'<div class="arithmatex">\s*\\\[(.*?)\\\]\s*</div>', lambda m: _math(m[1], "block"), content, flags=re.S
     )
+
+
+def _breakable(match: re.Match[str]) -> str:
+    """Code of a table that may break at its spaces and after a slash, a colon, an underscore, a comma or a bracket."""
+    return "<wbr>" + re.sub(r"(?<=[\w{}])(?:[/_,(]|::)(?=\w)", r"\g<0><wbr>", match[0])
 
 
 def _math(text: str, display: str) -> str:

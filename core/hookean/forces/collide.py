@@ -12,6 +12,14 @@ from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.capsules import gap, push_capsules
 from hookean.forces.cells import GROUP, RADIUS, ends
+from hookean.forces.collide_friction import (
+    SLOT,
+    SLOTS,
+    damping_ratio,
+    dashpots,
+    rough_collide_kernel,
+    rough_collide_note,
+)
 from hookean.forces.crowd_rows import NEAREST, ROOM, SKIN, STIFFNESS, end_of_crowd
 from hookean.forces.neighbours import (
     AS_GIVEN,
@@ -30,7 +38,6 @@ from hookean.forces.neighbours import (
     tables,
     unmoved,
 )
-from hookean.forces.rough_collide import SLOT, SLOTS, damping_ratio, dashpots, rough_collide_kernel, rough_collide_note
 from hookean.forces.springs import Springs
 from hookean.values.columns import IndexRows, Labels, Points, Positives
 from hookean.values.fields import Field, Maybe
