@@ -127,8 +127,8 @@ def test_load_cases_change_the_temperature(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", ["springs", "beam", "membrane"])
 def test_the_temperature_of_a_case_adds_to_that_of_the_form(kind: str) -> None:
-    """Thermal strains add: a form cooled by 4,000 K and a case of 3,000 K are a model cooled by 7,000 K. If growths were
-    multiplied they would differ by a^2 4,000 x 3,000, 2e-3 of the length, and the force by as much of EA."""
+    """Thermal strains add: a form cooled by 4,000 K and a case of 3,000 K are a model cooled by 7,000 K. If growths
+    were multiplied they would differ by a^2 4,000 x 3,000, 2e-3 of the length, and the force by as much of EA."""
     name = "membrane" if kind == "membrane" else "rod"
     case = {"load_cases": {"cold": {"temperature": {name: -3000.0}}}}
     if kind == "membrane":
