@@ -182,6 +182,23 @@ def test_bad_beams_are_refused_in_one_sentence(faulty: dict[str, Any], words: st
         relax(scene(straight(1), [faulty]))
 
 
+def test_a_load_with_moments_reports_both() -> None:
+    """The resultant of a force and moments at two ends of beams, the centre, and M and r x F about that: reactions and
+    loads add up to nothing, forces and moments about the origin, to 1e-9 of their sizes."""
+    forces = np.array([[0.0, 0.0, -2e-3], [1e-3, 0.0, -2e-3]])
+    moments = np.array([[0.0, 3e-3, 0.0], [0.0, 0.0, 1e-3]])
+    push = {"kind": "unary", "particles": [1, 2], "vector": forces, "moment": moments}
+    found = relax(scene(straight(2), [row(2), push], **TIGHT))
+    loads, hold = found.loads, found.reactions
+    at = found.particles[[1, 2]]
+    np.testing.assert_allclose(loads["resultant"][0], forces.sum(axis=0), rtol=1e-15)
+    whole = np.cross(loads["centre"][0], loads["resultant"][0]) + loads["moment"][0]
+    np.testing.assert_allclose(whole, np.cross(at, forces).sum(axis=0) + moments.sum(axis=0), atol=1e-17)
+    np.testing.assert_allclose(hold["force"].sum(axis=0) + loads["resultant"][0], 0.0, atol=1e-9 * 5e-3)
+    turned = np.cross(found.particles[hold["particles"]], hold["force"]).sum(axis=0) + hold["moment"].sum(axis=0)
+    np.testing.assert_allclose(turned + whole, 0.0, atol=1e-9 * 1e-2)
+
+
 def test_moments_need_a_rotation() -> None:
     """A moment on a particle of springs alone is refused; held rotations there are a warning."""
     springs = {"kind": "springs", "particles": [[1, 2]]}
