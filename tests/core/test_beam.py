@@ -6,8 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from hookean import InputError, relax
+from hookean.forces.base import Block
+from hookean.forces.moments import moment_kernel, moment_skew
 
 from .beam_scenes import CLAMP, SLENDER, load, rod, row, scene, straight
 
@@ -55,6 +58,41 @@ def test_a_quarter_bend_under_a_load_out_of_its_plane() -> None:
     stiff = np.array([5e6 * 0.1406, 1e7 / 12.0, 1e7 / 12.0])
     exact = rod(frame, 25.0 * np.pi, np.array([0.0, 0.0, -0.01]), stiff, 1e7, np.array([0.0, 0.0, 600.0]))
     assert np.abs(found.particles[-1] - exact(25.0 * np.pi)[:3]).max() < 2e-3 * way
+
+
+def wound(count: int, moment: np.ndarray) -> tuple[Any, float]:
+    """A cantilever with EI = GJ under an end moment, and how far its tip is from that of the helix."""
+    found = relax(scene(straight(count), [row(count), load(count, moment=moment)], **TIGHT))
+    s = (np.arange(1000) + 0.5) / 1000
+    tip = Rotation.from_rotvec(s[:, None] * moment).apply([1.0, 0.0, 0.0]).mean(axis=0)  # midpoints: to 1e-6
+    return found, float(np.abs(found.particles[-1] - tip).max())
+
+
+@pytest.mark.parametrize("axis", [[1.0, -1.0, 0.0], [1.0, 1.0, 1.0], [0.3, -1.0, 0.2]])
+def test_a_moment_oblique_to_its_axis_winds_a_rod_to_a_helix(axis: list[float]) -> None:
+    """Where EI = GJ the moment is curvature and twist times EI, whatever its axis: a section at s has turned by
+    s M / EI about M, so the rod is a helix. Such a moment has no energy and its tangent is not symmetric, and
+    still Newton steps lead there: with the symmetric part alone they take thousands. Errors are of order 2 in the
+    length of a beam."""
+    moment = 2.5 * np.array(axis) / np.linalg.norm(axis)
+    (coarse, far), (fine, near) = wound(10, moment), wound(20, moment)
+    for found in (coarse, fine):
+        assert found.converged and found.stability == "stable" and found.solver == "auto: newton"
+        assert found.iterations < 100
+    assert near < 1e-3 and far / near == pytest.approx(4.0, abs=0.2)
+
+
+def test_the_skew_part_of_a_moments_tangent_is_the_rate_of_its_force() -> None:
+    """By central differences of what it adds to a slot, of which the symmetric part is zero; rounding over the step."""
+    block = Block.of(np.array([[0, 1, 2]]), arm=0.7, moment=[[3.0, -1.0, 2.0]])
+    rates, step = np.zeros((3, 3)), 1e-5
+    for axis in range(3):
+        for sign in (1.0, -1.0):
+            x, f = np.zeros((3, 3)), np.zeros((3, 3))
+            x[1, axis] = sign * step
+            moment_kernel(x, np.zeros((3, 3)), block.indices, block.parameters, np.zeros((1, 0)), f, np.zeros(3))
+            rates[:, axis] -= sign * f[1] / (2.0 * step)
+    np.testing.assert_allclose(moment_skew(block)[0, 3:6, 3:6], rates, atol=1e-9)
 
 
 def test_a_cantilever_bends_far_under_an_end_load() -> None:
@@ -142,6 +180,23 @@ def test_bad_beams_are_refused_in_one_sentence(faulty: dict[str, Any], words: st
     """Where, what was given, what to do."""
     with pytest.raises(InputError, match=words):
         relax(scene(straight(1), [faulty]))
+
+
+def test_a_load_with_moments_reports_both() -> None:
+    """The resultant of a force and moments at two ends of beams, the centre, and M and r x F about that: reactions and
+    loads add up to nothing, forces and moments about the origin, to 1e-9 of their sizes."""
+    forces = np.array([[0.0, 0.0, -2e-3], [1e-3, 0.0, -2e-3]])
+    moments = np.array([[0.0, 3e-3, 0.0], [0.0, 0.0, 1e-3]])
+    push = {"kind": "unary", "particles": [1, 2], "vector": forces, "moment": moments}
+    found = relax(scene(straight(2), [row(2), push], **TIGHT))
+    loads, hold = found.loads, found.reactions
+    at = found.particles[[1, 2]]
+    np.testing.assert_allclose(loads["resultant"][0], forces.sum(axis=0), rtol=1e-15)
+    whole = np.cross(loads["centre"][0], loads["resultant"][0]) + loads["moment"][0]
+    np.testing.assert_allclose(whole, np.cross(at, forces).sum(axis=0) + moments.sum(axis=0), atol=1e-17)
+    np.testing.assert_allclose(hold["force"].sum(axis=0) + loads["resultant"][0], 0.0, atol=1e-9 * 5e-3)
+    turned = np.cross(found.particles[hold["particles"]], hold["force"]).sum(axis=0) + hold["moment"].sum(axis=0)
+    np.testing.assert_allclose(turned + whole, 0.0, atol=1e-9 * 1e-2)
 
 
 def test_moments_need_a_rotation() -> None:

@@ -14,6 +14,7 @@ PLATE = {"E": 70e9, "poisson": 0.3, "density": 2700.0, "expansion": 2.3e-5}
 ROD = {"shape": "rod", "diameter": 0.1}
 AREA, INERTIA = np.pi * 0.05**2, np.pi * 0.05**4 / 4
 LENGTH, COUNT = 4.0, 16
+SHARED = ("name", "particles", "material", "section", "temperature")  # fields of beams that springs have, too
 
 
 def column(degrees: Any, *, ends: str, **more: Any) -> Scene:
@@ -122,6 +123,29 @@ def test_load_cases_change_the_temperature(kind: str) -> None:
         found, wanted = load_cases(sheet(None, held=True, **case)), relax(sheet(-30.0, held=True))
         name = "warp"
     assert found.cases["winter"].result.forces[0][name] == pytest.approx(wanted.forces[0][name], rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["springs", "beam", "membrane"])
+def test_the_temperature_of_a_case_adds_to_that_of_the_form(kind: str) -> None:
+    """Thermal strains add: a form cooled by 4,000 K and a case of 3,000 K are a model cooled by 7,000 K. If growths
+    were multiplied they would differ by a^2 4,000 x 3,000, 2e-3 of the length, and the force by as much of EA."""
+    name = "membrane" if kind == "membrane" else "rod"
+    case = {"load_cases": {"cold": {"temperature": {name: -3000.0}}}}
+    if kind == "membrane":
+        found, wanted = load_cases(sheet(-4000.0, held=True, **case)), relax(sheet(-7000.0, held=True))
+    else:
+        one, other = column(-4000.0, ends="both", **case), column(-7000.0, ends="both")
+        if kind == "springs":
+            own = [{k: v for k, v in s.forces[0].model_dump().items() if k in SHARED} for s in (one, other)]
+            along = [{"particles": list(range(COUNT + 1)), "axes": "yz"}, {"particles": [0, COUNT]}]
+            one, other = (
+                Scene.read({**s.model_dump(mode="json"), "forces": [{**f, "kind": kind}], "anchors": along})
+                for s, f in zip((one, other), own, strict=True)
+            )
+        found, wanted = load_cases(one), relax(other)
+    measure = "warp" if kind == "membrane" else "force"
+    got = found.cases["cold"].result.forces[0][measure]
+    assert got == pytest.approx(wanted.forces[0][measure], rel=1e-9)
 
 
 def test_what_has_no_expansion_has_no_temperature() -> None:

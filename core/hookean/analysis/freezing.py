@@ -63,7 +63,8 @@ class Frozen:
     `particles` (n, 3) [length] is the form, and `form` the result of finding it. `notes` are sentences on forces that
     stay as they were although they are not elastic, and on films. `lengths` and `tensions` (m,) are those of the
     elastic lines in the form, by the number of their force; `films` are the numbers of what was a film and is cloth;
-    `expansions` [1/K] are known of lines of a material; `rotations` (r, 4) are the unit quaternions w, x, y, z of the
+    `expansions` [1/K] are known of lines of a material, and `temperatures` [K], one or one for each element, of those
+    that have one in the form; `rotations` (r, 4) are the unit quaternions w, x, y, z of the
     ends of beams.
     """
 
@@ -75,6 +76,7 @@ class Frozen:
     tensions: dict[int, Floats] = field(default_factory=dict)
     films: tuple[int, ...] = ()
     expansions: dict[int, float] = field(default_factory=dict)
+    temperatures: dict[int, Floats] = field(default_factory=dict)
     rotations: Floats = field(default_factory=lambda: np.zeros((0, 4)))
 
     def system(self, scene: Scene | None = None) -> tuple[System, State]:
@@ -108,6 +110,7 @@ def freeze(scene: Scene) -> Frozen:
     lengths: dict[int, Floats] = {}
     tensions: dict[int, Floats] = {}
     expansions: dict[int, float] = {}
+    temperatures: dict[int, Floats] = {}
     for group, memory in zip(system.groups, state.memory, strict=True):
         element_forces = system.element_forces(group, state, memory) if group.cls.role == "internal" else None
         for part in group.parts:
@@ -123,6 +126,8 @@ def freeze(scene: Scene) -> Frozen:
                 lengths[part.number], tensions[part.number] = line.length, line.tension
                 if (expansion := _expansion(line, system.places)) is not None:
                     expansions[part.number] = expansion
+                if (own := getattr(part.force, "temperature", None)) is not None:
+                    temperatures[part.number] = np.asarray(own, dtype=np.float64)
             elif group.cls.kind_name in HEATED and (known := _own_expansion(part.force, system.places)) is not None:
                 expansions[part.number] = known
             elif group.cls.role == "internal" and group.cls.kind_name not in ELASTIC:
@@ -131,7 +136,7 @@ def freeze(scene: Scene) -> Frozen:
     frozen = scene.replaced(forces=tuple(forces))
     turned = system.slots.quaternions(state.x)
     found = state.x[: system.slots.count].copy()
-    model = Frozen(frozen, found, form, tuple(notes), lengths, tensions, films, expansions, turned)
+    model = Frozen(frozen, found, form, tuple(notes), lengths, tensions, films, expansions, temperatures, turned)
     other = compile(frozen)
     if not np.array_equal(other.x, system.x):
         raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")

@@ -169,7 +169,7 @@ def case_scene(frozen: Frozen, name: str) -> Scene:
             acting[number] = acting.get(number, 0.0) + factor * scene.load_cases[case].factor
     forces = list(scene.forces)
     for i, degrees in _temperatures(frozen, given).items():
-        forces[i] = warmed(forces[i], frozen.expansions[i], degrees)
+        forces[i] = warmed(forces[i], frozen.expansions[i], degrees, frozen.temperatures.get(i, 0.0))
     for i, force in enumerate(forces):
         if i in later and i not in acting:
             forces[i] = force.replaced(name=IDLE)

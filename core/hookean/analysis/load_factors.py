@@ -36,14 +36,16 @@ def scaled(load: Force, factor: float) -> Force:
     return load.replaced(**changed)
 
 
-def warmed(force: Force, expansion: float, degrees: float) -> Force:
-    """A force of a frozen model whose temperature changes. Springs get rest lengths L0 (1 + expansion x degrees) of the
-    same EA; those that go slack below their rest length go slack below the new one."""
+def warmed(force: Force, expansion: float, degrees: float, own: Any = 0.0) -> Force:
+    """A force of a frozen model whose temperature changes by `degrees` [K] from that of the form, `own` [K], one or one
+    for each element. Thermal strains add, as of all materials with a constant expansion: springs get rest lengths
+    L0 (1 + expansion (own + degrees)) / (1 + expansion own) of the same EA; those that go slack below their rest length
+    go slack below the new one."""
     if not isinstance(force, Springs):
         before = vars(force)["temperature"]
         return force.replaced(temperature=degrees if before is None else degrees + before)
-    growth = 1.0 + expansion * degrees
-    if not growth > 0.0:
+    growth = 1.0 + expansion * degrees / (1.0 + expansion * np.asarray(own, dtype=np.float64))
+    if not (growth > 0.0).all():
         name = force.name or force.kind_name
         raise InputError("/load_cases", f"a change of {degrees:g} K leaves no length of {name}")
     rest = np.asarray(force.rest_length) * growth

@@ -1,4 +1,4 @@
-"""Mechanisms and states of self-stress of a pin-jointed bar net."""
+"""Mechanisms and states of self-stress of bars and beams."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.analysis.beam_strains import beam_columns, beam_places
 from hookean.errors import InputError
 from hookean.forces import KINDS
 from hookean.running.result import Result
@@ -24,13 +25,16 @@ LARGEST = 4_000  # bars or free axes
 
 @dataclass(frozen=True)
 class Mechanisms:
-    """Mechanisms and states of self-stress of a bar net.
+    """Mechanisms and states of self-stress of bars and beams.
 
-    With b `bars`, f `free_axes` and the `rank` r of the equilibrium matrix (f, b): s = b - r `self_stress_states`, and
-    f - r motions that change no length to first order, of which `rigid_motions` move the net as a whole and the others
-    are its `mechanisms`. `modes` (mechanisms, n, 3) [-] are those, at right angles to each other and to the rigid
-    motions; `self_stresses` (s, b) [-] forces in the bars (tension +) that balance without loads, the largest part of
-    each 1. `pairs` (b, 2) are the particles of the bars.
+    With b `bars`, the 6 forces of each of the `beams` less those that are released, f `free_axes`, of rotations as
+    well, and the `rank` r of the equilibrium matrix: b + 6 beams - released - r are the `self_stress_states`, and f - r
+    motions strain nothing to first order, of which `rigid_motions` move all as a whole and the others are its
+    `mechanisms`. `modes` (mechanisms, n, 3) [-] are those, at right angles to each other and to the rigid motions, and
+    `turns` (mechanisms, r, 3) [1/length] the rotation vectors of particles with orientations in them; `self_stresses`
+    (s, b) [-] forces in the bars (tension +) that balance without loads, the largest part of each 1, and
+    `beam_stresses` (s, beams, 6) in the beams: N, and Mt, My at both ends, Mz at both ends over the beam's length.
+    `pairs` (b, 2) are the particles of the bars.
     """
 
     bars: int
@@ -44,6 +48,9 @@ class Mechanisms:
     pairs: Ints = field(repr=False)
     particles: Floats = field(repr=False)
     units: Units = field(default_factory=Units)
+    beams: int = 0
+    turns: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)), repr=False)
+    beam_stresses: Floats = field(default_factory=lambda: np.zeros((0, 0, 6)), repr=False)
 
     @property
     def kind(self) -> str:
@@ -54,8 +61,9 @@ class Mechanisms:
 
     def summary(self) -> list[str]:
         """The counts, for a person."""
+        beams = f"{self.beams} beams, " if self.beams else ""
         return [
-            f"{self.bars} bars, {self.free_axes} free axes, rank {self.rank} of the equilibrium matrix",
+            f"{self.bars} bars, {beams}{self.free_axes} free axes, rank {self.rank} of the equilibrium matrix",
             f"mechanisms: {self.mechanisms}, rigid motions: {self.rigid_motions}",
             f"states of self-stress: {self.self_stress_states}",
             f"the net is {self.kind}",
@@ -63,8 +71,8 @@ class Mechanisms:
 
     def to_dict(self) -> dict[str, Any]:
         """As plain lists and numbers, by the names of the HTTP answer."""
-        counts = ("bars", "free_axes", "rank", "mechanisms", "rigid_motions", "self_stress_states", "kind")
-        arrays = ("modes", "self_stresses", "pairs", "particles")
+        counts = ("bars", "beams", "free_axes", "rank", "mechanisms", "rigid_motions", "self_stress_states", "kind")
+        arrays = ("modes", "turns", "self_stresses", "beam_stresses", "pairs", "particles")
         return {
             **{name: getattr(self, name) for name in counts},
             **{name: getattr(self, name).tolist() for name in arrays},
@@ -73,12 +81,13 @@ class Mechanisms:
 
 
 def mechanisms(model: Scene | Result) -> Mechanisms:
-    """Count the mechanisms and the states of self-stress of a net of bars, by the rank of its equilibrium matrix.
+    """Count the mechanisms and the states of self-stress of bars and beams, by the rank of their equilibrium matrix.
 
     Every element of two particles that acts along the line between them is a bar, in tension or compression, whatever
-    its stiffness. Forces of other kinds are left out. The shape is that of a result, or the start of a scene.
+    its stiffness; beams have six forces each, less those that are released. Forces of other kinds are left out. The
+    shape is that of a result, or the start of a scene.
 
-    Raises InputError where there are no bars, a bar has zero length, or the net is too large for dense matrices.
+    Raises InputError where there are neither, one has zero length, or there are too many for dense matrices.
     Source: Calladine, Buckminster Fuller's "tensegrity" structures and Clerk Maxwell's rules, 1978; Pellegrino and
     Calladine, Matrix analysis of statically and kinematically indeterminate frameworks, 1986.
     """
@@ -87,35 +96,46 @@ def mechanisms(model: Scene | Result) -> Mechanisms:
         raise InputError("model", f"a Scene or Result is expected, not a {type(model).__name__}")
     system = compile(scene)
     state = system.start()
-    x = np.asarray(model.particles) if isinstance(model, Result) else state.x
-    pairs = _bars(system)
+    if isinstance(model, Result):
+        system.slots.put(state, np.asarray(model.particles), model.rotations["quaternions"])
+    count, x, pairs, beams = system.slots.count, state.x, _bars(system), beam_places(system)
+    if not len(pairs) and not len(beams.ends):
+        raise InputError(
+            "model", "has no bars and no beams; add springs, beams or other elements along a line between two particles"
+        )
     free = state.free > 0.0
     touched = np.zeros(len(x), bool)
-    touched[pairs] = True
-    dofs = np.flatnonzero((free & touched[:, None]).ravel())
-    if max(len(dofs), len(pairs)) > LARGEST:
-        raise InputError("model", f"{len(pairs)} bars on {len(dofs)} free axes; at most {LARGEST} are supported")
-    matrix = _equilibrium(x, pairs)[dofs]
-    left, sizes, right = np.linalg.svd(matrix)
+    touched[pairs] = touched[beams.ends] = touched[beams.slots] = True
+    dofs, columns = np.flatnonzero((free & touched[:, None]).ravel()), len(pairs) + 6 * len(beams.ends)
+    if max(len(dofs), columns) > LARGEST:
+        raise InputError("model", f"{columns} forces on {len(dofs)} free axes; at most {LARGEST} are supported")
+    whole = np.hstack([_equilibrium(x, pairs), beam_columns(system, state, beams)])
+    kept = np.append(np.ones(len(pairs), bool), beams.kept.ravel())
+    left, sizes, right = np.linalg.svd(whole[dofs][:, kept])
     rank = int((sizes > RANK * sizes.max(initial=0.0)).sum()) if sizes.size else 0
-    loose, stress = left[:, rank:], right[rank:]
-    rigid = _rigid(x, dofs, ~free & touched[:, None])
+    loose, found = left[:, rank:], right[rank:]
+    rigid = _rigid(system, x, dofs, ~free & touched[:, None])
     inner = _apart(loose, rigid)
     modes = np.zeros((inner.shape[1], x.size))
     modes[:, dofs] = inner.T
-    stress = stress / np.abs(stress).max(axis=1, keepdims=True) if len(stress) else stress
+    modes = modes.reshape(-1, len(x), 3)
+    stress = np.zeros((len(found), columns))
+    stress[:, kept] = found / np.abs(found).max(axis=1, keepdims=True) if len(found) else found
     return Mechanisms(
         len(pairs),
         len(dofs),
         rank,
         inner.shape[1],
         rigid.shape[1],
-        len(pairs) - rank,
-        modes.reshape(-1, len(x), 3),
-        stress,
+        len(found),
+        modes[:, :count],
+        stress[:, : len(pairs)],
         pairs,
-        x,
+        x[:count],
         scene.units,
+        len(beams.ends),
+        modes[:, system.slots.first] / system.slots.lengths[:, None],
+        stress[:, len(pairs) :].reshape(len(found), len(beams.ends), 6),
     )
 
 
@@ -127,7 +147,7 @@ def _bars(system: Any) -> Ints:
             continue
         found += [(part.number, group.block.indices[part.rows]) for part in group.parts]
     if not found:
-        raise InputError("model", "has no bars; add springs or other elements along a line between two particles")
+        return np.zeros((0, 2), np.int64)
     return np.concatenate([pairs for _, pairs in sorted(found, key=lambda item: item[0])])
 
 
@@ -146,16 +166,20 @@ def _equilibrium(x: Floats, pairs: Ints) -> Floats:
     return matrix.reshape(3 * len(x), len(pairs))
 
 
-def _rigid(x: Floats, dofs: Ints, fixed: NDArray[np.bool_]) -> Floats:
-    """Motions (f, k) of the net as a whole that its supports allow, at right angles."""
-    middle = x - x.mean(axis=0)
+def _rigid(system: Any, x: Floats, dofs: Ints, fixed: NDArray[np.bool_]) -> Floats:
+    """Motions (f, k) of all as a whole that its supports allow, at right angles."""
+    slots = system.slots
+    count = slots.count
+    middle = x[:count] - x[:count].mean(axis=0)
     size = float(np.abs(middle).max(initial=0.0)) or 1.0
-    whole = np.zeros((x.size, 6))
+    whole = np.zeros((len(x), 3, 6))
     for axis in range(3):
-        whole[axis::3, axis] = 1.0
+        whole[:count, axis, axis] = 1.0
         turn = np.zeros(3)
         turn[axis] = 1.0
-        whole[:, 3 + axis] = np.cross(turn, middle / size).ravel()
+        whole[:count, :, 3 + axis] = np.cross(turn, middle / size)
+        whole[slots.first, axis, 3 + axis] = slots.lengths / size
+    whole = whole.reshape(x.size, 6)
     held = np.flatnonzero(fixed.ravel())
     _, sizes, ways = np.linalg.svd(whole[held]) if len(held) else (None, np.zeros(0), np.eye(6))
     count = int((sizes > RANK * max(sizes.max(initial=0.0), 1e-300)).sum())

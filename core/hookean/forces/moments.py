@@ -42,11 +42,20 @@ def moment_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-u
                 blocks[e, 3 + j, 3 + k] = -0.5 * (found[j, k] + found[k, j]) / (step * length)
 
 
+def moment_skew(block: Block) -> Floats:
+    """-M x / 2 between the turns of a slot, divided by the square of its length: f = (M + M x theta / 2) / l near 0."""
+    count, arity = block.indices.shape
+    found = np.zeros((count, 3 * arity, 3 * arity))
+    found[:, 3:6, 3:6] = np.cross(block.parameters[:, None, 1:4], np.eye(3))
+    found /= 2.0 * block.parameters[:, :1, None] ** 2
+    return found
+
+
 class Moments(Rider):
     """Moments M that keep their direction in space. Such a load has no energy: the work it does depends on the path.
 
     The kernel returns -M . theta, what it has done since the last reference but for terms of second order. The
-    symmetric part of its tangent is zero there, and the other part, M x / 2, is left out.
+    symmetric part of its tangent is zero there, and the other part, M x / 2, has a place of its own: `skew`.
     """
 
     kind_name: ClassVar[str] = "unary"
@@ -55,6 +64,7 @@ class Moments(Rider):
     zero: ClassVar[tuple[str, ...]] = ("moment",)
     kernel: ClassVar[Any] = staticmethod(moment_kernel)
     hessian: ClassVar[Any] = staticmethod(moment_hessian)
+    skew: ClassVar[Any] = staticmethod(moment_skew)
 
     @classmethod
     def of(cls, force: Any, block: Block) -> Block:

@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.linear import lopsided
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
@@ -49,12 +51,13 @@ class Factors:
         except RuntimeError:  # singular
             return None
 
-    def solve(self, values: Floats, b: Floats) -> Floats | None:
-        """x of A x = b (n, or fewer: see `Factor.solve`); None unless A is positive definite."""
+    def solve(self, values: Floats, b: Floats, skew: Any = None) -> Floats | None:
+        """x of A x = b (n, or fewer: see `Factor.solve`), or of (A + S) x = b with `skew` S, sparse; None unless A is
+        positive definite."""
         factor = self.factor(values)
         if factor is None or factor.negatives:
             return None
-        x = factor.solve(b)
+        x = factor.solve(b) if skew is None else lopsided.solve(factor.solve, skew, b)
         return x if np.isfinite(x).all() else None
 
     def _supernodal(self, lower: Any) -> Factor | None:

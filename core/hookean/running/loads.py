@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
+from hookean.forces.base import Rider
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -18,16 +19,23 @@ LEAST = 1e-9  # part of all its forces from which on a load has a resultant
 
 def applied(system: System, state: State, element_forces: list[Floats]) -> dict[str, Any]:
     """Columns with a row for each load of the scene, in its order: `force` (its number), `kind`, `name`, `resultant`
-    (k, 3) [force], `centre` (k, 3) [length] and `moment` about the centre (k, 3) [force length]. `element_forces`
-    (m, arity, 3) [force] of every group."""
+    (k, 3) [force], `centre` (k, 3) [length] and `moment` about the centre (k, 3) [force length], with the moments that
+    it puts on particles. `element_forces` (m, arity, 3) [force] of every group."""
     rows: dict[int, tuple[Floats, Floats, Floats]] = {}
+    turning: dict[int, Floats] = {}
     for group, forces in zip(system.groups, element_forces, strict=True):
         if group.cls.role != "load":
             continue
         for part in group.parts:
+            if issubclass(group.cls, Rider):  # what slots feel, times their length
+                own = forces[part.rows, 1] * group.block.parameters[part.rows, :1]
+                turning[part.number] = np.asarray(own.sum(axis=0))
+                continue
             at = state.x.take(group.block.indices[part.rows].ravel(), axis=0)
             rows[part.number] = resultant(forces[part.rows].reshape(-1, 3), at)
     numbers = sorted(rows)
+    for number, moment in turning.items():
+        rows[number][2][:] += moment
     found = [np.array([rows[number][i] for number in numbers]).reshape(-1, 3) for i in range(3)]
     scene = system.scene.forces
     return {

@@ -15,6 +15,7 @@ from hookean.scene.scene import Scene
 from hookean.solvers import Solver, solver
 from hookean.stability import time_steps
 from hookean.stability.equilibrium import assess
+from hookean.stability.exact_reactions import exact_reactions
 from hookean.system.impulses import ignored
 from hookean.system.state import State
 from hookean.system.system import System, compile
@@ -83,6 +84,8 @@ def relax_state(
     if not method.physical:
         state.v[:] = 0.0  # fictitious: nothing moved
     system.report.warnings += [note for note in watch.notes if note not in system.report.warnings]
+    if status is Status.CONVERGED and not method.physical:
+        watch.found = replace(watch.found, reactions=exact_reactions(system, state, watch.found))
     used = getattr(method, "used", None)
     name = f"auto: {', '.join(used) or 'nothing to do'}" if used is not None else method.name
     message = watch.sentence(system, status)

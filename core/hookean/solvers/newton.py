@@ -1,8 +1,9 @@
 """Newton: steps with the exact tangent stiffness, shifted until it is positive definite, with a line search.
 
 (K + s W) dx = f on the free axes, W the stiffness that particles feel. The shift s grows where the tangent is not
-definite or a step fails and fades where steps succeed, so that the last digits come quadratically. Where steps come to
-an equilibrium from which the energy falls to second order, the run leaves it and goes on.
+definite or a step fails and fades where steps succeed, so that the last digits come quadratically. Where loads without
+an energy make the tangent unsymmetric, a step solves with the whole of it. Where steps come to an equilibrium from
+which the energy falls to second order, the run leaves it and goes on.
 Source: Nocedal and Wright, Numerical Optimization, 2006, chapters 3 and 4.
 """
 
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.linear.film_tangent import patterned
+from hookean.linear.lopsided import lopsided
 from hookean.linear.pattern import Pattern
 from hookean.solvers.base import Solver
 
@@ -55,6 +57,8 @@ class Method(Solver):
         free = _movable(system, state)
         if not free.any():
             return 0
+        if len(system.slots):
+            system.slots.fold(state)
         now, done, helped = Judged.of(system, state), 0, False
         while done < count and now.largest > goal:
             self.pattern = patterned(system, state, free, self.pattern)
@@ -103,13 +107,15 @@ class Judged:
 
 
 def _step(pattern: Pattern, system: System, state: State, left: Floats, shift: float) -> tuple[Floats | None, float]:
-    """The step of the smallest shift, from this one on, that makes the tangent positive definite."""
+    """The step of the smallest shift, from this one on, that makes the symmetric part of the tangent positive
+    definite."""
     values = pattern.tangent(system, state)
     rhs, unit = pattern.gather(left), state.scratch["unit"][pattern.dofs // 3]
+    skew = lopsided(system, pattern.dofs)
     while shift <= 1e4:
         shifted = values.copy()
         shifted[pattern.diagonal] += shift * unit
-        solution = pattern.factors.solve(shifted, rhs)
+        solution = pattern.factors.solve(shifted, rhs, skew)
         if solution is not None:
             return pattern.spread(solution), shift
         shift = max(shift * 10.0, NO_SHIFT)

@@ -51,6 +51,7 @@ def freeze_form(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> D
         ],
         "films": list(frozen.films),
         "expansions": list(frozen.expansions.items()),
+        "temperatures": list(frozen.temperatures.items()),
     }
     lines = json.dumps(head).encode(), answers.dump(frozen.form.to_dict(), "list"), answers.dump(model, "list")
     return Done(b"\n".join(lines), timing=clock.parts)
@@ -68,6 +69,7 @@ def solve_one(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Don
         tensions={line["force"]: np.array(line["tension"], dtype=float) for line in lines},
         films=tuple(value["films"]),
         expansions=dict(value["expansions"]),
+        temperatures={number: np.array(own, dtype=float) for number, own in value["temperatures"]},
         rotations=np.array(value["rotations"], dtype=float).reshape(-1, 4),
     )
     try:

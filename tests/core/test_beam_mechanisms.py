@@ -1,0 +1,119 @@
+"""Mechanisms and states of self-stress of frames of beams, against textbooks and against the tangents of the beams."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import hookean
+from hookean import InputError, Scene
+from hookean.analysis.matrices import Unknowns
+from hookean.system.system import compile
+
+from .beam_scenes import SLENDER
+from .beam_scenes import row as beams
+
+Spec = dict[str, Any]
+CORNERS = [[0, 0, 0], [0, 0, 3], [4, 0, 3], [4, 0, 0]]
+LINE = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
+
+
+def frame(x: Any, pairs: Any, *anchors: Spec, more: Any = (), **given: Any) -> Scene:
+    """Beams between pairs of particles, and what stands beside them."""
+    beam = {"kind": "beam", "particles": pairs, **SLENDER, **given}
+    return Scene.read({"particles": x, "forces": [beam, *more], "anchors": list(anchors)})
+
+
+def clamp(*particles: int) -> Spec:
+    return {"particles": list(particles), "rotations": "xyz"}
+
+
+@pytest.mark.parametrize(
+    ("scene", "counts"),
+    [
+        (frame(LINE[:2], [[0, 1]]), (0, 6, 0)),  # afloat
+        (frame(LINE, [[0, 1], [1, 2]], clamp(0)), (0, 0, 0)),  # a cantilever
+        (frame(LINE, [[0, 1], [1, 2]], clamp(0, 2)), (0, 0, 6)),
+        (frame(CORNERS, [[0, 1], [1, 2], [2, 3]], clamp(0, 3)), (0, 0, 6)),  # a portal on clamps
+        (frame(CORNERS, [[0, 1], [1, 2], [2, 3]], {"particles": [0, 3]}), (0, 1, 1)),  # on balls: the thrust
+        (frame(CORNERS, [[0, 1], [1, 2], [2, 3], [3, 0]]), (0, 6, 6)),  # a ring afloat: one cut, six forces
+        # hinges about y at both clamps and one between them: it buckles through, and is stressed along itself
+        (frame(LINE, [[0, 1], [1, 2]], clamp(0, 2), release_start="y", release_end="y"), (2, 0, 4)),
+        # a bar props a cantilever
+        (frame(LINE, [[0, 1]], clamp(0), {"particles": [2]}, more=[{"kind": "springs", "particles": [[1, 2]]}]),
+         (0, 0, 1)),
+    ],
+)  # fmt: skip
+def test_counts_of_frames(scene: Scene, counts: tuple[int, int, int]) -> None:
+    """Mechanisms, motions as a whole, states of self-stress, and Maxwell's rule between them. Of two beams hinged about
+    y at each end the middle moves along z, and turns about y, two mechanisms; along x and about x both are clamped,
+    and so they are in the other plane."""
+    found = hookean.mechanisms(scene)
+    assert (found.mechanisms, found.rigid_motions, found.self_stress_states) == counts
+    assert found.turns.shape[0] == counts[0] and found.beam_stresses.shape[0] == counts[2]
+
+
+def tangled(seed: int) -> Scene:
+    """A random frame of beams with and without hinges and eccentric ends, and bars, on a random support."""
+    rng = np.random.default_rng([77, seed])
+    n = int(rng.integers(4, 8))
+    x = rng.normal(size=(n, 3))
+    pairs = [[i, int(rng.integers(0, i))] for i in range(1, n)] + [[0, n - 1]] * (rng.random() < 0.5)
+    half = max(1, len(pairs) // 2)
+    first = {**beams(0, normal=rng.normal(size=3)), "particles": pairs[:half]}
+    first["offset_end"] = 0.1 * rng.normal(size=3)
+    second = {**beams(0, normal=rng.normal(size=3)), "particles": pairs[half:]}
+    second["release_start"], second["release_end"] = rng.choice(["", "y", "z", "yz", "xyz"]), rng.choice(["", "y"])
+    bars = {"kind": "springs", "particles": [[0, n - 2], [1, n - 1]]}
+    held = [{"particles": [0], "rotations": str(rng.choice(["", "x", "xyz"]))}, {"particles": [n - 1], "axes": "z"}]
+    return Scene.read({"particles": x, "forces": [first, second, bars], "anchors": held})
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_what_strains_nothing_meets_no_stiffness(seed: int) -> None:
+    """At the start nothing is stressed, so the tangent K = C D C^T of the equilibrium matrix C and positive
+    stiffnesses D: as many motions meet none as the rank says, the modes are such motions, and there are as many
+    states of self-stress as forces more than the rank. Eigenvalues of K are at least 1e-6 of the largest, or
+    rounding."""
+    scene = tangled(seed)
+    found = hookean.mechanisms(scene)
+    system = compile(scene)
+    state = system.start()
+    unknowns = Unknowns.of(system, state, state.free)
+    tangent = unknowns.tangent(system, state).toarray()
+    values = np.linalg.eigvalsh(tangent)
+    none = int((np.abs(values) < 1e-9 * values.max()).sum())
+    assert len(tangent) == found.free_axes
+    assert found.mechanisms + found.rigid_motions == none
+    released = sum("x" in f.release_start + f.release_end for f in scene.forces[:2] for _ in f.particles)
+    released += sum(len(set(end) & {"y", "z"}) * len(f.particles) for f in scene.forces[:2]
+                    for end in (f.release_start, f.release_end))  # fmt: skip
+    assert found.self_stress_states == found.bars + 6 * found.beams - released - found.rank
+    for mode, turn in zip(found.modes, found.turns, strict=True):
+        moved = np.concatenate([mode, turn * system.slots.lengths[:, None], np.zeros_like(turn)])
+        assert np.abs(tangent @ unknowns.gather(moved)).max() < 1e-9 * values.max()
+
+
+def test_self_stresses_are_forces_of_bars_and_beams() -> None:
+    """A cantilever propped along itself: the bar pulls as the beam does, and nothing else is stressed."""
+    prop = {"kind": "springs", "particles": [[1, 2]]}
+    found = hookean.mechanisms(frame(LINE, [[0, 1]], clamp(0), {"particles": [2]}, more=[prop]))
+    stress = found.self_stresses[0, 0]
+    np.testing.assert_allclose(found.beam_stresses[0, 0], [stress, 0, 0, 0, 0, 0], atol=1e-12)
+    assert "1 beams" in found.summary()[0] and found.to_dict()["beams"] == 1
+
+
+def test_a_result_counts_in_its_shape() -> None:
+    """A frame that has turned and bent far is as determinate as before."""
+    push = {"kind": "unary", "particles": [2], "vector": [0.3, 0.5, -0.8]}
+    bent = hookean.relax(frame(LINE, [[0, 1], [1, 2]], clamp(0), more=[push]))
+    found = hookean.mechanisms(bent)
+    assert (found.mechanisms, found.rigid_motions, found.self_stress_states) == (0, 0, 0)
+    np.testing.assert_array_equal(found.particles, bent.particles)
+
+
+def test_nothing_to_count_is_one_sentence() -> None:
+    with pytest.raises(InputError, match="no bars and no beams; add springs"):
+        hookean.mechanisms(Scene.read({"particles": [[0, 0, 0]]}))
