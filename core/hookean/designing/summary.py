@@ -11,7 +11,6 @@ from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.gains import Gains, gains
 from hookean.designing.limits import AT_BOUND, LIMIT, beyond
 from hookean.designing.sensitivity import warnings
-from hookean.designing.unknowns import Moved
 
 if TYPE_CHECKING:
     from hookean.designing.equilibrium import Equilibrium
@@ -101,7 +100,7 @@ def _shaped(variable: Any, own: Any) -> Any:
     shape = variable.shape
     if variable.variable.tie == "all" and len(own) == 1:
         return own[0].item()
-    if isinstance(variable, Moved) and variable.shifts and len(shape) == 2 and shape[0] == 1:
+    if getattr(variable, "shifts", False) and len(shape) == 2 and shape[0] == 1:
         return own
     return own.reshape(shape)
 

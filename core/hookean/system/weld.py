@@ -114,7 +114,7 @@ class Welded:
     def recompile(self, number: int, force: Force) -> Block:
         """The block of a changed force that stays where force `number` of the scene was."""
         first = self.scene.forces[number]
-        if number in self._patched:
+        if number in self._patched and self._patched[number] is not first:
             gone = id(self._patched[number])
             self._rows.pop(gone, None)
             self._pointer.pop(gone, None)
