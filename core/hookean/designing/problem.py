@@ -32,7 +32,7 @@ else:
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 PARTICLES = ("drawn", "mass")
-METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp")
+METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp", "augmented_lagrangian")
 
 
 class Drive(Model):
@@ -48,8 +48,8 @@ class Variable(Model):
     rest lengths and angles are measured, and their mass. Values have the scene's units.
 
     `tie` makes one unknown of all elements (`all`), of each list of elements, or one of each element (`each`); elements
-    in no list keep their values. What is tied of an anchor or a drawn form moves as a whole: its value is the shift. What a variable
-    `drives` follows it: the area of a bar its stiffness, with E as factor, and its weight.
+    in no list keep their values. What is tied of an anchor or a drawn form moves as a whole: its value is the shift.
+    What a variable `drives` follows it: the area of a bar its stiffness, with E as factor, and its weight.
     """
 
     name: str = Field(default="", description="Name in the answer; default: what varies")
@@ -159,7 +159,8 @@ def _split(value: Any, own: tuple[str, ...]) -> Any:
 
 class DesignSettings(Model):
     """How to search. `auto` takes least squares where all goals have targets and nothing is constrained (of many
-    unknowns and values by Levenberg and Marquardt, sparse), L-BFGS-B without targets, SLSQP with constraints."""
+    unknowns and values by Levenberg and Marquardt, sparse), L-BFGS-B without targets, SLSQP with constraints, an
+    augmented Lagrangian with more than 100 values of these."""
 
     method: Literal[METHODS] = Field(default="auto", description="Method; auto selects one and reports which")  # type: ignore[valid-type]
     tolerance: float = Field(default=1e-8, gt=0, le=1, description="Relative change at which the search ends [-]")

@@ -1,8 +1,8 @@
 """The search: variables of a scene for which its equilibrium meets goals and constraints.
 
 Where all goals have targets least squares by trust regions with bounds (Branch, Coleman and Li 1999), where some are
-minimised L-BFGS-B (Byrd and others 1995), with constraints sequential quadratic programming (Kraft 1988); all from
-SciPy, with exact derivatives through equilibrium.
+minimised L-BFGS-B (Byrd and others 1995), with constraints sequential quadratic programming (Kraft 1988), all from
+SciPy, and with many constraints an augmented Lagrangian, with exact derivatives through equilibrium.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from hookean.system.system import System, compile
 
 Floats = NDArray[np.float64]
 FAR = 1e3  # of its size: an unknown there that is no minimum has no end
+LIMITS = 100  # values of constraints, above which steps with all of them at once take long
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
@@ -63,7 +64,7 @@ class Search:
         self.found: Equilibrium | None = None
         self._at: Floats | None = None
         self._resting: Floats | None = None
-        self.evaluations = 0
+        self.evaluations, self.used = 0, ""
         self.best: tuple[float, float, Floats] = (np.inf, np.inf, self.unknowns.start.copy())
         self.first = self.at(np.zeros(self.unknowns.count))
         self.aims = Aims(problem, self.first)
@@ -202,13 +203,13 @@ def design(
     else:
         try:
             iterations, ended, said = METHODS[method](search)
-            if method in ("l-bfgs-b", "slsqp"):
+            if method in ("l-bfgs-b", "slsqp", "augmented_lagrangian"):
                 search.check_end()
         except Stopped:
             ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
         except Unbounded as error:
             ended, said = DesignStatus.UNBOUNDED, f"The objective falls without end: {error}."
-    return answer(search, method, iterations or search.evaluations, ended, said)
+    return answer(search, search.used or method, iterations or search.evaluations, ended, said)
 
 
 def chosen(search: Search) -> str:
@@ -217,12 +218,18 @@ def chosen(search: Search) -> str:
     wanted = problem.settings.method
     aimed = all(goal.aimed for goal in problem.goals)
     if wanted == "auto":
-        if problem.constraints or not aimed:
-            return "slsqp" if problem.constraints else "l-bfgs-b"
+        if problem.constraints:
+            limits = sum(len(low) for low, _ in search.aims.limits)
+            return "augmented_lagrangian" if limits > LIMITS else "slsqp"
+        if not aimed:
+            return "l-bfgs-b"
         values = len(search.aims.weights(search.first))
         return "levenberg_marquardt" if min(values, search.unknowns.count) > MANY else "least_squares"
-    if problem.constraints and wanted != "slsqp":
-        raise InputError("/settings/method", f"{wanted} takes no constraints; choose slsqp or auto")
+    if problem.constraints and wanted not in ("slsqp", "augmented_lagrangian"):
+        said = f"{wanted} takes no constraints; choose slsqp, augmented_lagrangian or auto"
+        raise InputError("/settings/method", said)
+    if wanted == "augmented_lagrangian" and not problem.constraints:
+        raise InputError("/settings/method", f"{wanted} needs constraints; choose l-bfgs-b or auto")
     if wanted in ("least_squares", "levenberg_marquardt") and not aimed:
         raise InputError("/settings/method", f"{wanted} needs a target for each goal; choose l-bfgs-b or auto")
     return str(wanted)

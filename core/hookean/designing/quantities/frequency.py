@@ -26,7 +26,8 @@ STEP = 1e-4  # of an element's size: the tangent's derivative by differences, to
 class Frequency(Quantity):
     """A natural frequency of the shape with the masses of the scene [1/time]: K phi = (2 pi f)² M phi.
 
-    Its derivative is phi . (dK - (2 pi f)² dM) phi / (8 pi² f), for phi . M phi = 1, where no other mode has the same frequency.
+    Its derivative is phi . (dK - (2 pi f)² dM) phi / (8 pi² f), for phi . M phi = 1, where no other mode
+    has the same frequency.
     Source: Fox and Kapoor, "Rates of change of eigenvalues and eigenvectors", 1968.
     """
 
