@@ -107,7 +107,7 @@ class Penalised:
 def augmented(search: Search, taken: int = 0) -> tuple[int, DesignStatus]:
     """Search from the best so far; iterations, which are rounds, with those `taken` before, and how it ended."""
     settings = search.problem.settings
-    y = np.clip(search.best[2], *search.bounds)
+    y = np.clip(search.best[2], *search.edges)
     round_ = Penalised(search, abs(search.objective(y)) or 1.0)
     squares = all(goal.aimed for goal in search.problem.goals)
     before, tolerance = np.inf, max(1e-4, settings.tolerance)
@@ -135,7 +135,7 @@ def augmented(search: Search, taken: int = 0) -> tuple[int, DesignStatus]:
 
 def _squares(round_: Penalised, y: Floats) -> Floats:
     """The end of a round by least squares."""
-    return levenberg(round_, *round_.search.bounds, start=y).y
+    return levenberg(round_, *round_.search.edges, start=y).y
 
 
 def _smooth(round_: Penalised, y: Floats) -> Floats:
@@ -145,7 +145,7 @@ def _smooth(round_: Penalised, y: Floats) -> Floats:
     most, tolerance = round_.problem.settings.max_iterations, round_.problem.settings.tolerance
     found = minimize(
         round_.objective, y, jac=round_.gradient, method="L-BFGS-B",
-        bounds=list(zip(*round_.search.bounds, strict=True)),
+        bounds=list(zip(*round_.search.edges, strict=True)),
         options={"maxiter": most, "ftol": 1e-3 * tolerance, "gtol": 1e-2 * tolerance, "maxcor": 30,
                  "maxfun": 20 * most},
     )  # fmt: skip

@@ -76,7 +76,7 @@ def _lbfgsb(search: Search) -> Ended:
     while True:
         found = minimize(
             search.objective, start, jac=search.gradient, method="L-BFGS-B",
-            bounds=list(zip(*search.bounds, strict=True)),
+            bounds=list(zip(*search.edges, strict=True)),
             options={"maxiter": settings.max_iterations - taken, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12,
                      "maxcor": 30, "maxfun": 20 * settings.max_iterations},
         )  # fmt: skip
@@ -137,7 +137,7 @@ def _slsqp(search: Search) -> Ended:
     from scipy.optimize import minimize
 
     settings, start, iterations = search.problem.settings, np.zeros(search.unknowns.count), 0
-    bounds = list(zip(*search.bounds, strict=True))
+    bounds = list(zip(*search.edges, strict=True))
     before = np.inf
     for _ in range(ATTEMPTS):
         size = abs(search.objective(start)) or 1.0

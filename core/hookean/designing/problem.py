@@ -160,7 +160,7 @@ def _split(value: Any, own: tuple[str, ...]) -> Any:
 class DesignSettings(Model):
     """How to search. `auto` takes least squares where all goals have targets and nothing is constrained (of many
     unknowns and values by Levenberg and Marquardt, sparse), L-BFGS-B without targets, SLSQP with constraints, an
-    augmented Lagrangian with more than 100 values of these."""
+    augmented Lagrangian with many values of these."""
 
     method: Literal[METHODS] = Field(default="auto", description="Method; auto selects one and reports which")  # type: ignore[valid-type]
     tolerance: float = Field(default=1e-8, gt=0, le=1, description="Relative change at which the search ends [-]")
