@@ -82,10 +82,10 @@ def test_a_start_that_is_a_minimum_is_not_taken_for_a_saddle() -> None:
 
 
 def test_a_shape_that_a_relaxation_does_not_find_is_reported() -> None:
-    """Two stiff bars as an arch, pulled up at first: as the load falls and turns they stay above, while from the drawn
-    shape the arch snaps through."""
+    """Two stiff bars drawn below their supports and pulled through them: as the load falls to 0 they stay above, while
+    from the drawn shape they stay below, twice as far as they are from the line of the supports."""
     scene = {
-        "particles": [[-1, 0, 0], [0, 0, 0.3], [1, 0, 0]],
+        "particles": [[-1, 0, 0], [0, 0, -0.3], [1, 0, 0]],
         "forces": [
             {"kind": "springs", "name": "s", "particles": [[0, 1], [1, 2]], "stiffness": 100, "rest_length": 1.1},
             {"kind": "unary", "name": "l", "particles": [1], "vector": [0, 0, 20.0]},
@@ -94,7 +94,7 @@ def test_a_shape_that_a_relaxation_does_not_find_is_reported() -> None:
     }
     variable = {"force": "l", "field": "vector", "axes": "z", "tie": "all"}
     found = design({"scene": scene, "variables": [variable], "goals": [level(target=0.44)]})
-    assert found.goals[0]["met"] and any("another equilibrium" in said for said in found.warnings)
+    assert found.goals[0]["value"] > 0.0 and any("another equilibrium" in said for said in found.warnings)
 
 
 def test_constraints_that_contradict_one_another_are_named() -> None:
