@@ -31,7 +31,7 @@ KINDS = (
     "frequency",
 )
 AXES = ("x", "y", "z", "xy", "xz", "yz", "xyz")
-METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp")
+METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp", "augmented_lagrangian")
 TIES = ("each", "all")
 _searches = {}  # by component in an open document
 

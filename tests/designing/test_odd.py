@@ -36,6 +36,67 @@ def test_an_objective_without_end_is_reported() -> None:
     assert np.isfinite(found.result.particles).all() and np.isfinite(found.objective)
 
 
+@pytest.mark.parametrize("constrained", [False, True])
+@pytest.mark.parametrize(
+    ("variable", "name"),
+    [
+        ({"force": "load", "field": "vector", "axes": "z"}, "load.vector"),
+        ({"anchor": "left", "axes": "z"}, "anchor left"),
+        ({"particles": [1], "field": "drawn"}, "drawn position"),
+        ({"force": "string", "field": "stiffness", "tie": "all"}, "string.stiffness"),
+    ],
+)
+def test_each_variable_that_has_no_end_is_named(variable: dict[str, Any], name: str, constrained: bool) -> None:
+    """Larger loads, lower anchors, longer drawn strings and softer ones let the middle down as far as one likes."""
+    scene = cable()
+    if "particles" in variable:
+        del scene["forces"][0]["rest_length"]
+    beside = [{"kind": "position", "particles": [1], "axes": "x", "lower": -100}] if constrained else []
+    found = design({"scene": scene, "variables": [variable], "goals": [level()], "constraints": beside})
+    assert found.status == "unbounded" and name in found.message
+    assert np.isfinite(found.result.particles).all() and np.isfinite(found.objective)
+
+
+def straight(height: float, **more: Any) -> dict[str, Any]:
+    """A string whose lengths are measured from a drawn middle, and its sag as the goal."""
+    scene = cable()
+    scene["particles"][1] = [0, 0, height]
+    scene["forces"][0] = {"kind": "springs", "name": "string", "particles": [[0, 1], [1, 2]], "stiffness": 1000}
+    variable = {"particles": [1], "field": "drawn", "axes": "z"}
+    return {"scene": scene, "variables": [variable], "goals": [level(target=-0.7)], **more}
+
+
+def test_a_start_that_is_stationary_by_symmetry_is_reported() -> None:
+    """Drawn straight, the string gets longer whichever way its middle is drawn: the derivative is 0, and no goal is
+    met. A little below the line the search arrives."""
+    found = design(straight(0.0))
+    assert found.status == "stalled" and "stationary by symmetry" in found.message
+    assert design(straight(-0.05)).goals[0]["met"]
+
+
+def test_a_start_that_is_a_minimum_is_not_taken_for_a_saddle() -> None:
+    """The goal is nearest at the start, where its derivative is 0: a sag of less than that of a straight string."""
+    problem = straight(0.0)
+    problem["goals"][0]["target"] = 0.0
+    assert design(problem).status == "converged"
+
+
+def test_a_shape_that_a_relaxation_does_not_find_is_reported() -> None:
+    """Two stiff bars drawn below their supports and pulled through them: as the load falls to 0 they stay above, while
+    from the drawn shape they stay below, twice as far as they are from the line of the supports."""
+    scene = {
+        "particles": [[-1, 0, 0], [0, 0, -0.3], [1, 0, 0]],
+        "forces": [
+            {"kind": "springs", "name": "s", "particles": [[0, 1], [1, 2]], "stiffness": 100, "rest_length": 1.1},
+            {"kind": "unary", "name": "l", "particles": [1], "vector": [0, 0, 20.0]},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+    }
+    variable = {"force": "l", "field": "vector", "axes": "z", "tie": "all"}
+    found = design({"scene": scene, "variables": [variable], "goals": [level(target=0.44)]})
+    assert found.goals[0]["value"] > 0.0 and any("another equilibrium" in said for said in found.warnings)
+
+
 def test_constraints_that_contradict_one_another_are_named() -> None:
     """Two heights of one particle: least squares of what is missed leave both halfway, and the sentence names both."""
     constraints = [level(lower=z, upper=z, name=name) for z, name in ((-0.5, "high"), (-0.9, "low"))]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
+from hookean.designing.readers import readers
 from hookean.errors import InputError
 from hookean.forces.base import PLACES, Block, Force, Rider
 from hookean.running.patch import changed_forces
@@ -21,7 +22,7 @@ from hookean.scene.catalogue import unit
 from hookean.scene.scene import Scene
 from hookean.system.group import Group, Part, fitted, ride
 from hookean.system.system import System
-from hookean.system.weld import element_columns
+from hookean.system.weld import element_columns, takes_a_vector
 
 if TYPE_CHECKING:
     from hookean.designing.problem import Variable
@@ -32,6 +33,7 @@ Give = Callable[[Force | None, Block], Floats]
 
 STEP = 1e-5  # of a value, and of the mean of its column: the error is its square, and rounding 1e-11
 JUMP = 1e-9  # part of the values: what is less is rounding
+MANY = 40  # unknowns of a force as a whole, above which it pays to find the elements that each number changes
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
@@ -81,8 +83,8 @@ def tied(variable: Variable, rows: int, columns: Ints, width: int, pointer: str)
 
 
 class Column:
-    """A variable that is a column of a force: `entries` with a row for each element, or with all numbers of a column
-    that the force has as a whole in one row."""
+    """A variable that is a column of a force: `entries` with a row for each element, or as many as the force has of a
+    column that it takes as a whole: one for each face, vertex or point, or one alone."""
 
     def __init__(self, variable: Variable, system: System, pointer: str, factor: float = 1.0) -> None:
         self.variable, self.pointer, self.factor = variable, pointer, factor
@@ -96,22 +98,19 @@ class Column:
             raise InputError(f"{pointer}/field", said)
         self.given_shape = given.shape
         self.by_element = vector is not None and self._by_element(system, given, vector)
-        wide = self.by_element and (vector or given.ndim == 2)
-        columns = np.array([AXES[a] for a in variable.axes]) if wide else np.array([0])
         if self.by_element:
+            wide = 3 if vector or given.ndim == 2 else 1
             rows = 1 if variable.tie == "all" and given.ndim == int(bool(vector)) else self.elements
-            values = np.array(
-                np.broadcast_to(
-                    given if given.ndim == 2 else given.reshape(-1, 3 if wide else 1), (rows, 3 if wide else 1)
-                )
-            )
-            tie = tied(variable, rows, columns, values.shape[1], pointer)
+            values = np.array(np.broadcast_to(given if given.ndim == 2 else given.reshape(-1, wide), (rows, wide)))
         else:
-            values = given.reshape(1, -1).copy()
-            tie = np.zeros(values.shape, np.int64) if variable.tie == "all" else np.arange(values.size).reshape(1, -1)
-        self.entries = Entries(values, tie)
-        self.shape = shape_of(len(columns), self.entries.count, wide)
+            several = given.ndim > 1 or (given.ndim == 1 and takes_a_vector(type(self.force), variable.field))
+            wide = given.shape[-1] if several else 1
+            values = given.reshape(-1, wide).copy()
+        columns = np.array([AXES[a] for a in variable.axes]) if wide == 3 else np.arange(wide)
+        self.entries = Entries(values, tied(variable, len(values), columns, wide, pointer))
+        self.shape = shape_of(len(columns), self.entries.count, wide > 1)
         self.lower = self._least(system)
+        self._readers: list[Ints | None] = []
 
     @property
     def force(self) -> Force:
@@ -206,10 +205,52 @@ class Column:
                 slope, unknown = self.slope(system, change, give), np.broadcast_to(tie[:, column], self.elements)
                 by = np.broadcast_to(steps, self.elements)[self.part.inputs]
                 yield unknown[self.part.inputs], self.factor * slope / by.reshape(-1, *[1] * (slope.ndim - 1))
+        if not self.by_element and self.entries.count > MANY:
+            found = self._by_readers(system, give)
+            if found is not None:
+                yield from found
+                return
         for number in range(self.entries.count) if not self.by_element else ():
             step = self.step(number)
             slope = self.slope(system, np.where(tie == number, step, 0.0), give)
             yield np.full(len(slope), number), self.factor * slope / step
+
+    def _by_readers(self, system: System, give: Give) -> list[tuple[Ints, Floats]] | None:
+        """The same of a column that the force takes as a whole, where each element reads one number of each of its
+        columns at most: all numbers of a column change at once. None where elements read several."""
+        if not self._readers:
+            wide = self.entries.values.shape[1]
+            alike = self._read(system, list(range(wide)))  # one row of all columns, such as the face of an element
+            self._readers = [self._read(system, [i]) if alike is None else alike for i in range(wide)]
+        found = []
+        for column, own in enumerate(self._readers):
+            tie = self.entries.tie[:, column]
+            if not (tie >= 0).any():
+                continue
+            if own is None:
+                return None
+            steps, change = self._steps(column), np.zeros(self.entries.values.shape)
+            change[:, column] = np.where(tie >= 0, steps, 0.0)
+            slope, reads = self.slope(system, change, give), own >= 0
+            if slope[~reads].any():  # what other variables multiply by 0 at the first shape
+                self._readers = []
+                return self._by_readers(system, give)
+            by = np.where(reads, steps[own], 1.0).reshape(-1, *[1] * (slope.ndim - 1))
+            found.append((np.where(reads, tie[own], -1), self.factor * slope / by))
+        return found
+
+    def _read(self, system: System, columns: list[int]) -> Ints | None:
+        """The row of the entries from which each element has its numbers of some columns."""
+        values, steps = self.entries.values, np.zeros(self.entries.values.shape)
+        for column in columns:
+            steps[:, column] = self._steps(column)
+
+        def parameters(some: NDArray[np.bool_]) -> Floats:
+            moved = values + np.where(some[:, None], steps, 0.0)
+            return compiled(system, self.group, self.number, self._with(system.scene, moved)).parameters
+
+        whole = parameters(np.zeros(len(values), dtype=bool))
+        return readers(len(values), lambda some: (parameters(some) != whole).any(axis=1))
 
     def _steps(self, column: int) -> Floats:
         """Changes of the numbers (m,) of the column, small for derivatives."""

@@ -8,16 +8,13 @@ solving nonlinear equations with convex constraints", 2004.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.answer import DesignStatus
 from hookean.designing.linearised import Linearised
-
-if TYPE_CHECKING:
-    from hookean.designing.search import Search
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -29,42 +26,67 @@ PASSES = 4  # of one step, each with more unknowns held at bounds
 ROUNDING = 1e-15  # of the targets: residuals below are nothing
 
 
-def levenberg(search: Search, lower: Floats, upper: Floats) -> tuple[int, DesignStatus]:
-    """Search from zero between bounds; iterations, and how it ended."""
+class Squared(Protocol):
+    """What is minimised: residuals by scaled unknowns, and their derivatives."""
+
+    problem: Any
+    unknowns: Any
+    aims: Any
+    at: Any
+
+    def residuals(self, y: Floats) -> Floats:
+        """Residuals (k,)."""
+        ...
+
+    def linearised(self, y: Floats) -> Linearised:
+        """Their derivatives."""
+        ...
+
+
+class Ended(NamedTuple):
+    """Iterations, how a search ended, and the scaled unknowns there."""
+
+    iterations: int
+    status: DesignStatus
+    y: Floats
+
+
+def levenberg(search: Squared, lower: Floats, upper: Floats, start: Floats | None = None) -> Ended:
+    """Search from zero or a start between bounds."""
     settings = search.problem.settings
-    y = np.clip(np.zeros(search.unknowns.count), lower, upper)
+    y = np.clip(np.zeros(search.unknowns.count) if start is None else start, lower, upper)
     r, factor, unit = search.residuals(y), 1.0, 0.0
     nothing = (settings.tolerance * 1e-2 * search.aims.size) ** 2
     for iteration in range(settings.max_iterations):
         cost = float(r @ r)
         if cost <= max(nothing, (ROUNDING * search.aims.size) ** 2):
-            return iteration, DesignStatus.CONVERGED
+            return Ended(iteration, DesignStatus.CONVERGED, y)
         model = search.linearised(y)
         slope = model.transposed(r)
         held = ((y <= lower) & (slope > 0.0)) | ((y >= upper) & (slope < 0.0)) | (lower >= upper)
         reach = float(np.abs(np.where(held, 0.0, slope)).max(initial=0.0))
         if not reach > ROUNDING * cost:
-            return iteration, DesignStatus.CONVERGED
+            return Ended(iteration, DesignStatus.CONVERGED, y)
         unit = unit or START * float(slope @ slope) / cost
-        found, start = None, factor
+        found, first = None, factor
         while found is None and factor <= MOST:
             found = _better(search, model, r, y, unit * factor, held, (lower, upper))
             if found is None:
                 factor *= 10.0
         if found is None:
-            return iteration, DesignStatus.CONVERGED  # no step of any length leads further
+            return Ended(iteration, DesignStatus.CONVERGED, y)  # no step of any length leads further
         new, r_new, quality = found
-        fall = BOLD if factor == start else GENTLE  # in a long valley each bold fall costs steps that are refused
+        fall = BOLD if factor == first else GENTLE  # in a long valley each bold fall costs steps that are refused
         factor = max(factor * (fall if quality > 0.7 else GENTLE if quality > 0.25 else 2.0), LEAST)
         fell, moved = cost - float(r_new @ r_new), float(np.abs(new - y).max(initial=0.0))
         y, r = new, r_new
         if fell <= settings.tolerance * cost and quality > 0.25 and moved <= np.sqrt(settings.tolerance):
-            return iteration + 1, DesignStatus.CONVERGED
-    return settings.max_iterations, DesignStatus.MAX_ITERATIONS
+            return Ended(iteration + 1, DesignStatus.CONVERGED, y)
+    return Ended(settings.max_iterations, DesignStatus.MAX_ITERATIONS, y)
 
 
 def _better(
-    search: Search, model: Linearised, r: Floats, y: Floats, damping: float, held: Bools, bounds: tuple[Floats, Floats]
+    search: Squared, model: Linearised, r: Floats, y: Floats, damping: float, held: Bools, bounds: tuple[Floats, Floats]
 ) -> tuple[Floats, Floats, float] | None:
     """A step that lowers the objective: new unknowns, residuals, and the fall by that of the linear model."""
     new = _cut_step(model, r, y, damping, held, bounds)

@@ -1,4 +1,4 @@
-"""Particles of goals and constraints that are named by the points where they are drawn."""
+"""Particles of variables, goals and constraints that are named by the points where they are drawn."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def located(problem: Any) -> Any:
     Raises InputError where none is."""
     if not isinstance(problem, Mapping) or "scene" not in problem:
         return problem
-    named = [name for name in ("goals", "constraints") if _any(problem.get(name))]
+    named = [name for name in ("variables", "goals", "constraints") if _any(problem.get(name))]
     if not named:
         return problem
     system = compile(Scene.read(problem["scene"]))

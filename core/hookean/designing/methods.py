@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.answer import DesignStatus
+from hookean.designing.augmented import augmented
 from hookean.designing.feasible import nearer
 from hookean.designing.gains import at_minimum
 from hookean.designing.levenberg import levenberg
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 NO_STEP = "The search found no step that leads further; this is the best so far."
+WANDERS = 100  # iterations of SLSQP, after which it makes no headway
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
 ROUNDING = 1e-13  # part of the objective: less is no change
 
@@ -55,7 +57,15 @@ def _least_squares(search: Search) -> Ended:
 
 
 def _levenberg_marquardt(search: Search) -> Ended:
-    return *levenberg(search, *search.bounds), ""
+    return *levenberg(search, *search.bounds)[:2], ""
+
+
+def _augmented(search: Search, taken: int = 0) -> Ended:
+    search.used = "augmented_lagrangian"
+    iterations, ended = augmented(search, taken)
+    if ended is DesignStatus.STALLED and at_minimum(search):
+        ended = DesignStatus.CONVERGED
+    return iterations, ended, NO_STEP if ended is DesignStatus.STALLED else ""
 
 
 def _lbfgsb(search: Search) -> Ended:
@@ -66,7 +76,7 @@ def _lbfgsb(search: Search) -> Ended:
     while True:
         found = minimize(
             search.objective, start, jac=search.gradient, method="L-BFGS-B",
-            bounds=list(zip(*search.bounds, strict=True)),
+            bounds=list(zip(*search.edges, strict=True)),
             options={"maxiter": settings.max_iterations - taken, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12,
                      "maxcor": 30, "maxfun": 20 * settings.max_iterations},
         )  # fmt: skip
@@ -127,7 +137,7 @@ def _slsqp(search: Search) -> Ended:
     from scipy.optimize import minimize
 
     settings, start, iterations = search.problem.settings, np.zeros(search.unknowns.count), 0
-    bounds = list(zip(*search.bounds, strict=True))
+    bounds = list(zip(*search.edges, strict=True))
     before = np.inf
     for _ in range(ATTEMPTS):
         size = abs(search.objective(start)) or 1.0
@@ -135,11 +145,14 @@ def _slsqp(search: Search) -> Ended:
             lambda y, size=size: search.objective(y) / size, start,
             jac=lambda y, size=size: search.gradient(y) / size, method="SLSQP", bounds=bounds,
             constraints=Margins(search).given() if search.aims.limits else [],
-            options={"maxiter": settings.max_iterations - iterations, "ftol": max(settings.tolerance * 1e-3, ROUNDING)},
+            options={"maxiter": min(settings.max_iterations - iterations, WANDERS + 1),
+                     "ftol": max(settings.tolerance * 1e-3, ROUNDING)},
         )  # fmt: skip
         iterations += int(found.nit)
-        if found.status == 9 or iterations >= settings.max_iterations:
+        if iterations >= settings.max_iterations:
             return iterations, DesignStatus.MAX_ITERATIONS, ""
+        if found.nit > WANDERS and not at_minimum(search):
+            return _augmented(search, iterations)
         if search.best[0] > 0.0:
             iterations += nearer(search)
             if search.best[0] > 0.0:
@@ -149,7 +162,7 @@ def _slsqp(search: Search) -> Ended:
         before, start = search.best[1], search.best[2].copy()  # what it measures by was the objective at its start
     if at_minimum(search):
         return iterations, DesignStatus.CONVERGED, ""
-    return iterations, DesignStatus.STALLED, NO_STEP
+    return _augmented(search, iterations) if search.aims.limits else (iterations, DesignStatus.STALLED, NO_STEP)
 
 
 METHODS: dict[str, Callable[[Search], Ended]] = {
@@ -157,4 +170,5 @@ METHODS: dict[str, Callable[[Search], Ended]] = {
     "levenberg_marquardt": _levenberg_marquardt,
     "l-bfgs-b": _lbfgsb,
     "slsqp": _slsqp,
+    "augmented_lagrangian": _augmented,
 }

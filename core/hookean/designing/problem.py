@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
+import numpy as np
 from pydantic import StrictInt, StrictStr, model_validator
 
 from hookean.designing.located import located
@@ -30,7 +31,8 @@ else:
     AnyQuantity = Annotated[Union[tuple(QUANTITIES.values())], Field(discriminator="kind")]  # noqa: UP007
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
-METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp")
+PARTICLES = ("drawn", "mass")
+METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp", "augmented_lagrangian")
 
 
 class Drive(Model):
@@ -42,18 +44,24 @@ class Drive(Model):
 
 
 class Variable(Model):
-    """What may vary: a column of a force, or where an anchor holds its particles. Values have the scene's units.
+    """What may vary: a column of a force, where an anchor holds its particles, or where particles are drawn, from which
+    rest lengths and angles are measured, and their mass. Values have the scene's units.
 
     `tie` makes one unknown of all elements (`all`), of each list of elements, or one of each element (`each`); elements
-    in no list keep their values. An anchor that is tied moves as a whole: its value is the shift. What a variable
-    `drives` follows it: the area of a bar its stiffness, with E as factor, and its weight.
+    in no list keep their values. What is tied of an anchor or a drawn form moves as a whole: its value is the shift.
+    What a variable `drives` follows it: the area of a bar its stiffness, with E as factor, and its weight.
     """
 
     name: str = Field(default="", description="Name in the answer; default: what varies")
     force: StrictStr | StrictInt | None = Field(default=None, description="Name or number of a force")
-    field: str = Field(default="", description="Column of the force")
+    field: str = Field(
+        default="", description="Column of the force; of particles `drawn` (where they are drawn) or `mass`"
+    )
     anchor: StrictStr | StrictInt | None = Field(default=None, description="Name or number of an anchor")
-    axes: Axes = Field(default="xyz", description="Axes that vary, of an anchor or of a column of vectors")
+    particles: Indices = Field(
+        default=np.zeros(0, np.int64), description="Particles whose drawn position or mass varies, by `field`"
+    )
+    axes: Axes = Field(default="xyz", description="Axes that vary: of an anchor, a drawn position, a column of vectors")
     tie: Literal["each", "all"] | tuple[Indices, ...] = Field(
         default="each", description="Which elements have one value: each its own, all, or lists of elements"
     )
@@ -63,8 +71,12 @@ class Variable(Model):
 
     @model_validator(mode="after")
     def _one_thing(self) -> Self:
-        if (self.force is None) == (self.anchor is None):
-            raise fault("give exactly one of force, anchor")
+        if (self.force is not None) + (self.anchor is not None) + (len(self.particles) > 0) != 1:
+            raise fault("give exactly one of force, anchor, particles")
+        if len(self.particles) and self.field not in PARTICLES:
+            raise fault(f"of particles {' or '.join(PARTICLES)} varies; give one of them as field", "/field")
+        if len(self.particles) and self.drives:
+            raise fault("particles drive no columns", "/drives")
         if self.force is not None and not self.field:
             raise fault("a variable of a force needs a field, the name of a column", "/field")
         if self.anchor is not None and self.field:
@@ -80,6 +92,8 @@ class Variable(Model):
         """The name, or what varies."""
         if self.name:
             return self.name
+        if len(self.particles):
+            return "drawn position" if self.field == "drawn" else "mass"
         return f"{self.force}.{self.field}" if self.force is not None else f"anchor {self.anchor}"
 
 
@@ -145,7 +159,8 @@ def _split(value: Any, own: tuple[str, ...]) -> Any:
 
 class DesignSettings(Model):
     """How to search. `auto` takes least squares where all goals have targets and nothing is constrained (of many
-    unknowns and values by Levenberg and Marquardt, sparse), L-BFGS-B without targets, SLSQP with constraints."""
+    unknowns and values by Levenberg and Marquardt, sparse), L-BFGS-B without targets, SLSQP with constraints, an
+    augmented Lagrangian with many values of these."""
 
     method: Literal[METHODS] = Field(default="auto", description="Method; auto selects one and reports which")  # type: ignore[valid-type]
     tolerance: float = Field(default=1e-8, gt=0, le=1, description="Relative change at which the search ends [-]")

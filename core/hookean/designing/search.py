@@ -1,8 +1,8 @@
 """The search: variables of a scene for which its equilibrium meets goals and constraints.
 
 Where all goals have targets least squares by trust regions with bounds (Branch, Coleman and Li 1999), where some are
-minimised L-BFGS-B (Byrd and others 1995), with constraints sequential quadratic programming (Kraft 1988); all from
-SciPy, with exact derivatives through equilibrium.
+minimised L-BFGS-B (Byrd and others 1995), with constraints sequential quadratic programming (Kraft 1988), all from
+SciPy, and with many constraints an augmented Lagrangian, with exact derivatives through equilibrium.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from hookean.designing.linearised import Linearised
 from hookean.designing.methods import METHODS, Stopped, Unbounded
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity
+from hookean.designing.second_look import SYMMETRIC, stationary
 from hookean.designing.sensitivity import gradients, jacobian
 from hookean.designing.summary import answer
 from hookean.designing.unknowns import Unknowns
@@ -30,7 +31,9 @@ from hookean.errors import InputError
 from hookean.system.system import System, compile
 
 Floats = NDArray[np.float64]
+EDGE = 1e6  # of its size: no search goes further
 FAR = 1e3  # of its size: an unknown there that is no minimum has no end
+LIMITS = 100  # values of constraints, and four times as many of goals without targets, above which SLSQP takes long
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
@@ -63,7 +66,8 @@ class Search:
         self.found: Equilibrium | None = None
         self._at: Floats | None = None
         self._resting: Floats | None = None
-        self.evaluations = 0
+        self._best_x: Floats | None = None
+        self.evaluations, self.used = 0, ""
         self.best: tuple[float, float, Floats] = (np.inf, np.inf, self.unknowns.start.copy())
         self.first = self.at(np.zeros(self.unknowns.count))
         self.aims = Aims(problem, self.first)
@@ -80,6 +84,12 @@ class Search:
         unknowns = self.unknowns
         return (unknowns.lower - unknowns.start) / self.scale, (unknowns.upper - unknowns.start) / self.scale
 
+    @property
+    def edges(self) -> tuple[Floats, Floats]:
+        """The same where nothing else keeps a search from going on without end."""
+        lower, upper = self.bounds
+        return np.maximum(lower, -EDGE), np.minimum(upper, EDGE)
+
     def given(self, y: Floats) -> Floats:
         """Values (u,) of the unknowns; rounding does not take them beyond their bounds."""
         unknowns = self.unknowns
@@ -93,7 +103,12 @@ class Search:
             raise Stopped
         if self._resting is not None:
             self.state.x = self._resting.copy()
-        self.unknowns.put(self.system, self.state, self.given(y))
+        try:
+            self.unknowns.put(self.system, self.state, self.given(y))
+        except InputError:
+            if np.abs(y).max() > FAR:  # no force takes numbers of any size
+                raise Unbounded(self._endless(y)) from None
+            raise
         followed = follow(self.found) if self.found is not None and self.found.converged else None
         self.found = followed or settle(self.system, self.state, self.orders)
         self._at = y.copy()
@@ -101,6 +116,12 @@ class Search:
             self._resting = self.state.x.copy()
         self.evaluations += 1
         return self.found
+
+    def at_best(self) -> Equilibrium:
+        """The equilibrium at the best so far, from its own shape: there may be others."""
+        if self._at is None or not np.array_equal(self._at, self.best[2]):
+            self._resting, self.found = self._best_x, None
+        return self.at(self.best[2])
 
     def residuals(self, y: Floats) -> Floats:
         """sqrt(weight) (value - target) of all goals with targets."""
@@ -138,11 +159,22 @@ class Search:
         """Raise Unbounded where the best so far is no minimum and a variable has left all sizes."""
         missed, _, y = self.best
         if missed == 0.0 and np.abs(y).max() > FAR and not at_minimum(self):
-            number = int(np.argmax(np.abs(y)))
-            parts = zip(self.unknowns.variables, self.unknowns.slices, strict=True)
-            name = next(v.variable.title for v, part in parts if part.start <= number < part.stop)
-            way = "grows" if y[number] > 0.0 else "falls"
-            raise Unbounded(f"{name} {way} beyond {FAR:g} times its size; give it bounds, or the goals targets")
+            raise Unbounded(self._endless(y))
+        if missed == 0.0 and np.abs(self.at_best().x).max() > FAR * self.system.size:
+            slope = self.gradient(y)
+            name, way = self._called(int(np.argmax(np.abs(slope)))), "falls" if slope.min() > 0.0 else "varies"
+            raise Unbounded(f"the shape grows beyond {FAR:g} times its size as {name} {way}; give that bounds")
+
+    def _called(self, number: int) -> str:
+        """The variable of an unknown."""
+        parts = zip(self.unknowns.variables, self.unknowns.slices, strict=True)
+        return next(v.variable.title for v, part in parts if part.start <= number < part.stop)
+
+    def _endless(self, y: Floats) -> str:
+        """Which variable has left all sizes."""
+        number = int(np.argmax(np.abs(y)))
+        name, way = self._called(number), "grows" if y[number] > 0.0 else "falls"
+        return f"{name} {way} beyond {FAR:g} times its size; give it bounds, or the goals targets"
 
     def gradient(self, y: Floats) -> Floats:
         """Its derivatives by scaled unknowns."""
@@ -170,7 +202,7 @@ class Search:
         missed = 0.0 if missed <= LIMIT else missed
         value = self._objective(found)
         if np.isfinite(value) and (missed, value) < self.best[:2]:
-            self.best = (missed, value, y.copy())
+            self.best, self._best_x = (missed, value, y.copy()), self.state.x.copy()
             if self.keep is not None:
                 self.keep(self.given(y))
         if self.progress is not None:
@@ -202,13 +234,15 @@ def design(
     else:
         try:
             iterations, ended, said = METHODS[method](search)
-            if method in ("l-bfgs-b", "slsqp"):
+            if method in ("l-bfgs-b", "slsqp", "augmented_lagrangian"):
                 search.check_end()
+            if ended is DesignStatus.CONVERGED and stationary(search):
+                ended, said = DesignStatus.STALLED, SYMMETRIC
         except Stopped:
             ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
         except Unbounded as error:
             ended, said = DesignStatus.UNBOUNDED, f"The objective falls without end: {error}."
-    return answer(search, method, iterations or search.evaluations, ended, said)
+    return answer(search, search.used or method, iterations or search.evaluations, ended, said)
 
 
 def chosen(search: Search) -> str:
@@ -217,12 +251,18 @@ def chosen(search: Search) -> str:
     wanted = problem.settings.method
     aimed = all(goal.aimed for goal in problem.goals)
     if wanted == "auto":
-        if problem.constraints or not aimed:
-            return "slsqp" if problem.constraints else "l-bfgs-b"
+        if problem.constraints:
+            limits = sum(len(low) for low, _ in search.aims.limits)
+            return "augmented_lagrangian" if limits > (LIMITS if aimed else 4 * LIMITS) else "slsqp"
+        if not aimed:
+            return "l-bfgs-b"
         values = len(search.aims.weights(search.first))
         return "levenberg_marquardt" if min(values, search.unknowns.count) > MANY else "least_squares"
-    if problem.constraints and wanted != "slsqp":
-        raise InputError("/settings/method", f"{wanted} takes no constraints; choose slsqp or auto")
+    if problem.constraints and wanted not in ("slsqp", "augmented_lagrangian"):
+        said = f"{wanted} takes no constraints; choose slsqp, augmented_lagrangian or auto"
+        raise InputError("/settings/method", said)
+    if wanted == "augmented_lagrangian" and not problem.constraints:
+        raise InputError("/settings/method", f"{wanted} needs constraints; choose l-bfgs-b or auto")
     if wanted in ("least_squares", "levenberg_marquardt") and not aimed:
         raise InputError("/settings/method", f"{wanted} needs a target for each goal; choose l-bfgs-b or auto")
     return str(wanted)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.gains import Gains, gains
 from hookean.designing.limits import AT_BOUND, LIMIT, beyond
+from hookean.designing.second_look import not_found_again
 from hookean.designing.sensitivity import warnings
-from hookean.designing.unknowns import Moved
 
 if TYPE_CHECKING:
     from hookean.designing.equilibrium import Equilibrium
@@ -25,8 +25,8 @@ def answer(search: Search, method: str, iterations: int, ended: DesignStatus, sa
     """The best shape so far as a Design."""
     missed, value, y = search.best
     search.cancelled = None
+    found = search.at_best() if np.isfinite(missed) else search.at(np.zeros(search.unknowns.count))
     y = y if np.isfinite(missed) else np.zeros(search.unknowns.count)
-    found = search.at(y)
     broken = [
         name for name, met in zip(_names(search.problem.constraints), _met(search, found), strict=True) if not met
     ]
@@ -38,6 +38,8 @@ def answer(search: Search, method: str, iterations: int, ended: DesignStatus, sa
     if not said:
         said = _sentence(ended, broken, iterations, value)
     said = " ".join([said, *_conflicts(goals), *_held(variables, broken)])
+    scene = search.unknowns.scene(search.system.scene)
+    again = [] if ended is DesignStatus.CANCELLED else not_found_again(search, found, scene)
     return Design(
         status=ended,
         message=said,
@@ -48,8 +50,8 @@ def answer(search: Search, method: str, iterations: int, ended: DesignStatus, sa
         goals=goals,
         constraints=_constraints(search, found, gained),
         result=found.result,
-        scene=search.unknowns.scene(search.system.scene),
-        warnings=warnings(found),
+        scene=scene,
+        warnings=warnings(found) + again,
     )
 
 
@@ -101,7 +103,7 @@ def _shaped(variable: Any, own: Any) -> Any:
     shape = variable.shape
     if variable.variable.tie == "all" and len(own) == 1:
         return own[0].item()
-    if isinstance(variable, Moved) and variable.shifts and len(shape) == 2 and shape[0] == 1:
+    if getattr(variable, "shifts", False) and len(shape) == 2 and shape[0] == 1:
         return own
     return own.reshape(shape)
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.columns import AXES, Column, Entries, shape_of, tied
+from hookean.designing.drawn import Drawn, DrawnAnchor, DrawnColumn, Mass
 from hookean.designing.equilibrium import Equilibrium, as_held
 from hookean.designing.problem import Problem, Variable
 from hookean.designing.pushes import NOTHING, pushes, work
@@ -54,10 +55,9 @@ class Unknowns:
 
     def __init__(self, problem: Problem, system: System) -> None:
         self.problem = problem
-        self.variables: list[Column | Moved] = []
+        self.variables: list[Column | Moved | Drawn | Mass] = []
         for i, variable in enumerate(problem.variables):
-            cls = Column if variable.force is not None else Moved
-            self.variables.append(cls(variable, system, f"/variables/{i}"))
+            self.variables.append(_kind(variable)(variable, system, f"/variables/{i}"))
         ends = np.cumsum([v.entries.count for v in self.variables])
         self.slices = [slice(int(e) - v.entries.count, int(e)) for v, e in zip(self.variables, ends, strict=True)]
         self.parts = [*zip(self.variables, self.slices, strict=True), *self._driven(system)]
@@ -71,10 +71,13 @@ class Unknowns:
         self.start = np.clip(self.start, self.lower, self.upper)
         self.clipped = int(outside.sum())
 
-    def _driven(self, system: System) -> list[tuple[Column | Moved, slice]]:
+    def _driven(self, system: System) -> list[tuple[Any, slice]]:
         """The columns that follow variables."""
-        found: list[tuple[Column | Moved, slice]] = []
+        found: list[tuple[Any, slice]] = []
+        moved = {id(v.anchor) for v in self.variables if isinstance(v, Moved)}
         for i, (variable, part) in enumerate(zip(self.variables, self.slices, strict=True)):
+            if isinstance(variable, Drawn):
+                found += [(column, part) for column in variable.columns(system, moved)]
             for j, drive in enumerate(variable.variable.drives):
                 pointer = f"/variables/{i}/drives/{j}"
                 own = variable.variable.replaced(force=drive.force, field=drive.field, drives=())
@@ -119,7 +122,7 @@ class Unknowns:
         found = np.empty(self.count)
         for variable, part in zip(self.variables, self.slices, strict=True):
             size = np.abs(self.start[part])
-            if isinstance(variable, Moved):
+            if isinstance(variable, Moved | Drawn):
                 extent = float(np.ptp(variable.home, axis=0).max(initial=0.0))
                 size = np.full(len(size), extent or float(np.abs(variable.home).max(initial=0.0)) or 1.0)
             mean = float(size.mean()) or 1.0
@@ -134,17 +137,30 @@ class Unknowns:
             own = values[part]
             if isinstance(variable, Moved):
                 variable.anchor.targets = np.ascontiguousarray(variable.targets(own))
+            if not isinstance(variable, Column) or isinstance(variable, DrawnColumn):
                 continue
             forces[variable.number] = variable.changed(
                 scene.replaced(forces=tuple(forces.get(i, f) for i, f in enumerate(scene.forces))), own
             )
         if forces:
             lead_forces(system, forces)
+        self._put_particles(system, values)
         for variable, part in self.parts:
-            if isinstance(variable, Column):
+            if isinstance(variable, Column) and not isinstance(variable, DrawnColumn):
                 variable.entries = replace(variable.entries, values=variable.numbers(values[part]))
         for anchor in system.held:
             hold(state, anchor, system.slots)
+
+    def _put_particles(self, system: System, values: Floats) -> None:
+        """Give particles their masses and drawn positions; then anchors follow these."""
+        for variable, part in self.parts:
+            if isinstance(variable, Mass | Drawn):
+                variable.put(system, values[part])
+        for variable, _ in self.parts:
+            if isinstance(variable, DrawnAnchor):
+                variable.put(system)
+        if any(isinstance(variable, Mass) for variable in self.variables):
+            system.brace()
 
     def scene(self, scene: Scene) -> Scene:
         """The scene with the anchors where they are held now; forces have their values already."""
@@ -152,11 +168,9 @@ class Unknowns:
 
     def slopes(self, found: Equilibrium) -> tuple[Any, Any]:
         """df/du (3n, u) [force by unit] at fixed positions, and how held particles move, dx_h/du (3n, u)."""
-        entries = [
-            (pushes(found, variable) if isinstance(variable, Column) else _led(variable), part.start)
-            for variable, part in self.parts
-        ]
-        columns = [isinstance(variable, Column) for variable, _ in self.parts]
+        kept = [(v, part) for v, part in self.parts if isinstance(v, Column | Moved | DrawnAnchor)]
+        entries = [(pushes(found, v) if isinstance(v, Column) else _led(v), part.start) for v, part in kept]
+        columns = [isinstance(variable, Column) for variable, _ in kept]
         shape = found.x.size, self.count
         given, moved = ([e for e, own in zip(entries, columns, strict=True) if own == which] for which in (True, False))
         return _matrix(given, shape), _matrix(moved, shape)
@@ -173,7 +187,7 @@ class Unknowns:
         """r . dx_h/du (u,), for what r (3n,) [goal by length] it is worth to move held particles."""
         total = np.zeros(self.count)
         for variable, part in self.parts:
-            if isinstance(variable, Moved):
+            if isinstance(variable, Moved | DrawnAnchor):
                 places, unknown, _ = _led(variable)
                 total[part] += np.bincount(unknown, pulls[places], variable.entries.count)
         return total
@@ -181,8 +195,15 @@ class Unknowns:
     @property
     def led(self) -> Ints:
         """The coordinates, of (3n,), that anchors among the variables move."""
-        rows = [_led(variable)[0] for variable, _ in self.parts if isinstance(variable, Moved)]
+        rows = [_led(variable)[0] for variable, _ in self.parts if isinstance(variable, Moved | DrawnAnchor)]
         return np.unique(np.concatenate([NOTHING, *rows]))
+
+
+def _kind(variable: Variable) -> type[Column | Moved | Drawn | Mass]:
+    """What a variable is."""
+    if variable.force is not None:
+        return Column
+    return Moved if variable.anchor is not None else Drawn if variable.field == "drawn" else Mass
 
 
 def _matrix(entries: list[tuple[tuple[Ints, Ints, Floats], int]], shape: tuple[int, int]) -> Any:
@@ -196,7 +217,7 @@ def _matrix(entries: list[tuple[tuple[Ints, Ints, Floats], int]], shape: tuple[i
     return coo_matrix((np.concatenate(values), places), shape=shape).tocsc()
 
 
-def _led(variable: Moved) -> tuple[Ints, Ints, Floats]:
+def _led(variable: Moved | DrawnAnchor) -> tuple[Ints, Ints, Floats]:
     """How an anchor's particles move: places in (3n, unknowns), and ones."""
     row, axis = np.nonzero(variable.entries.tie >= 0)
     return (3 * variable.anchor.particles[row] + axis, variable.entries.tie[row, axis], np.ones(len(row)))

@@ -97,15 +97,20 @@ def lead_forces(system: System, forces: Mapping[int, Any]) -> None:
     _put_forces(system, _with(system.scene, forces))
 
 
+def take_again(system: System, scene: Scene) -> None:
+    """Give a running system all forces of a scene whose drawn form has changed; its revision stays."""
+    _put_forces(system, scene, whole=True)
+
+
 def _with(scene: Scene, forces: Mapping[int, Any]) -> Scene:
     return scene.replaced(forces=tuple(forces.get(i, f) for i, f in enumerate(scene.forces)))
 
 
-def _put_forces(system: System, scene: Scene) -> None:
+def _put_forces(system: System, scene: Scene, *, whole: bool = False) -> None:
     system.places.take_materials(scene)
     for group in system.all_groups:
         for part in group.parts:
-            if part.number >= 0 and scene.forces[part.number] is not part.force:
+            if part.number >= 0 and (whole or scene.forces[part.number] is not part.force):
                 part.force = scene.forces[part.number]
                 group.block.parameters[part.rows] = _rows(system, group, part)
     system.brace()

@@ -114,7 +114,7 @@ class Welded:
     def recompile(self, number: int, force: Force) -> Block:
         """The block of a changed force that stays where force `number` of the scene was."""
         first = self.scene.forces[number]
-        if number in self._patched:
+        if number in self._patched and self._patched[number] is not first:
             gone = id(self._patched[number])
             self._rows.pop(gone, None)
             self._pointer.pop(gone, None)
@@ -377,11 +377,12 @@ def element_columns(cls: type[Force]) -> list[tuple[str, bool]]:
     fields = cls.model_fields
     if not any(name in fields for name in PLACES):
         return []
-    return [(n, _takes_a_vector(f)) for n, f in fields.items() if n not in PLACES and n not in cls.shared]
+    return [(n, takes_a_vector(cls, n)) for n in fields if n not in PLACES and n not in cls.shared]
 
 
-def _takes_a_vector(column: FieldInfo) -> bool:
+def takes_a_vector(cls: type[Force], field: str) -> bool:
     """Whether a column's type is `Vector` or `Vectors`, so that three numbers are one value."""
+    column: FieldInfo = cls.model_fields[field]
     marks = [*column.metadata, *(mark for option in get_args(column.annotation) for mark in get_args(option)[1:])]
     return any(mark is kind for mark in marks for kind in _ONE_VECTOR)
 

@@ -10,6 +10,7 @@ from pydantic import NonNegativeInt
 
 from hookean.analysis.frequencies import lowest
 from hookean.designing.columns import Column
+from hookean.designing.drawn import Mass
 from hookean.designing.quantities.base import Floats, Quantity, Slopes, matrix
 from hookean.errors import InputError
 from hookean.system.group import Group
@@ -25,7 +26,8 @@ STEP = 1e-4  # of an element's size: the tangent's derivative by differences, to
 class Frequency(Quantity):
     """A natural frequency of the shape with the masses of the scene [1/time]: K phi = (2 pi f)² M phi.
 
-    Its derivative is phi . dK phi / (8 pi² f), for phi . M phi = 1, where no other mode has the same frequency.
+    Its derivative is phi . (dK - (2 pi f)² dM) phi / (8 pi² f), for phi . M phi = 1, where no other mode
+    has the same frequency.
     Source: Fox and Kapoor, "Rates of change of eigenvalues and eigenvectors", 1968.
     """
 
@@ -47,6 +49,8 @@ class Frequency(Quantity):
         for variable, part in unknowns.parts:
             if isinstance(variable, Column) and not variable.group.cls.constant:
                 by_unknown[part] += _by_column(found, variable, motion, part.stop - part.start)
+            elif isinstance(variable, Mass):
+                by_unknown[part] -= variable.by_masses(_swings(found, frequency, motion))
         size = 1.0 / (8.0 * np.pi**2 * abs(frequency)) if frequency else 0.0
         rows, columns = np.flatnonzero(by_place), np.flatnonzero(by_unknown)
         return (
@@ -74,6 +78,14 @@ class Frequency(Quantity):
         square = float(squares[self.mode])
         motion = found.basis @ (vectors[:, self.mode] / np.sqrt(mass))
         return np.sign(square) * np.sqrt(abs(square)) / (2.0 * np.pi), motion.reshape(-1, 3)
+
+
+def _swings(found: Equilibrium, frequency: float, motion: Floats) -> Floats:
+    """(2 pi f)^2 phi . phi (n,) of each particle, with its orientation: phi . dM phi by its mass."""
+    slots, squares = found.system.slots, (motion**2).sum(axis=1)
+    own = squares[: slots.count].copy()
+    own[slots.particles] += squares[slots.first]
+    return np.sign(frequency) * (2.0 * np.pi * frequency) ** 2 * own
 
 
 def _softness(found: Equilibrium, group: Group, memory: Floats, x: Floats, motion: Floats) -> Floats:

@@ -1,0 +1,67 @@
+"""A second look at the end of a search: whether a relaxation of the returned scene finds its shape again, and whether
+the start only seemed best because derivatives vanish there by symmetry."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hookean.errors import InputError
+from hookean.forces.base import lengths
+from hookean.running.run import relax
+from hookean.scene.scene import Scene
+from hookean.solvers.force_density import nonlinear
+
+if TYPE_CHECKING:
+    from hookean.designing.equilibrium import Equilibrium
+    from hookean.designing.search import Search
+
+APART = 1e-3  # part of the model's size by which two shapes are not the same
+BESIDE = 1e-2  # of unknowns' sizes, the step of a second look; the objective changes by its square
+FLAT = 1e-9  # part of the objective: slopes below are 0
+BETTER = 1e-8  # part of the objective: a fall that is not rounding
+SEED = 11
+
+SYMMETRIC = (
+    "The start is stationary by symmetry: no variable changes the objective there at first, but values beside it are"
+    " better. Start from values that are a little off it."
+)
+
+
+def not_found_again(search: Search, found: Equilibrium, scene: Scene) -> list[str]:
+    """A warning where the scene of the answer has another equilibrium from its drawn shape."""
+    if not found.converged or not nonlinear(search.system):
+        return []
+    try:
+        again = relax(scene)
+    except InputError as error:
+        return [f"the returned scene cannot be relaxed: {error.sentence}"]
+    if not again.converged:
+        return [f"a relaxation of the returned scene from its drawn shape does not converge: {again.message}"]
+    count = len(again.particles)
+    away = float(lengths(found.x[:count] - again.particles).max(initial=0.0))
+    if away <= APART * search.system.size:
+        return []
+    unit = search.system.scene.units.length
+    return [
+        f"a relaxation of the returned scene from its drawn shape ends up to {away:.3g} {unit} away, at another"
+        " equilibrium; draw the scene nearer to the shape of this result"
+    ]
+
+
+def stationary(search: Search) -> bool:
+    """Whether the best is the start, with slopes that are 0 and better values beside it."""
+    missed, value, best = search.best
+    if search.problem.constraints or missed > 0.0 or best.any():
+        return False
+    size = max(abs(value), np.finfo(float).tiny)
+    if not np.abs(search.gradient(best)).max(initial=0.0) <= FLAT * size:
+        return False
+    step = BESIDE * np.random.default_rng(SEED).normal(size=len(best))
+    found = False
+    for way in (1.0, -1.0):
+        y = np.clip(best + way * step, *search.bounds)
+        found = found or search.objective(y) < value - BETTER * size
+    search.best = (missed, value, best)
+    return found
