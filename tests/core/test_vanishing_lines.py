@@ -14,7 +14,9 @@ from scipy.spatial import Voronoi
 
 from hookean import ConstantTension, Scene, relax
 from hookean.designing.sensitivity import sensitivity
+from hookean.solvers.newton import Method as Newton
 from hookean.system.balance import balance
+from hookean.system.state import State
 from hookean.system.system import compile
 
 from ..laws import laws
@@ -169,6 +171,24 @@ def test_a_foam_of_300_cells_takes_newton_some_twenty_steps() -> None:
     found = relax(web(x, lines, rim, tolerance=1e-6))
     assert found.converged
     assert found.iterations <= 60
+
+
+def test_steps_go_on_from_a_saved_state_to_the_bit() -> None:
+    """The directions are in what the solver remembers."""
+    x, lines, rim = foam(20, 3)
+    system = compile(web(x, lines, rim))
+
+    def stepped(keep: bool) -> np.ndarray:
+        state, method = system.start(), Newton()
+        method.start(system, state)
+        for _ in range(3):
+            assert method.advance(system, state, 3, 0.0) == 3
+            if keep:
+                state, method = State.of({name: array.copy() for name, array in state.arrays().items()}), Newton()
+        return state.x
+
+    assert np.array_equal(stepped(True), stepped(False))
+    assert not np.array_equal(stepped(False), system.x)
 
 
 def shrunk(part: float) -> Case:

@@ -12,7 +12,6 @@ from hookean.forces.line_lengths import LineForce, fill, line, pull, resist
 from hookean.values.columns import Reals
 from hookean.values.fields import Field
 
-
 CLOSING = 1e-3  # of the mean start length of the lines of a force: shorter ones close up
 
 TENSION, CLOSED = range(2)  # columns of parameters

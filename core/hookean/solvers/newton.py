@@ -128,7 +128,8 @@ def _step(
 def _search(system: System, state: State, step: Floats, before: Judged, *, strict: bool) -> tuple[float, Judged]:
     """Shorten the step until energy falls enough, or the largest force halves; zero length if nothing helps.
 
-    `strict`: the energy must fall, if there is one: across kinks forces halve and double in turn for ever. Where some force has no energy of its own, the mean of what is out of balance at both ends shows what fell as well.
+    `strict`: the energy must fall, if there is one: across kinks forces halve and double in turn for ever. Where some
+    force has no energy of its own, the mean of what is out of balance at both ends shows what fell as well.
     """
     start, length = state.x.copy(), 1.0
     slope = float((before.left * step).sum())
