@@ -147,6 +147,8 @@ class Force(Model):
     # that of a spring); "" where stiffness has no such bound
     steady: ClassVar[str] = ""
     linear: ClassVar[str] = ""  # a column that multiplies all of the force: derivatives by it are exact
+    # the column with the size of a force along lines that it keeps until they nearly vanish (see `linear.directions`)
+    sharp: ClassVar[str] = ""
     damped: ClassVar[bool] = False  # the kernel reads the velocities; its column `damping` bounds that likewise
     remembers: ClassVar[bool] = False  # memory changes at the end of a step
     yielding: ClassVar[tuple[str, ...]] = ("plasticity",)  # only where one of these columns is not 0, if it has them

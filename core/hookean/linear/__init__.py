@@ -5,7 +5,7 @@
 - One block of 3 x 3 for each pair (the tangent of a large net): `tangent_blocks` and `tangent` assemble it, `block_cg`
   with `block_hierarchy` and `block_kernels` solves it, `subsystem` extracts a part of a system.
 - One number for each pair of free axes (the tangent of any system): `pattern` and `film_tangent` assemble it,
-  `sparse_factors` solves it and counts negative eigenvalues.
+  `sparse_factors` solves it and counts negative eigenvalues; `directions` puts another in its place where lines vanish.
 - `spring_cg` works on springs without a matrix, `profile_cholesky` inside compiled loops on chains.
 
 Both hierarchies use `aggregation`.

@@ -14,6 +14,7 @@ from hookean.linear.pattern import Pattern
 from hookean.system.group import Group
 
 if TYPE_CHECKING:
+    from hookean.linear.directions import Directions
     from hookean.system.state import State
     from hookean.system.system import System
 
@@ -47,8 +48,8 @@ class Across(Pattern):
 
     axes: Floats
 
-    def tangent(self, system: System, state: State) -> Floats:
-        """Values of the lower triangle of the tangent stiffness along the axes."""
+    def tangent(self, system: System, state: State, directions: Directions | None = None) -> Floats:
+        """Values of the lower triangle of the tangent stiffness along the axes; `directions` are not for films."""
 
         def turned(group: Group, memory: Floats, part: slice) -> Floats:
             some = Block(group.block.indices[part], group.block.parameters[part], memory[part])

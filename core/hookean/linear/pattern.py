@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from hookean.linear.sparse_factors import Factors
 
 if TYPE_CHECKING:
+    from hookean.linear.directions import Directions
     from hookean.system.group import Group
     from hookean.system.state import State
     from hookean.system.system import System
@@ -97,12 +98,15 @@ class Pattern:
         self.factors = Factors(rows, starts.astype(np.int32))
         return place
 
-    def tangent(self, system: System, state: State) -> Floats:
-        """Values of the lower triangle of the sparse tangent stiffness."""
+    def tangent(self, system: System, state: State, directions: Directions | None = None) -> Floats:
+        """Values of the lower triangle of the sparse tangent stiffness; with `directions`, of what these make of it."""
         values, elements = [np.zeros(0)], self.elements(system, state)
         for (group, memory), take in zip(elements, self.takes, strict=True):
             if len(take):
-                values.append(system.stiffness_blocks(group, state, memory).ravel()[take])
+                blocks = system.stiffness_blocks(group, state, memory)
+                if directions is not None:
+                    directions.put(group, blocks)
+                values.append(blocks.ravel()[take])
         summed: Floats = np.bincount(self.places, np.concatenate(values), self.count).astype(np.float64)
         return summed
 

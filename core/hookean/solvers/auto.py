@@ -4,7 +4,7 @@ Linear scenes take one force-density solve, cables and nets of chains Newton ste
 Newton steps across them, large nets of springs Newton steps by multigrid. Everything else relaxes, and so do nets whose
 shape by those steps may not be the lowest, unless they are too large to wait for relaxation; where relaxation is slow
 or the tolerance tight, Newton steps finish, and where those do not help, relaxation goes on. Beams begin with them, and
-so do linear nets under weights that follow their shape.
+so do linear nets under weights that follow their shape, and nets of constant tension alone.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from hookean.linear import directions
 from hookean.solvers import _complementary, _film, force_density, multilevel, newton, relaxation
 from hookean.solvers.base import Floats, Solver
 from hookean.stability import nets
@@ -141,8 +142,8 @@ class Method(Solver):
     def _relax_from_here(self, system: System, state: State) -> None:
         self._relaxation.start(system, state)
         first, steps = (state.iteration + FIRST_NEWTON, NEWTON_STEPS)
-        # beams are so much stiffer along than across that relaxation takes long
-        if len(system.slots) or not force_density.nonlinear(system, weights=True):
+        # beams are so much stiffer along than across that relaxation takes long, and lines that vanish become as stiff
+        if len(system.slots) or not force_density.nonlinear(system, weights=True) or directions.alone(system):
             first, steps = state.iteration, SHARP_STEPS
         state.scratch["next_newton"] = np.array([first, FIRST_NEWTON, steps])
 

@@ -4,6 +4,7 @@
 definite or a step fails and fades where steps succeed, so that the last digits come quadratically. Where loads without
 an energy make the tangent unsymmetric, a step solves with the whole of it. Where steps come to an equilibrium from
 which the energy falls to second order, the run leaves it and goes on.
+Lines that keep their force while they turn have steps of their own (`linear.directions`).
 Source: Nocedal and Wright, Numerical Optimization, 2006, chapters 3 and 4.
 """
 
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.linear.directions import Directions, begin, sharp
 from hookean.linear.film_tangent import patterned
 from hookean.linear.lopsided import lopsided
 from hookean.linear.pattern import Pattern
@@ -50,6 +52,8 @@ class Method(Solver):
         state.v[:] = 0.0
         _, w, _ = system.evaluate(state)
         state.scratch = {"shift": np.array([1e-4]), "unit": np.where(w > 0.0, w, w.mean() or 1.0)}
+        if sharp(system):
+            state.scratch["directions"] = begin(system)
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """At most `count` Newton steps; fewer when no step helps any more, none when none helped."""
@@ -62,10 +66,13 @@ class Method(Solver):
         now, done, helped = Judged.of(system, state), 0, False
         while done < count and now.largest > goal:
             self.pattern = patterned(system, state, free, self.pattern)
-            step, shift = _step(self.pattern, system, state, now.left, shift)
+            turns = Directions(system, state, state.scratch["directions"]) if "directions" in state.scratch else None
+            step, shift = _step(self.pattern, system, state, now.left, shift, turns)
             if step is None:
                 break
-            length, after = _search(system, state, step, now)
+            length, after = _search(system, state, step, now, strict=turns is not None)
+            if turns is not None:
+                state.scratch["directions"] = turns.after(step)
             if length == 0.0:
                 shift = max(shift, 1e-8) * 10.0
                 if shift > 1e4:
@@ -106,10 +113,12 @@ class Judged:
         return cls(float(energies.sum()), ROUNDING * float(np.abs(energies).sum()), left)
 
 
-def _step(pattern: Pattern, system: System, state: State, left: Floats, shift: float) -> tuple[Floats | None, float]:
+def _step(
+    pattern: Pattern, system: System, state: State, left: Floats, shift: float, turns: Directions | None
+) -> tuple[Floats | None, float]:
     """The step of the smallest shift, from this one on, that makes the symmetric part of the tangent positive
     definite."""
-    values = pattern.tangent(system, state)
+    values = pattern.tangent(system, state, turns)
     rhs, unit = pattern.gather(left), state.scratch["unit"][pattern.dofs // 3]
     skew = lopsided(system, pattern.dofs)
     while shift <= 1e4:
@@ -122,10 +131,11 @@ def _step(pattern: Pattern, system: System, state: State, left: Floats, shift: f
     return None, shift
 
 
-def _search(system: System, state: State, step: Floats, before: Judged) -> tuple[float, Judged]:
+def _search(system: System, state: State, step: Floats, before: Judged, *, strict: bool) -> tuple[float, Judged]:
     """Shorten the step until energy falls enough, or the largest force halves; zero length if nothing helps.
 
-    Where some force has no energy of its own, the mean of what is out of balance at both ends shows what fell as well.
+    `strict`: the energy must fall, if there is one: across kinks forces halve and double in turn for ever. Where some
+    force has no energy of its own, the mean of what is out of balance at both ends shows what fell as well.
     """
     start, length = state.x.copy(), 1.0
     slope = float((before.left * step).sum())
@@ -137,7 +147,8 @@ def _search(system: System, state: State, step: Floats, before: Judged) -> tuple
         if not potential:
             now.fallen = max(now.fallen, 0.5 * length * (slope + float((now.left * step).sum())))
         falls = now.fallen >= 1e-4 * length * slope - before.noise
-        if np.isfinite(now.energy) and (falls or now.largest < 0.5 * before.largest):
+        halves = now.largest < 0.5 * before.largest and not (strict and potential)
+        if np.isfinite(now.energy) and (falls or halves):
             return length, now
         length *= 0.5
     state.x = start
