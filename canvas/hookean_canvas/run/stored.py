@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
+from uuid import UUID
 
 from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.run import stand_in as untyped
@@ -18,15 +19,18 @@ from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.rhino import rhino3dm
 
 stand_in: Any = untyped
+REFERS = "it refers to an object of a Rhino file; give the file with --rhino form.3dm, or internalise it in Grasshopper"
 NOTHING: Mapping[bytes, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
 class Unread:
-    """A stored value that is not read; `items` are the names under which it is stored, `why` the reason if known."""
+    """A stored value that is not read; `items` are the names under which it is stored, `why` the reason if known,
+    `reference` the id of the object of a Rhino file that it refers to."""
 
     items: list[str]
     why: str = ""
+    reference: UUID | None = None
 
 
 def stored(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Any:
@@ -49,8 +53,10 @@ def stored(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Any:
     if not chunk.items and not chunk.chunks:
         return None
     names = [item.name for item in chunk.items]
-    why = "it refers to an object of a Rhino file; internalise it in Grasshopper" if "RefID" in names else ""
-    return Unread(names or [inner.name for inner in chunk.chunks], why)
+    reference = chunk.value("RefID")
+    if isinstance(reference, UUID):
+        return Unread(names, REFERS, reference)
+    return Unread(names or [inner.name for inner in chunk.chunks], REFERS if "RefID" in names else "")
 
 
 def _with_plane(chunk: Chunk) -> Any:
