@@ -200,10 +200,9 @@ class Canvas:
     def _floating(self, node: Node) -> Tree:
         port = node.inputs[0]
         value = self._set.get(node.id)
-        if value is not None:
-            return Tree.of([value])
-        if not port.sources and node.guid in OWN:
-            return Tree.of(OWN[node.guid](node))
+        if value is not None or (not port.sources and node.guid in OWN):
+            own = Tree.of([value] if value is not None else OWN[node.guid](node))
+            return self._expressed(node, port, own) if port.expression else own
         found = self._given(node, port)
         return self._cast(node, port, PARAMETERS[node.guid][1], found) if node.guid in PARAMETERS else found
 

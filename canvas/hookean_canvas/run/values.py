@@ -16,6 +16,7 @@ from hookean_canvas.run import stand_in as untyped
 from hookean_canvas.run.graph import Node
 from hookean_canvas.run.natives import Unfit, as_kind
 from hookean_canvas.run.natives.display import SWATCH
+from hookean_canvas.run.natives.expressions import evaluated
 from hookean_canvas.run.trees import Tree
 
 stand_in: Any = untyped
@@ -62,8 +63,16 @@ def _expression(text: str) -> Any:
     try:
         number = float(text)
     except ValueError:
-        return text
+        return _calculated(text)
     return int(number) if number.is_integer() and "." not in text else number
+
+
+def _calculated(text: str) -> Any:
+    """The value of an expression such as 2*Pi; what is none is a text."""
+    try:
+        return evaluated(text, {})
+    except Unfit:
+        return text
 
 
 def _slider_value(node: Node) -> list[Any]:
