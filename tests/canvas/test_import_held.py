@@ -83,7 +83,7 @@ def test_a_step_of_verlet_keeps_the_part_of_the_velocity_that_the_script_is_give
 
 
 def test_a_soft_anchor_by_axes_gives_way_by_force_over_strength(home: Home, tmp_path: Path) -> None:
-    """The load of 2 pulls the point down 2 / 50; the line turns with it, as long as before but for the square of that."""
+    """The load of 2 pulls the point down 2 / 50; the line turns, and stays as long but for the square of that."""
     root, _ = held(50.0, 0.9)
     found = graph.of(root)
     found.file = tmp_path / "held.ghx"

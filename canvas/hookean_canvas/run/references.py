@@ -1,8 +1,8 @@
 """Geometry that a definition refers to in Rhino, taken from a .3dm file.
 
 Where a parameter or an input refers to objects of a Rhino file, the definition holds their ids alone. An object of that
-id is taken; where there is none, as in a file that was made anew, all objects on the layer, or with the name, that is
-the parameter's nickname. A parameter that is empty and has no wire gets those of its nickname as well.
+id is taken; where the file has none, as ids change when objects are drawn again, all objects on the layer, or with the
+name, that is the parameter's nickname. A parameter that is empty and has no wire gets those of its nickname as well.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.run import stand_in as untyped
 from hookean_canvas.run.internalised import decoded
 from hookean_canvas.run.natives import shapes
+from hookean_canvas.run.natives.surfaces_at import Domain2
 from hookean_canvas.run.rhino import rhino3dm
 
 stand_in: Any = untyped
@@ -52,6 +53,8 @@ def stored(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Any:
             return found
     if not chunk.items and not chunk.chunks:
         return None
+    if len(chunk.items) == 1 and not chunk.chunks and chunk.items[0].type in _BY_TYPE:
+        return _BY_TYPE[chunk.items[0].type](chunk.items[0])
     names = [item.name for item in chunk.items]
     reference = chunk.value("RefID")
     if isinstance(reference, UUID):
@@ -108,6 +111,20 @@ _KINDS: dict[str, tuple[tuple[Type, ...], Callable[[Item], Any]]] = {
     "path": ((Type.STRING,), _same),
 }
 """Under which names values are stored, as which types, and how they are read."""
+
+
+_BY_TYPE: dict[Type, Callable[[Item], Any]] = {
+    Type.POINT3D: _same,
+    Type.PLANE: _plane,
+    Type.LINE: _line,
+    Type.INTERVAL1D: lambda item: rhino3dm.Interval(*item.value),
+    Type.INTERVAL2D: lambda item: Domain2(item.value[:2], item.value[2:]),
+    Type.BOUNDINGBOX: lambda item: rhino3dm.BoundingBox(
+        rhino3dm.Point3d(*item.value[:3]), rhino3dm.Point3d(*item.value[3:])
+    ),
+    Type.DRAWING_COLOR: lambda item: stand_in.Color(*item.value),
+}
+"""How a value is read that is the only item, whatever its name."""
 
 
 def _geometry(data: bytes, refused: Mapping[bytes, str]) -> Any:

@@ -68,7 +68,7 @@ def _expression(text: str) -> Any:
 
 
 def _calculated(text: str) -> Any:
-    """The value of an expression such as 2*Pi; what is none is a text."""
+    """The value of an expression such as 2*Pi; anything else is a text."""
     try:
         return evaluated(text, {})
     except Unfit:
