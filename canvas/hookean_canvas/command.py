@@ -93,6 +93,9 @@ def run(
     trust: Annotated[
         bool, typer.Option("--trust", help="Trust its scripts, now and later: they run with your rights")
     ] = False,
+    rhino: Annotated[
+        Path | None, typer.Option(help="A .3dm file with the objects that it refers to, by id, layer or name")
+    ] = None,
 ) -> None:
     """Evaluate a definition without Rhino: print its panels, compare its numbers with an expected.json beside it.
 
@@ -102,7 +105,7 @@ def run(
     """
     from hookean_canvas.run import checking
 
-    raise typer.Exit(_printed(lambda: checking.run(file, set_ or [], as_json, seconds, trust)))
+    raise typer.Exit(_printed(lambda: checking.run(file, set_ or [], as_json, seconds, trust, rhino)))
 
 
 @app.command()

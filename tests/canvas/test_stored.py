@@ -79,6 +79,8 @@ def test_an_internalised_mesh_is_read_with_all_its_digits() -> None:
         (item("number", Type.DOUBLE, 2.5), 2.5),
         (item("boolean", Type.BOOL, True), True),
         (item("string", Type.STRING, "a"), "a"),
+        (item("anything", Type.LINE, (0, 0, 0, 1, 2, 3)), [(0, 0, 0), (1, 2, 3)]),
+        (item("anything", Type.BOUNDINGBOX, (0, 0, 0, 1, 2, 3)), ((0, 0, 0), (1, 2, 3))),
         (Chunk("Item", 0), None),
     ],
 )  # fmt: skip
@@ -161,3 +163,8 @@ def test_internalised_data_of_real_files_is_read() -> None:
                 values = port.data.values_in_order() if port.data is not None else []
                 unread += [(file.name, node.name, v) for v in values if isinstance(v, Unread) and "ON_Data" in v.items]
     assert unread == []
+
+
+def test_a_domain_in_u_and_v_is_read_whatever_its_name() -> None:
+    found = stored(item("anything", Type.INTERVAL2D, (0.0, 1.0, 2.0, 3.0)))
+    assert (found.u, found.v) == ((0.0, 1.0), (2.0, 3.0))

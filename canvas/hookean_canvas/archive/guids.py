@@ -6,6 +6,7 @@ Grasshopper documents none of them; each group names the public files it was rea
 
 from __future__ import annotations
 
+import re
 from uuid import UUID
 
 from hookean_canvas.archive import native_guids
@@ -181,7 +182,7 @@ RENAMED |= {UUID("a9a8ebd2-fff5-4c44-a8f5-739736d129ba"), UUID("079bd9bd-54a0-41
 
 def _table(*texts: str) -> dict[UUID, tuple[str, ...]]:
     lines = (line.split(" ", 1) for text in texts for line in text.split("\n") if line)
-    return {UUID(guid): tuple(names.split("|")) for guid, names in lines}
+    return {UUID(guid): tuple(re.split(r"(?<! )\|", names)) for guid, names in lines}  # "Curve | Curve" is one name
 
 
 NAMES: dict[UUID, tuple[str, ...]] = {

@@ -6,6 +6,7 @@ gh_docs_generation/grasshopper_components.md); the sample of github.com/mcneel/c
 """
 
 CURVE = """
+84627490-0fb2-4498-8138-ad134ee4cb36 Curve | Curve
 ccc7b468-e743-4049-891f-299432545898 Curve Middle
 424eb433-2b3a-4859-beaf-804d8af0afd7 Control Points
 ccfd6ba8-ecb1-44df-a47e-08126a653c51 Curve Domain
@@ -80,6 +81,7 @@ cc14daa5-911a-4fcc-8b3b-1149bf7f2eeb Point List
 """
 
 MATHS = """
+338666eb-14c5-4d9b-82e2-2b5be60655df Weighted Average
 de4a0d86-2709-4564-935a-88bf4d40af89 Gate Xor
 b6aedcac-bf43-42d4-899e-d763612f834d Gate Xnor
 5ca5de6b-bc71-46c4-a8f7-7f30d7040acb Gate Nand
@@ -143,6 +145,7 @@ a50c4a3b-0177-4c91-8556-db95de6c56c8 Round
 """
 
 MESH = """
+01e3991d-18bd-474f-9fbd-076a8700159f Mesh Inclusion
 47814a17-ca9e-4305-9400-3a9c8d71c19d Unweld Mesh
 d0f1311b-8287-4484-b2ea-1475c6770926 Delete Faces
 4dce5963-dc1a-4710-8991-9437ea23888d Disjoint Mesh
@@ -179,6 +182,8 @@ ca6a48f4-b681-4989-b0c1-301a2929a84c Unify Mesh
 """
 
 SETS = """
+f02a20f6-bb49-4e3d-b155-8ed5d3c6b000 Jitter
+fe99f302-3d0d-4389-8494-bd53f7935a02 Fibonacci
 fe769f85-8900-45dd-ba11-ec9cd6c778c6 Prune Tree
 df6d9197-9a6e-41a2-9c9d-d2221accb49e Deconstruct Path
 c74efd0e-7fe3-4c2d-8c9d-295c5672fb13 Null Item
@@ -250,6 +255,8 @@ b8e2aa8f-8830-4ee1-bb59-613ea279c281 Unflatten Tree
 """
 
 SURFACE = """
+a10e8cdf-7c7a-4aac-aa70-ddb7010ab231 Box Corners
+e03561f8-0e66-41d3-afde-62049f152443 Point In Brep
 5106bafc-d5d4-4983-83e7-7be3ed07f502 Divide Surface
 2e205f24-9279-47b2-b414-d06dcd0b21a7 Area
 0148a65d-6f42-414a-9db7-9a9b2eb78437 Brep Edges
@@ -287,6 +294,11 @@ fa92858a-a180-4545-ad4d-0dc644b3a2a8 Untrim
 """
 
 TRANSFORM = """
+4f65c681-9331-4818-9d54-6290cae686c3 Surface Box
+d8940ff0-dd4a-4e74-9361-54df537b50db Box Morph
+5889b68f-fd88-4032-860f-869fb69654dd Surface Morph
+4fe87ef8-49e4-4605-9859-87940d62e1de Move To Plane
+5edaea74-32cb-4586-bd72-66694eb73160 Rotate Direction
 1602b2cc-007c-4b79-8926-0067c6184e44 Orient Direction
 23285717-156c-468f-a691-b242488c06a6 Project
 4d2a06bd-4b0f-4c65-9ee0-4220e4c01703 Scale
@@ -305,6 +317,8 @@ b7798b74-037e-4f0c-8ac7-dc1043d093e0 Rotate
 """
 
 VECTOR = """
+0ae07da9-951b-4b9b-98ca-d312c252374d Numbers to Points
+d24169cc-9922-4923-92bc-b9222efc413f Points to Numbers
 75eec078-a905-47a1-b0d2-0934182b1e3d Plane Origin
 f6f14b09-6497-4564-8403-09e4eb5a6b82 Rotate Plane
 33bfc73c-19b2-480b-81e6-f3523a012ea6 Plane Fit

@@ -161,3 +161,13 @@ def language(script: Chunk) -> str:
     if kind != "python":
         return kind
     return "python 2" if "ironpython" in taxon or version.startswith("2") else "python 3"
+
+
+def libraries(definition: Chunk) -> dict[UUID, str]:
+    """The plug-ins that a definition lists, each with its name and version."""
+    listed = definition.chunk("GHALibraries")
+    found = {}
+    for library in listed.chunks if listed is not None else ():
+        words = [str(library.value(name, default="")) for name in ("Name", "Version")]
+        found[library.value("Id")] = " ".join(word for word in words if word)
+    return found

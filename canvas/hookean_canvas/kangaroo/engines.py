@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from hookean_canvas.kangaroo import held
 from hookean_canvas.kangaroo.pieces import Piece, Swap
 
 _ENGINE = {
@@ -75,12 +78,20 @@ def _solver(solver: str, differs: str, **without: str) -> Swap:
         "addcurrent": False,
         "damping": 0.99,
         "momentum": False,
+        "maxiterations": 50000,
         "animate": True,
         "parallel": True,
     }
     told = {"threshold": _ENDS, **without}
     return Swap((Piece("Engine", _GOALS, _SOLVED, {"reset": False}), settings), f"{differs}; {_OUT}", told, usual)
 
+
+_BOUNCY = _solver(
+    "verlet",
+    "particles have mass and time is physical, so the motion is another; the shape at rest is the same; a mass of 1 "
+    "keeps 0.99 of its velocity in a step, or the damping if another is given",
+    damping="a step of 0.01 with a drag of 1 keeps 0.99 of the velocity",
+)
 
 SECOND: dict[str, Swap] = {
     "solver": _solver(
@@ -91,10 +102,8 @@ SECOND: dict[str, Swap] = {
         addcurrent="particles come from the forces",
         parallel="the service decides that",
     ),
-    "bouncysolver": _solver(
-        "verlet",
-        "particles have mass and time is physical, so the motion is another; the shape at rest is the same",
-        damping="the settings' drag and the springs' damping slow the motion",
+    "bouncysolver": replace(
+        _BOUNCY, unless={"damping": ""}, other=replace(_BOUNCY, pieces=(*_BOUNCY.pieces, held.BOUNCY))
     ),
     "zombiesolver": _solver(
         "momentum",

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hookean_canvas.kangaroo import six
+from hookean_canvas.kangaroo import held, six
 from hookean_canvas.kangaroo.pieces import HALF, Piece, Swap, corners, fed, force, halved, pairs
-
-_EXACT = "anchors hold exactly here, so they have no strength"
 
 _TOUCH = "k by the distance between the points where the circles touch the edge"
 _MOMENT = "a moment per radian here, of the same size for small angles where lines keep their lengths"
@@ -54,7 +52,7 @@ _LOAD = Swap(
     ),
     f"{_LOADS}; points, not indices, say where it acts",
     {"w": "loads need no weighting", "weighting": "loads need no weighting"},
-    {"w": 1.0},
+    {"w": 1.0, "weighting": 1.0},
 )
 
 _CARRIED = "nothing is carried along; points that move with the body are particles of it"
@@ -100,12 +98,7 @@ GOALS: dict[str, Swap] = {
     "anchor": replace(
         _ANCHOR, other=_indexed(_ANCHOR, f"the same soft anchor; {_BY_INDEX}", places="0.point", targets="0.targets")
     ),
-    "anchorxyz": Swap(
-        (Piece("Anchors", {"p": "point", "x": "x", "y": "y", "z": "z"}, {"anchors": "a"}),),
-        _EXACT,
-        {"strength": _EXACT},
-        {"strength": 1000.0},
-    ),
+    "anchorxyz": held.ANCHOR,
     "load": replace(_indexed(_LOAD, f"{_LOADS}; {_BY_INDEX}", places="0.point"), other=_LOAD),
     "pressure": force("Pressure", "p", m="mesh", strength="pressure"),
     "soapfilm": _by_mesh(

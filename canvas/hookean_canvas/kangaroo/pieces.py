@@ -11,7 +11,7 @@ from typing import Any
 class Piece:
     """One of our components: `inputs` ours by Kangaroo's, `outputs` Kangaroo's by ours (`|`: either), `values` set.
 
-    `feeds`: by an output, the input it is wired to, as the number of a piece and a name.
+    `feeds`: by an output, the input it is wired to, as the number of a piece and a name; several with `|` between.
     """
 
     bundle: str
@@ -27,7 +27,7 @@ class Swap:
 
     `pieces`: the first stands in its place. `differs`: a sentence. `without`: why an input has no counterpart.
     `usual`: what Kangaroo types into such an input, which says nothing. `needs`: inputs that identify the version.
-    `unless`: inputs that must be empty, each with the reason. `other`: for versions that this one does not fit.
+    `unless`: inputs that must be empty or as usual, each with the reason. `other`: for versions that do not fit this.
     """
 
     pieces: tuple[Piece, ...]

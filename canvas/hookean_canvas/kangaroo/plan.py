@@ -178,7 +178,7 @@ class Importing:
         if not outputs(part.container):
             return "it has no input or no output; the file is damaged"
         for name, why in swap.unless.items():
-            if name in given and (sources(given[name]) or make.stored(given[name])):
+            if name in given and _says(given[name], swap.usual.get(name, make)):
                 return why
         for piece in swap.pieces:
             if piece.bundle == "*indexed" and not self.numbered:
@@ -220,3 +220,8 @@ class Importing:
 def _points(solver: Part) -> list[Chunk]:
     """The input Points of a solver that has one."""
     return [port for port in ports_of(solver) if "points" in map(key, names_of(port))]
+
+
+def _says(port: Chunk, usual: object) -> bool:
+    """Whether an input has wires, or typed values other than Kangaroo's own."""
+    return bool(sources(port)) or bool(make.stored(port)) and make.single(port) != usual

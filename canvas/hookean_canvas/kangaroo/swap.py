@@ -223,9 +223,10 @@ class Swapping:
         """Wires between the pieces."""
         for piece, chunk in zip(self.swap.pieces, self.made, strict=True):
             ours = {port.value("Name"): port.value("InstanceGuid") for port in outputs(chunk)}
-            for output, target in piece.feeds.items():
-                number, name = target.split(".")
-                connect(_input_of(self.made[int(number)], name), [ours[output]])
+            for output, targets in piece.feeds.items():
+                for target in targets.split("|"):
+                    number, name = target.split(".")
+                    connect(_input_of(self.made[int(number)], name), [ours[output]])
 
     def _stream(self) -> None:
         """A solver of Kangaroo 2 takes everything by one input: sort it, and carry what the goals would show."""

@@ -16,6 +16,7 @@ from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, guids, native_guids
 from hookean_canvas.archive.chunk import CLUSTERS
 from hookean_canvas.archive.parts import SCRIPTS, Part, outputs, sources
+from hookean_canvas.archive.parts import libraries as libraries_of
 from hookean_canvas.kangaroo.ids import Generation, Known, hidden, key, libraries, recognised
 from hookean_canvas.kangaroo.roles import Role, called, role
 from hookean_canvas.kangaroo.streams import Streams
@@ -66,7 +67,7 @@ class Systems:
         assert definition is not None
         self._streams, self._known, self._why_not = streams, known, why_not
         self._generations = libraries(definition)
-        self._plugins = plugins(definition)
+        self._plugins = libraries_of(definition)
         self._kinds: dict[int, str] = {}
         self.found: list[System] = []
         for part in streams.parts:
@@ -193,16 +194,6 @@ def _ids(part: Part) -> list[UUID]:
     return [port.value("InstanceGuid") for port in outputs(part.container)] if part.container is not None else []
 
 
-def plugins(definition: Chunk) -> dict[UUID, str]:
-    """The plug-ins that a definition lists, each with its name and version."""
-    listed = definition.chunk("GHALibraries")
-    found = {}
-    for library in listed.chunks if listed is not None else ():
-        words = [str(library.value(name, default="")) for name in ("Name", "Version")]
-        found[library.value("Id")] = " ".join(word for word in words if word)
-    return found
-
-
 def foreign(thing: Chunk, of: dict[UUID, Generation], named: dict[UUID, str], depth: int = 0) -> str:
     """What an object is that may make goals without being Kangaroo's, in words; empty where it cannot."""
     guid, library = thing.value("GUID"), thing.value("Lib")
@@ -225,7 +216,7 @@ def _cluster(container: Chunk, of: dict[UUID, Generation], depth: int) -> str:
     if inside is None:
         return "a cluster that cannot be opened"
     definition = inside.chunk("Definition") or inside
-    generations, named = of | libraries(definition), plugins(definition)
+    generations, named = of | libraries(definition), libraries_of(definition)
     held: list[str] = []
     for thing in definition.walk():
         if thing.name == "Object":

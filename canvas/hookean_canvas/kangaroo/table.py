@@ -6,7 +6,7 @@ their variables without underscores. Sources of the differences: docs/from-kanga
 
 from __future__ import annotations
 
-from hookean_canvas.kangaroo import classic, engineering, engines, goals, scripts, six, tools
+from hookean_canvas.kangaroo import classic, engineering, engines, goals, held, scripts, six, tools
 from hookean_canvas.kangaroo.ids import COMPONENTS, Generation, Known, key
 from hookean_canvas.kangaroo.pieces import Swap
 from hookean_canvas.kangaroo.reasons import REASONS
@@ -36,7 +36,7 @@ def markdown() -> str:
                 [
                     swap.differs,
                     *(f"{key}: {why}" for key, why in swap.without.items() if why not in swap.differs),
-                    *(f"stays where {why}" for why in dict.fromkeys(swap.unless.values())),
+                    *(f"stays where {why}" for why in dict.fromkeys(swap.unless.values()) if why),
                 ]
             )
             lines.append(f"| {generation} | {name} | {by} | {told.strip('; ')} |")
@@ -62,4 +62,5 @@ _HELPER = {
     **scripts.TOLD,
     **engineering.TOLD,
     **six.TOLD,
+    **held.TOLD,
 }

@@ -17,6 +17,7 @@ from hookean_canvas import archive
 from hookean_canvas.run import graph
 from hookean_canvas.run.clusters import opened
 from hookean_canvas.run.evaluate import Canvas, Outcome
+from hookean_canvas.run.references import fill
 from hookean_canvas.run.trees import Tree, text_of
 from hookean_canvas.run.trust import require
 
@@ -72,15 +73,24 @@ class Checked:
 
 
 def check(
-    path: Path, settings: Mapping[str, str] | None = None, seconds: float = 120.0, trust: bool | None = None
+    path: Path,
+    settings: Mapping[str, str] | None = None,
+    seconds: float = 120.0,
+    trust: bool | None = None,
+    rhino: Path | None = None,
 ) -> Checked:
     """Run a definition and compare it; with settings other than its own nothing is compared.
+
+    `rhino`: a .3dm file with the objects that it refers to; what that lacks is a warning, or an error if an Engine
+    needs it.
 
     `trust`: False where its scripts may run only if they are trusted already, True where they are from now on (see
     `trust.require`); None: the caller has checked them. InputError where it cannot be read or run.
     """
     data = archive.read_bytes(path)
     definition = opened(graph.parse(data, path))
+    if rhino is not None:
+        fill(definition, rhino)
     canvas = Canvas(definition, settings)
     if trust is not None:
         require(definition, data, path, trust)
@@ -145,9 +155,9 @@ def settings_of(texts: list[str]) -> dict[str, str]:
     return found
 
 
-def run(path: Path, texts: list[str], as_json: bool, seconds: float, trust: bool) -> int:
+def run(path: Path, texts: list[str], as_json: bool, seconds: float, trust: bool, rhino: Path | None = None) -> int:
     """`hookean canvas run`: prints what a definition came to; 0, or 1 where something is not as it should be."""
-    checked = check(path, settings_of(texts), seconds, trust)
+    checked = check(path, settings_of(texts), seconds, trust, rhino)
     if as_json:
         print(json.dumps(checked.as_json(), indent=2))
         return 1 if checked.faults else 0

@@ -10,9 +10,8 @@ input called on of an Engine is True. Settings keep both from it.
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 from uuid import UUID
@@ -20,26 +19,19 @@ from uuid import UUID
 import rhino3dm
 
 from hookean.errors import InputError
-from hookean_canvas.archive import Type
-from hookean_canvas.archive.guids import (
-    BOOLEAN_TOGGLE,
-    BUTTON,
-    NUMBER_SLIDER,
-    PANEL,
-    VALUE_LIST,
-)
-from hookean_canvas.archive.parts import given as typed
+from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, NUMBER_SLIDER, PANEL, VALUE_LIST
 from hookean_canvas.run import stand_in as untyped
 from hookean_canvas.run.components import inputs_of, native_for, outputs_of, run_native
 from hookean_canvas.run.graph import Graph, Node, Port
 from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind
-from hookean_canvas.run.natives.display import SWATCH
 from hookean_canvas.run.natives.expressions import evaluated
 from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.run.trees import ITEM, TREE, Run, Tree, modified, runs
 from hookean_canvas.run.unsupported import ENGINE, require_known
+from hookean_canvas.run.values import OWN, chosen, hurried
 
 stand_in: Any = untyped
+SETTINGS = "settings_"
 LONGEST_WAIT = 1.0  # s between scheduled solutions, however long one asks to wait
 
 
@@ -208,10 +200,9 @@ class Canvas:
     def _floating(self, node: Node) -> Tree:
         port = node.inputs[0]
         value = self._set.get(node.id)
-        if value is not None:
-            return Tree.of([value])
-        if not port.sources and node.guid in _OWN:
-            return Tree.of(_OWN[node.guid](node))
+        if value is not None or (not port.sources and node.guid in OWN):
+            own = Tree.of([value] if value is not None else OWN[node.guid](node))
+            return self._expressed(node, port, own) if port.expression else own
         found = self._given(node, port)
         return self._cast(node, port, PARAMETERS[node.guid][1], found) if node.guid in PARAMETERS else found
 
@@ -242,6 +233,8 @@ class Canvas:
         given: list[tuple[int, Tree]] = []
         for port in node.inputs:
             tree = self._hinted(node, port, self._given(node, port))
+            if node.name == ENGINE and port.name == SETTINGS:
+                tree = hurried(tree)
             if not tree and not port.optional:
                 self._say(node, "warning", f"Input parameter {port.nickname} failed to collect data")
                 return
@@ -329,84 +322,13 @@ def _settings(graph: Graph, given: Mapping[str, str]) -> dict[UUID, Any]:
             known = ", ".join(sorted(node.nickname for node in settable))
             raise InputError(name, f"no input that can be set has this name; there are {known}")
         for node in nodes:
-            found[node.id] = _set_value(node, text)
+            found[node.id] = chosen(node, text)
     return found
-
-
-def _set_value(node: Node, text: str) -> Any:
-    if node.guid == PANEL:
-        return text
-    if node.guid == VALUE_LIST:
-        items = [c for c in node.container.chunks if c.name == "ListItem"]
-        names = {typed(c, "Name", ""): typed(c, "Expression", "") for c in items}
-        if text not in names:
-            raise InputError(node.nickname, f"{text} is not one of its choices {', '.join(names)}")
-        return _expression(names[text])
-    try:
-        value = as_kind("boolean" if node.guid == BOOLEAN_TOGGLE else "number", text)
-    except Unfit:
-        raise InputError(
-            node.nickname,
-            f"{text} is not a {'truth value; give True or False' if node.guid == BOOLEAN_TOGGLE else 'number'}",
-        ) from None
-    slider = node.container.chunk("Slider")
-    if slider is not None:
-        low, high = typed(slider, "Min", -math.inf), typed(slider, "Max", math.inf)
-        if not low <= value <= high:
-            raise InputError(node.nickname, f"{text} is outside the slider, which ranges from {low:g} to {high:g}")
-        return _slid(slider, value)
-    return value
 
 
 def _variables(x: Any) -> dict[str, Any]:
     """What an expression on an input calls the value: x, or whatever the input is called."""
     return {"x": x, "X": x}
 
-
-def _slid(slider: Any, value: float) -> float | int:
-    digits, whole = typed(slider, "Digits", 0), typed(slider, "Interval", 0)
-    return round(value) if whole and math.isfinite(value) else round(float(value), digits)
-
-
-def _expression(text: str) -> Any:
-    """The value of an item of a value list: a text in quotes, a truth or a number."""
-    text = text.strip()
-    if len(text) > 1 and text[0] == text[-1] == '"':
-        return text[1:-1]
-    if text.lower() in ("true", "false"):
-        return text.lower() == "true"
-    try:
-        number = float(text)
-    except ValueError:
-        return text
-    return int(number) if number.is_integer() and "." not in text else number
-
-
-def _slider_value(node: Node) -> list[Any]:
-    slider = node.container.chunk("Slider")
-    return [] if slider is None else [_slid(slider, typed(slider, "Value", 0.0))]
-
-
-def _list_value(node: Node) -> list[Any]:
-    items = [chunk for chunk in node.container.chunks if chunk.name == "ListItem"]
-    return [_expression(typed(chunk, "Expression", "")) for chunk in items if typed(chunk, "Selected", False)]
-
-
-def _panel_value(node: Node) -> list[Any]:
-    text = typed(node.container, "UserText", "")
-    if not typed(node.container.chunk("PanelProperties"), "Multiline", True):
-        return text.splitlines()
-    return [text] if text else []
-
-
-_OWN: dict[UUID, Callable[[Node], list[Any]]] = {
-    NUMBER_SLIDER: _slider_value,
-    BOOLEAN_TOGGLE: lambda node: [typed(node.container, "ToggleValue", False)],
-    VALUE_LIST: _list_value,
-    PANEL: _panel_value,
-    BUTTON: lambda _: [False],
-    SWATCH: lambda node: [stand_in.Color(*i.value) for i in node.container.items if i.type is Type.DRAWING_COLOR][:1],
-}
-"""What an object has by itself, where no wire reaches it."""
 
 __all__ = ["TREE", "Canvas", "Message", "Outcome"]

@@ -40,7 +40,10 @@ class Port:
 
 @dataclass
 class Node:
-    """An object on the canvas. A floating one (slider, panel, parameter) has one port, which is both in and out."""
+    """An object on the canvas. A floating one (slider, panel, parameter) has one port, which is both in and out.
+
+    `plugin`: whether it names a library; `library`: the name that the file lists for that.
+    """
 
     id: UUID
     guid: UUID
@@ -52,6 +55,7 @@ class Node:
     bounds: Rectangle | None = None
     locked: bool = False
     plugin: bool = False
+    library: str = ""
 
     @property
     def floating(self) -> bool:
@@ -164,6 +168,7 @@ def of(root: Chunk, where: str = "definition", refused: Mapping[bytes, str] = NO
         nodes=[],
         groups=[],
     )
+    libraries = chunks.libraries(definition)
     for number, part in enumerate(chunks.parts(root)):
         told = f"object {number} ({part.label})"
         if part.container is None or part.guid is None:
@@ -172,6 +177,7 @@ def of(root: Chunk, where: str = "definition", refused: Mapping[bytes, str] = NO
             graph.groups.append(_group(part.container))
         elif part.guid != SCRIBBLE:
             node = _node(part.guid, part, part.container, UUID(int=number), refused)
+            node.library = libraries.get(part.chunk.value("Lib"), "")
             graph.nodes.append(node)
             if part.id is None:
                 graph.damage.append(f"{told} has no InstanceGuid")

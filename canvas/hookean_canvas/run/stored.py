@@ -10,23 +10,28 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
+from uuid import UUID
 
 from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.run import stand_in as untyped
 from hookean_canvas.run.internalised import decoded
 from hookean_canvas.run.natives import shapes
+from hookean_canvas.run.natives.surfaces_at import Domain2
 from hookean_canvas.run.rhino import rhino3dm
 
 stand_in: Any = untyped
+REFERS = "it refers to an object of a Rhino file; give the file with --rhino form.3dm, or internalise it in Grasshopper"
 NOTHING: Mapping[bytes, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
 class Unread:
-    """A stored value that is not read; `items` are the names under which it is stored, `why` the reason if known."""
+    """A stored value that is not read; `items` are the names under which it is stored, `why` the reason if known,
+    `reference` the id of the object of a Rhino file that it refers to."""
 
     items: list[str]
     why: str = ""
+    reference: UUID | None = None
 
 
 def stored(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Any:
@@ -48,9 +53,13 @@ def stored(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Any:
             return found
     if not chunk.items and not chunk.chunks:
         return None
+    if len(chunk.items) == 1 and not chunk.chunks and chunk.items[0].type in _BY_TYPE:
+        return _BY_TYPE[chunk.items[0].type](chunk.items[0])
     names = [item.name for item in chunk.items]
-    why = "it refers to an object of a Rhino file; internalise it in Grasshopper" if "RefID" in names else ""
-    return Unread(names or [inner.name for inner in chunk.chunks], why)
+    reference = chunk.value("RefID")
+    if isinstance(reference, UUID):
+        return Unread(names, REFERS, reference)
+    return Unread(names or [inner.name for inner in chunk.chunks], REFERS if "RefID" in names else "")
 
 
 def _with_plane(chunk: Chunk) -> Any:
@@ -102,6 +111,20 @@ _KINDS: dict[str, tuple[tuple[Type, ...], Callable[[Item], Any]]] = {
     "path": ((Type.STRING,), _same),
 }
 """Under which names values are stored, as which types, and how they are read."""
+
+
+_BY_TYPE: dict[Type, Callable[[Item], Any]] = {
+    Type.POINT3D: _same,
+    Type.PLANE: _plane,
+    Type.LINE: _line,
+    Type.INTERVAL1D: lambda item: rhino3dm.Interval(*item.value),
+    Type.INTERVAL2D: lambda item: Domain2(item.value[:2], item.value[2:]),
+    Type.BOUNDINGBOX: lambda item: rhino3dm.BoundingBox(
+        rhino3dm.Point3d(*item.value[:3]), rhino3dm.Point3d(*item.value[3:])
+    ),
+    Type.DRAWING_COLOR: lambda item: stand_in.Color(*item.value),
+}
+"""How a value is read that is the only item, whatever its name."""
 
 
 def _geometry(data: bytes, refused: Mapping[bytes, str]) -> Any:

@@ -26,6 +26,23 @@ VALUES = (
 
 ENGINE = "Hookean Engine"
 
+_STORED = "how files store its values is not published; put them on a panel instead"
+_KERNEL = "it needs Rhino's kernel; internalise what it gives in Grasshopper"
+_DOCUMENT = "it reads the open document of Rhino; internalise what it gives in Grasshopper"
+_CODE = "its code is not Python"
+_WHY = {
+    _STORED: ("Graph Mapper", "MD Slider", "Gene Pool", "Control Knob", "Digit Scroller", "Colour Picker"),
+    _KERNEL: (
+        "Patch", "Sweep2", "Solid Union", "Solid Difference", "Solid Intersection", "Region Union",
+        "Region Difference", "Region Intersection", "Mesh Union", "Mesh Difference", "Mesh Intersection", "Split Brep",
+        "Trim Solid", "Fillet", "Fillet Edge", "Offset Surface", "Pipe Variable", "SubD from Mesh", "Quad Remesh",
+    ),
+    _DOCUMENT: ("Geometry Pipeline", "Geometry Cache", "Image Sampler", "Import Image", "Object Details"),
+    _CODE: ("C# Script", "VB Script"),
+}  # fmt: skip
+REASONS: dict[str, str] = {name: why for why, names in _WHY.items() for name in names}
+"""Why Grasshopper's own objects have no stand-in, where there is more to say than that."""
+
 
 def require_known(graph: Graph) -> dict[UUID, str]:
     """Why objects that no Engine needs cannot be run, by their ids; they are left out.
@@ -99,4 +116,6 @@ def _strange(node: Node) -> str:
         return "" if node.floating else "it has inputs or outputs of its own"
     if node.guid == guids.CLUSTER:
         return why_closed(node)
-    return f"{node.guid} has no stand-in"
+    if node.name in REASONS:
+        return REASONS[node.name]
+    return f"it is of the plug-in {node.library}" if node.library else f"{node.guid} has no stand-in"

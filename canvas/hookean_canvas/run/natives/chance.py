@@ -46,6 +46,18 @@ def random_reduce(values: list[Any], fewer: int, seed: int) -> list[Any]:
     return [values[i] for i in sorted(kept.tolist())]
 
 
+@native("f02a20f6-bb49-4e3d-b155-8ed5d3c6b000", "Jitter", "Jitter",
+        "List (L): any list; Jitter (J): number = 1.0; Seed (S): integer = 1", "Values (V): list; Indices (I): list",
+        remark=_OTHER)  # fmt: skip
+def jitter(values: list[Any], strength: float, seed: int) -> tuple[list[Any], list[int]]:
+    """A list in another order, by chance: 0 leaves it, at 1 any order is as likely; and where each item was."""
+    if not 0.0 <= strength <= 1.0:
+        raise Unfit("Jitter must be between 0 and 1")
+    places = np.arange(len(values)) / max(len(values), 1)
+    found = np.argsort((1.0 - strength) * places + strength * _generator(seed).random(len(values)), kind="stable")
+    return [values[i] for i in found.tolist()], found.tolist()
+
+
 @native("e2d958e8-9f08-44f7-bf47-a684882d0b2a", "Populate 2D", "Pop2D", f"Region (R): rectangle; {_SPREAD}",
         "Population (P): list", remark=_OTHER)  # fmt: skip
 def populate_rectangle(region: Any, count: int, seed: int, given: list[Any] | None) -> list[Any]:

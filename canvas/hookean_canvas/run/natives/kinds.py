@@ -22,7 +22,8 @@ _KINDS = {
     "Vector": "vector", "Line": "line", "Curve": "curve", "Mesh": "mesh", "Data": "any", "Plane": "plane",
     "Domain": "domain", "Colour": "colour", "Circle": "curve", "Circular Arc": "curve", "Rectangle": "curve",
     "Geometry": "geometry", "Brep": "brep", "Surface": "surface", "Box": "box", "Transform": "transform",
-    "Mesh Face": "face", "Data Path": "path", "Shader": "any",
+    "Mesh Face": "face", "Data Path": "path", "Shader": "any", "Domain²": "any", "File Path": "any", "Guid": "any",
+    "Time": "any", "Complex": "any", "Matrix": "any", "Twisted Box": "any", "Mesher Settings": "any",
 }  # fmt: skip
 PARAMETERS: dict[UUID, tuple[str, str]] = {guids.PARAMETERS[name]: (name, kind) for name, kind in _KINDS.items()}
 """Floating parameters: their names and the kind of values they hold."""
@@ -142,7 +143,15 @@ def _domain(value: Any) -> Any:
 
 
 def _mesh(value: Any) -> Any:
-    return value if isinstance(value, rhino3dm.Mesh) else None
+    """A mesh, or that of the faces of a Brep or surface, as the component Mesh Brep makes it."""
+    if isinstance(value, rhino3dm.Mesh):
+        return value
+    faces = _brep(value)
+    if faces is None:
+        return None
+    from hookean_canvas.run.natives.meshes_made import mesh_brep
+
+    return mesh_brep(faces, None)
 
 
 def _brep(value: Any) -> Any:

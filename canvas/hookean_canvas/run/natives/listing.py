@@ -16,6 +16,7 @@ SUBJECTS = {
     "subdivision": "Weaverbird, by name", "measures": "Measures and boxes", "surfaces": "Surfaces",
     "curves_at": "Along curves", "surfaces_at": "On surfaces", "sets": "Sets", "tools": "Tools of Kangaroo",
     "chance": "By chance", "edges": "Edges and control points",
+    "places": "Places and meetings", "morphs": "Morphs", "meshes_more": "More on meshes and solids",
     "grids": "Grids of cells", "freeform": "Beside and along curves",
 }  # fmt: skip
 """Headings by the modules that declare natives."""

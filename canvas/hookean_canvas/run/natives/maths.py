@@ -9,8 +9,10 @@ from functools import reduce
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.natives.kinds import as_kind
 from hookean_canvas.run.rhino import rhino3dm
 
@@ -243,3 +245,27 @@ def minimum(*values: float) -> float:
 def rounded(x: float) -> tuple[int, int, int]:
     """The nearest whole number, halves to the even one, the one below or equal, and the one above or equal."""
     return round(x), math.floor(x), math.ceil(x)
+
+
+@native("338666eb-14c5-4d9b-82e2-2b5be60655df", "Weighted Average", "Wav",
+        "Input (I): any list; Weights (W): number list", "Arithmetic mean (AM)")  # fmt: skip
+def weighted_average(values: list[Any], weights: list[float]) -> Any:
+    """The mean of numbers, points or vectors, each times its weight; the last weight repeats."""
+    sizes = [weights[min(i, len(weights) - 1)] for i in range(len(values))] if weights else []
+    if not values or sum(sizes) == 0.0:
+        raise Unfit("values are needed, and weights with a sum other than 0")
+    if all(hasattr(one, "Z") for one in values):
+        mean = np.average(shapes.rows(values), axis=0, weights=sizes)
+        return (shapes.vector if isinstance(values[0], rhino3dm.Vector3d) else shapes.point)(mean)
+    return float(np.average([as_kind("number", one) for one in values], weights=sizes))
+
+
+@native("fe99f302-3d0d-4389-8494-bd53f7935a02", "Fibonacci", "Fib",
+        "Seed A (A): number = 0.0; Seed B (B): number = 1.0; Number (N): integer = 10", "Series (S): list")  # fmt: skip
+def fibonacci(first: float, second: float, count: int) -> list[float]:
+    """Numbers of which each is the sum of the two before it."""
+    bounded(count)
+    found = [first, second]
+    while len(found) < count:
+        found.append(found[-2] + found[-1])
+    return found[: max(count, 0)]

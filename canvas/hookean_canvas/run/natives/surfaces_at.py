@@ -73,7 +73,7 @@ def _ends(surface: Any, axis: int) -> tuple[float, float]:
     return domain.T0, domain.T1
 
 
-def _domain2(value: Any) -> Domain2:
+def domain2(value: Any) -> Domain2:
     """A value as a domain in u and v, as Grasshopper takes it: itself, or that of a surface."""
     if isinstance(value, Domain2):
         return value
@@ -86,7 +86,7 @@ def _domain2(value: Any) -> Domain2:
 
 @native("9083b87f-a98c-4e41-9591-077ae4220b19 8555a743-36c1-42b8-abcc-06d9cb94519f", "Construct Domain²", "Dom²",
         "U (U): any; V (V): any ...", "2D Domain (I²)")  # fmt: skip
-def construct_domain2(*given: Any) -> Domain2:
+def constructdomain2(*given: Any) -> Domain2:
     """A domain in u and v of two domains, or of four numbers."""
     if len(given) == 2 and all(isinstance(one, rhino3dm.Interval) for one in given):
         return Domain2(*((one.T0, one.T1) for one in given))
@@ -98,12 +98,12 @@ def construct_domain2(*given: Any) -> Domain2:
 
 @native("75ac008b-1bc2-4edd-b967-667d628b9d24", "Divide Domain²", "Divide",
         "Domain (I): any; U Count (U): integer = 10; V Count (V): integer = 10", "Segments (S): list")  # fmt: skip
-def divide_domain2(domain: Any, nu: int, nv: int) -> list[Domain2]:
+def dividedomain2(domain: Any, nu: int, nv: int) -> list[Domain2]:
     """The equal parts of a domain in u and v: for each part of u, those of v."""
     if min(nu, nv) < 1:
         raise Unfit("U Count and V Count must be at least 1")
     bounded(nu * nv)
-    whole = _domain2(domain)
+    whole = domain2(domain)
     us, vs = (np.linspace(*ends, count + 1).tolist() for ends, count in ((whole.u, nu), (whole.v, nv)))
     return [Domain2((us[i], us[i + 1]), (vs[j], vs[j + 1])) for i in range(nu) for j in range(nv)]
 
@@ -112,7 +112,7 @@ def divide_domain2(domain: Any, nu: int, nv: int) -> list[Domain2]:
         "Surface (S)")  # fmt: skip
 def isotrim(surface: Any, domain: Any) -> Any:
     """The part of a surface within a domain of its parameters."""
-    part = _domain2(domain)
+    part = domain2(domain)
     found = _of_nurbs(surface.ToNurbsSurface())
     for axis, ends in enumerate((part.u, part.v)):
         found = _cut(found, axis, ends)
