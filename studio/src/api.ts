@@ -21,7 +21,7 @@ export function refusal(status: number, problem: Record<string, unknown>): Refus
   return new Refused(status, String(problem["detail"] ?? `The service answered with ${status}.`), slug, errors);
 }
 
-async function ask(path: string, options: RequestInit = {}): Promise<Response> {
+export async function ask(path: string, options: RequestInit = {}): Promise<Response> {
   let answer: Response;
   try {
     answer = await fetch(path, { credentials: "same-origin", ...options });
@@ -33,9 +33,9 @@ async function ask(path: string, options: RequestInit = {}): Promise<Response> {
   throw refusal(answer.status, problem);
 }
 
-const read = async <T>(path: string): Promise<T> => (await (await ask(path)).json()) as T;
+export const read = async <T>(path: string): Promise<T> => (await (await ask(path)).json()) as T;
 
-const send = async <T>(method: string, path: string, body: unknown): Promise<T> => {
+export const send = async <T>(method: string, path: string, body: unknown): Promise<T> => {
   const headers = { "content-type": "application/json" };
   return (await (await ask(path, { method, headers, body: JSON.stringify(body) })).json()) as T;
 };

@@ -2,6 +2,7 @@
 import type { ComponentChildren } from "preact";
 import { Charts } from "./charts";
 import { Compare } from "./compare";
+import { Design } from "./design";
 import { Forces } from "./forces";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
@@ -34,6 +35,9 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="Tables" isClosed>
         <Tables studio={studio} />
+      </Panel>
+      <Panel name="Design" isClosed>
+        <Design studio={studio} />
       </Panel>
       <Panel name="Compare" isClosed>
         <Compare studio={studio} />
