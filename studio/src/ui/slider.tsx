@@ -35,7 +35,7 @@ for (const type of ["keydown", "keyup"] as const)
 window.addEventListener("blur", () => (wide.value = false));
 
 export function Slider({ session, name, seen, value, unit, hint, note, bounds, log, whole, patch }: Led) {
-  const hand = useHand(session, value, patch);
+  const hand = useHand(session, patch);
   return (
     <Track
       name={name}
@@ -149,17 +149,20 @@ function Track({ name, seen, shown, unit, hint, note, bounds, log, whole, ...han
   );
 }
 
-/** What the hand wants, until the session tells the same: `value` is null where it wants nothing. */
-function useHand(session: Session, value: number, patch: (value: number) => Patch) {
+/** What the hand wants, until the page has read the scene with it: `value` is null where it wants nothing. A scene that
+ * arrives late has an older value, to which the slider must not jump back. */
+function useHand(session: Session, patch: (value: number) => Patch) {
   const wanted = useSignal<number | null>(null);
   const edits = useMemo(() => new Newest(session), [session]);
   const held = useRef(false);
   const last = useRef(0);
   const named = useRef("");
   const timer = useRef(0);
-  useEffect(() => {
-    if (!held.current && performance.now() - last.current > 100) wanted.value = null;
-  }, [value]);
+  const known = session.read.value;
+  const giveWay = () => {
+    if (!held.current && !edits.busy && session.read.peek() >= edits.revision) wanted.value = null;
+  };
+  useEffect(giveWay, [known]);
   useEffect(() => () => clearTimeout(timer.current), []);
   const renew = () => (named.current = gesture("slider"));
   const lead = (to: number) => {
@@ -172,12 +175,15 @@ function useHand(session: Session, value: number, patch: (value: number) => Patc
   const settle = () => {
     clearTimeout(timer.current);
     void edits.settled().then(() => {
-      // where it was refused, the old one stands
+      giveWay();
+      clearTimeout(timer.current);
+      // where it was refused, the old one stands; another service counts its revisions anew
       timer.current = window.setTimeout(() => (wanted.value = null), session.said.value ? 0 : TOLD);
     });
   };
   const press = () => {
     held.current = true;
+    clearTimeout(timer.current);
     renew();
   };
   const release = () => {
