@@ -272,6 +272,7 @@ export class Session {
 
   /** How the session stands after an order of this page: what is older is not shown any more. */
   private acknowledge(summary: Summary): Summary {
+    if (this.closed) return summary; // the counts are those of the next session by now
     this.acknowledged = Math.max(this.acknowledged, summary.revision);
     stats.revisionAcknowledged = this.acknowledged;
     if (this.frame && this.frame.revision < this.acknowledged) this.frame = null;
