@@ -62,6 +62,10 @@ export const edit = (key: string, patch: Patch) => send<Summary>("PATCH", at(key
 /** A new session of a scene. */
 export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1/sessions${labelled(label)}`, scene);
 
+/** Another name to display. */
+export const rename = async (key: string, label: string) =>
+  (await (await ask(`${at(key)}/label${labelled(label)}`, { method: "PUT" })).json()) as Summary;
+
 /** Another session that goes on from where one is, paused. */
 export const branch = async (key: string, label: string) =>
   (await (await ask(`${at(key)}/branches${labelled(label)}`, { method: "POST" })).json()) as Summary;

@@ -104,6 +104,13 @@ export class Session {
     }
   }
 
+  /** Give it another name. */
+  async rename(label: string): Promise<void> {
+    const { label: name } = await api.rename(this.key, label);
+    const now = this.summary.value;
+    if (now) this.summary.value = { ...now, label: name };
+  }
+
   /** Stop watching. The session goes on. */
   close(): void {
     this.closed = true;

@@ -138,6 +138,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
   const live = session.connection.value === "live";
   return (
     <>
+      <Rename studio={studio} title={title} />
       <div class="row">
         {FILES.map(({ format, seen, ending, hint }) => (
           <button
@@ -182,6 +183,34 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
         />
       )}
     </>
+  );
+}
+
+/** The name of the session, in the list of sessions and of its files. */
+function Rename({ studio: { session }, title }: { studio: Studio; title: string }) {
+  const give = async (field: HTMLInputElement) => {
+    const name = field.value.trim();
+    try {
+      if (name) await session.rename(name);
+      else field.value = title;
+    } catch (error) {
+      field.value = title;
+      met(error);
+      refuse(error, "The session was not renamed. ");
+    }
+  };
+  return (
+    <label class="field name" title="In the list of sessions, and of files that are saved">
+      <span>Name</span>
+      <input
+        type="text"
+        aria-label="Name of the session"
+        maxLength={200}
+        value={title}
+        disabled={session.connection.value !== "live"}
+        onChange={(event) => void give(event.currentTarget)}
+      />
+    </label>
   );
 }
 
