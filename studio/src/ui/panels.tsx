@@ -4,6 +4,7 @@ import { Charts } from "./charts";
 import { Compare } from "./compare";
 import { Design } from "./design";
 import { Forces } from "./forces";
+import { Measure } from "./measure";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
 import { SeePanel } from "./see";
@@ -18,6 +19,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       <Panel name="Picked">
         <PickedPanel studio={studio} />
         <Selected studio={studio} />
+        <Measure studio={studio} />
       </Panel>
       {studio.session.scene.value?.family && (
         <Panel name="Shape">

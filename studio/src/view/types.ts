@@ -70,6 +70,10 @@ export interface Options {
   groups: Signal<Groups>;
   /** Particles that are selected, or that a warning speaks of. */
   marked: Signal<number[]>;
+  /** Particles between which is measured, in their order. */
+  measured: Signal<number[]>;
+  /** Whether the numbers of those that are selected are shown. */
+  numbers: Signal<boolean>;
   /** Rest length of each spring [length], for strain; null: not known yet. */
   restLengths: Signal<Float32Array | null>;
   given: Signal<Given | null>;
@@ -96,6 +100,8 @@ export const options = (): Options => ({
   tool: signal<Tool>("none"),
   groups: signal<Groups>({}),
   marked: signal<number[]>([]),
+  measured: signal<number[]>([]),
+  numbers: signal(false),
   restLengths: signal<Float32Array | null>(null),
   given: signal<Given | null>(null),
   ghost: signal<Shadow | null>(null),
