@@ -52,7 +52,7 @@ def same_points(found: NDArray[np.float64], drawn: NDArray[np.float64], within: 
 
 
 def test_stl_glb_and_svg_have_the_form_that_is_seen(membrane: Studio):
-    """STL: two triangles for each quadrilateral, normals of length 1; GLB: the particles, and lines between them; SVG: a
+    """STL: two triangles for each quadrilateral, normals of length 1; GLB: the particles and lines between them; SVG: a
     line for each spring, as long as the canvas shows it. Numbers are of single precision; those of SVG have two digits
     behind the point."""
     drawn = membrane.particles()
@@ -129,7 +129,7 @@ def test_the_simulation_goes_on_in_python(membrane: Studio):
 
 def test_the_picture_is_what_is_seen(membrane: Studio):
     """A PNG in the canvas's shape, at full quality, with the form in it where the page has it, and the legend: in its
-    corner a ramp of colours, 160 pixels wide below two lines of 20."""
+    corner a ramp of colours, 160 CSS pixels wide below two lines of 20."""
     with Image.open(taken(membrane, "PNG", ".png")) as picture:
         assert picture.format == "PNG"
         pixels = np.asarray(picture.convert("RGB"), int)
@@ -139,7 +139,8 @@ def test_the_picture_is_what_is_seen(membrane: Studio):
     assert width >= box["width"] - 1 and abs(width / height - box["width"] / box["height"]) < 0.02
     differs = np.abs(pixels - pixels[2, 2]).sum(axis=2) > 24
     assert 0.01 < differs.mean() < 0.9
-    assert len(np.unique(pixels[61, 18:174], axis=0)) > 30
+    row, left, right = (round(at * width / box["width"]) for at in (61, 18, 174))
+    assert len(np.unique(pixels[row, left:right], axis=0)) > 30
     for particle in (0, len(membrane.particles()) // 2):
         x, y = membrane.place(particle)
         column, row = (round((at - start) * width / box["width"]) for at, start in ((x, box["x"]), (y, box["y"])))

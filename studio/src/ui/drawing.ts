@@ -48,14 +48,14 @@ const ESCAPES: Record<string, string> = { "&": "&amp;", "<": "&lt;", ">": "&gt;"
 
 const escaped = (text: string) => text.replace(/[&<>]/g, (letter) => ESCAPES[letter]!);
 
-/** What is seen, in full quality, with title and legend in its corner. */
-export async function picture(view: View, captions: Captions, isDark: boolean): Promise<Blob> {
+/** What is seen on a canvas of a width [CSS pixels], in full quality, with title and legend in its corner. */
+export async function picture(view: View, captions: Captions, isDark: boolean, width: number): Promise<Blob> {
   const drawn = await createImageBitmap(await view.png());
   const canvas = new OffscreenCanvas(drawn.width, drawn.height);
   const pen = canvas.getContext("2d")!;
   pen.drawImage(drawn, 0, 0);
+  caption(pen, captions, isDark, drawn.width / width);
   drawn.close();
-  caption(pen, captions, isDark, Math.max(1, window.devicePixelRatio));
   return canvas.convertToBlob({ type: "image/png" });
 }
 

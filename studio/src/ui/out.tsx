@@ -10,7 +10,7 @@ import { linkTo, met } from "./place";
 import { fitting } from "./kept";
 import type { Studio } from "./studio";
 import { dark } from "./theme";
-import { measured } from "./words";
+import { said } from "./words";
 
 const FILES: { format: api.Format; seen: string; ending: string; hint: string }[] = [
   {
@@ -63,10 +63,11 @@ const SEEN: {
       const { loads, reactions } = options.layers.value;
       const unit = session.topology.value?.units.force ?? "";
       const arrows = [
-        loads && load > 0 && `Load up to ${measured(load, unit)}`,
-        reactions && reaction > 0 && `Reaction up to ${measured(reaction, unit)}`,
+        loads && load > 0 && `Load up to ${said(load, 3)} ${unit}`,
+        reactions && reaction > 0 && `Reaction up to ${said(reaction, 3)} ${unit}`,
       ].filter((sentence) => sentence !== false);
-      return picture(view, { title, legend: view.legend.value, arrows }, dark.value);
+      const width = document.querySelector(".drawing > canvas")?.clientWidth ?? window.innerWidth;
+      return picture(view, { title, legend: view.legend.value, arrows }, dark.value, width);
     },
   },
   {
