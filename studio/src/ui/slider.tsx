@@ -177,7 +177,7 @@ function useHand(session: Session, patch: (value: number) => Patch) {
     void edits.settled().then(() => {
       giveWay();
       clearTimeout(timer.current);
-      // where it was refused, the old one stands; another service counts its revisions anew
+      // where it was refused, the old one stands; another service begins its revisions at 0
       timer.current = window.setTimeout(() => (wanted.value = null), session.said.value ? 0 : TOLD);
     });
   };

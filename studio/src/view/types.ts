@@ -35,7 +35,8 @@ export interface Given {
   values: Float32Array;
 }
 
-/** The lines of a variant, or of the best values of a design: what the legend calls it, x y z of its particles [length], and pairs of these. */
+/** The lines of a variant, or of the best values of a design: its name in the legend, x y z of its particles [length],
+ * and pairs of these. */
 export interface Shadow {
   name: string;
   positions: Float32Array;
