@@ -21,7 +21,7 @@ export function refusal(status: number, problem: Record<string, unknown>): Refus
   return new Refused(status, String(problem["detail"] ?? `The service answered with ${status}.`), slug, errors);
 }
 
-async function ask(path: string, options: RequestInit = {}): Promise<Response> {
+export async function ask(path: string, options: RequestInit = {}): Promise<Response> {
   let answer: Response;
   try {
     answer = await fetch(path, { credentials: "same-origin", ...options });
@@ -33,9 +33,9 @@ async function ask(path: string, options: RequestInit = {}): Promise<Response> {
   throw refusal(answer.status, problem);
 }
 
-const read = async <T>(path: string): Promise<T> => (await (await ask(path)).json()) as T;
+export const read = async <T>(path: string): Promise<T> => (await (await ask(path)).json()) as T;
 
-const send = async <T>(method: string, path: string, body: unknown): Promise<T> => {
+export const send = async <T>(method: string, path: string, body: unknown): Promise<T> => {
   const headers = { "content-type": "application/json" };
   return (await (await ask(path, { method, headers, body: JSON.stringify(body) })).json()) as T;
 };
@@ -61,6 +61,10 @@ export const edit = (key: string, patch: Patch) => send<Summary>("PATCH", at(key
 
 /** A new session of a scene. */
 export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1/sessions${labelled(label)}`, scene);
+
+/** Another name to display. */
+export const rename = async (key: string, label: string) =>
+  (await (await ask(`${at(key)}/label${labelled(label)}`, { method: "PUT" })).json()) as Summary;
 
 /** Another session that goes on from where one is, paused. */
 export const branch = async (key: string, label: string) =>

@@ -18,6 +18,8 @@ const LONGEST_WAIT = 300;
 export class Newest {
   /** Whether one of them was made. */
   made = false;
+  /** The revision that the session had after the last one. */
+  revision = 0;
   private next: Patch | null = null;
   private running: Promise<void> | null = null;
 
@@ -27,6 +29,11 @@ export class Newest {
   put(patch: Patch): void {
     this.next = patch;
     this.running ??= this.run().finally(() => (this.running = null));
+  }
+
+  /** Whether one is on its way. */
+  get busy(): boolean {
+    return this.running !== null;
   }
 
   /** When all that was put is acknowledged or refused. */
@@ -40,6 +47,7 @@ export class Newest {
       this.next = null;
       if (!(await this.session.tell(patch))) continue;
       this.made = true;
+      this.revision = this.session.answered;
       await seen();
     }
   }

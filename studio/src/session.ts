@@ -29,6 +29,8 @@ export class Session {
   /** As of the last revision that was read. */
   readonly anchors = signal<Anchor[]>([]);
   readonly scene = signal<Scene | null>(null);
+  /** Anchors and scene are of this revision or a later one; -1 before they are read. */
+  readonly read = signal(-1);
   /** Counts changes of the colours that programs give. */
   readonly views = signal(0);
   /** What went wrong last, in a sentence; "" for nothing. */
@@ -63,6 +65,11 @@ export class Session {
     this.connect();
   }
 
+  /** The newest revision that an order of this page was answered with. */
+  get answered(): number {
+    return this.acknowledged;
+  }
+
   /** Called with every frame that may be shown; returns how to stop it. */
   onFrame(watcher: (frame: Frame) => void): () => void {
     this.watchers.add(watcher);
@@ -95,6 +102,13 @@ export class Session {
       this.said.value = error instanceof Error ? error.message : String(error);
       return false;
     }
+  }
+
+  /** Give it another name. */
+  async rename(label: string): Promise<void> {
+    const { label: name } = await api.rename(this.key, label);
+    const now = this.summary.value;
+    if (now) this.summary.value = { ...now, label: name };
   }
 
   /** Stop watching. The session goes on. */
@@ -138,13 +152,13 @@ export class Session {
     if ("view" in message) this.views.value = message["view"] as number;
     if ("hello" in message) this.greeted(message["session"] as Summary, message["topology"] as string);
     else if ("state" in message) this.stands(message["state"] as Summary, message["topology"] as string);
-    else this.answered(message);
+    else this.reply(message);
   }
 
   private greeted(summary: Summary, tag: string): void {
     // numbers of frames and revisions begin again with the connection: the service may be another one
     this.acknowledged = stats.revisionAcknowledged = 0;
-    this.described = -1;
+    this.described = this.read.value = -1;
     if (tag !== this.tag) this.frame = null;
     this.wait = FIRST_WAIT;
     batch(() => {
@@ -178,6 +192,7 @@ export class Session {
         this.topology.value = topology;
         this.anchors.value = anchors;
         this.scene.value = scene;
+        this.read.value = revision;
       });
       if (this.frame) this.show(this.frame);
     } catch {
@@ -251,7 +266,7 @@ export class Session {
     });
   }
 
-  private answered(message: Record<string, unknown>): void {
+  private reply(message: Record<string, unknown>): void {
     const waiting = this.waiting.get(message["id"] as number);
     this.waiting.delete(message["id"] as number);
     if ("problem" in message) {
@@ -264,6 +279,7 @@ export class Session {
 
   /** How the session stands after an order of this page: what is older is not shown any more. */
   private acknowledge(summary: Summary): Summary {
+    if (this.closed) return summary; // the counts are those of the next session by now
     this.acknowledged = Math.max(this.acknowledged, summary.revision);
     stats.revisionAcknowledged = this.acknowledged;
     if (this.frame && this.frame.revision < this.acknowledged) this.frame = null;

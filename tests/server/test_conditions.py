@@ -21,6 +21,7 @@ OTHER = '"0123456789abcdef-0-01234567"'  # an ETag that no session has
 CHANGES: dict[str, Callable[[httpx.Client, dict[str, str]], httpx.Response]] = {
     "PUT": lambda client, when: client.put(A, json=changed(-1), headers=when),
     "PATCH": lambda client, when: client.patch(A, json={"release": [0]}, headers=when),
+    "rename": lambda client, when: client.put(f"{A}/label", params={"label": "b"}, headers=when),
     "branch": lambda client, when: client.post(f"{A}/branches", params={"to": "b"}, headers=when),
     **{
         name: lambda client, when, name=name: client.post(f"{A}/{name}", headers=when)

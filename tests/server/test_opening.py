@@ -92,7 +92,7 @@ def test_what_is_not_taken_and_what_was_changed_is_told(client: httpx.Client) ->
     client.delete(address)
 
 
-def test_what_was_told_of_a_file_outlives_the_server(tmp_path: Path) -> None:
+def test_what_was_told_of_a_file_and_a_new_name_outlive_the_server(tmp_path: Path) -> None:
     """A page that is loaded again after a restart shows it too; a branch has it, another file's session has not."""
     state = str(tmp_path / "sessions.db")
     first = Served(state=state, workers=1)
@@ -101,12 +101,15 @@ def test_what_was_told_of_a_file_outlives_the_server(tmp_path: Path) -> None:
             made = first.client.put(f"/v1/sessions/{key}", files={"file": ("a.obj", SHEET + more)})
             assert made.status_code == 201, made.text
         first.client.post("/v1/sessions/a/branches", params={"to": "c"})
+        renamed = first.client.put("/v1/sessions/a/label", params={"label": "Sheet"}).json()
+        assert (renamed["label"], renamed["revision"]) == ("Sheet", 0)
     finally:
         first.end()
     second = Served(state=state, workers=1)
     try:
         listed = second.client.get("/v1/sessions").json()["sessions"]
         told = ["not read from the file: normals, materials"]
+        assert {one["key"]: one["label"] for one in listed} == {"a": "Sheet", "b": "", "c": ""}
         assert {one["key"]: one["warnings"] for one in listed} == {"a": told, "b": [], "c": told}
         second.client.post("/v1/sessions/a/step")
         assert second.client.get("/v1/sessions/a").json()["warnings"] == told

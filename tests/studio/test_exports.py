@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
+from xml.etree import ElementTree
 
 import compas
 import numpy as np
@@ -47,6 +49,37 @@ def same_points(found: NDArray[np.float64], drawn: NDArray[np.float64], within: 
     """Whether two lists have the same points, whatever their order and how often each is named."""
     distances = np.linalg.norm(found[:, None] - drawn[None], axis=2)
     return bool(distances.min(axis=1).max() < within and distances.min(axis=0).max() < within)
+
+
+def test_stl_glb_and_svg_have_the_form_that_is_seen(membrane: Studio):
+    """STL: two triangles for each quadrilateral, normals of length 1; GLB: the particles and lines between them; SVG: a
+    line for each spring, as long as the canvas shows it. Numbers are of single precision; those of SVG have two digits
+    behind the point."""
+    drawn = membrane.particles()
+    corners = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    stl = taken(membrane, "STL", ".stl").read_bytes()
+    triangles = np.frombuffer(stl, corners, offset=84)
+    topology = membrane.service.client.get(f"/v1/sessions/{FIGURE}/topology").json()
+    faces = {frozenset(face) for mesh in topology["meshes"].values() for face in mesh["faces"]}
+    assert len(triangles) == int.from_bytes(stl[80:84], "little") == sum(len(face) - 2 for face in faces)
+    assert same_points(triangles["corners"].reshape(-1, 3), drawn, 1e-5)
+    assert np.linalg.norm(triangles["normal"], axis=1) == pytest.approx(1, abs=1e-6)
+
+    glb = taken(membrane, "GLB", ".glb").read_bytes()
+    assert glb[:4] == b"glTF" and int.from_bytes(glb[8:12], "little") == len(glb)
+    size = int.from_bytes(glb[12:16], "little")
+    told, binary = json.loads(glb[20 : 20 + size]), glb[28 + size :]
+    places, *rest = told["bufferViews"]
+    found = np.frombuffer(binary, "<f4", places["byteLength"] // 4).reshape(-1, 3)
+    assert np.abs(found - drawn).max() < 1e-5 and told["nodes"][0]["scale"] == [1, 1, 1]
+    assert all(np.frombuffer(binary, "<u4", v["byteLength"] // 4, v["byteOffset"]).max() < len(drawn) for v in rest)
+
+    svg = ElementTree.parse(taken(membrane, "SVG", ".svg")).getroot()
+    [lines] = [[*group] for group in svg if group.get("id") == "springs"]
+    assert len(lines) == len(topology["springs"]) > 0
+    x1, y1, x2, y2 = (float(lines[0].get(name, "nan")) for name in ("x1", "y1", "x2", "y2"))
+    one, other = map(membrane.seen, topology["springs"][0])
+    assert (x1 - x2, y1 - y2) == pytest.approx(np.subtract(one, other), abs=0.02)
 
 
 def test_the_rhino_file_has_the_shape_that_is_seen(membrane: Studio):
@@ -95,7 +128,8 @@ def test_the_simulation_goes_on_in_python(membrane: Studio):
 
 
 def test_the_picture_is_what_is_seen(membrane: Studio):
-    """A PNG in the canvas's shape, at full quality, with the form in it where the page has it."""
+    """A PNG in the canvas's shape, at full quality, with the form in it where the page has it, and the legend: in its
+    corner a ramp of colours, 160 CSS pixels wide below two lines of 20."""
     with Image.open(taken(membrane, "PNG", ".png")) as picture:
         assert picture.format == "PNG"
         pixels = np.asarray(picture.convert("RGB"), int)
@@ -105,6 +139,8 @@ def test_the_picture_is_what_is_seen(membrane: Studio):
     assert width >= box["width"] - 1 and abs(width / height - box["width"] / box["height"]) < 0.02
     differs = np.abs(pixels - pixels[2, 2]).sum(axis=2) > 24
     assert 0.01 < differs.mean() < 0.9
+    row, left, right = (round(at * width / box["width"]) for at in (61, 18, 174))
+    assert len(np.unique(pixels[row, left:right], axis=0)) > 30
     for particle in (0, len(membrane.particles()) // 2):
         x, y = membrane.place(particle)
         column, row = (round((at - start) * width / box["width"]) for at, start in ((x, box["x"]), (y, box["y"])))

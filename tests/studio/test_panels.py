@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -161,3 +162,40 @@ def test_a_warning_of_the_report_is_seen_with_its_particles(tab: Studio):
     with Image.open(io.BytesIO(page.screenshot(clip=around))) as picture:
         red, green, blue = np.moveaxis(np.asarray(picture.convert("RGB"), int), -1, 0)
     assert np.count_nonzero((red > 180) & (green < 100) & (blue < 180)) > 10
+
+
+WATCH = """(slider) => {
+    window.seen = [slider.value];
+    const look = () => {
+        if (slider.value !== window.seen.at(-1)) window.seen.push(slider.value);
+        requestAnimationFrame(look);
+    };
+    look();
+}"""
+"""Notes every value that a slider shows."""
+
+
+def test_a_scene_that_arrives_late_does_not_take_a_slider_back(cable: Studio):
+    """The page reads a scene of after the first stroke, which arrives after the second: the slider shows the second."""
+    page, service, key = cable.page, cable.service, cable.key
+    held: list[Any] = []  # a scene on its way, kept back once
+    page.route(
+        f"**/v1/sessions/{key}/scene",
+        lambda route: route.continue_() if held else held.append((route, route.fetch())),
+    )
+    slider = page.get_by_role("slider", name="cable rest factor")
+    page.evaluate(WATCH, slider.element_handle())
+    slider.focus()
+    page.keyboard.press("ArrowRight")
+    cable.until(lambda: held, what="the page to read the scene")
+    page.keyboard.press("ArrowRight")
+    cable.until(lambda: service.summary(key)["revision"] >= 2)
+    last = slider.input_value()
+    route, late = held[0]
+    assert late.json()["forces"][0]["rest_factor"] != float(last)
+    page.wait_for_timeout(150)  # as late as a scene is on a busy machine
+    route.fulfill(response=late)
+    cable.until(lambda: page.evaluate("() => window.hookean.stats.revisionDrawn") >= 2)
+    cable.settled()
+    shown = page.evaluate("() => window.seen.map(Number)")
+    assert shown == sorted(shown) and shown[-1] == float(last) == service.scene(key)["forces"][0]["rest_factor"]

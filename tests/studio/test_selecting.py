@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from .browser import Studio, net
@@ -43,6 +44,28 @@ def around(studio: Studio, first: int, last: int, by: float = 20) -> list[tuple[
 
 def held(studio: Studio) -> list[int]:
     return sorted(p for anchor in studio.service.anchors(studio.key) for p in anchor["particles"])
+
+
+def test_a_part_is_selected_by_name_numbered_and_measured(sheet: Studio) -> None:
+    """The anchor is the corners 0, 4, 20, 24 of a square of 4 m; from corner to corner it is 4 m, 8 m in total, with a
+    right angle between; numbers and lengths are drawn where the particles are."""
+    page = sheet.page
+    page.get_by_label("Select a part").select_option(label="Anchor 0")
+    counts(sheet, 4)
+    page.locator("summary", has_text=re.compile("^Measure$")).click()
+    page.get_by_label("Show the numbers").check()
+    labels = page.get_by_role("img", name="Measured lengths")
+    assert labels.locator(".number").all_text_contents() == ["0", "4", "20", "24"]
+    page.get_by_label("Particles to measure").fill("0 4 24")
+    told = page.get_by_label("Measured", exact=True).inner_text().split("\n")
+    assert [told[i] for i in (1, 3, 5, 7)] == ["4 m (x 0, y 4, z 0)", "4 m (x 4, y 0, z 0)", "8 m", "90°"]
+    line = labels.locator("line").first
+    box = page.locator("canvas").first.bounding_box()
+    assert box is not None
+    drawn = [float(line.get_attribute(name) or "nan") for name in ("x1", "y1")]
+    assert drawn == pytest.approx(np.subtract(sheet.seen(0), (box["x"], box["y"])), abs=1)  # CSS pixel
+    page.get_by_label("Particles to measure").fill("0 99")
+    page.get_by_text("There is no particle 99 in this model.").wait_for()
 
 
 def counts(studio: Studio, number: int) -> None:

@@ -107,15 +107,19 @@ def test_every_figure_is_in_the_gallery_with_its_picture(studio: Studio):
         page.wait_for_function("image => image.complete && image.naturalWidth > 0", arg=picture)
 
 
-def test_a_session_that_another_program_made_is_listed_and_shown(studio: Studio):
-    """Grasshopper makes sessions by PUT, under keys of its own."""
+def test_a_session_that_another_program_made_is_listed_shown_and_renamed(studio: Studio):
+    """Grasshopper makes sessions by PUT, under keys of its own. The list of sessions has the name that it is given."""
     key = "roof.gh:4f8c-11"
     studio.service.put(key, CABLE)
     studio.page.get_by_role("link", name=key).click()
     studio.drawing()
     studio.rests_at(np.array(CABLE["particles"], float))
+    studio.page.get_by_label("Name of the session").fill("Roof over the yard")
+    studio.page.keyboard.press("Enter")
+    studio.page.get_by_role("heading", level=1, name="Roof over the yard").wait_for()
     studio.page.go_back()
     studio.page.get_by_role("heading", name="Figures").wait_for()
+    studio.page.get_by_role("link", name="Roof over the yard").wait_for()
 
 
 def test_a_session_is_forgotten_when_that_is_confirmed(studio: Studio):

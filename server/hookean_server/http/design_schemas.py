@@ -63,7 +63,7 @@ def _measured(model: type[Model]) -> dict[str, Any]:
         required = ["kind", *(name for name in schema.get("required", []) if name not in ("kind", "particles"))]
         kinds.append(
             {"type": "object", "properties": properties, "required": required, "additionalProperties": False,
-             "title": kind, "description": schema.get("description", kind)}
+             "title": kind, "description": schema.get("description", kind), "x-unit": cls.unit}
         )  # fmt: skip
     return {"oneOf": kinds, "description": model.__doc__}
 

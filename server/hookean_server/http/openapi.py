@@ -248,6 +248,11 @@ def branched() -> dict[str, Any]:
     return {"responses": {**problems(None, live=True), 201: {"description": "The branch", "content": SESSION}}}
 
 
+def renamed() -> dict[str, Any]:
+    """Description of the route of names."""
+    return {"responses": problems(SESSION, live=True)}
+
+
 def exported(*codes: int) -> dict[int | str, dict[str, Any]]:
     """Responses of what is taken out of a session."""
     files = ("application/octet-stream", "model/vnd.3dm", "model/obj", "text/csv")

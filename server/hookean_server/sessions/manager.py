@@ -150,6 +150,15 @@ class Manager(Awake):
             other.described = {**described, "playing": False}
         return other
 
+    async def rename(self, key: str | Live, label: str, when: Conditions = ALWAYS) -> Live:
+        """Give a session another name to display; its model and revision stay."""
+        live = self.find(key)
+        async with self.held(live):
+            when.check(live)
+            await self.store.run(rows.rename(live.key, label))
+            live.label = label
+        return live
+
     async def delete(self, key: str | Live, when: Conditions = ALWAYS) -> None:
         """Forget a session and end its process."""
         live = self.find(key)

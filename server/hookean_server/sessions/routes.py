@@ -115,6 +115,12 @@ async def edit(request: Request, key: Key, when: When) -> Response:
     return _answer(live, 200, await manager(request).edit(live, body, when=when))
 
 
+@router.put("/v1/sessions/{key}/label", summary="Rename a session", **openapi.renamed())
+async def rename(request: Request, key: Key, when: When, label: Label = "") -> Response:
+    """Another name to display; none is the key. The model and its revision stay."""
+    return _answer(await manager(request).rename(key, label, when))
+
+
 @router.post("/v1/sessions/{key}/branches", status_code=201, summary="Branch a session", **openapi.branched())
 async def branch(
     request: Request,

@@ -67,6 +67,15 @@ def put(key: str, label: str, base: bytes, described: dict[str, Any], notes: lis
     return work
 
 
+def rename(key: str, label: str) -> Work:
+    """Another name to display."""
+
+    def work(db: Database) -> None:
+        db.change("sessions", (key,), label=label)
+
+    return work
+
+
 def edit(key: str, revision: int, sets: str, body: bytes) -> Work:
     """An edit that has been made, in place of the last one where that belongs to the same gesture and `sets` the same.
     Returns how many there are."""

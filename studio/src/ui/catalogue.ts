@@ -2,14 +2,16 @@
 import { signal } from "@preact/signals";
 import * as api from "../api";
 import type { Bounds, Field, Kind } from "../model";
+import { type OneOf, type Quantity, quantitiesOf } from "../quantities";
 
-/** Kinds of forces by their name, and the settings; null until they are read. */
+/** Kinds of forces by their name, the settings, and what goals of a design measure; null until they are read. */
 export const kinds = signal<Map<string, Kind> | null>(null);
 export const settings = signal<Field[] | null>(null);
+export const quantities = signal<Map<string, Quantity> | null>(null);
 
 let reading = false;
 
-/** Read both, where they are not known yet. */
+/** Read them, where they are not known yet. */
 export async function know(): Promise<void> {
   if (reading || (kinds.value && settings.value)) return;
   reading = true;
@@ -17,6 +19,7 @@ export async function know(): Promise<void> {
     const [forces, described] = await Promise.all([api.catalogue(), api.openapi()]);
     kinds.value = new Map(forces.map((kind) => [kind.kind, kind]));
     settings.value = fields(described.components.schemas["Settings"] as Described);
+    quantities.value = quantitiesOf(described.components.schemas["DesignGoal"] as OneOf);
   } finally {
     reading = false;
   }

@@ -117,7 +117,7 @@ function useDrawn({ options, beside, session }: Studio, found: Variant | null, h
     if (fits && how === "overlay") {
       const { springs, edges, strokes } = form(found.topology);
       options.ghost.value = {
-        name: ownOf(calledOf(found.summary)),
+        name: `Variant ${ownOf(calledOf(found.summary))}`,
         positions: still(found).positions,
         ends: Int32Array.from([...springs, ...edges, ...strokes]),
       };

@@ -1,10 +1,16 @@
 // The session as a file, as a picture, and as a link.
 import { useSignal } from "@preact/signals";
 import * as api from "../api";
+import { glb, stl } from "../shapes";
+import { form } from "../view/form";
+import type { View } from "../view/types";
+import { picture, svg } from "./drawing";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
 import { fitting } from "./kept";
 import type { Studio } from "./studio";
+import { dark } from "./theme";
+import { said } from "./words";
 
 const FILES: { format: api.Format; seen: string; ending: string; hint: string }[] = [
   {
@@ -39,6 +45,55 @@ const FILES: { format: api.Format; seen: string; ending: string; hint: string }[
   },
   { format: "obj", seen: "OBJ", ending: ".obj", hint: "The shape only: meshes, lines and held points" },
   { format: "csv", seen: "CSV", ending: ".csv", hint: "A table of forces and reactions" },
+];
+
+/** What this page makes of what it draws. */
+const SEEN: {
+  seen: string;
+  ending: string;
+  hint: string;
+  made: (studio: Studio, view: View, title: string) => Blob | Promise<Blob>;
+}[] = [
+  {
+    seen: "PNG",
+    ending: ".png",
+    hint: "A picture of the present view with its title and legend",
+    made: ({ options, session }, view, title) => {
+      const { load, reaction } = view.arrows.value;
+      const { loads, reactions } = options.layers.value;
+      const unit = session.topology.value?.units.force ?? "";
+      const arrows = [
+        loads && load > 0 && `Load up to ${said(load, 3)} ${unit}`,
+        reactions && reaction > 0 && `Reaction up to ${said(reaction, 3)} ${unit}`,
+      ].filter((sentence) => sentence !== false);
+      const width = document.querySelector(".drawing > canvas")?.clientWidth ?? window.innerWidth;
+      return picture(view, { title, legend: view.legend.value, arrows }, dark.value, width);
+    },
+  },
+  {
+    seen: "SVG",
+    ending: ".svg",
+    hint: "The lines of the present view as a drawing; Top, Front and Right are drawn to scale",
+    made: ({ session }, view, title) => {
+      const held = new Set(session.anchors.value.flatMap(({ particles }) => particles));
+      return svg(view, form(session.topology.value!), held, title);
+    },
+  },
+  {
+    seen: "STL",
+    ending: ".stl",
+    hint: "The faces as triangles, in the model's unit of length",
+    made: ({ session }, view) => stl(form(session.topology.value!), view.particles()),
+  },
+  {
+    seen: "GLB",
+    ending: ".glb",
+    hint: "Faces and lines as glTF, in metres, for web pages and viewers",
+    made: ({ session }, view) => {
+      const { value } = session.topology;
+      return glb(form(value!), view.particles(), value!.units.length);
+    },
+  },
 ];
 
 export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
@@ -84,6 +139,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
   const live = session.connection.value === "live";
   return (
     <>
+      <Rename studio={studio} title={title} />
       <div class="row">
         {FILES.map(({ format, seen, ending, hint }) => (
           <button
@@ -97,15 +153,20 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
             {seen}
           </button>
         ))}
-        <button
-          type="button"
-          title="A picture of the present view"
-          disabled={!view.value || busy.value !== ""}
-          aria-busy={busy.value === "PNG"}
-          onClick={() => void take("PNG", `${name}.png`, async () => ({ blob: await view.value!.png(), notes: [] }))}
-        >
-          PNG
-        </button>
+        {SEEN.map(({ seen, ending, hint, made }) => (
+          <button
+            key={seen}
+            type="button"
+            title={hint}
+            disabled={!view.value || busy.value !== ""}
+            aria-busy={busy.value === seen}
+            onClick={() =>
+              void take(seen, name + ending, async () => ({ blob: await made(studio, view.value!, title), notes: [] }))
+            }
+          >
+            {seen}
+          </button>
+        ))}
         <button type="button" onClick={() => void copy()}>
           Copy link
         </button>
@@ -123,6 +184,34 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
         />
       )}
     </>
+  );
+}
+
+/** The name of the session, in the list of sessions and of its files. */
+function Rename({ studio: { session }, title }: { studio: Studio; title: string }) {
+  const give = async (field: HTMLInputElement) => {
+    const name = field.value.trim();
+    try {
+      if (name) await session.rename(name);
+      else field.value = title;
+    } catch (error) {
+      field.value = title;
+      met(error);
+      refuse(error, "The session was not renamed. ");
+    }
+  };
+  return (
+    <label class="field name" title="In the list of sessions, and of files that are saved">
+      <span>Name</span>
+      <input
+        type="text"
+        aria-label="Name of the session"
+        maxLength={200}
+        value={title}
+        disabled={session.connection.value !== "live"}
+        onChange={(event) => void give(event.currentTarget)}
+      />
+    </label>
   );
 }
 

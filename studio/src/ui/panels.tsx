@@ -2,7 +2,9 @@
 import type { ComponentChildren } from "preact";
 import { Charts } from "./charts";
 import { Compare } from "./compare";
+import { Design } from "./design";
 import { Forces } from "./forces";
+import { Measure } from "./measure";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
 import { SeePanel } from "./see";
@@ -17,6 +19,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       <Panel name="Picked">
         <PickedPanel studio={studio} />
         <Selected studio={studio} />
+        <Measure studio={studio} />
       </Panel>
       {studio.session.scene.value?.family && (
         <Panel name="Shape">
@@ -34,6 +37,9 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="Tables" isClosed>
         <Tables studio={studio} />
+      </Panel>
+      <Panel name="Design" isClosed>
+        <Design studio={studio} />
       </Panel>
       <Panel name="Compare" isClosed>
         <Compare studio={studio} />

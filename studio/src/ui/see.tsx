@@ -168,7 +168,7 @@ function Ramp({ legend: { title, unit, low, high, beyond, equal, colours }, mark
 function Overlaid({ name, own, colour }: { name: string; own: string[]; colour: string }) {
   const both: [string, string][] = [
     ["This model", own.length > 1 ? `linear-gradient(to right, ${own.join(", ")})` : own[0]!],
-    [`Variant ${name}`, colour],
+    [name, colour],
   ];
   return (
     <div class="overlaid">

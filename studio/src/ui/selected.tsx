@@ -1,14 +1,16 @@
 // Several particles at once: found by a box, a lasso, a row of springs or a range of forces; held, moved, named.
 import { useSignal } from "@preact/signals";
-import type { Point } from "../model";
+import type { Anchor, Point, Scene, Topology } from "../model";
 import { between, endsOf, row } from "../view/sets";
 import type { Tool } from "../view/types";
+import { kinds } from "./catalogue";
 import { Choice } from "./choice";
+import { titleOf } from "./forces";
 import { Groups } from "./groups";
 import { useEdit } from "./loads";
 import { NumberField } from "./number";
 import type { Studio } from "./studio";
-import { counted } from "./words";
+import { counted, titled } from "./words";
 
 const TOOLS: [Tool, string, string][] = [
   ["box", "Box", "Drag a box on the canvas; Shift adds, Alt takes away"],
@@ -54,6 +56,7 @@ export function Selected({ studio }: { studio: Studio }) {
         {button("Invert", "Those that are not selected", () => choose(all.filter((one) => !known.has(one))))}
         {button("None", "Nothing", () => choose([]), chosen.length > 0)}
       </div>
+      <ByPart studio={studio} choose={choose} />
       <ByForce studio={studio} choose={choose} />
       <p role="status" class="note">
         {counted(chosen.length, "particle")} selected. Forces are added to them by "What is picked" below.
@@ -62,6 +65,52 @@ export function Selected({ studio }: { studio: Studio }) {
       <Groups studio={studio} chosen={chosen} choose={choose} />
     </details>
   );
+}
+
+/** Particles of an anchor, of a force with its name or layer, of a mesh, or of what was drawn. */
+function ByPart({ studio: { session }, choose }: { studio: Studio; choose: (particles: number[]) => void }) {
+  const [topology, scene] = [session.topology.value, session.scene.value];
+  if (!topology || !scene) return null;
+  const parts = partsOf(topology, scene, session.anchors.value);
+  return (
+    <label class="field" title="By the names that layers, objects and forces have in the model">
+      <span>A part</span>
+      <select
+        aria-label="Select a part"
+        value=""
+        onChange={(event) => {
+          const found = parts[Number(event.currentTarget.value)];
+          if (found) choose(ascending(found[1]));
+        }}
+      >
+        <option value="">choose one</option>
+        {parts.map(([name], i) => (
+          <option key={i} value={i}>
+            {name}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+const ascending = (particles: number[]) => [...new Set(particles)].sort((a, b) => a - b);
+
+function partsOf(topology: Topology, scene: Scene, anchors: Anchor[]): [string, number[]][] {
+  const found: [string, number[]][] = scene.forces.map((force, number) => [
+    titleOf(force, kinds.value?.get(force.kind), number),
+    [
+      ...topology.springs.filter((_, i) => topology.spring_forces[i] === number).flat(),
+      ...topology.loads.filter((load) => load.force === number).flatMap((load) => load.particles),
+    ],
+  ]);
+  anchors.forEach(({ name, number, particles }) =>
+    found.push([name || (number < 0 ? "Held by hand" : `Anchor ${number}`), particles]),
+  );
+  for (const [name, { faces }] of Object.entries(topology.meshes)) found.push([`Mesh ${name}`, faces.flat()]);
+  for (const { name, kind, particles } of topology.geometry)
+    found.push([`${titled(kind)} ${name}`.trim(), (particles as (number | number[])[]).flat()]);
+  return found.filter(([, particles]) => particles.length);
 }
 
 function ByForce({ studio: { session }, choose }: { studio: Studio; choose: (particles: number[]) => void }) {

@@ -35,10 +35,81 @@ for (const type of ["keydown", "keyup"] as const)
 window.addEventListener("blur", () => (wide.value = false));
 
 export function Slider({ session, name, seen, value, unit, hint, note, bounds, log, whole, patch }: Led) {
-  const hand = useHand(session, value, patch);
-  const shown = hand.value ?? value;
-  const range = useRange(shown, bounds, log, hand.held, wide.value);
-  const live = session.connection.value === "live";
+  const hand = useHand(session, patch);
+  return (
+    <Track
+      name={name}
+      seen={seen}
+      shown={hand.value ?? value}
+      unit={unit}
+      hint={hint}
+      note={note}
+      bounds={bounds}
+      log={log}
+      whole={whole === true}
+      held={hand.held}
+      live={session.connection.value === "live"}
+      lead={hand.lead}
+      press={hand.press}
+      let={hand.let}
+    />
+  );
+}
+
+interface Own {
+  name: string;
+  seen: string;
+  value: number;
+  unit: string;
+  hint: string;
+  note?: string;
+  lead: (value: number) => void;
+}
+
+/** A slider of a value that this page has by itself, such as the target of a goal. */
+export function Lead({ name, seen, value, unit, hint, note, lead }: Own) {
+  const held = useSignal(false);
+  return (
+    <Track
+      name={name}
+      seen={seen}
+      shown={value}
+      unit={unit}
+      hint={hint}
+      note={note}
+      bounds={undefined}
+      log={false}
+      whole={false}
+      held={held.value}
+      live
+      lead={lead}
+      press={() => (held.value = true)}
+      let={() => (held.value = false)}
+    />
+  );
+}
+
+interface Tracked {
+  name: string;
+  seen: string;
+  shown: number;
+  unit: string;
+  hint: string;
+  note: string | undefined;
+  bounds: Bounds | undefined;
+  log: boolean;
+  whole: boolean;
+  /** Whether a hand is on it. */
+  held: boolean;
+  live: boolean;
+  lead: (value: number) => void;
+  press: () => void;
+  let: () => void;
+}
+
+function Track({ name, seen, shown, unit, hint, note, bounds, log, whole, ...hand }: Tracked) {
+  const { held, live, lead, press, let: free } = hand;
+  const range = useRange(shown, bounds, log, held, wide.value);
   const step = whole && !range.log ? 1 : stepOf(range);
   const at = (x: number) => (range.log ? Math.log10(x) : x);
   const from = (position: number) => {
@@ -54,41 +125,44 @@ export function Slider({ session, name, seen, value, unit, hint, note, bounds, l
         unit={unit}
         hint={hint}
         bounds={bounds}
-        whole={whole === true}
+        whole={whole}
         disabled={!live}
         stale={!live}
-        done={(typed) => typed !== null && hand.lead(typed)}
+        done={(typed) => typed !== null && lead(typed)}
       />
       <input
         type="range"
         aria-label={name}
         aria-valuetext={measured(shown, unit)}
-        title={hint && `${hint}. Shift: a wider range; any value can be typed`}
+        title={hint && `${hint.replace(/\.$/, "")}. Shift: a wider range; any value can be typed`}
         disabled={!live}
         min={at(range.low)}
         max={at(range.high)}
         step={step}
         value={at(Math.min(range.high, Math.max(range.low, shown)))}
-        onPointerDown={hand.press}
-        onInput={(event) => hand.lead(from(event.currentTarget.valueAsNumber))}
-        onChange={hand.let}
+        onPointerDown={press}
+        onInput={(event) => lead(from(event.currentTarget.valueAsNumber))}
+        onChange={free}
       />
       {note && <p class="note">{note}</p>}
     </div>
   );
 }
 
-/** What the hand wants, until the session tells the same: `value` is null where it wants nothing. */
-function useHand(session: Session, value: number, patch: (value: number) => Patch) {
+/** What the hand wants, until the page has read the scene with it: `value` is null where it wants nothing. A scene that
+ * arrives late has an older value, to which the slider must not jump back. */
+function useHand(session: Session, patch: (value: number) => Patch) {
   const wanted = useSignal<number | null>(null);
   const edits = useMemo(() => new Newest(session), [session]);
   const held = useRef(false);
   const last = useRef(0);
   const named = useRef("");
   const timer = useRef(0);
-  useEffect(() => {
-    if (!held.current && performance.now() - last.current > 100) wanted.value = null;
-  }, [value]);
+  const known = session.read.value;
+  const giveWay = () => {
+    if (!held.current && !edits.busy && session.read.peek() >= edits.revision) wanted.value = null;
+  };
+  useEffect(giveWay, [known]);
   useEffect(() => () => clearTimeout(timer.current), []);
   const renew = () => (named.current = gesture("slider"));
   const lead = (to: number) => {
@@ -101,12 +175,15 @@ function useHand(session: Session, value: number, patch: (value: number) => Patc
   const settle = () => {
     clearTimeout(timer.current);
     void edits.settled().then(() => {
-      // where it was refused, the old one stands
+      giveWay();
+      clearTimeout(timer.current);
+      // where it was refused, the old one stands; another service begins its revisions at 0
       timer.current = window.setTimeout(() => (wanted.value = null), session.said.value ? 0 : TOLD);
     });
   };
   const press = () => {
     held.current = true;
+    clearTimeout(timer.current);
     renew();
   };
   const release = () => {

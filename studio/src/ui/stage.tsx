@@ -4,6 +4,7 @@ import { expose } from "../automation";
 import { createView } from "../view/view";
 import { BesideCanvas } from "./beside";
 import { dark } from "./theme";
+import { Labels } from "./measure";
 import { Readout } from "./readout";
 import { Report } from "./report";
 import { LegendBox, Looks } from "./see";
@@ -58,6 +59,7 @@ export function Stage({ studio }: { studio: Studio }) {
           </button>
         )}
         <BesideCanvas studio={studio} />
+        <Labels studio={studio} />
         <Selecting studio={studio} />
         <Looks studio={studio} />
         <LegendBox studio={studio} />

@@ -6,6 +6,7 @@ import type { Variant } from "../variants";
 import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
+import { Designing } from "./designing";
 import { keepGroups, keptGroups } from "./kept";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
@@ -26,6 +27,7 @@ export interface Studio {
   view: Signal<View | null>;
   readings: Readings;
   rested: Rested;
+  design: Designing;
   /** The variant on a canvas of its own; null for none. */
   beside: Signal<Variant | null>;
 }
@@ -45,13 +47,15 @@ export function SessionPage({ name }: { name: string }) {
     ];
     const readings = new Readings(session, chosen);
     const rested = new Rested(session);
-    setStudio({ session, options: chosen, view: signal(null), readings, rested, beside: signal(null) });
+    const design = new Designing(session);
+    setStudio({ session, options: chosen, view: signal(null), readings, rested, design, beside: signal(null) });
     const stop = sharing(session, chosen);
     return () => {
       stop();
       forgets.forEach((forget) => forget());
       readings.dispose();
       rested.dispose();
+      design.dispose();
       session.close();
     };
   }, [name]);

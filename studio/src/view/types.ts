@@ -35,7 +35,8 @@ export interface Given {
   values: Float32Array;
 }
 
-/** The lines of a variant: its name, x y z of its particles [length], and pairs of these. */
+/** The lines of a variant, or of the best values of a design: its name in the legend, x y z of its particles [length],
+ * and pairs of these. */
 export interface Shadow {
   name: string;
   positions: Float32Array;
@@ -70,6 +71,10 @@ export interface Options {
   groups: Signal<Groups>;
   /** Particles that are selected, or that a warning speaks of. */
   marked: Signal<number[]>;
+  /** Particles between which is measured, in their order. */
+  measured: Signal<number[]>;
+  /** Whether the numbers of those that are selected are shown. */
+  numbers: Signal<boolean>;
   /** Rest length of each spring [length], for strain; null: not known yet. */
   restLengths: Signal<Float32Array | null>;
   given: Signal<Given | null>;
@@ -96,6 +101,8 @@ export const options = (): Options => ({
   tool: signal<Tool>("none"),
   groups: signal<Groups>({}),
   marked: signal<number[]>([]),
+  measured: signal<number[]>([]),
+  numbers: signal(false),
   restLengths: signal<Float32Array | null>(null),
   given: signal<Given | null>(null),
   ghost: signal<Shadow | null>(null),
