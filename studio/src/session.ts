@@ -20,6 +20,8 @@ interface Waiting {
   reject: (error: Error) => void;
 }
 
+type Part = "topology" | "scene" | "anchors";
+
 type Order = { edit: Patch } | { do: Action; frames?: number };
 
 export class Session {
@@ -45,13 +47,16 @@ export class Session {
   private pauses = 0;
   private pausing = 0; // those that are not answered yet
   private tag: string | null = null;
-  private topologyTag: string | null = null;
   private acknowledged = 0;
   private wait = FIRST_WAIT;
   private heard = 0;
   private ticked = 0;
-  private described = -1;
+  /** Of what topology, scene and anchors were read. */
+  private described: Record<Part, string> = { topology: "", scene: "", anchors: "" };
   private describing = false;
+  /** Particles that the anchors hold, and hands that lead one. */
+  private held = 0;
+  private hands = 0;
   private unacknowledged: number[] = [];
   private timers: number[] = [];
   private retry = 0;
@@ -95,6 +100,23 @@ export class Session {
       this.said.value = error instanceof Error ? error.message : String(error);
       return false;
     }
+  }
+
+  /** A hand begins to lead a particle; returns how it ends. What it does to the anchors is read at the end. */
+  lead(): () => void {
+    let leads = true;
+    this.hands += 1;
+    return () => {
+      if (!leads) return;
+      leads = false;
+      this.hands -= 1;
+      void this.describe();
+    };
+  }
+
+  /** Whether a hand leads a particle. */
+  get isLed(): boolean {
+    return this.hands > 0;
   }
 
   /** Stop watching. The session goes on. */
@@ -144,7 +166,7 @@ export class Session {
   private greeted(summary: Summary, tag: string): void {
     // numbers of frames and revisions begin again with the connection: the service may be another one
     this.acknowledged = stats.revisionAcknowledged = 0;
-    this.described = -1;
+    this.described = { ...this.described, scene: "", anchors: "" };
     if (tag !== this.tag) this.frame = null;
     this.wait = FIRST_WAIT;
     batch(() => {
@@ -163,21 +185,25 @@ export class Session {
     void this.describe();
   }
 
-  /** Read what goes by HTTP, if it is not that of the present revision. One reading at a time. */
+  /** Read what goes by HTTP, as far as it is not that of now. One reading at a time. */
   private async describe(): Promise<void> {
-    const revision = this.summary.value?.revision ?? 0;
-    if (this.describing || (revision === this.described && this.tag === this.topologyTag)) return;
+    const now = this.stand();
+    const { described: before } = this;
+    const isOther = (part: Part) => now[part] !== before[part];
+    if (this.describing || !(isOther("topology") || isOther("scene") || (isOther("anchors") && this.isAsked()))) return;
     this.describing = true;
-    const tag = this.tag;
     try {
-      const topology = tag === this.topologyTag ? this.topology.value : await api.topology(this.key);
-      const [anchors, scene] = await Promise.all([api.anchors(this.key), api.scene(this.key)]);
+      const [topology, anchors, scene] = await Promise.all([
+        isOther("topology") ? api.topology(this.key) : this.topology.value,
+        isOther("anchors") ? api.anchors(this.key) : this.anchors.value,
+        isOther("scene") ? api.scene(this.key) : this.scene.value,
+      ]);
       batch(() => {
-        this.topologyTag = tag;
-        this.described = revision;
+        this.described = now;
         this.topology.value = topology;
         this.anchors.value = anchors;
         this.scene.value = scene;
+        this.held = heldOf(anchors);
       });
       if (this.frame) this.show(this.frame);
     } catch {
@@ -185,6 +211,18 @@ export class Session {
     } finally {
       this.describing = false;
     }
+  }
+
+  /** Stands for topology, scene and anchors of now. */
+  private stand(): Record<Part, string> {
+    const { revision = 0, scene_revision = revision, anchors_revision = revision } = this.summary.value ?? {};
+    const tag = this.tag ?? "";
+    return { topology: tag, scene: `${tag} ${scene_revision}`, anchors: `${tag} ${anchors_revision}` };
+  }
+
+  /** Whether anchors are to be read: while a hand leads one, only where others hold than before. */
+  private isAsked(): boolean {
+    return !this.hands || (this.frame !== null && this.frame.reactions.length !== 3 * this.held);
   }
 
   private framed(data: ArrayBuffer): void {
@@ -205,6 +243,7 @@ export class Session {
     if (!document.hidden) this.seen();
     if (frame.revision < this.acknowledged) stats.framesLeftOut += 1;
     else this.show(frame);
+    if (this.hands) void this.describe();
   }
 
   private show(frame: Frame): void {
@@ -212,7 +251,7 @@ export class Session {
     const topology = this.topology.value;
     const fits =
       topology?.particles === frame.positions.length / 3 && topology.springs.length === frame.springForces.length;
-    if (!fits || this.topologyTag !== this.tag) return;
+    if (!fits || this.described.topology !== this.tag) return;
     this.watchers.forEach((watcher) => watcher(frame));
     if (performance.now() - this.ticked > 100) this.tick();
   }
@@ -302,6 +341,10 @@ export class Session {
     const summary = this.summary.value;
     if (frame && summary && frame.revision > summary.revision)
       this.summary.value = { ...summary, revision: frame.revision };
-    if (!this.waiting.size) void this.describe(); // a drag would have all of the scene read again and again
+    if (!this.waiting.size) void this.describe();
   }
 }
+
+/** How many particles anchors hold. */
+const heldOf = (anchors: Anchor[]) =>
+  new Set(anchors.flatMap(({ axes, particles }) => (axes ? particles : []))).size;

@@ -60,7 +60,7 @@ class Host:
         self.connection = connection
         self.simulation: Simulation | None = None
         self.before: Simulation | None = None  # what the last change may be put back to
-        self.wired = parts.Wired()
+        self.wired, self.edited = parts.Wired(), parts.Edited()
         self.playing = False
         self.fast = False
         self.resting: Resting | None = None  # while it goes to rest; it plays then
@@ -383,7 +383,7 @@ class Host:
         wiring, now = self.wired.tag(simulation), time.monotonic_ns()  # a clock that all processes share
         solving = self.resting is not None
         told = {"wiring": wiring, "playing": self.playing, "solving": solving, "told": now}
-        return {**parts.describe(simulation), **told}
+        return {**parts.describe(simulation), **self.edited.revisions(simulation), **told}
 
     def _simulation(self) -> Simulation:
         if self.simulation is None:

@@ -13,7 +13,7 @@ from typing import Any
 from hookean_server.sessions.process import SessionProcess
 
 _DESCRIBED = ("revision", "iteration", "time", "residual", "status", "message", "particles", "undo", "redo", "playing",
-              "solving", "energy", "units", "warnings")  # fmt: skip
+              "solving", "energy", "units", "warnings", "scene_revision", "anchors_revision")  # fmt: skip
 
 
 @dataclass(eq=False)
