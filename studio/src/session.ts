@@ -39,6 +39,8 @@ export class Session {
   readonly ticks = signal(0);
   /** The newest frame; null until the first, and while another scene is read. */
   frame: Frame | null = null;
+  /** The last one of this connection, to which the next one may be told by its changes. */
+  private before: Frame | null = null;
 
   private socket: WebSocket | null = null;
   private readonly waiting = new Map<number, Waiting>();
@@ -145,8 +147,9 @@ export class Session {
   }
 
   private connect(): void {
-    const socket = new WebSocket(`ws://${location.host}/v1/sessions/${encodeURIComponent(this.key)}/frames`);
+    const socket = new WebSocket(`ws://${location.host}/v1/sessions/${encodeURIComponent(this.key)}/frames?changes=true`);
     socket.binaryType = "arraybuffer";
+    this.before = null;
     socket.onmessage = (event) => this.take(event.data as string | ArrayBuffer);
     socket.onclose = (event) => void this.closing(socket, event);
     this.socket = socket;
@@ -229,7 +232,7 @@ export class Session {
     const began = performance.now();
     let frame: Frame;
     try {
-      frame = decode(data);
+      frame = this.before = decode(data, this.before);
     } catch (error) {
       this.said.value = error instanceof Error ? error.message : String(error);
       this.connection.value = "broken";

@@ -73,6 +73,7 @@ class Host:
         self.changed = self.stored = 0  # counts of changes: shown, and in a checkpoint
         self.now = 0
         self.shown, self.shown_at = -1, 0.0  # revision and moment of the last frame
+        self.sent = b""  # the last frame
         self.due = 0.0  # when the next frame's iterations are due
         self.owed = 0  # iterations until the next frame
         self.each = 1  # iterations that fit into a slice
@@ -355,8 +356,10 @@ class Host:
             self.credit, self.changed = 0, self.now
             self.shown, self.shown_at = simulation.state.revision, now
             self.number += 1
-            frame = parts.frame(simulation, self.number, self.playing or bool(self.left))
-            self._send({"event": "frame", "number": self.number}, wire.encode(frame))
+            frame = wire.encode(parts.frame(simulation, self.number, self.playing or bool(self.left)))
+            changes = wire.changes(self.sent, frame)
+            self.sent = frame
+            self._send({"event": "frame", "changes": changes is not None}, frame if changes is None else changes)
 
     def _keep(self) -> None:
         """Send a checkpoint, where there is progress to store."""
