@@ -122,7 +122,11 @@ def frames(watched: Watched, count: int) -> None:
     after, heavier = watched.stats(), watched.heap()
     watched.press("Pause")
     drawn = after["framesDrawn"] - before["framesDrawn"]
-    parts = [statistics.median(after[f"{name}Milliseconds"][-count:]) for name in ("decode", "colour", "upload") if f"{name}Milliseconds" in after]
+    parts = [
+        statistics.median(after[f"{name}Milliseconds"][-count:])
+        for name in ("decode", "colour", "upload")
+        if f"{name}Milliseconds" in after
+    ]
     told = " + ".join(f"{part:.2f}" for part in parts)
     show("decode + colour + upload of a frame, median", f"{told} ms", "<= 12 ms together")
     show(f"heap after {drawn} more frames", f"{(heavier - weight) / 1e6:+.2f} MB", "flat")
