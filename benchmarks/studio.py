@@ -1,7 +1,7 @@
 """Figures of the studio with a large model: frames on the page's main thread, what a drag costs, what it sends.
 
-Run it with `make bench-studio` on a quiet machine. It starts a server of its own and a headless Chromium, opens a net of
-99,856 particles, and prints one line for each figure with the bar it is held to. Times are of the processor, but for
+Run it with `make bench-studio` on a quiet machine. It starts a server of its own and a headless Chromium, opens a net
+of 99,856 particles, and prints one line for each figure with the bar it is held to. Times are of the processor, but for
 frames, of which the median counts; the process that draws in place of a graphics card is left out.
 """
 

@@ -51,6 +51,7 @@ def pages(into: Path, config: Path = HERE / "mkdocs.yml") -> None:
 def reference(into: Path) -> None:
     """The files beside the page of the HTTP reference: Swagger UI and the description of the service."""
     from docsite.reference import older
+
     from hookean_server.app import create_app
     from hookean_server.settings import Settings
 

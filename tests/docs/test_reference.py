@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-
 from docsite.reference import older
+
 from serving import app
 
 

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hookean_server.sessions.wire import HEADER, SIZE, STATUSES, Shown, changed, changes, decode, encode
-
 from soak import seeds
 
 
