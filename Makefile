@@ -7,7 +7,7 @@ EXAMPLE = gh_examples/9.24-membrane
 # Python keeps what it compiles: each of the many processes of a test run would compile it again
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: run test quick soak mutants floors bench bench-service bench-design figures definitions screenshots docs site page studio lint clean
+.PHONY: run test quick soak mutants floors bench bench-service bench-studio bench-design figures definitions screenshots docs site page studio lint clean
 STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
 run: .venv/run
@@ -45,6 +45,9 @@ bench: .venv/test
 
 bench-service: .venv/test
 	$(BIN)/python benchmarks/service.py
+
+bench-studio: .venv/test # the page with a large model, in Chromium
+	$(BIN)/python benchmarks/studio.py
 
 bench-design: .venv/test # against jax_fdm, in an environment of its own
 	test -x .venv/jax_fdm/bin/python || python3 -m venv .venv/jax_fdm

@@ -50,13 +50,15 @@ def pages(into: Path, config: Path = HERE / "mkdocs.yml") -> None:
 
 def reference(into: Path) -> None:
     """The files beside the page of the HTTP reference: Swagger UI and the description of the service."""
+    from docsite.reference import older
+
     from hookean_server.app import create_app
     from hookean_server.settings import Settings
 
     for name in REFERENCE:
         shutil.copy(HERE / "node_modules" / "swagger-ui-dist" / name, into / name)
     described = create_app(Settings()).openapi()
-    (into / "openapi.json").write_text(json.dumps(described, ensure_ascii=False), "utf-8")
+    (into / "openapi.json").write_text(json.dumps(older(described), ensure_ascii=False), "utf-8")
 
 
 if __name__ == "__main__":

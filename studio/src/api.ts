@@ -59,8 +59,15 @@ export const forget = (key: string) => ask(at(key), { method: "DELETE" });
 /** An edit that is too long for a message over the socket. */
 export const edit = (key: string, patch: Patch) => send<Summary>("PATCH", at(key), patch);
 
+/** A title that no session has: with a number behind it where there is one of that name. */
+async function untaken(title: string): Promise<string> {
+  const taken = new Set((await sessions()).sessions.map(({ label }) => label));
+  for (let number = 2, free = title; ; number++, free = `${title} ${number}`) if (!free || !taken.has(free)) return free;
+}
+
 /** A new session of a scene. */
-export const create = (scene: unknown, label = "") => send<Summary>("POST", `/v1/sessions${labelled(label)}`, scene);
+export const create = async (scene: unknown, title = "") =>
+  send<Summary>("POST", `/v1/sessions${labelled(await untaken(title))}`, scene);
 
 /** Another name to display. */
 export const rename = async (key: string, label: string) =>
@@ -82,7 +89,8 @@ export async function open(file: File, recipe = ""): Promise<Summary & { warning
   const body = new FormData();
   body.append("file", file, file.name);
   if (recipe) body.append("recipe", recipe);
-  const answer = await ask(`/v1/sessions${labelled(file.name.replace(/\.hookean$/, ""))}`, { method: "POST", body });
+  const title = await untaken(file.name.replace(/\.hookean$/, ""));
+  const answer = await ask(`/v1/sessions${labelled(title)}`, { method: "POST", body });
   return (await answer.json()) as Summary;
 }
 

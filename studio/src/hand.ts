@@ -67,6 +67,7 @@ export class Grip {
   private readonly gesture = gesture("drag");
   private readonly axes: string;
   readonly anchored: boolean;
+  private readonly end: () => void;
 
   constructor(
     private readonly session: Session,
@@ -76,6 +77,7 @@ export class Grip {
     this.anchored = anchor !== undefined;
     this.axes = anchor?.axes ?? "xyz";
     this.edits = new Newest(session);
+    this.end = session.lead();
   }
 
   /** Take it to `target` [length]. */
@@ -88,6 +90,7 @@ export class Grip {
   async drop(): Promise<void> {
     await this.edits.settled();
     if (!this.anchored && this.edits.made) await this.session.tell({ release: [this.particle], gesture: this.gesture });
+    this.end();
   }
 
   /** Let go and take back what it did. */

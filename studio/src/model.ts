@@ -20,6 +20,9 @@ export interface Summary {
   key: string;
   label: string;
   revision: number;
+  /** The revisions that last changed the anchors, and the rest of the scene; absent while it sleeps. */
+  anchors_revision?: number;
+  scene_revision?: number;
   iteration: number;
   /** [time] */
   time: number;

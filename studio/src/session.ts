@@ -20,6 +20,8 @@ interface Waiting {
   reject: (error: Error) => void;
 }
 
+type Part = "topology" | "scene" | "anchors";
+
 type Order = { edit: Patch } | { do: Action; frames?: number };
 
 export class Session {
@@ -29,7 +31,7 @@ export class Session {
   /** As of the last revision that was read. */
   readonly anchors = signal<Anchor[]>([]);
   readonly scene = signal<Scene | null>(null);
-  /** Anchors and scene are of this revision or a later one; -1 before they are read. */
+  /** The scene is of this revision or a later one; -1 before it is read. */
   readonly read = signal(-1);
   /** Counts changes of the colours that programs give. */
   readonly views = signal(0);
@@ -39,6 +41,8 @@ export class Session {
   readonly ticks = signal(0);
   /** The newest frame; null until the first, and while another scene is read. */
   frame: Frame | null = null;
+  /** The last one of this connection, to which the next one may be told by its changes. */
+  private before: Frame | null = null;
 
   private socket: WebSocket | null = null;
   private readonly waiting = new Map<number, Waiting>();
@@ -47,13 +51,17 @@ export class Session {
   private pauses = 0;
   private pausing = 0; // those that are not answered yet
   private tag: string | null = null;
-  private topologyTag: string | null = null;
   private acknowledged = 0;
+  private told = -1; // the revision of the last summary: frames may be newer
   private wait = FIRST_WAIT;
   private heard = 0;
   private ticked = 0;
-  private described = -1;
+  /** Of what topology, scene and anchors were read. */
+  private described: Record<Part, string> = { topology: "", scene: "", anchors: "" };
   private describing = false;
+  /** Particles that the anchors hold, and hands that lead one. */
+  private held = 0;
+  private hands = 0;
   private unacknowledged: number[] = [];
   private timers: number[] = [];
   private retry = 0;
@@ -111,6 +119,23 @@ export class Session {
     if (now) this.summary.value = { ...now, label: name };
   }
 
+  /** A hand begins to lead a particle; returns how it ends. What it does to the anchors is read at the end. */
+  lead(): () => void {
+    let leads = true;
+    this.hands += 1;
+    return () => {
+      if (!leads) return;
+      leads = false;
+      this.hands -= 1;
+      void this.describe();
+    };
+  }
+
+  /** Whether a hand leads a particle. */
+  get isLed(): boolean {
+    return this.hands > 0;
+  }
+
   /** Stop watching. The session goes on. */
   close(): void {
     this.closed = true;
@@ -137,8 +162,9 @@ export class Session {
   }
 
   private connect(): void {
-    const socket = new WebSocket(`ws://${location.host}/v1/sessions/${encodeURIComponent(this.key)}/frames`);
+    const socket = new WebSocket(`ws://${location.host}/v1/sessions/${encodeURIComponent(this.key)}/frames?changes=true`);
     socket.binaryType = "arraybuffer";
+    this.before = null;
     socket.onmessage = (event) => this.take(event.data as string | ArrayBuffer);
     socket.onclose = (event) => void this.closing(socket, event);
     this.socket = socket;
@@ -158,7 +184,8 @@ export class Session {
   private greeted(summary: Summary, tag: string): void {
     // numbers of frames and revisions begin again with the connection: the service may be another one
     this.acknowledged = stats.revisionAcknowledged = 0;
-    this.described = this.read.value = -1;
+    this.described = { ...this.described, scene: "", anchors: "" };
+    this.read.value = -1;
     if (tag !== this.tag) this.frame = null;
     this.wait = FIRST_WAIT;
     batch(() => {
@@ -169,6 +196,7 @@ export class Session {
 
   private stands(summary: Summary, tag: string): void {
     this.summary.value = summary;
+    this.told = summary.revision;
     if (tag && tag !== this.tag) {
       this.tag = tag;
       // a frame may come before the state with its scene
@@ -177,21 +205,30 @@ export class Session {
     void this.describe();
   }
 
-  /** Read what goes by HTTP, if it is not that of the present revision. One reading at a time. */
+  /** Read what goes by HTTP, as far as it is not that of now. One reading at a time. */
   private async describe(): Promise<void> {
-    const revision = this.summary.value?.revision ?? 0;
-    if (this.describing || (revision === this.described && this.tag === this.topologyTag)) return;
+    const now = this.stand();
+    const { described: before } = this;
+    const isOther = (part: Part) => now[part] !== before[part];
+    if (this.describing) return;
+    const revision = this.told;
+    if (!(isOther("topology") || isOther("scene") || (isOther("anchors") && this.isAsked()))) {
+      this.read.value = revision;
+      return;
+    }
     this.describing = true;
-    const tag = this.tag;
     try {
-      const topology = tag === this.topologyTag ? this.topology.value : await api.topology(this.key);
-      const [anchors, scene] = await Promise.all([api.anchors(this.key), api.scene(this.key)]);
+      const [topology, anchors, scene] = await Promise.all([
+        isOther("topology") ? api.topology(this.key) : this.topology.value,
+        isOther("anchors") ? api.anchors(this.key) : this.anchors.value,
+        isOther("scene") ? api.scene(this.key) : this.scene.value,
+      ]);
       batch(() => {
-        this.topologyTag = tag;
-        this.described = revision;
+        this.described = now;
         this.topology.value = topology;
         this.anchors.value = anchors;
         this.scene.value = scene;
+        this.held = heldOf(anchors);
         this.read.value = revision;
       });
       if (this.frame) this.show(this.frame);
@@ -202,11 +239,23 @@ export class Session {
     }
   }
 
+  /** Stands for topology, scene and anchors of now. */
+  private stand(): Record<Part, string> {
+    const { revision = 0, scene_revision = revision, anchors_revision = revision } = this.summary.value ?? {};
+    const tag = this.tag ?? "";
+    return { topology: tag, scene: `${tag} ${scene_revision}`, anchors: `${tag} ${anchors_revision}` };
+  }
+
+  /** Whether anchors are to be read: while a hand leads one, only where others hold than before. */
+  private isAsked(): boolean {
+    return !this.hands || (this.frame !== null && this.frame.reactions.length !== 3 * this.held);
+  }
+
   private framed(data: ArrayBuffer): void {
     const began = performance.now();
     let frame: Frame;
     try {
-      frame = decode(data);
+      frame = this.before = decode(data, this.before);
     } catch (error) {
       this.said.value = error instanceof Error ? error.message : String(error);
       this.connection.value = "broken";
@@ -220,6 +269,7 @@ export class Session {
     if (!document.hidden) this.seen();
     if (frame.revision < this.acknowledged) stats.framesLeftOut += 1;
     else this.show(frame);
+    if (this.hands) void this.describe();
   }
 
   private show(frame: Frame): void {
@@ -227,7 +277,7 @@ export class Session {
     const topology = this.topology.value;
     const fits =
       topology?.particles === frame.positions.length / 3 && topology.springs.length === frame.springForces.length;
-    if (!fits || this.topologyTag !== this.tag) return;
+    if (!fits || this.described.topology !== this.tag) return;
     this.watchers.forEach((watcher) => watcher(frame));
     if (performance.now() - this.ticked > 100) this.tick();
   }
@@ -284,6 +334,7 @@ export class Session {
     stats.revisionAcknowledged = this.acknowledged;
     if (this.frame && this.frame.revision < this.acknowledged) this.frame = null;
     this.summary.value = summary;
+    this.told = summary.revision;
     return summary;
   }
 
@@ -318,6 +369,10 @@ export class Session {
     const summary = this.summary.value;
     if (frame && summary && frame.revision > summary.revision)
       this.summary.value = { ...summary, revision: frame.revision };
-    if (!this.waiting.size) void this.describe(); // a drag would have all of the scene read again and again
+    if (!this.waiting.size) void this.describe();
   }
 }
+
+/** How many particles anchors hold. */
+const heldOf = (anchors: Anchor[]) =>
+  new Set(anchors.flatMap(({ axes, particles }) => (axes ? particles : []))).size;

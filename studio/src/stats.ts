@@ -6,8 +6,10 @@ export interface Stats {
   framesLeftOut: number;
   /** Frames older than the last acknowledged edit that were drawn all the same: must stay 0. */
   staleFramesDrawn: number;
-  /** On the main thread, of the last frames [ms]: reading a frame, and handing it to the graphics card. */
+  /** On the main thread, of the last frames [ms]: reading a frame, its scale, colours and sizes, and handing it to the
+   * graphics card. */
   decodeMilliseconds: number[];
+  colourMilliseconds: number[];
   uploadMilliseconds: number[];
   revisionAcknowledged: number;
   revisionDrawn: number;
@@ -21,6 +23,7 @@ export const stats: Stats = {
   framesLeftOut: 0,
   staleFramesDrawn: 0,
   decodeMilliseconds: [],
+  colourMilliseconds: [],
   uploadMilliseconds: [],
   revisionAcknowledged: 0,
   revisionDrawn: 0,

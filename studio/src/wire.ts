@@ -5,6 +5,7 @@ export const SIZE = 64;
 export const POSITIONS = 1;
 export const SCALARS = 2;
 export const REACTIONS = 4;
+export const CHANGES = 8;
 export const STATUSES = [
   "running",
   "converged",

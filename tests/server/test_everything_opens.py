@@ -24,7 +24,7 @@ CHOICES: dict[str, tuple[str, dict[str, Any]]] = {
 """Closed surfaces start as left out: the layer, and the values of a net of it. All is held, as its reason says."""
 SENTENCES = {
     "v7_my_points.3dm": ("no curves or surfaces that connect them", "draw lines or a mesh between the points"),
-    "v7_my_trimmed_surface.3dm": ('layer "trimmed surface"', "without a render mesh", "save the file shaded"),
+    "v7_my_trimmed_surface.3dm": ('layer "trimmed surface"', "without a render mesh", "choose whole"),
 }
 """Files without anything that can be springs, and what the sheet reports of them."""
 
@@ -62,10 +62,18 @@ def test_a_rhino_file_leads_to_a_model(client: httpx.Client, name: str) -> None:
 @pytest.mark.skipif(not FILES, reason="the files of Rhino are not here")
 @pytest.mark.parametrize("name", SENTENCES)
 def test_a_file_without_a_model_gets_a_sentence(client: httpx.Client, name: str) -> None:
-    """What is missing and what to do in Rhino, whichever roles its layers have."""
+    """What is missing and what to do in Rhino, whichever roles its layers have; trimmed faces give a model without
+    their cuts where that is chosen."""
     data = (RHINO / name).read_bytes()
     draft = asked(client, None, data, name).json()
     assert all(words in draft["fault"] for words in SENTENCES[name])
+    if name == "v7_my_trimmed_surface.3dm":
+        [row] = [row for row in draft["rows"] if row["layer"] == "trimmed surface"]
+        chosen = {"layer": row["layer"], "family": row["family"], "role": "net", "values": {"divide_trimmed": "whole"}}
+        whole = asked(client, {"rows": [chosen]}, data, name).json()
+        assert not whole["fault"] and whole["particles"] > 1
+        form = {"file": (name, data), "recipe": (None, json.dumps(whole["recipe"]))}
+        works(client, client.post("/v1/sessions", files=form))
     if name == "v7_my_points.3dm":
         assert all({"anchors", "loads"} <= {*row["roles"]} for row in draft["rows"])
         rows = [{"layer": row["layer"], "family": "points", "role": "loads"} for row in draft["rows"]]

@@ -14,7 +14,8 @@ import pytest
 from websockets.sync.client import ClientConnection, connect
 
 from hookean import Scene, Simulation, relax
-from hookean_server.sessions.wire import Shown, decode
+from hookean.discretize import grid
+from hookean_server.sessions.wire import SIZE, Shown, changed, decode
 from serving import CABLE, HANG, wait_for
 
 from .conftest import Served, problem
@@ -41,9 +42,9 @@ def put(client: httpx.Client, key: str = "a", scene: dict[str, Any] = CABLE) -> 
     return found
 
 
-def watch(served: Served, key: str = "a") -> ClientConnection:
+def watch(served: Served, key: str = "a", how: str = "") -> ClientConnection:
     headers = {k: v for k, v in served.client.headers.items() if k.lower() == "authorization"}
-    return connect(f"{served.url.replace('http', 'ws')}/v1/sessions/{key}/frames", additional_headers=headers)
+    return connect(f"{served.url.replace('http', 'ws')}/v1/sessions/{key}/frames{how}", additional_headers=headers)
 
 
 def frame(socket: ClientConnection, fits: Any = lambda f: True) -> Shown:
@@ -388,6 +389,58 @@ def test_an_edit_over_the_socket_is_in_the_frames_that_follow(served: Served, cl
         socket.send(json.dumps({"id": 2, "edit": edit}))
         seen = frame(socket, lambda f: f.revision == 1)
         assert seen.particles[0].tolist() == [0, 0, 2]
+
+
+def test_who_asks_for_changes_gets_them_and_sees_what_others_see(served: Served, client: httpx.Client) -> None:
+    """A drag of one corner of a net at rest: each move changes 3 + 2 + 3 numbers or fewer, of 8 bytes each."""
+    net = grid(np.arange(20.0), np.arange(20.0))
+    rows = {"vertices": net.vertices.tolist(), "faces": net.faces.tolist()}
+    springs = {"kind": "springs", "mesh": "net", "stiffness": 100}
+    put(client, "net", {"meshes": {"net": rows}, "forces": [springs], "anchors": [{"points": [[0, 0, 0]]}]})
+    with watch(served, "net") as plain, watch(served, "net", "?changes=true") as lean:
+        seen = []
+        for socket in (plain, lean):
+            received = socket.recv(timeout=HANG)
+            while not isinstance(received, bytes):
+                received = socket.recv(timeout=HANG)
+            seen.append(received)
+            socket.send(json.dumps({"ack": decode(received).number}))
+        assert seen[0] == seen[1]
+        for step in range(1, 6):
+            pin = {"particles": [0], "targets": [[0, 0, 0.1 * step]]}
+            client.patch("/v1/sessions/net", json={"pin": [pin], "gesture": "drag"})
+            whole = next(m for m in iter(plain.recv, None) if isinstance(m, bytes))
+            by = next(m for m in iter(lean.recv, None) if isinstance(m, bytes))
+            for socket in (plain, lean):
+                socket.send(json.dumps({"ack": decode(whole).number}))
+            assert len(by) <= SIZE + 8 * 8 < len(whole) / 50
+            seen[1] = changed(seen[1], by)
+            assert seen[1] == whole
+            assert decode(whole).particles[0].tolist() == pytest.approx([0, 0, 0.1 * step], rel=1e-7)
+
+
+def test_a_summary_tells_which_edit_changed_the_scene_and_which_the_anchors(client: httpx.Client) -> None:
+    """A drag changes the anchors alone, a load the rest of the scene, and taking it back does so again."""
+
+    def now() -> tuple[int, int, int]:
+        told = client.get("/v1/sessions/a").json()
+        return told["revision"], told["scene_revision"], told["anchors_revision"]
+
+    put(client)
+    assert now() == (0, 0, 0)
+    client.patch("/v1/sessions/a", json={"pin": [{"particles": [0], "targets": [[0, 0, 1]]}]})
+    assert now() == (1, 0, 1)
+    client.patch("/v1/sessions/a", json={"forces": {"1": {"vector": [0, 0, -30]}}})
+    assert now() == (2, 2, 1)
+    client.patch("/v1/sessions/a", json={"settings": {"drag": 0.5}})
+    assert now() == (3, 3, 1)
+    for revision in (4, 5):
+        client.post("/v1/sessions/a/undo")
+        assert now() == (revision, revision, 1)
+    client.post("/v1/sessions/a/undo")
+    assert now() == (6, 5, 6)
+    client.patch("/v1/sessions/a", json={"release": [0]})
+    assert now() == (7, 5, 7)
 
 
 def test_a_slow_client_gets_two_frames_and_holds_nobody_up(served: Served, client: httpx.Client) -> None:

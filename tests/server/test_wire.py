@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hookean_server.sessions.wire import HEADER, SIZE, STATUSES, Shown, decode, encode
+from hookean_server.sessions.wire import HEADER, SIZE, STATUSES, Shown, changed, changes, decode, encode
+from soak import seeds
 
 
 def shown(n: int = 3, m: int = 2, k: int = 1) -> Shown:
@@ -61,3 +62,25 @@ def test_other_versions_flags_and_lengths_are_refused(change: tuple[int, bytes])
 def test_bytes_that_are_no_frame_are_refused(data: bytes) -> None:
     with pytest.raises(ValueError):
         decode(data)
+
+
+@seeds(40)
+def test_a_frame_of_changes_leads_from_the_one_before_to_the_next_to_the_bit(seed: int) -> None:
+    """Of some numbers that differ, 8 bytes for each behind the header; where they are half of all, there is none."""
+    random = np.random.default_rng(seed)
+    old, new = shown(50, 30, 4), shown(50, 30, 4)
+    differ = random.permutation(50)[: random.integers(0, 40)]
+    new.number, new.revision, new.particles[differ, 1] = 8, 6, random.normal(size=len(differ))
+    before, now = encode(old), encode(new)
+    by = changes(before, now)
+    assert by is not None and len(by) == SIZE + 8 * len(differ)
+    assert changed(before, by) == now
+    with pytest.raises(ValueError):
+        decode(by)  # by itself it is no frame
+    new.particles += 1.0
+    assert changes(before, encode(new)) is None
+
+
+@pytest.mark.parametrize("other", [shown(4, 2, 1), shown(3, 5, 0), shown(3, 2, 0)])
+def test_a_frame_with_other_numbers_has_no_changes(other: Shown) -> None:
+    assert changes(encode(shown()), encode(other)) is None

@@ -199,7 +199,7 @@ class Wire:
     def __init__(self, studio: Studio) -> None:
         self.sockets: list[WebSocketRoute] = []
         self.kept: list[str | bytes] | None = None
-        studio.page.route_web_socket(re.compile("/frames$"), self._between)
+        studio.page.route_web_socket(re.compile(r"/frames\?"), self._between)
         studio.page.reload()
         studio.drawing()
 

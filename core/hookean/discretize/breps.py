@@ -20,7 +20,7 @@ Index = NDArray[np.int64]
 _SAME = 1e-6  # relative to the size of the whole
 
 
-def mesh_faces(geometry: Any, u: int, v: int, name: str = "") -> Mesh:
+def mesh_faces(geometry: Any, u: int, v: int, name: str = "", *, whole: bool = False) -> Mesh:
     """A rhino3dm Brep, BrepFace, Extrusion or surface as one mesh, normals outward as of the Brep's faces.
 
     Untrimmed faces become u by v quads as `mesh_surface` makes them, and neighbours share the vertices
@@ -28,9 +28,9 @@ def mesh_faces(geometry: Any, u: int, v: int, name: str = "") -> Mesh:
     three directions of a box) a face gets u by u or v by v. An edge that meets only part of another
     face's side (a T) cannot agree: there only what coincides, within 1e-6 of the size, is welded.
 
-    A trimmed face is never meshed from the surface below it. An extrusion's caps are filled with
-    triangles on the vertices of its walls. In a Brep a trimmed face gives its cached render mesh; if all
-    faces have one, all of them do (they fit each other, and u and v are unused).
+    A trimmed face is meshed from the surface below it, without its cuts, only if `whole`. An extrusion's
+    caps are filled with triangles on the vertices of its walls. In a Brep a trimmed face otherwise gives its
+    cached render mesh; if all faces have one, all of them do (they fit each other, and u and v are unused).
 
     Raises InputError naming `name` and the trimmed faces without a cached mesh, or where `mesh_surface`
     does.
@@ -43,9 +43,10 @@ def mesh_faces(geometry: Any, u: int, v: int, name: str = "") -> Mesh:
             raise InputError(pointer, "this extrusion has no Brep form; it is invalid, rebuild it")
         return _mesh_walls_and_caps(geometry, brep, u, v, pointer)
     if hasattr(geometry, "OuterLoop"):
-        return _mesh_brep([geometry], None, u, v, pointer)
+        return _mesh_brep([geometry], None, u, v, pointer, whole)
     if hasattr(geometry, "Faces") and hasattr(geometry, "Edges"):
-        return _mesh_brep([geometry.Faces[i] for i in range(len(geometry.Faces))], geometry.Edges, u, v, pointer)
+        faces = [geometry.Faces[i] for i in range(len(geometry.Faces))]
+        return _mesh_brep(faces, geometry.Edges, u, v, pointer, whole)
     if hasattr(geometry, "IsoCurve") or hasattr(geometry, "domain_u"):
         return mesh_grid(geometry, u, v)
     raise InputError(pointer, f"{type(geometry).__name__} has no faces; give a Brep, BrepFace, Extrusion or surface")
@@ -61,10 +62,12 @@ def is_trimmed(face: Any) -> bool:
     return alone is None or not alone.IsSurface
 
 
-def _mesh_brep(faces: list[Any], edges: Any, u: int, v: int, pointer: str) -> Mesh:
+def _mesh_brep(faces: list[Any], edges: Any, u: int, v: int, pointer: str, whole: bool) -> Mesh:
     trimmed = [is_trimmed(f) for f in faces]
     if not any(trimmed):
         return _mesh_untrimmed(faces, edges, u, v, pointer)
+    if whole:  # the sides of a surface are no edges of a face that is cut from it
+        return _welded(join([_mesh_untrimmed([face], None, u, v, pointer) for face in faces]))
     import rhino3dm
 
     cached = [f.GetMesh(rhino3dm.MeshType.Any) for f in faces]
@@ -74,7 +77,7 @@ def _mesh_brep(faces: list[Any], edges: Any, u: int, v: int, pointer: str) -> Me
         raise InputError(
             pointer,
             f"{which} trimmed and without a cached render mesh; only untrimmed faces are meshed here: "
-            "save the file shaded, untrim them, or mesh them in Rhino",
+            'save the file shaded, mesh them in Rhino, or mesh the surfaces without their cuts: divide = [u, v, "whole"]',
         )
     if all(mesh is not None and len(mesh.Faces) for mesh in cached):
         parts = [as_mesh(mesh) for mesh in cached]

@@ -155,7 +155,7 @@ def flown(system: System, state: State, found: Balance, particle: int, *, driven
 
 
 def _moving(system: System, state: State) -> np.ndarray:
-    return np.asarray(0.5 * system.mass * (state.v * state.v).sum(axis=1))
+    return np.asarray(0.5 * system.mass * np.einsum("ij,ij->i", state.v, state.v))  # a sum along three is slow
 
 
 def _rounding(found: Balance, energies: tuple[float, float]) -> float:

@@ -7,7 +7,7 @@ SwaggerUIBundle({
   url: new URL("openapi.json", location).href,
   dom_id: "#reference",
   deepLinking: true,
-  defaultModelsExpandDepth: 0,
+  defaultModelsExpandDepth: -1,
   docExpansion: "list",
   filter: true,
   validatorUrl: null,

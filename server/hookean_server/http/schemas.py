@@ -212,6 +212,8 @@ SCHEMAS["Session"] = {
         "label": {"type": "string"},
         "etag": {"type": "string", "description": "Its ETag: of this creation, revision and shape"},
         "revision": {"type": "integer", "description": "Number of edits"},
+        "scene_revision": {"type": "integer", "description": "Revision that last changed more than its anchors"},
+        "anchors_revision": {"type": "integer", "description": "Revision that last changed its anchors"},
         "iteration": {"type": "integer"},
         "time": {**_NUMBER, "description": "[time]"},
         "residual": {**_NUMBER, "description": "[-]"},

@@ -138,8 +138,7 @@ class Awake(Register):
             return
         event = head["event"]
         if event == "frame":
-            live.frame, live.frame_number, live.asked = body, live.frame_number + 1, False
-            live.tell()
+            live.show(body, changes=head["changes"])
         elif event == "lost":
             live.process = None
             live.asked = False

@@ -31,8 +31,8 @@ CLOSED = {"not-found": 4404, "busy": 4429, "shutting-down": 1012}
 
 
 @router.websocket("/v1/sessions/{key}/frames")
-async def frames(socket: WebSocket, key: str) -> None:
-    """One client that watches one session."""
+async def frames(socket: WebSocket, key: str, changes: bool = False) -> None:
+    """One client that watches one session; `changes`: it takes frames of changes."""
     sessions: Manager = socket.app.state.sessions
     try:
         live = await sessions.watch(key)
@@ -44,14 +44,13 @@ async def frames(socket: WebSocket, key: str) -> None:
     try:
         with suppress(OSError, WebSocketDisconnect):  # the client may have left already
             await socket.accept()
-            await _served(socket, sessions, live)
+            await _served(_Client(socket, sessions, live, changes=changes))
     finally:
         sessions.unwatch(live)
 
 
-async def _served(socket: WebSocket, sessions: Manager, live: Live) -> None:
+async def _served(client: _Client) -> None:
     """Until either side ends it."""
-    client = _Client(socket, sessions, live)
     tasks = [asyncio.create_task(client.send()), asyncio.create_task(client.receive())]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -59,14 +58,14 @@ async def _served(socket: WebSocket, sessions: Manager, live: Live) -> None:
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-        code = 1012 if sessions.closing else 4404 if live.gone else client.code
+        code = 1012 if client.sessions.closing else 4404 if client.live.gone else client.code
         with suppress(RuntimeError, OSError, WebSocketDisconnect):
-            await socket.close(code, client.reason[:120])
+            await client.socket.close(code, client.reason[:120])
 
 
 class _Client:
-    def __init__(self, socket: WebSocket, sessions: Manager, live: Live) -> None:
-        self.socket, self.sessions, self.live = socket, sessions, live
+    def __init__(self, socket: WebSocket, sessions: Manager, live: Live, *, changes: bool) -> None:
+        self.socket, self.sessions, self.live, self.changes = socket, sessions, live, changes
         self.sent = 0  # number of the last frame sent, as the server counts them
         self.on_their_way: list[int] = []
         self.code, self.reason = 1000, ""
@@ -99,13 +98,15 @@ class _Client:
     async def _frame(self) -> None:
         live = self.live
         skipped = live.frame_number - self.sent - 1 if self.sent else 0
+        follows = self.changes and self.sent and not skipped
+        frame = (follows and live.changes) or live.frame
         self.sent = live.frame_number
         number = int.from_bytes(live.frame[12:16], "little")
         self.on_their_way.append(number)
         self.sessions.frames_sent += 1
         self.sessions.frames_skipped += max(0, skipped)
         async with self.lock:
-            await self.socket.send_bytes(live.frame)
+            await self.socket.send_bytes(frame)
 
     async def receive(self) -> None:
         """Acknowledgements at once; edits and commands in their order."""

@@ -60,7 +60,7 @@ class Host:
         self.connection = connection
         self.simulation: Simulation | None = None
         self.before: Simulation | None = None  # what the last change may be put back to
-        self.wired = parts.Wired()
+        self.wired, self.edited = parts.Wired(), parts.Edited()
         self.playing = False
         self.fast = False
         self.resting: Resting | None = None  # while it goes to rest; it plays then
@@ -73,6 +73,7 @@ class Host:
         self.changed = self.stored = 0  # counts of changes: shown, and in a checkpoint
         self.now = 0
         self.shown, self.shown_at = -1, 0.0  # revision and moment of the last frame
+        self.sent = b""  # the last frame
         self.due = 0.0  # when the next frame's iterations are due
         self.owed = 0  # iterations until the next frame
         self.each = 1  # iterations that fit into a slice
@@ -355,8 +356,10 @@ class Host:
             self.credit, self.changed = 0, self.now
             self.shown, self.shown_at = simulation.state.revision, now
             self.number += 1
-            frame = parts.frame(simulation, self.number, self.playing or bool(self.left))
-            self._send({"event": "frame", "number": self.number}, wire.encode(frame))
+            frame = wire.encode(parts.frame(simulation, self.number, self.playing or bool(self.left)))
+            changes = wire.changes(self.sent, frame)
+            self.sent = frame
+            self._send({"event": "frame", "changes": changes is not None}, frame if changes is None else changes)
 
     def _keep(self) -> None:
         """Send a checkpoint, where there is progress to store."""
@@ -383,7 +386,7 @@ class Host:
         wiring, now = self.wired.tag(simulation), time.monotonic_ns()  # a clock that all processes share
         solving = self.resting is not None
         told = {"wiring": wiring, "playing": self.playing, "solving": solving, "told": now}
-        return {**parts.describe(simulation), **told}
+        return {**parts.describe(simulation), **self.edited.revisions(simulation), **told}
 
     def _simulation(self) -> Simulation:
         if self.simulation is None:

@@ -10,10 +10,11 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
+from hookean_server.sessions import wire
 from hookean_server.sessions.process import SessionProcess
 
 _DESCRIBED = ("revision", "iteration", "time", "residual", "status", "message", "particles", "undo", "redo", "playing",
-              "solving", "energy", "units", "warnings")  # fmt: skip
+              "solving", "energy", "units", "warnings", "scene_revision", "anchors_revision")  # fmt: skip
 
 
 @dataclass(eq=False)
@@ -37,6 +38,7 @@ class Live:
     going: str = "play"  # the command by which it plays
     watchers: int = 0
     frame: bytes = b""
+    changes: bytes = b""  # to the frame before it, where they are fewer bytes
     frame_number: int = 0
     asked: bool = False
     scene: str = ""  # another one for each scene that it was given
@@ -100,6 +102,13 @@ class Live:
         """Wake everyone who waits for news."""
         self.news.set()
         self.news = asyncio.Event()
+
+    def show(self, frame: bytes, *, changes: bool) -> None:
+        """Its process has sent a frame, or the changes to the last one."""
+        self.frame, self.changes = (wire.changed(self.frame, frame), frame) if changes else (frame, b"")
+        self.frame_number += 1
+        self.asked = False
+        self.tell()
 
     def want_frame(self) -> None:
         """Ask the process for its next frame, once."""

@@ -204,6 +204,44 @@ class Wired:
         return self._tag
 
 
+class Edited:
+    """The revisions that last changed a simulation's anchors, and the rest of its scene: who has read them at that
+    revision or a later one need not read them again."""
+
+    def __init__(self) -> None:
+        self._anchors: Any = None
+        self._rest: Any = None
+        self._revisions = {"anchors_revision": 0, "scene_revision": 0}
+
+    def revisions(self, simulation: Simulation) -> dict[str, int]:
+        """Both, as told of a session."""
+        revision, system, scene = simulation.state.revision, simulation.system, simulation.scene
+        anchors = [(h.number, h.name, h.free.tolist(), h.turning.tolist(), h.particles, h.targets) for h in system.held]
+        if not _same_anchors(self._anchors, anchors):
+            self._anchors = [(*about, particles.copy(), targets.copy()) for *about, particles, targets in anchors]
+            self._revisions["anchors_revision"] = revision
+        rest = [system, *scene.forces], [scene.settings, scene.materials, scene.sections]
+        if self._rest is None or not (_identical(rest[0], self._rest[0]) and rest[1] == self._rest[1]):
+            self._rest = rest
+            self._revisions["scene_revision"] = revision
+        return dict(self._revisions)
+
+
+def _identical(some: list[Any], others: list[Any]) -> bool:
+    """Whether two lists have the same objects: forces are replaced by edits, never written into."""
+    return len(some) == len(others) and all(one is other for one, other in zip(some, others, strict=True))
+
+
+def _same_anchors(some: list[Any] | None, others: list[Any]) -> bool:
+    """Whether two lists of anchors hold the same particles at the same targets."""
+    if some is None or len(some) != len(others):
+        return False
+    return all(
+        one[:-2] == other[:-2] and np.array_equal(one[-2], other[-2]) and np.array_equal(one[-1], other[-1])
+        for one, other in zip(some, others, strict=True)
+    )
+
+
 def describe(simulation: Simulation) -> dict[str, Any]:
     """How a simulation stands, in plain values."""
     state, energy = simulation.state, simulation.energy

@@ -37,6 +37,7 @@ def typescript() -> str:
         f"export const POSITIONS = {wire.POSITIONS};",
         f"export const SCALARS = {wire.SCALARS};",
         f"export const REACTIONS = {wire.REACTIONS};",
+        f"export const CHANGES = {wire.CHANGES};",
         "export const STATUSES = [",
         *(f'  "{status}",' for status in wire.STATUSES),
         "] as const;",

@@ -69,6 +69,10 @@ export class Readings {
     const topology = this.session.topology.value;
     const revision = this.session.summary.value?.revision;
     if (this.reading || !topology || revision === undefined) return;
+    if (this.session.isLed) {
+      this.timer = window.setTimeout(() => void this.ask(), PAUSE); // all of it again and again
+      return;
+    }
     this.reading = true;
     try {
       const result = await api.result(this.session.key);

@@ -1,6 +1,7 @@
 // What can be done about a warning or a run that failed, as buttons: each is an edit, which can be undone.
 import type { Anchor, Patch, Scene, Summary, Topology } from "../model";
 import type { Session } from "../session";
+import { extremes } from "../view/extremes";
 import { useEdit } from "./loads";
 import { said } from "./words";
 
@@ -64,16 +65,28 @@ function ofSentences(summary: Summary, scene: Scene): Repair[] {
 const METRES: Record<string, number> = { dm: 0.1, m: 1, km: 1000, ft: 0.3048, yd: 0.9144 };
 const LARGEST = 1000;
 
-/** Of a model that is larger than anything built, as one that was drawn in mm and read in m. */
-function ofSize({ start }: Topology, { units }: Scene): Repair[] {
-  const extents = [0, 1, 2].map((axis) => {
-    const [low, high] = start.reduce(
-      ([least, most], point) => [Math.min(least, point[axis]!), Math.max(most, point[axis]!)],
-      [Infinity, -Infinity],
-    );
+/** The same for the same topology, found once: each edit asks again. */
+function once<T>(make: (topology: Topology) => T): (topology: Topology) => T {
+  const known = new WeakMap<Topology, { made: T }>();
+  return (topology) => {
+    const found = known.get(topology) ?? { made: make(topology) };
+    known.set(topology, found);
+    return found.made;
+  };
+}
+
+/** The largest extent of a form along an axis as it starts [length]. */
+const extentOf = once(({ start }) => {
+  const spans = [0, 1, 2].map((axis) => {
+    const [low, high] = extremes(start.map((point) => point[axis]!));
     return high - low;
   });
-  const size = Math.max(...extents);
+  return Math.max(...spans);
+});
+
+/** Of a model that is larger than anything built, as one that was drawn in mm and read in m. */
+function ofSize(topology: Topology, { units }: Scene): Repair[] {
+  const size = extentOf(topology);
   if (!(size * (METRES[units.length] ?? 0) > LARGEST && size * 1e-3 <= LARGEST)) return [];
   return [
     {
@@ -93,7 +106,7 @@ function isLoose(anchors: Anchor[], scene: Scene): boolean {
 }
 
 /** Ways to hold a form: the rim of its meshes, the ends of its lines. */
-function holds(topology: Topology): Repair[] {
+const holds = once((topology): Repair[] => {
   const edges = new Map<string, [number, number]>();
   for (const { faces } of Object.values(topology.meshes))
     for (const face of faces.map((corners) => [...new Set(corners)]))
@@ -115,4 +128,4 @@ function holds(topology: Topology): Repair[] {
       patch: { pin: [{ particles: particles.sort((a, b) => a - b) }] },
       done: `The ${name} is held where it is, ${particles.length} particles.`,
     }));
-}
+});

@@ -52,7 +52,7 @@ export class Rested {
   /** Stands for the present state; "" while it moves. */
   private moment(): string {
     const now = this.session.summary.value;
-    if (!now || now.playing || this.session.connection.value !== "live") return "";
+    if (!now || now.playing || this.session.isLed || this.session.connection.value !== "live") return "";
     return [now.revision, now.iteration, now.status].join(" ");
   }
 }

@@ -19,6 +19,7 @@ export const WIDTH = 1024;
 export class Column {
   readonly texture: DataTexture;
   private readonly format: PixelFormat;
+  private shown: Float32Array | null = null;
 
   constructor(
     readonly rows: number,
@@ -32,8 +33,10 @@ export class Column {
     this.texture.needsUpdate = true;
   }
 
-  /** Hand rows to the card at once, straight from `values`. */
+  /** Hand rows to the card at once, straight from `values`, unless it has these already. */
   put(renderer: WebGLRenderer, values: Float32Array): void {
+    if (values === this.shown) return;
+    this.shown = values;
     const gl = renderer.getContext() as WebGL2RenderingContext;
     renderer.initTexture(this.texture);
     const found = renderer.properties.get(this.texture) as { __webglTexture: WebGLTexture };

@@ -366,9 +366,12 @@ class Drawing implements View {
     if (!frame || frame.positions.length !== 3 * (picture.form?.particles ?? -1)) return false;
     // an edit is acknowledged and its first frame is on its way
     if (frame.revision < stats.revisionAcknowledged || stage.renderer.getContext().isContextLost()) return false;
-    if (this.drawn !== frame || this.outdated) this.upload(frame);
+    const isOther = this.drawn !== frame;
+    if (isOther || this.outdated) this.upload(frame);
+    const began = performance.now();
     this.survey(frame, finely);
     this.dress();
+    if (isOther) note(stats.colourMilliseconds, performance.now() - began);
     if (!this.fitted) this.begin(frame);
     eye.reach(stage.common.centre.value, picture.size * 2);
     this.triad.place(eye);

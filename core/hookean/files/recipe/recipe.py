@@ -28,7 +28,8 @@ stands for anything inside a name. Several are joined by commas or in a list.
 
 * `lines`: lines and polylines give their segments, any curve with `divide = N` N equal arcs.
 * `mesh`: meshes; surfaces, Breps, extrusions with `divide = [u, v]` or `divide_u`, `divide_v`. Several objects
-  are one mesh, welded where they meet.
+  are one mesh, welded where they meet. A trimmed face gives its render mesh, or with `divide = [u, v, "whole"]` the
+  surface below it without the cuts.
 * `points`, of forces and anchors: points and point clouds; `start:`, `ends:` of curves, `loose:` for those ends that no
   other curve of the selector and no line of a force meets; `vertices:`, `inner:` of curves and meshes; `naked:`,
   `corners:` of meshes and surfaces. How one table divides an object holds for all tables without another one, and so

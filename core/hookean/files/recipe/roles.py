@@ -148,10 +148,16 @@ class Surface(Role):
     family = "surfaces"
     divide_u: Faces = DEFAULT_DIVIDE
     divide_v: Faces = DEFAULT_DIVIDE
+    divide_trimmed: Literal["mesh", "whole"] = Field(
+        default="mesh", description="Trimmed faces: by their render mesh, or whole, without their cuts [-]"
+    )
 
     def split(self, item: Item) -> Split | None:
         """How it divides a surface."""
-        return (self.divide_u, self.divide_v) if shapes.is_surface(item) else None
+        if not shapes.is_surface(item):
+            return None
+        pair = self.divide_u, self.divide_v
+        return pair if self.divide_trimmed == "mesh" else (*pair, "whole")
 
 
 class SpringRole(Role):
@@ -342,7 +348,8 @@ def told(role: type[Role], item: Item, units: Units) -> dict[str, Any]:
     found: dict[str, Any] = {k: number_of(item, k) for k in NUMBERS if k in text and k in fields}
     split = shapes.split_of(text.get("divide"), f"{item.label}, user text divide")
     if split is not None:
-        given = {"divide": split[0], "divide_u": split[0], "divide_v": split[1]}
+        given: dict[str, Any] = {"divide": split[0], "divide_u": split[0], "divide_v": split[1]}
+        given |= {"divide_trimmed": "whole"} if len(split) > 2 else {}
         found |= {k: v for k, v in given.items() if k in fields}
     if "axes" in text and "axes" in fields:
         found["axes"] = "".join(sorted(text["axes"].strip().lower()))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,11 +22,14 @@ from hookean.values.mesh import Mesh
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Split = tuple[int, int]
-"""Pieces of a curve (the first number), or faces of a surface along u and v."""
+Split = tuple[int, int] | tuple[int, int, Literal["whole"]]
+"""Pieces of a curve (the first number), or faces of a surface along u and v; whole: also where it is trimmed."""
 
 
-TRIMMED = "trimmed faces without a render mesh; save the file shaded, untrim them, or mesh them in Rhino"
+TRIMMED = (
+    "trimmed faces without a render mesh; choose whole for trimmed faces, which leaves out the cuts, or save the file "
+    "shaded in Rhino"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,12 +78,14 @@ def points_from(feature: str, *, divided: bool) -> tuple[Callable[[Item], bool],
 
 
 def split_of(value: Any, pointer: str) -> Split | None:
-    """A `divide` value (20, [10, 20], "10, 20" or none) as two counts; InputError where it is neither."""
+    """A `divide` value (20, [10, 20], "10, 20", [10, 20, "whole"] or none) as a division; InputError for others."""
     if value is None:
         return None
     if isinstance(value, str):
         value = [float(p) if re.fullmatch(r"\d+(\.0*)?", p) else p for p in re.split(r"[\s,;x×]+", value.strip())]
     pair = list(value) if isinstance(value, list | tuple) else [value]
+    whole = pair[-1:] == ["whole"]
+    pair = pair[: len(pair) - whole]
     pair = pair * 2 if len(pair) == 1 else pair
     good = len(pair) == 2 and all(
         isinstance(n, int | float) and not isinstance(n, bool) and float(n).is_integer() and 1 <= n <= 100_000
@@ -88,7 +93,7 @@ def split_of(value: Any, pointer: str) -> Split | None:
     )
     if not good:
         raise InputError(pointer, f"{value!r} given; give a whole number of pieces, or [u, v] for a surface")
-    return int(pair[0]), int(pair[1])
+    return (int(pair[0]), int(pair[1]), "whole") if whole else (int(pair[0]), int(pair[1]))
 
 
 def straight(item: Item) -> bool:
@@ -143,7 +148,7 @@ def _mesh_of(item: Item, split: Split | None, pointer: str) -> Mesh:
         elif split is None:
             raise InputError(pointer, "is a surface; give divide = [u, v] to mesh it with u by v faces")
         else:
-            mesh = mesh_faces(item.geometry, *split, name=item.label)
+            mesh = mesh_faces(item.geometry, *split[:2], name=item.label, whole=len(split) > 2)
     except InputError as error:
         raise InputError(pointer, f"{item.label}: {error.sentence}") from None
     used = np.unique(mesh.faces)
