@@ -48,7 +48,7 @@ def after_seven(number):  # type: ignore[no-untyped-def]
 
 def code(folder: Path) -> Compiled:
     """`scaled` from an empty folder, as a new process sees it."""
-    return Compiled("scaled", folder, lambda: dispatch.dispatcher(scaled), None)
+    return Compiled("scaled", folder, lambda: dispatch.dispatcher(scaled), None, lambda: dispatch.part(scaled, None, True))
 
 
 @pytest.fixture(scope="module")

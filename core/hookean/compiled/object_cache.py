@@ -33,10 +33,13 @@ log = logging.getLogger("hookean.compiled")
 
 
 class Compiled:
-    """A function as machine code. `dispatcher` makes numba's; `kind` is what it takes, None: whatever it is given."""
+    """A function as machine code. `dispatcher` makes numba's, to be run, and `part` what the disk keeps; `kind` is what
+    it takes, None: whatever it is given."""
 
-    def __init__(self, name: str, folder: Path, dispatcher: Callable[[], Any], kind: Kind | None) -> None:
-        self.name, self.folder, self.dispatcher, self.kind = name, folder, dispatcher, kind
+    def __init__(
+        self, name: str, folder: Path, dispatcher: Callable[[], Any], kind: Kind | None, part: Callable[[], Any]
+    ) -> None:
+        self.name, self.folder, self.dispatcher, self.kind, self.part = name, folder, dispatcher, kind, part
         self.loaded = self.made = 0  # how many were found on disk, and how many were not
         self._entries: dict[Kind, Entry | None] = {}
         self._called: tuple[Callable[[tuple[Any, ...]], Any], ...] = ()
@@ -79,7 +82,7 @@ class Compiled:
         try:
             from hookean.compiled.object_code import emit
 
-            _store(path, emit(self.dispatcher(), kind, values if self.kind is None else ()))
+            _store(path, emit(self.part(), kind, values if self.kind is None else ()))
         except Unstorable as reason:
             log.debug("%s is left to numba: %s", self.name, reason)
             return None
