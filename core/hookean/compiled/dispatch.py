@@ -58,7 +58,9 @@ def compiled(function: Callable[..., Any], role: str | None = None) -> Compiled:
     """
     kind = None if role is None else _kind(role)
     name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
-    return Compiled(name, cache_folder(function), lambda: dispatcher(function, role), kind, lambda: part(function, role, True))
+    return Compiled(
+        name, cache_folder(function), lambda: dispatcher(function, role), kind, lambda: part(function, role, True)
+    )
 
 
 @cache
@@ -69,7 +71,7 @@ def dispatcher(function: Callable[..., Any], role: str | None = None) -> Any:
     if function in _NATIVE:
         return _native(function)
     prepared = _with_devices(function, dispatcher)
-    _prepare(function)
+    _prepare(cache_folder(function))
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
     if role is None:
         return _without_literals(numba.njit(**options)(prepared))
@@ -84,7 +86,7 @@ def part(function: Callable[..., Any], role: str | None = None, whole: bool = Fa
     if function in _NATIVE:
         return _native(function)
     prepared = _with_devices(function, part)
-    _prepare(function)
+    _prepare(cache_folder(function) / "parts")  # what numba runs has files of the same names
     made = _without_literals(linked(prepared, whole))
     if role is not None:
         made.compile(_signature(role))
@@ -98,11 +100,11 @@ def _native(function: Callable[..., Any]) -> Any:
     return pointers.runner(task, _signature(task)) if task else pointers.kept
 
 
-def _prepare(function: Callable[..., Any]) -> None:
-    """numba's settings for a function."""
+def _prepare(folder: Path) -> None:
+    """numba's settings for a function whose files are in a folder."""
     import numba
 
-    numba.config.CACHE_DIR = str(cache_folder(function))
+    numba.config.CACHE_DIR = str(folder)
     numba.config.SLP_VECTORIZE = 1  # the columns of a particle in one operation; no sum changes its order
 
 

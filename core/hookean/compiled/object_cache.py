@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from hookean.compiled import announcing
 from hookean.compiled.abi import DIFFERS, Kind, Unstorable, helpers, letters, readable
 
 log = logging.getLogger("hookean.compiled")
@@ -69,7 +70,7 @@ class Compiled:
         path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
         found = _load(path, kind)
         if found is None:
-            with _alone(path):
+            with announcing.WAITING.on(self.name), _alone(path):
                 found = _load(path, kind)  # another process may have compiled it meanwhile
                 if found is None:
                     self.made += 1
