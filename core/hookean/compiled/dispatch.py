@@ -254,7 +254,9 @@ def _without_literals(made: Any) -> Any:
     """The same, compiled once for all numbers of a type: numba compiles it for the constants of each call, too."""
     from numba.core.types.misc import unliteral
 
-    found = made.get_call_template
+    found = getattr(made, "get_call_template", None)
+    if found is None:  # a private part; without it functions are compiled more often
+        return made
     made.get_call_template = lambda args, kws: found(
         [unliteral(one) for one in args], {name: unliteral(one) for name, one in dict(kws).items()}
     )

@@ -8,6 +8,8 @@ numba is needed anyway.
 
 from __future__ import annotations
 
+import copy
+import ctypes
 from collections.abc import Callable
 from typing import Any
 
@@ -18,10 +20,9 @@ from numba.core import caching, codegen, compiler
 
 def linked(function: Callable[..., Any], whole: bool = False) -> Any:
     """numba's dispatcher of a function that is never run; `whole`: no other function contains it."""
-    made = njit(
-        nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True,
-        pipeline_class=_WholeCompiler if whole else _PartCompiler,
-    )(function)  # fmt: skip
+    pipeline = _WholeCompiler if whole else _PartCompiler
+    options = {"nogil": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    made = njit(pipeline_class=pipeline, **options)(function)
     if not whole:
         made._cache = _Cache(function)
     return made
@@ -31,8 +32,7 @@ class _Part(codegen.JITCodeLibrary):  # type: ignore[misc]
     """LLVM's code of a function and of what it calls, without machine code."""
 
     def __init__(self, own: Any, name: str) -> None:
-        super().__init__(own, name)
-        self._codegen = _NoCode(own)
+        super().__init__(_without_engine(own), name)
 
     def _optimize_final_module(self) -> None:
         """Left to the kernel."""
@@ -41,11 +41,6 @@ class _Part(codegen.JITCodeLibrary):  # type: ignore[misc]
         self._finalize_dynamic_globals()
         self._verify_declare_only_symbols()
         self._finalized = True
-
-    def get_pointer_to_function(self, name: str) -> int:
-        """None: there is no machine code."""
-        self._ensure_finalized()
-        return 0
 
     def serialize_using_object_code(self) -> Any:
         """What another process links."""
@@ -68,18 +63,28 @@ class _Whole(_Part):
         codegen.JITCodeLibrary._optimize_final_module(self)
 
 
-class _NoCode:
-    """numba's generator of code, for a library without any: there is no place for the objects of Python that code can
-    refer to, which compiled code does not need."""
+class _NoEngine:
+    """What numba asks, of machine code, for a library that has none."""
 
-    def __init__(self, own: Any) -> None:
-        self.own = own
+    def __init__(self) -> None:
+        self.nowhere = ctypes.c_void_p()
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.own, name)
+    def is_symbol_defined(self, name: str) -> bool:
+        """Nothing is."""
+        return False
 
-    def set_env(self, name: str, environment: Any) -> None:
-        """Nowhere to put it."""
+    def get_global_value_address(self, name: str) -> int:
+        """Where numba puts the objects of Python that code can refer to; ours refers to none."""
+        return ctypes.addressof(self.nowhere)
+
+
+def _without_engine(own: Any) -> Any:
+    """numba's generator of code, that generates none."""
+    made = copy.copy(own)
+    if not hasattr(made, "_engine"):
+        raise AttributeError("numba's generator of code has no attribute '_engine'")
+    made._engine = _NoEngine()
+    return made
 
 
 class _PartCompiler(compiler.Compiler):  # type: ignore[misc]

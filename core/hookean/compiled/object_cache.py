@@ -67,7 +67,11 @@ class Compiled:
 
     def _find(self, kind: Kind, values: tuple[Any, ...]) -> Entry | None:
         """The code from disk, where it is put if it was not there."""
-        path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
+        try:
+            path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
+        except Exception as error:  # private parts of numba may have gone to other places
+            _report("compiled code is not stored", error)
+            return None
         found = _load(path, kind)
         if found is None:
             with announcing.WAITING.on(self.name), _alone(path):
