@@ -1,4 +1,4 @@
-"""Telling who waits that code is compiled: a line on the terminal, and an entry of the log `hookean.compiled`."""
+"""Reports that code is compiled, for who waits: a line on the terminal, and an entry of the log `hookean.compiled`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 
 log = logging.getLogger("hookean.compiled")
 
-AFTER = 1.0  # seconds of compiling in a process that nobody is told of
+AFTER = 1.0  # seconds of compiling in a process that are not reported
 LINE = "Compiling the engine for this computer: once, up to a minute for the first scenes ..."
 
 
@@ -25,20 +25,20 @@ def later(seconds: float, act: Callable[[], None]) -> Callable[[], None]:
 
 
 class Waiting:
-    """How long a process has compiled, or waited for another process that does. It tells of it once, after `AFTER`.
+    """How long a process has compiled, or waited for another process that does. It reports it once, after `AFTER`.
 
     `clock` is the time in seconds, `later` calls a function after some seconds.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic, later: Any = later) -> None:
         self.clock, self.later = clock, later
-        self._spent, self._told, self._lock = 0.0, False, threading.Lock()
+        self._spent, self._reported, self._lock = 0.0, False, threading.Lock()
 
     @contextmanager
     def on(self, name: str) -> Iterator[None]:
         """While the code of a function is made."""
         began = self.clock()
-        call_off = None if self._told else self.later(max(AFTER - self._spent, 0.0), lambda: self._tell(name))
+        call_off = None if self._reported else self.later(max(AFTER - self._spent, 0.0), lambda: self._report(name))
         try:
             yield
         finally:
@@ -49,11 +49,11 @@ class Waiting:
                 self._spent += took
             log.debug("%s: %.1f s until it was compiled", name, took)
 
-    def _tell(self, name: str) -> None:
+    def _report(self, name: str) -> None:
         with self._lock:
-            if self._told:
+            if self._reported:
                 return
-            self._told = True
+            self._reported = True
         log.info("code is being compiled, now that of %s; later processes load it from the disk", name)
         if sys.stderr is not None and sys.stderr.isatty():
             print(LINE, file=sys.stderr, flush=True)
