@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean.compiled import dispatch
+from hookean.compiled import announcing, dispatch
 from hookean.compiled import object_cache as machine
 from hookean.compiled.object_cache import Compiled, readable
 from hookean.forces.springs import Springs, springs_kernel
@@ -48,7 +48,9 @@ def after_seven(number):  # type: ignore[no-untyped-def]
 
 def code(folder: Path) -> Compiled:
     """`scaled` from an empty folder, as a new process sees it."""
-    return Compiled("scaled", folder, lambda: dispatch.dispatcher(scaled), None)
+    return Compiled(
+        "scaled", folder, lambda: dispatch.dispatcher(scaled), None, lambda: dispatch.part(scaled, None, True)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -61,8 +63,9 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def nothing_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As in a new process."""
+    """As in a new process, of which nobody waits."""
     monkeypatch.setattr(machine, "_reported", set())
+    monkeypatch.setattr(announcing, "WAITING", announcing.Waiting(later=lambda seconds, act: lambda: None))
 
 
 @pytest.fixture
@@ -76,6 +79,27 @@ def test_a_constant_compiles_no_code_of_its_own(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(dispatch, "cache_folder", lambda function: tmp_path)
     assert dispatch.dispatcher(after_seven)(4) == 13
     assert len(dispatch.dispatcher(next_one).overloads) == 1
+
+
+def test_what_numba_runs_and_what_the_disk_keeps_are_stored_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A function that numba has compiled for itself, with its devices, is compiled for the disk by the next process."""
+    monkeypatch.setattr(dispatch, "cache_folder", lambda function: tmp_path)
+    dispatch.dispatcher.__wrapped__(after_seven)(4)
+    run = Compiled(
+        "after_seven", tmp_path, lambda: pytest.fail("numba was asked"), None, lambda: _new_part(after_seven)
+    )
+    assert run(4) == 13 and run.made == 1
+    again = Compiled("other", tmp_path, lambda: pytest.fail("numba was asked"), None, lambda: _new_part(after_seven))
+    assert again(4) == 13 and again.made == 1
+    assert caplog.messages == []
+
+
+def _new_part(function: Any) -> Any:
+    """As a new process makes it, which finds the devices on the disk."""
+    dispatch.part.cache_clear()
+    return dispatch.part(function, None, True)
 
 
 @pytest.mark.slow

@@ -58,26 +58,54 @@ def compiled(function: Callable[..., Any], role: str | None = None) -> Compiled:
     """
     kind = None if role is None else _kind(role)
     name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
-    return Compiled(name, cache_folder(function), lambda: dispatcher(function, role), kind)
+    return Compiled(
+        name, cache_folder(function), lambda: dispatcher(function, role), kind, lambda: part(function, role, True)
+    )
 
 
 @cache
 def dispatcher(function: Callable[..., Any], role: str | None = None) -> Any:
-    """What numba makes of `function`: for other machine code to inline, and where its code is not on disk yet."""
+    """What numba makes of `function`, to run it where its code cannot be on disk."""
     import numba
 
     if function in _NATIVE:
-        from hookean.compiled import call_table as pointers
-
-        task = _RUNNERS.get(function)
-        return pointers.runner(task, _signature(task)) if task else pointers.kept
-    prepared = _with_devices(function)
-    numba.config.CACHE_DIR = str(cache_folder(function))
-    numba.config.SLP_VECTORIZE = 1  # the columns of a particle in one operation; no sum changes its order
+        return _native(function)
+    prepared = _with_devices(function, dispatcher)
+    _prepare(cache_folder(function))
     options: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
     if role is None:
         return _without_literals(numba.njit(**options)(prepared))
     return numba.njit(_signature(role), **options)(prepared)
+
+
+@cache
+def part(function: Callable[..., Any], role: str | None = None, whole: bool = False) -> Any:
+    """The same for other machine code to contain; `whole`: for the disk."""
+    from hookean.compiled.linking import linked
+
+    if function in _NATIVE:
+        return _native(function)
+    prepared = _with_devices(function, part)
+    _prepare(cache_folder(function) / "parts")  # what numba runs has files of the same names
+    made = _without_literals(linked(prepared, whole))
+    if role is not None:
+        made.compile(_signature(role))
+    return made
+
+
+def _native(function: Callable[..., Any]) -> Any:
+    from hookean.compiled import call_table as pointers
+
+    task = _RUNNERS.get(function)
+    return pointers.runner(task, _signature(task)) if task else pointers.kept
+
+
+def _prepare(folder: Path) -> None:
+    """numba's settings for a function whose files are in a folder."""
+    import numba
+
+    numba.config.CACHE_DIR = str(folder)
+    numba.config.SLP_VECTORIZE = 1  # the columns of a particle in one operation; no sum changes its order
 
 
 def same(a: Any, b: Any) -> bool:
@@ -206,11 +234,11 @@ def _writable_root() -> Path:
         return Path(tempfile.mkdtemp(prefix="hookean-"))
 
 
-def _with_devices(function: Callable[..., Any]) -> Callable[..., Any]:
+def _with_devices(function: Callable[..., Any], compiled_as: Callable[..., Any]) -> Callable[..., Any]:
     """The same function with the `@device` functions it names replaced by their compiled selves."""
     module = vars(sys.modules[function.__module__])
     used = {
-        name: dispatcher(module[name])
+        name: compiled_as(module[name])
         for name in function.__code__.co_names
         if getattr(module.get(name), "__device__", False)
     }
@@ -226,7 +254,9 @@ def _without_literals(made: Any) -> Any:
     """The same, compiled once for all numbers of a type: numba compiles it for the constants of each call, too."""
     from numba.core.types.misc import unliteral
 
-    found = made.get_call_template
+    found = getattr(made, "get_call_template", None)
+    if found is None:  # a private part; without it functions are compiled more often
+        return made
     made.get_call_template = lambda args, kws: found(
         [unliteral(one) for one in args], {name: unliteral(one) for name, one in dict(kws).items()}
     )

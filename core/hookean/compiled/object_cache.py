@@ -27,16 +27,20 @@ from typing import Any
 
 import numpy as np
 
+from hookean.compiled import announcing
 from hookean.compiled.abi import DIFFERS, Kind, Unstorable, helpers, letters, readable
 
 log = logging.getLogger("hookean.compiled")
 
 
 class Compiled:
-    """A function as machine code. `dispatcher` makes numba's; `kind` is what it takes, None: whatever it is given."""
+    """A function as machine code. `dispatcher` makes numba's, to be run, and `part` what the disk keeps; `kind` is what
+    it takes, None: whatever it is given."""
 
-    def __init__(self, name: str, folder: Path, dispatcher: Callable[[], Any], kind: Kind | None) -> None:
-        self.name, self.folder, self.dispatcher, self.kind = name, folder, dispatcher, kind
+    def __init__(
+        self, name: str, folder: Path, dispatcher: Callable[[], Any], kind: Kind | None, part: Callable[[], Any]
+    ) -> None:
+        self.name, self.folder, self.dispatcher, self.kind, self.part = name, folder, dispatcher, kind, part
         self.loaded = self.made = 0  # how many were found on disk, and how many were not
         self._entries: dict[Kind, Entry | None] = {}
         self._called: tuple[Callable[[tuple[Any, ...]], Any], ...] = ()
@@ -63,10 +67,14 @@ class Compiled:
 
     def _find(self, kind: Kind, values: tuple[Any, ...]) -> Entry | None:
         """The code from disk, where it is put if it was not there."""
-        path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
+        try:
+            path = self.folder / f"{self.name}-{hashlib.sha256(f'{kind} {surroundings()}'.encode()).hexdigest()[:24]}.o"
+        except Exception as error:  # private parts of numba may have gone to other places
+            _report("compiled code is not stored", error)
+            return None
         found = _load(path, kind)
         if found is None:
-            with _alone(path):
+            with announcing.WAITING.on(self.name), _alone(path):
                 found = _load(path, kind)  # another process may have compiled it meanwhile
                 if found is None:
                     self.made += 1
@@ -79,7 +87,7 @@ class Compiled:
         try:
             from hookean.compiled.object_code import emit
 
-            _store(path, emit(self.dispatcher(), kind, values if self.kind is None else ()))
+            _store(path, emit(self.part(), kind, values if self.kind is None else ()))
         except Unstorable as reason:
             log.debug("%s is left to numba: %s", self.name, reason)
             return None

@@ -283,5 +283,5 @@ def meet_large(spheres, parameters, start, order, most, beyond, picky, found, co
                 if count < 0 or count >= found.shape[0]:
                     return -1
                 found[count] = both(i, j)
-                count += 1 if not picky or near(spheres, parameters, start, order, i, j, beyond) else 0
+                count += 1 if not picky or near(spheres, parameters, start, order, int(i), int(j), beyond) else 0
     return count

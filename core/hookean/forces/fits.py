@@ -236,9 +236,16 @@ def newton(room: Any, size: Any, weight: Any, damping: Any, unknowns: Any) -> An
 
 
 @device
+def put(place: Any, numbers: Any) -> None:
+    """Numbers at a place; an assignment of whole arrays takes numba seconds to compile."""
+    for i in range(place.shape[0]):
+        place[i] = numbers[i]
+
+
+@device
 def move(fit: Any, step: Any, unknowns: Any, other: Any) -> None:
     """The fit after a step."""
-    other[:] = fit
+    put(other, fit)
     frame, after = fit[U : U + 9].reshape(3, 3), other[U : U + 9].reshape(3, 3)
     for c in range(3):
         other[POINT + c] += step[0] * frame[0, c] + step[1] * frame[1, c] + step[2] * frame[2, c]
@@ -286,7 +293,7 @@ def round_fit(x: Any, indices: Any, parameters: Any, first: Any, fit: Any, a: An
             after = slopes(x, indices, parameters, first, other, room)
             if near or after < energy:
                 energy = after
-                fit[:] = other
+                put(fit, other)
                 if near and length < SETTLED * size:
                     return fit[RADIUS] < FARTHEST * size
                 damping = 0.1 * damping if damping > 1e-6 else 0.0
@@ -357,5 +364,5 @@ def find_fits(x, indices, parameters, found):  # type: ignore[no-untyped-def]
         if e >= 0:
             fit_group(x, indices, parameters, first, fit, a, room)
         while e >= 0:
-            found[e] = fit
+            put(found[e], fit)
             e = following(parameters, e)

@@ -135,7 +135,9 @@ def spread(indices: Any, parameters: Any, bodies: Any, count: Any, f: Any, w: An
 def all_pairs(parameters: Any, memory: Any, start: Any, solids: Any, centres: Any, desk: Any, noting: Any) -> Any:
     """All contacts of a crowd, in the order of the list of neighbours; returns their energy."""
     room, count, energy = parameters[start, ROOM], centres.shape[0], 0.0
-    plain, index = centres[:, 3:5], np.arange(count).reshape(count, 1)
+    plain, index = np.empty((count, 2)), np.arange(count).reshape(count, 1)
+    for i in range(count):
+        plain[i, 0], plain[i, 1] = centres[i, 3], centres[i, 4]
     here, sums, counts = tables(room, count)
     order, several = order_in(room, count), 1
     short = listed(centres, index, plain, 0, here, sums, counts, order, room, parameters[start, SKIN])

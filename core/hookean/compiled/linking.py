@@ -1,0 +1,133 @@
+"""Functions for other machine code to contain: numba types and lowers them, and makes no code of them that runs.
+
+numba gives every function that it compiles two ways in for Python and C, optimises it with all that it calls, and makes
+machine code of it, though a device is only ever a part of its callers, and the code of a kernel comes from its file.
+Here LLVM optimises each function by itself, and a kernel once with all of its devices. Import this module only where
+numba is needed anyway.
+"""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import binding
+from numba import njit
+from numba.core import caching, codegen, compiler
+
+
+def linked(function: Callable[..., Any], whole: bool = False) -> Any:
+    """numba's dispatcher of a function that is never run; `whole`: no other function contains it."""
+    pipeline = _WholeCompiler if whole else _PartCompiler
+    options = {"nogil": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    made = njit(pipeline_class=pipeline, **options)(function)
+    if not whole:
+        made._cache = _Cache(function)
+    return made
+
+
+class _Part(codegen.JITCodeLibrary):  # type: ignore[misc]
+    """LLVM's code of a function and of what it calls, without machine code."""
+
+    def __init__(self, own: Any, name: str) -> None:
+        super().__init__(_without_engine(own), name)
+
+    def _optimize_final_module(self) -> None:
+        """Left to the kernel."""
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+    def serialize_using_object_code(self) -> Any:
+        """What another process links."""
+        return self.name, self._get_module_for_linking().as_bitcode()
+
+    @classmethod
+    def read(cls, own: Any, stored: Any) -> _Part:
+        """The same, from the disk."""
+        name, code = stored
+        made = cls(own, name)
+        made._final_module = binding.parse_bitcode(code)
+        made._finalized = True
+        return made
+
+
+class _Whole(_Part):
+    """The same of a kernel or a loop, optimised with all that it calls."""
+
+    def _optimize_final_module(self) -> None:
+        codegen.JITCodeLibrary._optimize_final_module(self)
+
+
+class _NoEngine:
+    """What numba asks, of machine code, for a library that has none."""
+
+    def __init__(self) -> None:
+        self.nowhere = ctypes.c_void_p()
+
+    def is_symbol_defined(self, name: str) -> bool:
+        """Nothing is."""
+        return False
+
+    def get_global_value_address(self, name: str) -> int:
+        """Where numba puts the objects of Python that code can refer to; ours refers to none."""
+        return ctypes.addressof(self.nowhere)
+
+
+def _without_engine(own: Any) -> Any:
+    """numba's generator of code, that generates none."""
+    made = copy.copy(own)
+    if not hasattr(made, "_engine"):
+        raise AttributeError("numba's generator of code has no attribute '_engine'")
+    made._engine = _NoEngine()
+    return made
+
+
+class _PartCompiler(compiler.Compiler):  # type: ignore[misc]
+    library: type[_Part] = _Part
+
+    def define_pipelines(self) -> Any:
+        """numba's own, into a library of ours."""
+        state = self.state
+        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return super().define_pipelines()
+
+
+class _WholeCompiler(_PartCompiler):
+    library = _Whole
+
+
+class _Stored(caching.CompileResultCacheImpl):  # type: ignore[misc]
+    """Results of numba's on disk, without machine code."""
+
+    def rebuild(self, target_context: Any, payload: Any) -> Any:
+        """From the disk."""
+        found = compiler.CompileResult._rebuild(_Reading(target_context), *payload)
+        return found._replace(target_context=target_context)
+
+
+class _Reading:
+    """numba's context, for reading a library of ours."""
+
+    def __init__(self, own: Any) -> None:
+        self.own = own
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.own, name)
+
+    def codegen(self) -> _Reading:
+        """What reads libraries."""
+        return self
+
+    def unserialize_library(self, stored: Any) -> _Part:
+        """Ours."""
+        return _Part.read(self.own.codegen(), stored)
+
+
+class _Cache(caching.FunctionCache):  # type: ignore[misc]
+    _impl_class = _Stored
