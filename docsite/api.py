@@ -50,7 +50,7 @@ def _fields(cls: type) -> str:
         return f"Values: {', '.join(f'`{one.value}`' for one in cls)}.\n"
     if issubclass(cls, BaseModel):
         rows = [f"| `{k}` | {_default(f)} | {_cell(f.description or '')} |" for k, f in cls.model_fields.items()]
-        return "\n".join(["| field | default | |", "| --- | --- | --- |", *rows, ""])
+        return "\n".join(["| field | default | meaning |", "| --- | --- | --- |", *rows, ""])
     if dataclasses.is_dataclass(cls):
         public = [field for field in dataclasses.fields(cls) if not field.name.startswith("_")]
         return "\n".join(

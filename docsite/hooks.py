@@ -128,16 +128,38 @@ def _gallery(markdown: str) -> str:
 
 def tex(formula: str) -> str:
     """A formula of a force as TeX: `E = k (l - L0)²/2` is `E = \\frac{k\\,(l - L_0)^2}{2}`."""
-    found = re.sub(r"(?<=[\w)]) (?=[\w(|])", r"\\,", formula)
-    found = re.sub(r"([A-Zφθ])0", r"\1_0", found).replace("²", "^2").replace("EI", r"E\!I")
+    clauses = []
+    for clause in formula.split(", "):
+        left, equals, right = clause.rpartition("= ")
+        clauses.append("".join([left, equals, *map(_fraction, _terms(right))]))
+    found = re.sub(r"(?<=[\w)]) (?=[\w(|])", r"\\,", ", ".join(clauses))
+    found = re.sub(
+        r"_([a-z]{2,})", r"_{\\mathrm{\1}}", re.sub(r"(?<!\\)\b([a-z]{4,}|ln|tr)(?![a-z])", r"\\mathrm{\1}", found)
+    )
+    found = re.sub(r"(?<![A-Za-z])([A-Za-zφθ])(\d)", r"\1_\2", found).replace("²", "^2").replace("EI", r"E\!I")
     found = re.sub(r"\^\(([^)]*)\)", r"^{\1}", found)
     found = re.sub(r"\|([^|]*)\|", r"\\left\\vert \1 \\right\\vert", found)
-    divided = re.fullmatch(r"(.*= -?)(.*?) ?/ ?(?:\(([^)]*)\)|(\d+))", found)
-    if divided:
-        found = rf"{divided[1]}\frac{{{divided[2]}}}{{{divided[3] or divided[4]}}}"
     for sign, name in SIGNS.items():
         found = found.replace(sign, name)
     return found
+
+
+def _terms(total: str) -> list[str]:
+    """The terms of a sum and the signs between them; what is in brackets or bars is one."""
+    found = [""]
+    for piece in re.split(r"( [+-] )", total):
+        whole = found[-1].count("(") == found[-1].count(")") and found[-1].count("|") % 2 == 0
+        if whole and piece in (" + ", " - "):
+            found += [piece, ""]
+        else:
+            found[-1] += piece
+    return found
+
+
+def _fraction(term: str) -> str:
+    """What is divided at the end of a term, as a fraction; the sign of a sum stands before it."""
+    divided = re.fullmatch(r"(-?(?:Σ )?)(.*?) ?/ ?(?:\(([^()]*)\)|(\w+))", term)
+    return rf"{divided[1]}\frac{{{divided[2]}}}{{{divided[3] or divided[4]}}}" if divided else term
 
 
 def on_page_content(content: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
@@ -152,8 +174,8 @@ def on_page_content(content: str, *, page: Page, config: MkDocsConfig, files: Fi
 
 
 def _breakable(match: re.Match[str]) -> str:
-    """Code of a table that may break at its spaces and after a slash, a colon, an underscore, a comma or a bracket."""
-    return "<wbr>" + re.sub(r"(?<=[\w{}])(?:[/_,(]|::)(?=\w)", r"\g<0><wbr>", match[0])
+    """Code of a table that may break at its spaces and after the signs below."""
+    return re.sub(r"(?<=[\w{}])(?:[/_,(.]|::)(?=\w)", r"\g<0><wbr>", match[0]) + "<wbr>"
 
 
 def _math(text: str, display: str) -> str:

@@ -208,6 +208,15 @@ def test_bad_files_get_one_sentence_and_exit_2(folder: Path) -> None:
         assert not (folder / "out.3dm").exists()
 
 
+def test_an_empty_file_is_reported_as_empty(folder: Path) -> None:
+    for name in ("empty.3dm", "empty.json", "empty.obj"):
+        (folder / name).write_bytes(b"")
+        result = run("relax", name)
+        assert result.exit_code == 2, name
+        assert name in result.stderr
+        assert "empty" in result.stderr.split(name, 1)[1], result.stderr
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -172,3 +172,19 @@ def test_a_warning_fails_the_build(tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 1 and "nothing-here.md" in done.stderr, done.stderr
     assert done.stderr.rstrip().endswith("The documentation has the mistakes above.")
+
+
+@pytest.mark.parametrize(
+    ("plain", "drawn"),
+    [
+        ("E = k (l - L0)²/2", r"E = \frac{k\,(l - L_0)^2}{2}"),
+        ("E = EA u²/(2L) + GJ φ²/(2L)", r"E = \frac{EA\,u^2}{2L} + \frac{GJ\,\varphi^2}{2L}"),
+        ("E = k (1/φ - 1/L)²/2, φ = Σ q/r", r"E = \frac{k\,(1/\varphi - 1/L)^2}{2}, \varphi = Σ \frac{q}{r}"),
+        ("E = -p0 V0 ln(V/V0) + p_out V", r"E = -p_0\,V_0\,\mathrm{ln}(V/V_0) + p_{\mathrm{out}}\,V"),
+    ],
+)
+def test_a_fraction_divides_its_term_alone(plain: str, drawn: str) -> None:
+    """A formula as it is drawn divides what the plain one divides: a sum has one fraction for each term."""
+    from docsite.hooks import tex
+
+    assert tex(plain) == drawn

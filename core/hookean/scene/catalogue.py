@@ -108,7 +108,7 @@ def markdown() -> str:
         )
     for e in entries:
         lines += ["", f"## {e['kind']}", "", e["description"], ""]
-        lines += ["| field | unit | default | allowed | |", "| --- | --- | --- | --- | --- |"]
+        lines += ["| field | unit | default | allowed | meaning |", "| --- | --- | --- | --- | --- |"]
         for f in e["fields"]:
             default = "required" if f["required"] else "" if f["default"] in (None, "") else f"`{_said(f['default'])}`"
             cells = (f"`{f['name']}`", f["unit"], default, _allowed(f), _cell(f["description"]))

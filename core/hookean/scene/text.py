@@ -20,6 +20,8 @@ def parse(text: str | bytes | bytearray, where: str = "/") -> Any:
         text = text.decode("utf-8-sig") if isinstance(text, bytes | bytearray) else text
     except UnicodeDecodeError:
         raise InputError(where, "the text is not UTF-8; save it as UTF-8 and try again") from None
+    if not text.strip():
+        raise InputError(where, "the text is empty; give JSON")
     try:
         value = json.loads(text, object_pairs_hook=_unique, parse_constant=_not_json)
     except json.JSONDecodeError as error:

@@ -53,7 +53,7 @@ for _name in OPERATIONS:
         f"/v1/discretize/{_name}",
         _route(_name),
         methods=["POST"],
-        summary=OPERATIONS[_name].summary,
+        summary=OPERATIONS[_name].summary.replace("`", ""),  # shown as plain text
         **openapi.discretize(_name),
     )
 
