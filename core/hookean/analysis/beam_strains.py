@@ -90,8 +90,8 @@ def beam_columns(system: Any, state: Any, beams: BeamPlaces) -> Floats:
     number = np.arange(count)
     for end in range(2):
         for force in range(6):
-            np.add.at(rows[:, :, :, force], (beams.ends[:, end], slice(None), number), moved[:, force, end])
-            np.add.at(rows[:, :, :, force], (beams.slots[:, end], slice(None), number), twisted[:, force, end])
+            rows[beams.ends[:, end], :, number, force] += moved[:, force, end]
+            rows[beams.slots[:, end], :, number, force] += twisted[:, force, end]
     return np.asarray(rows.reshape(3 * len(state.x), 6 * count))
 
 

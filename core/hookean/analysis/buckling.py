@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.analysis.arc_length import _sum
 from hookean.analysis.at_rest import AtRest, divided, load_numbers, relaxed
 from hookean.analysis.frequencies import MOST, _scaled
 from hookean.analysis.matrices import Unknowns, factor
+from hookean.compiled import dispatch
 from hookean.errors import InputError
 from hookean.scene.scene import Scene
 from hookean.system.balance import extents
@@ -59,8 +61,9 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
     """Linear buckling factors and modes: (K + lambda G) phi = 0.
 
     K is the exact tangent stiffness in equilibrium without `loads`, with prestress and all other loads; u = K^-1 F the
-    linear movement under `loads`; G the rate at which the tangent changes along u, by central differences, with the
-    tangent of loads that follow the shape. The factors hold as far as the structure moves little before it buckles;
+    linear movement under `loads`; G the stiffness of the forces that u brings to beams where they are, and the rate at
+    which the tangent of all else changes along u, by central differences, with the tangent of loads that follow the
+    shape. The factors hold as far as the structure moves little before it buckles;
     use `load_path` where it does not (shallow arches, cable nets).
 
     - `scene`: The structure with its loads.
@@ -87,7 +90,7 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
         raise InputError("model", f"{said} load_path")
     force = unknowns.gather(load_system.evaluate(load_state)[0])
     moved = unknowns.spread(found.solve(force))
-    change = _change(unknowns, rest, moved) + unknowns.tangent(load_system, load_state)
+    change = _sum(_change(unknowns, rest, moved), unknowns.tangent(load_system, load_state))
     size = len(unknowns.dofs)
     inverse, vectors = _softest(stiffness, change, size, found, min(count, size))
     kept = inverse < -1e-12 * max(float(np.abs(inverse).max(initial=0.0)), 1e-300)
@@ -100,6 +103,47 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
 
 
 def _change(unknowns: Unknowns, rest: AtRest, moved: Floats) -> Any:
+    """The rate at which the tangent changes along a movement (n, 3), where that is not the stiffness of its forces.
+
+    Of what bends, the rate along a straight movement is no measure: its ends come nearer only by a term of second
+    order, without which it is strained along itself, and that is many times stiffer than its forces."""
+    inner = [group.cls.stressed is None for group in rest.system.groups]
+    return _sum(_rate(unknowns, _chosen(rest, inner), moved), _stressed(unknowns, rest, moved))
+
+
+def _chosen(rest: AtRest, kept: Sequence[bool]) -> AtRest:
+    """The groups of a shape that are kept."""
+    groups = [group for group, wanted in zip(rest.system.groups, kept, strict=True) if wanted]
+    memory = [own for own, wanted in zip(rest.state.memory, kept, strict=True) if wanted]
+    return replace(
+        rest, system=replace(rest.system, groups=groups, _components=None), state=replace(rest.state, memory=memory)
+    )
+
+
+def _stressed(unknowns: Unknowns, rest: AtRest, moved: Floats) -> Any:
+    """The stiffness that the forces of a movement (n, 3) have where the shape is."""
+    import scipy.sparse as sparse
+
+    number = np.full(rest.state.x.size, -1)
+    number[unknowns.dofs] = np.arange(size := len(unknowns.dofs))
+    found = sparse.csc_matrix((size, size))
+    for group in rest.system.groups:
+        block = group.block
+        if group.cls.stressed is None or not len(block.indices):
+            continue
+        count, arity = block.indices.shape
+        blocks = np.zeros((count, 3 * arity, 3 * arity))
+        along = np.ascontiguousarray(moved[block.indices].reshape(count, -1))
+        kernel = dispatch.compiled(group.cls.stressed, "hessian")
+        kernel(rest.state.x, block.indices, block.parameters, along, blocks)
+        mine = number[(3 * block.indices[:, :, None] + np.arange(3)).reshape(count, -1)]
+        row, column = (np.broadcast_to(m, blocks.shape) for m in (mine[:, :, None], mine[:, None, :]))
+        kept = (row >= 0) & (column >= 0)
+        found = found + sparse.coo_matrix((blocks[kept], (row[kept], column[kept])), shape=(size, size)).tocsc()
+    return (found + found.T) * 0.5
+
+
+def _rate(unknowns: Unknowns, rest: AtRest, moved: Floats) -> Any:
     """The rate at which the tangent changes along a movement (n, 3)."""
     extent = extents(rest.system, rest.state)[:, None]
     part = float((np.abs(moved) / np.where(extent > 0.0, extent, np.inf)).max(initial=0.0))

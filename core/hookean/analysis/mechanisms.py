@@ -118,7 +118,7 @@ def mechanisms(model: Scene | Result) -> Mechanisms:
     inner = _apart(loose, rigid)
     modes = np.zeros((inner.shape[1], x.size))
     modes[:, dofs] = inner.T
-    modes = modes.reshape(-1, len(x), 3)
+    moved = modes.reshape(-1, len(x), 3)
     stress = np.zeros((len(found), columns))
     stress[:, kept] = found / np.abs(found).max(axis=1, keepdims=True) if len(found) else found
     return Mechanisms(
@@ -128,13 +128,13 @@ def mechanisms(model: Scene | Result) -> Mechanisms:
         inner.shape[1],
         rigid.shape[1],
         len(found),
-        modes[:, :count],
+        moved[:, :count],
         stress[:, : len(pairs)],
         pairs,
         x[:count],
         scene.units,
         len(beams.ends),
-        modes[:, system.slots.first] / system.slots.lengths[:, None],
+        moved[:, system.slots.first] / system.slots.lengths[:, None],
         stress[:, len(pairs) :].reshape(len(found), len(beams.ends), 6),
     )
 
@@ -172,18 +172,18 @@ def _rigid(system: Any, x: Floats, dofs: Ints, fixed: NDArray[np.bool_]) -> Floa
     count = slots.count
     middle = x[:count] - x[:count].mean(axis=0)
     size = float(np.abs(middle).max(initial=0.0)) or 1.0
-    whole = np.zeros((len(x), 3, 6))
+    ways = np.zeros((len(x), 3, 6))
     for axis in range(3):
-        whole[:count, axis, axis] = 1.0
+        ways[:count, axis, axis] = 1.0
         turn = np.zeros(3)
         turn[axis] = 1.0
-        whole[:count, :, 3 + axis] = np.cross(turn, middle / size)
-        whole[slots.first, axis, 3 + axis] = slots.lengths / size
-    whole = whole.reshape(x.size, 6)
+        ways[:count, :, 3 + axis] = np.cross(turn, middle / size)
+        ways[slots.first, axis, 3 + axis] = slots.lengths / size
+    whole = ways.reshape(x.size, 6)
     held = np.flatnonzero(fixed.ravel())
-    _, sizes, ways = np.linalg.svd(whole[held]) if len(held) else (None, np.zeros(0), np.eye(6))
+    _, sizes, turned = np.linalg.svd(whole[held]) if len(held) else (None, np.zeros(0), np.eye(6))
     count = int((sizes > RANK * max(sizes.max(initial=0.0), 1e-300)).sum())
-    allowed = whole[dofs] @ ways[count:].T
+    allowed = whole[dofs] @ turned[count:].T
     basis, sizes, _ = np.linalg.svd(allowed, full_matrices=False)
     return np.asarray(basis[:, sizes > RANK * max(sizes.max(initial=0.0), 1e-300)])
 

@@ -12,6 +12,8 @@ from hookean.compiled.marks import device
 from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Force, Places
 from hookean.forces.beam_element import (
+    ANGLES,
+    BEND_Y,
     CHORD,
     MOMENTS,
     NORMAL,
@@ -20,6 +22,9 @@ from hookean.forces.beam_element import (
     bound,
     element,
     energy_of,
+    given,
+    gradient,
+    strains,
 )
 from hookean.forces.beam_frames import drawn_frames, straight_frames
 from hookean.forces.elastic import growth, one_way, section_columns
@@ -74,6 +79,35 @@ def beam_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-unt
             for j in range(k):
                 mean = 0.5 * (blocks[e, j, k] + blocks[e, k, j])
                 blocks[e, j, k], blocks[e, k, j] = mean, mean
+
+
+def beam_stressed(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    """The stiffness that the forces have which a small movement, `memory` (m, 12) of both ends and slots, brings: the
+    second derivatives of the strains by positions, times the rates of their forces along it."""
+    step = 1e-40
+    p, room = np.zeros((6, 3), np.complex128), np.zeros(ROOM + 20, np.complex128)
+    q, s, g = room[ROOM : ROOM + 4], room[ROOM + 4 : ROOM + 8], room[ROOM + 8 :]
+    rates = np.zeros(6)  # of N, the torque, and the four end moments of bending alone
+    for e in range(indices.shape[0]):
+        take(x, indices, e, p)
+        for k in range(12):
+            p[k // 3, k % 3] += step * memory[e, k] * 1j
+        if not element(p, parameters, e, room, q, s, g):
+            continue
+        rates[0], rates[1] = room[NORMAL].imag / step, room[TORQUE].imag / step
+        for axis in range(2):
+            stiff, one, two = BEND_Y + 3 * axis, room[ANGLES + axis].imag / step, room[ANGLES + 2 + axis].imag / step
+            rates[2 + axis] = parameters[e, stiff] * one + parameters[e, stiff + 1] * two
+            rates[4 + axis] = parameters[e, stiff + 1] * one + parameters[e, stiff + 2] * two
+        take(x, indices, e, p)
+        for k in range(12):
+            p[k // 3, k % 3] += step * 1j
+            if strains(p, parameters, e, room, q, s):
+                given(parameters, e, room, rates)
+                gradient(p, parameters, e, room, g)
+                for j in range(12):
+                    blocks[e, j, k] = g[j].imag / step
+            p[k // 3, k % 3] = p[k // 3, k % 3].real
 
 
 def beam_stresses(x, indices, parameters, found):  # type: ignore[no-untyped-def]
@@ -148,6 +182,7 @@ class Beam(Force):
     }  # fmt: skip
     kernel: ClassVar[Any] = staticmethod(beam_kernel)
     hessian: ClassVar[Any] = staticmethod(beam_hessian)
+    stressed: ClassVar[Any] = staticmethod(beam_stressed)
 
     @model_validator(mode="after")
     def _one_way(self) -> Beam:

@@ -35,6 +35,13 @@ def element(p: Any, c: Any, row: Any, r: Any, q: Any, s: Any, g: Any) -> Any:
     if not strains(p, c, row, r, q, s):
         return False
     stresses(c, row, r)
+    gradient(p, c, row, r, g)
+    return True
+
+
+@device
+def gradient(p: Any, c: Any, row: Any, r: Any, g: Any) -> None:
+    """Write the gradient (12) to both ends and both slots of the strains times the forces in `r`."""
     for i in range(12):
         g[i] = 0.0
     pull(r, g)
@@ -48,7 +55,6 @@ def element(p: Any, c: Any, row: Any, r: Any, q: Any, s: Any, g: Any) -> Any:
         length = c[row, ARM + end]
         a, b, d = mapped(p, 2 + end, length, -1.0, a, b, d)
         g[at], g[at + 1], g[at + 2] = a / length, b / length, d / length
-    return True
 
 
 @device
@@ -136,6 +142,17 @@ def stresses(c: Any, row: Any, r: Any) -> None:
         r[MOMENTS + axis] = (c[row, stiff] + normal * c[row, bow]) * one + mixed * two
         r[MOMENTS + 2 + axis] = mixed * one + (c[row, stiff + 2] + normal * c[row, bow + 2]) * two
     r[TORQUE] = c[row, TORSION] * r[TWIST]
+
+
+@device
+def given(c: Any, row: Any, r: Any, forces: Any) -> None:
+    """Put forces (6) in the place of those that the strains have: N, the torque, and the moments y z y z of bending
+    alone. What the normal force does on bending follows the angles."""
+    r[NORMAL], r[TORQUE] = forces[0], forces[1]
+    for axis in range(2):
+        bow, one, two = BOW_Y + 3 * axis, r[ANGLES + axis], r[ANGLES + 2 + axis]
+        r[MOMENTS + axis] = forces[2 + axis] + forces[0] * (c[row, bow] * one + c[row, bow + 1] * two)
+        r[MOMENTS + 2 + axis] = forces[4 + axis] + forces[0] * (c[row, bow + 1] * one + c[row, bow + 2] * two)
 
 
 @device

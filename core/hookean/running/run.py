@@ -85,7 +85,7 @@ def relax_state(
         state.v[:] = 0.0  # fictitious: nothing moved
     system.report.warnings += [note for note in watch.notes if note not in system.report.warnings]
     if status is Status.CONVERGED and not method.physical:
-        watch.found = replace(watch.found, reactions=exact_reactions(system, state, watch.found))
+        watch.found = replace(watch.found, reactions=exact_reactions(system, state, watch.found, method))
     used = getattr(method, "used", None)
     name = f"auto: {', '.join(used) or 'nothing to do'}" if used is not None else method.name
     message = watch.sentence(system, status)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from hookean.stability.equilibrium import LARGEST_FACTOR, movable
 
 if TYPE_CHECKING:
+    from hookean.solvers import Solver
     from hookean.system.balance import Balance
     from hookean.system.state import State
     from hookean.system.system import System
@@ -23,16 +24,17 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 
-def exact_reactions(system: System, state: State, found: Balance) -> Floats:
-    """Reactions (n, 3) [force] of a shape at rest after one more exact step, or those that it has: where rounding
-    leaves no more than the tolerance, or no such step is known. `found` is what is out of balance there."""
+def exact_reactions(system: System, state: State, found: Balance, method: Solver) -> Floats:
+    """Reactions (n, 3) [force] of a shape at rest after one more exact step, or those that it has: where no
+    more is left than the tolerance, or no such step is known. `found` is what is out of balance there, and `method` the
+    solver that came to it."""
     plain = system.films is None and not system.contacts and not system.no_tangent(sparse=False)
     free, _ = movable(system, state, found)
-    if not plain or found.floor <= system.scene.settings.tolerance or np.count_nonzero(free) > LARGEST_FACTOR:
+    if not plain or found.residual <= system.scene.settings.tolerance or np.count_nonzero(free) > LARGEST_FACTOR:
         return found.reactions
-    from hookean.linear.pattern import Pattern
+    from hookean.linear.film_tangent import patterned
 
-    pattern = Pattern(system, free)
+    pattern = patterned(system, state, free, method.pattern)
     moved = pattern.factors.solve(pattern.tangent(system, state), pattern.gather(found.forces))
     if moved is None:
         return found.reactions

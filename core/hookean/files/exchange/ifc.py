@@ -85,8 +85,9 @@ class _Writer:
 
     def _connection(self, context: Any, number: int, vertex: Any) -> Any:
         held, condition = self.structure.held[number], None
-        if held.any():
-            fixed = [self.file.create_entity("IfcBoolean", bool(axis)) for axis in held.tolist()]
+        if held.any() or self.structure.clamped[number].any():
+            axes = [*held.tolist(), *self.structure.clamped[number].tolist()]
+            fixed = [self.file.create_entity("IfcBoolean", bool(axis)) for axis in axes]
             condition = self.file.create_entity("IfcBoundaryNodeCondition", "support", *fixed)
         shape = self._shape(context, vertex, "Vertex")
         made = self.root("IfcStructuralPointConnection", f"particle {number}", Representation=shape,

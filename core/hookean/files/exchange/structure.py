@@ -38,13 +38,15 @@ class Lines:
 @dataclass(frozen=True)
 class Structure:
     """A result for other programs. All of `points` (n, 3) [length], `displacements` (n, 3) [length] from the start,
-    `loads` and `reactions` (n, 3) [force], `held` (n, 3) axes; `faces` (m, 4) of meshes by name, in particles."""
+    `loads` and `reactions` (n, 3) [force], `held` (n, 3) axes, `clamped` (n, 3) rotations about axes;
+    `faces` (m, 4) of meshes by name, in particles."""
 
     points: Floats
     displacements: Floats
     lines: tuple[Lines, ...]
     faces: dict[str, Ints]
     held: NDArray[np.bool_]
+    clamped: NDArray[np.bool_]
     loads: Floats
     reactions: Floats
     units: Units
@@ -61,6 +63,8 @@ class Structure:
         reactions[np.asarray(result.reactions["particles"], dtype=np.int64)] = np.asarray(
             result.reactions["force"]
         ).reshape(-1, 3)
+        clamped = np.zeros((count, 3), dtype=bool)
+        clamped[system.slots.particles] = state.free[system.slots.first] == 0
         faces = {name: system.places.faces(name) for name in system.scene.meshes}
         return cls(
             state.x[:count],
@@ -68,6 +72,7 @@ class Structure:
             tuple(_lines(system, result)),
             {name: found[(found >= 0).all(axis=1)] for name, found in faces.items()},
             state.free[:count] == 0,
+            clamped,
             system.evaluate(state, only="load")[0][:count],
             reactions,
             result.units,
@@ -80,20 +85,27 @@ class Structure:
 
 
 def _lines(system: System, result: Result) -> list[Lines]:
-    found = []
-    for force, entry in zip(system.scene.forces, result.forces, strict=True):
+    found, known = [], _axial(system)
+    for number, (force, entry) in enumerate(zip(system.scene.forces, result.forces, strict=True)):
         pairs = np.asarray(entry.get("particles", ()))
         if type(force).role != "internal" or pairs.ndim != 2 or pairs.shape[1] != 2:
             continue
         columns = {n: np.asarray(entry[n], dtype=float) for n in type(force).outputs if np.ndim(entry.get(n, 0.0)) == 1}
-        stiffness = np.zeros(len(pairs))
-        if isinstance(force, Springs) and {"length", "strain"} <= set(columns):
-            rest = columns["length"] / (1.0 + columns["strain"])
-            given = np.asarray(force.stiffness)
-            if given.ndim == 0 or len(given) == len(pairs):
-                stiffness = given * rest * np.ones(len(pairs))
+        stiffness = known.get(number, np.zeros(len(pairs)))
         name = force.name or force.kind_name
         found.append(Lines(name, force.kind_name, pairs, columns, dict(type(force).outputs), stiffness))
+    return found
+
+
+def _axial(system: System) -> dict[int, Floats]:
+    """EA (m,) [force] of the elements of springs, k L0 however they are given, by the number of their force."""
+    found = {}
+    for group in system.groups:
+        if group.cls is not Springs:
+            continue
+        for part in group.parts:
+            p = group.block.parameters[part.rows]
+            found[part.number] = p[:, 0] * (p[:, 2] * p[:, 3] + group.block.memory[part.rows, 0])
     return found
 
 

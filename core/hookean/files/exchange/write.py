@@ -32,5 +32,10 @@ def exchange(result: Result, target: Path, system: System | None = None) -> list
 
     check_target(target)
     ending = ending_of(target)
-    import_module(f"hookean.files.exchange.{EXCHANGED[ending]}").write(Structure.of(result, system), target)
-    return [f"A {ending} file stores the shape, its lines and results, not the model; save the scene, too."]
+    structure = Structure.of(result, system)
+    import_module(f"hookean.files.exchange.{EXCHANGED[ending]}").write(structure, target)
+    said = [f"A {ending} file stores the shape, its lines and results, not the model; save the scene, too."]
+    left = [group.name for group in structure.lines if not (group.axial_stiffness > 0.0).any()]
+    if ending == ".inp" and left:
+        said.append(f"{', '.join(left)}: not in the file, which has lines with an axial stiffness alone, as trusses.")
+    return said
