@@ -40,26 +40,36 @@ def ends(pair: Any) -> Any:
 
 
 @device
-def cell_of(coordinate: Any, width: Any) -> Any:
-    """The number of the cell of a coordinate along its axis."""
+def cell_of(coordinate: Any, scale: Any) -> Any:
+    """The number of the cell of a coordinate along its axis; `scale`: cells by length."""
+    along = coordinate * scale
+    if abs(along) < FARTHEST:
+        return int(np.floor(along))
     if not abs(coordinate) < np.inf:
         return 0
-    return int(np.floor(min(max(coordinate / width, -FARTHEST), FARTHEST)))
+    return int(FARTHEST if along > 0.0 else -FARTHEST)
 
 
 @device
-def sides(spheres: Any, width: Any, low: Any, side: Any) -> Any:
+def sides(spheres: Any, scale: Any, low: Any, side: Any) -> Any:
     """Write the lowest cell of the grid, and how many cells it has along each axis; returns their number."""
-    count = spheres.shape[0]
+    count, least, most = spheres.shape[0], np.empty(3), np.empty(3)
+    x0 = y0 = z0 = np.inf
+    x1 = y1 = z1 = -np.inf
+    for n in range(count):
+        i = np.uint64(n)
+        x, y, z = spheres[i, 0], spheres[i, 1], spheres[i, 2]
+        x = x if abs(x) < np.inf else 0.0
+        y = y if abs(y) < np.inf else 0.0
+        z = z if abs(z) < np.inf else 0.0
+        x0, y0, z0 = x if x < x0 else x0, y if y < y0 else y0, z if z < z0 else z0
+        x1, y1, z1 = x if x > x1 else x1, y if y > y1 else y1, z if z > z1 else z1
+    least[0], least[1], least[2], most[0], most[1], most[2] = x0, y0, z0, x1, y1, z1
     for c in range(3):
-        least, most = np.inf, -np.inf
-        for i in range(count):
-            along = spheres[i, c] if abs(spheres[i, c]) < np.inf else 0.0
-            least, most = min(least, along), max(most, along)
-        low[c] = cell_of(least, width)
-        side[c] = min(max(cell_of(most, width) - low[c] + 1, FEWEST), max(count, FEWEST))
-    most = max(PER_CELL * count, float(FEWEST**3))
-    while float(side[0]) * float(side[1]) * float(side[2]) > most:
+        low[c] = cell_of(least[c], scale)
+        side[c] = min(max(cell_of(most[c], scale) - low[c] + 1, FEWEST), max(count, FEWEST))
+    room = max(PER_CELL * count, float(FEWEST**3))
+    while float(side[0]) * float(side[1]) * float(side[2]) > room:
         longest = 0
         for c in range(3):
             longest = c if side[c] > side[longest] else longest
@@ -68,24 +78,31 @@ def sides(spheres: Any, width: Any, low: Any, side: Any) -> Any:
 
 
 @device
-def sort_cells(spheres, width, low, side, most, first, number, xs, ys, zs, radii) -> None:  # type: ignore[no-untyped-def]
+def sort_cells(spheres, scale, low, side, most, first, number, xs, ys, zs, radii) -> None:  # type: ignore[no-untyped-def]
     """All elements but the large ones in the order of their cells: their coordinates and radii, each in an array of
     their own, and their rows in `number`; `first`: where each cell starts."""
     count = spheres.shape[0]
     cell = np.empty(count, np.int64)
-    for i in range(count):
-        k = 0
-        for c in range(3):
-            along = cell_of(spheres[i, c], width) - low[c]
-            k = k * side[c] + (along if along < side[c] else along % side[c])
+    (a, b, c), (right, up, on) = low, side
+    for n in range(count):
+        i = np.uint64(n)
+        x, y, z = (
+            cell_of(spheres[i, 0], scale) - a,
+            cell_of(spheres[i, 1], scale) - b,
+            cell_of(spheres[i, 2], scale) - c,
+        )
+        x, y, z = x if x < right else x % right, y if y < up else y % up, z if z < on else z % on
+        k = (x * up + y) * on + z
         cell[i] = k if spheres[i, 3] <= most else -1
-        if cell[i] >= 0:
-            first[k + 1] += 1
-    for k in range(first.shape[0] - 1):
-        first[k + 1] += first[k]
+        first[np.uint64(k + 1)] += 1 if spheres[i, 3] <= most else 0
+    before = 0
+    for n in range(first.shape[0]):
+        k = np.uint64(n)
+        before += first[k]
+        first[k] = before
     for back in range(count):
-        i = count - 1 - back
-        k = cell[i] + 1
+        i = np.uint64(count - 1 - back)
+        k = np.uint64(cell[i] + 1)
         if k > 0:  # from the end, so that `first` ends as the start of the cell, one place too far
             first[k] -= 1
             s = np.uint64(first[k])
@@ -241,11 +258,11 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, found) -> Any: 
     for i in range(size):
         widest = max(widest, spheres[i, 3]) if spheres[i, 3] <= LARGE * mean else widest
     width, low, side = 2.0 * widest + beyond, np.empty(3, np.int64), np.empty(3, np.int64)
-    cells = sides(spheres, width, low, side)
+    cells = sides(spheres, 1.0 / width, low, side)
     first, number = np.zeros(cells + 2, np.int64), np.empty(size + ABREAST, np.int64)
     beside = np.zeros((4, size + ABREAST))
     xs, ys, zs, radii = beside[0], beside[1], beside[2], beside[3]
-    sort_cells(spheres, width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
+    sort_cells(spheres, 1.0 / width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
     columns, runs, begins = np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(BITS // ABREAST, np.int64)
     first = first[1:]
     count, k = 0, -1
