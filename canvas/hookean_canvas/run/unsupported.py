@@ -118,4 +118,4 @@ def _strange(node: Node) -> str:
         return why_closed(node)
     if node.name in REASONS:
         return REASONS[node.name]
-    return f"it is of the plug-in {node.library}" if node.library else f"{node.guid} has no stand-in"
+    return f"the plug-in {node.library} has no stand-in" if node.library else f"{node.guid} has no stand-in"

@@ -68,7 +68,8 @@ def surface_morph(geometry: Any, reference: Any, surface: Any, u: Any, v: Any, w
         ]
         feet = [shapes.xyz(surface.PointAt(a, b)) for a, b, _ in at]
         ways = [shapes.unit(shapes.xyz(surface.NormalAt(a, b))) for a, b, _ in at]
-        return np.array(feet) + np.array([row[2] for row in at])[:, None] * np.array(ways)
+        found: Array = np.array(feet) + np.array([row[2] for row in at])[:, None] * np.array(ways)
+        return found
 
     return _bent(geometry, over)
 
