@@ -280,9 +280,28 @@ def test_a_small_cable_relaxes_without_numba_in_the_second_process(empty: bool, 
     assert second[1] == "[]\n"
 
 
-@pytest.mark.slow
+LOADED = (
+    "import sys, numpy as np\n"
+    "from hookean.compiled import dispatch\n"
+    "from hookean.forces.unary import unary_kernel\n"
+    "x, indices, parameters = np.linspace(0, 1, 6).reshape(2, 3), np.array([[1], [0]]), np.full((2, 9), 0.1)\n"
+    "f, w = np.zeros((2, 3)), np.zeros(2)\n"
+    "energy = dispatch.compiled(unary_kernel, 'force')(x, x, indices, parameters, np.zeros((2, 1)), f, w)\n"
+    "print(energy.hex() + f.tobytes().hex(), [m for m in ('numba',) if m in sys.modules])"
+)
+"""A process that calls the smallest kernel."""
+
+
+def test_a_kernel_with_the_object_cache_switched_off_gives_the_same_bits() -> None:
+    """HOOKEAN_OBJECT_CACHE=0: numba is imported, and runs the kernel."""
+    kept, plain = printed(LOADED), printed(LOADED, HOOKEAN_OBJECT_CACHE="0")
+    assert plain[0] == kept[0] and len(kept[0]) > 96
+    assert "'numba'" in plain[1]
+
+
+@pytest.mark.soak
 def test_with_the_object_cache_switched_off_numba_gives_the_same_bits() -> None:
-    """HOOKEAN_OBJECT_CACHE=0: the same cable, with numba imported."""
+    """The same of a cable: numba compiles all of it once more."""
     kept, plain = cable(), cable(HOOKEAN_OBJECT_CACHE="0")
     assert plain[0] == kept[0]
     assert "'numba'" in plain[1]
@@ -299,6 +318,11 @@ def cable(**environment: str) -> list[str]:
         "assert result.converged, result.message\n"
         "print(result.particles.tobytes().hex(), [m for m in ('numba', 'scipy') if m in sys.modules])"
     )
+    return printed(code, **environment)
+
+
+def printed(code: str, **environment: str) -> list[str]:
+    """The two words that a fresh process prints."""
     command = [sys.executable, "-W", "error", "-c", code]
     whole = {**os.environ, **environment}
     done = subprocess.run(command, env=whole, check=True, capture_output=True, text=True, timeout=HANG)

@@ -26,7 +26,6 @@ READ = {
     "codegen._engine": (codegen.JITCPUCodegen, "_engine"),
     "codegen._tm": (codegen.JITCPUCodegen, "_tm"),
     "library._get_module_for_linking": (codegen.CPUCodeLibrary, "_get_module_for_linking"),
-    "library._optimize_final_module": (codegen.CPUCodeLibrary, "_optimize_final_module"),
     "library._finalize_dynamic_globals": (codegen.CPUCodeLibrary, "_finalize_dynamic_globals"),
     "dispatcher.overloads": (dispatcher._DispatcherBase, "overloads"),
     "dispatcher.get_call_template": (dispatcher._DispatcherBase, "get_call_template"),
@@ -35,15 +34,14 @@ READ = {
 }
 REPLACED = {
     "library._finalize_final_module": (linking._Part, "_finalize_final_module"),
-    "library._optimize_final_module (ours)": (linking._Part, "_optimize_final_module"),
     "library.serialize_using_object_code": (linking._Part, "serialize_using_object_code"),
     "engine.is_symbol_defined": (linking._NoEngine, "is_symbol_defined"),
     "engine.get_global_value_address": (linking._NoEngine, "get_global_value_address"),
-    "compiler.define_pipelines": (linking._PartCompiler, "define_pipelines"),
+    "compiler.define_pipelines": (linking._Compiler, "define_pipelines"),
     "cache._impl_class": (linking._Cache, "_impl_class"),
     "cache.rebuild": (linking._Stored, "rebuild"),
 }
-HARMLESS = {"dispatcher.get_call_template", "library._optimize_final_module (ours)", "compiler.define_pipelines"}
+HARMLESS = {"dispatcher.get_call_template", "compiler.define_pipelines"}
 """Without these, more is compiled than has to be, and stored all the same."""
 READING = {"CompileResult._rebuild", "cache._impl_class", "cache.rebuild"}
 

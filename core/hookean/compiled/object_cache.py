@@ -87,7 +87,7 @@ class Compiled:
         try:
             from hookean.compiled.object_code import emit
 
-            _store(path, emit(self.part(), kind, values if self.kind is None else ()))
+            _store(path, emit(self.part, kind, values if self.kind is None else ()))
         except Unstorable as reason:
             log.debug("%s is left to numba: %s", self.name, reason)
             return None
