@@ -13,9 +13,22 @@ pytestmark = pytest.mark.slow
 SCENES = ["9.24-membrane", "basento", "miura", "linkage", "inflation", "hypar-roof"] if SOAK else ["9.24-membrane"]
 ACTIONS = 150 if SOAK else 60
 KEYS = ["f", "a", "p", " ", ".", "Escape", "x", "Control+z", "Control+Shift+z", "Alt+ArrowUp", "Tab", "ArrowLeft", "+"]
-LEAVES = {"All sessions", "Copy link", "Save", "PNG", "CSV", "npz"}
-"""Buttons that leave the page, or that download."""
-CONTROLS = "button:visible:enabled, summary:visible, input[type=checkbox]:visible, input[type=radio]:visible"
+CLICK = """(part) => {
+    const controls = document.querySelectorAll("button, summary, input[type=checkbox], input[type=radio]");
+    const leaves = /All sessions|Copy link|Save|Export|PNG|CSV|npz|Rhino|OBJ|COMPAS/;
+    const open = [...controls].filter((one) => !one.disabled && one.checkVisibility() && !leaves.test(one.textContent));
+    const one = open[Math.floor(part * open.length)];
+    one?.click();
+    return one?.textContent.slice(0, 30) ?? "nothing";
+}"""
+"""Clicks one of the controls that neither leave the page nor download; all at once, for they come and go."""
+FOCUS = """([part, which]) => {
+    const open = [...document.querySelectorAll(which)].filter((one) => !one.disabled && one.checkVisibility());
+    const one = open[Math.floor(part * open.length)];
+    one?.focus();
+    one?.select?.();
+    return Boolean(one);
+}"""
 
 
 class Monkey:
@@ -31,11 +44,7 @@ class Monkey:
         acts[int(self.random.choice(len(acts), p=[0.45, 0.2, 0.2, 0.1, 0.05]))]()
 
     def click(self) -> None:
-        controls = [one for one in self.page.locator(CONTROLS).all() if not self._leaves(one.inner_text())]
-        if controls:
-            one = controls[int(self.random.integers(len(controls)))]
-            self.done.append(f"click {one.inner_text()[:30]}")
-            one.evaluate("(control) => control.click()")
+        self.done.append("click " + self.page.evaluate(CLICK, self.random.random()))
 
     def drag(self) -> None:
         box = self.page.locator("canvas").first.bounding_box()
@@ -48,28 +57,25 @@ class Monkey:
         self.done.append("drag")
 
     def key(self) -> None:
-        self.page.locator("canvas").first.focus()
+        self.focus("canvas")
         self.done.append(KEYS[int(self.random.integers(len(KEYS)))])
         self.page.keyboard.press(self.done[-1])
 
     def number(self) -> None:
-        fields = self.page.locator("input[type=text]:visible:enabled, input[inputmode=decimal]:visible:enabled").all()
-        if fields:
-            told = ["0", "-1", "1e9", "3", "abc", "", "0.001"][int(self.random.integers(7))]
-            fields[int(self.random.integers(len(fields)))].fill(told)
+        if self.focus("input[type=text], input[inputmode=decimal]"):
+            told = ["0", "-1", "1e9", "3", "abc", "0.001"][int(self.random.integers(6))]
+            self.page.keyboard.type(told)
             self.page.keyboard.press("Enter")
             self.done.append(f"number {told}")
 
     def slide(self) -> None:
-        sliders = self.page.locator("input[type=range]:visible:enabled").all()
-        if sliders:
-            sliders[int(self.random.integers(len(sliders)))].focus()
+        if self.focus("input[type=range]"):
             self.page.keyboard.press(["PageUp", "PageDown", "ArrowRight"][int(self.random.integers(3))])
             self.done.append("slide")
 
-    @staticmethod
-    def _leaves(text: str) -> bool:
-        return text.strip() in LEAVES or any(word in text for word in ("Save", "Export", "Rhino", "OBJ", "COMPAS"))
+    def focus(self, which: str) -> bool:
+        """Put the focus on one of these, if there are any."""
+        return bool(self.page.evaluate(FOCUS, [self.random.random(), which]))
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -87,7 +93,7 @@ def test_whatever_is_done_no_exception_and_no_notice_stays(tab: Studio, scene: s
         if "#s=" not in tab.page.url:
             tab.open("monkey")
     tab.service.act("monkey", "pause")
-    tab.page.locator("canvas").first.focus()
+    monkey.focus("canvas")
     for _ in range(2):
         tab.page.keyboard.press("Escape")
     close = tab.page.get_by_role("button", name="Close the notice")
