@@ -62,7 +62,9 @@ export const edit = (key: string, patch: Patch) => send<Summary>("PATCH", at(key
 /** A title that no session has: with a number behind it where there is one of that name. */
 async function untaken(title: string): Promise<string> {
   const taken = new Set((await sessions()).sessions.map(({ label }) => label));
-  for (let number = 2, free = title; ; number++, free = `${title} ${number}`) if (!free || !taken.has(free)) return free;
+  let free = title;
+  for (let number = 2; free && taken.has(free); number++) free = `${title} ${number}`;
+  return free;
 }
 
 /** A new session of a scene. */

@@ -162,7 +162,8 @@ export class Session {
   }
 
   private connect(): void {
-    const socket = new WebSocket(`ws://${location.host}/v1/sessions/${encodeURIComponent(this.key)}/frames?changes=true`);
+    const address = `ws://${location.host}/v1/sessions/${encodeURIComponent(this.key)}/frames`;
+    const socket = new WebSocket(`${address}?changes=true`);
     socket.binaryType = "arraybuffer";
     this.before = null;
     socket.onmessage = (event) => this.take(event.data as string | ArrayBuffer);

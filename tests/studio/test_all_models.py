@@ -28,7 +28,7 @@ def opened(studio: Studio, name: str, data: bytes) -> str:
     page.goto(studio.service.url)
     file = {"name": name, "mimeType": "application/octet-stream", "buffer": data}
     page.get_by_label("File to open").set_input_files(file)
-    sheet = page.get_by_role("button", name="Open the model")
+    sheet = page.get_by_role("button", name="Make the model")
     studio.until(lambda: "#s=" in page.url or sheet.is_visible())
     if sheet.is_visible():
         sheet.click()

@@ -77,7 +77,7 @@ def _mesh_brep(faces: list[Any], edges: Any, u: int, v: int, pointer: str, whole
         raise InputError(
             pointer,
             f"{which} trimmed and without a cached render mesh; only untrimmed faces are meshed here: "
-            'save the file shaded, mesh them in Rhino, or mesh the surfaces without their cuts: divide = [u, v, "whole"]',
+            'save the file shaded, mesh them in Rhino, or leave out their cuts with divide = [u, v, "whole"]',
         )
     if all(mesh is not None and len(mesh.Faces) for mesh in cached):
         parts = [as_mesh(mesh) for mesh in cached]

@@ -214,7 +214,7 @@ class Edited:
         self._revisions = {"anchors_revision": 0, "scene_revision": 0}
 
     def revisions(self, simulation: Simulation) -> dict[str, int]:
-        """Both, as told of a session."""
+        """Both, by their names in the summary of a session."""
         revision, system, scene = simulation.state.revision, simulation.system, simulation.scene
         anchors = [(h.number, h.name, h.free.tolist(), h.turning.tolist(), h.particles, h.targets) for h in system.held]
         if not _same_anchors(self._anchors, anchors):

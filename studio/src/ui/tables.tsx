@@ -11,18 +11,22 @@ const ROWS = 100;
 const BARS = 12;
 const PAUSE = 1000; // ms between tables of a form that moves
 
+const UNSORTED = { column: -1, isDown: false };
+
 export function Tables({ studio }: { studio: Studio }) {
   const { session, options } = studio;
   const root = useRef<HTMLDivElement>(null);
   const frame = useShown(studio, root);
   const [what, setWhat] = useState<Named>("springs");
-  const [by, setBy] = useState({ column: -1, isDown: false });
+  const [asked, setBy] = useState(UNSORTED);
   const [only, setOnly] = useState<Bin | null>(null);
   const [topology, anchors, result] = [session.topology.value, session.anchors.value, studio.rested.result];
   const table = useMemo(() => {
     const fits = frame && topology && frame.positions.length === 3 * topology.particles;
     return fits ? tabled(what, { frame, topology, anchors, result }) : null;
   }, [what, frame, topology, anchors, result]);
+  // a column may go while one looks: some are known at rest alone
+  const by = asked.column < (table?.columns.length ?? 0) ? asked : UNSORTED;
   const order = useMemo(() => (table ? sorted(table, by.column, by.isDown) : []), [table, by]);
   const select = (bin: Bin | null) => {
     setOnly(bin);
@@ -31,11 +35,11 @@ export function Tables({ studio }: { studio: Studio }) {
   };
   const show = (name: Named) => {
     select(null);
-    setBy({ column: -1, isDown: false });
+    setBy(UNSORTED);
     setWhat(name);
   };
-  const chosen = only && table && order.filter((place) => only.holds(table.columns[by.column]!.values[place]!));
-  const places = chosen ?? order;
+  const values = table?.columns[by.column]?.values;
+  const places = only && values ? order.filter((place) => only.holds(values[place]!)) : order;
   const save = () => keep(new Blob([csv(table!, places)], { type: "text/csv" }), `${session.key}-${what}.csv`);
   return (
     <div class="tables" ref={root}>

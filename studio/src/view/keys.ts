@@ -85,7 +85,8 @@ export class Keys {
     const now = picked?.kind === "particle" ? held.indexOf(picked.index) : -1;
     const index = held[now < 0 ? (by > 0 ? 0 : held.length - 1) : (now + by + held.length) % held.length]!;
     options.picked.value = { kind: "particle", index };
-    say(`Anchor at particle ${index}, ${this.written(this.view.at(index))}.`);
+    const at = this.view.at(index); // of no number while nothing is drawn of now
+    say(Number.isFinite(at.x) ? `Anchor at particle ${index}, ${this.written(at)}.` : `Anchor at particle ${index}.`);
   }
 
   /** Move a picked anchor along the axes that lie most to the right, upwards and towards the eye. */
@@ -102,6 +103,7 @@ export class Keys {
     const [x, y, z] = this.axes();
     const by = new Vector3().addScaledVector(x, right).addScaledVector(y, up).addScaledVector(z, near);
     if (!by.lengthSq()) return say("The axis lock blocks this move.");
+    if (!Number.isFinite(steps.at.x)) return;
     steps.at.addScaledVector(by, STEP * size());
     steps.last = now;
     this.steps = steps;
