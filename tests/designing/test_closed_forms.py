@@ -51,8 +51,8 @@ def test_height_and_volume_of_a_cap_by_its_pressure() -> None:
 
 
 def test_the_rise_of_an_arch_by_its_thrust() -> None:
-    """A funicular polygon of n equal loads P over a span: H f = n P span / 8 for an even n, so df/dH = -f / H. Densities
-    q give H = q span / n; the arch is the hanging line under loads that point up."""
+    """A funicular polygon of equal loads P, n links over a span: H f = n P span / 8 for an even n, so df/dH = -f / H.
+    Densities q give H = q span / n; the arch is the hanging line under loads that point up."""
     n, span, load, density = 10, 12.0, 2.0, 7.0
 
     def scene(q: float) -> dict[str, Any]:
