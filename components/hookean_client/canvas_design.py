@@ -32,6 +32,7 @@ KINDS = (
 )
 AXES = ("x", "y", "z", "xy", "xz", "yz", "xyz")
 METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp", "augmented_lagrangian")
+PARTICLES = ("drawn", "mass")  # fields of particles at points
 TIES = ("each", "all")
 _searches = {}  # by component in an open document
 
@@ -48,11 +49,15 @@ class Outputs(object):
 
 
 def variables(ghenv, forces, field, anchors, axes, tie, lower, upper, name):
-    """What may vary as text: a column of each force that is named, or where anchors hold their particles."""
+    """What may vary as text: a column of each force that is named, where anchors hold their particles, or what of
+    particles at points varies: where they are drawn, or their mass."""
 
     def work():
         owners = [{"force": _name(item)} for item in listed(forces)]
-        held = [{"anchor_at": place} for place in geometry.points(anchors)]
+        places = geometry.points(anchors)
+        if not owners and places and _text(field) in PARTICLES:
+            owners, places = [{"points": places}], []
+        held = [{"anchor_at": place} for place in places]
         if owners and held:
             raise Unfit("forces and anchors are connected; connect one of them")
         if not owners and not held:

@@ -111,3 +111,13 @@ def test_a_refused_problem_names_the_component(home: Home) -> None:
     placed.run(**given, _goals=sag(bench, 2.0), until=lambda found: bool(sentences(placed.ghenv, "Error")))
     [said] = sentences(placed.ghenv, "Error")
     assert "rest_lenght" in said and "Variables 0" in said
+
+
+def test_points_with_the_field_drawn_or_mass_are_particles() -> None:
+    """One variable of all points; without such a field each point names the anchor there."""
+    bench, points = Bench(), [point(1, 0, 0), point(2, 0, 0)]
+    for field in ("drawn", "mass"):
+        [text] = variables(bench, _force=[], _field=[field], anchors_=points, lower_=[], upper_=[])
+        assert json.loads(text)["variable"] == {"points": [[1, 0, 0], [2, 0, 0]], "field": field, "tie": "all"}
+    held = variables(bench, _force=[], _field=[], anchors_=points, lower_=[], upper_=[])
+    assert [json.loads(text)["variable"]["anchor_at"] for text in held] == [[1, 0, 0], [2, 0, 0]]

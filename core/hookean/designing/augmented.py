@@ -57,7 +57,7 @@ class Penalised:
     def _beyond(self, found: Equilibrium, share: float) -> Floats:
         """By how much the values, moved by a share of the multipliers, miss their limits [-]."""
         own = self._own(found) + share * self.multipliers / self.penalty * self.sizes
-        return (own - np.clip(own, self.low, self.high)) / self.sizes
+        return np.asarray((own - np.clip(own, self.low, self.high)) / self.sizes)
 
     def missed(self, y: Floats) -> float:
         """The most by which a constraint is missed, or is off its limit although it has a multiplier."""

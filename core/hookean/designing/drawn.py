@@ -90,7 +90,7 @@ class Mass:
         """Derivatives (count,) by the unknowns, of derivatives (n,) by the masses of all particles."""
         tie = self.entries.tie[:, 0]
         kept = tie >= 0
-        return np.bincount(tie[kept], slopes[self.particles[kept]], self.entries.count)
+        return np.asarray(np.bincount(tie[kept], slopes[self.particles[kept]], self.entries.count), np.float64)
 
 
 class Drawn:
@@ -263,7 +263,7 @@ class DrawnColumn(Column):
         change = np.where(self.entries.tie >= 0, steps, 0.0)
 
         def parameters(_: Any, block: Any) -> Floats:
-            return block.parameters
+            return np.asarray(block.parameters)
 
         together = self.slope(system, change, parameters)
         total = np.zeros(together.shape)

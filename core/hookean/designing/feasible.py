@@ -17,8 +17,8 @@ Floats = NDArray[np.float64]
 
 
 def nearer(search: Search) -> int:
-    """Search from the best so far for what meets the constraints, by least squares of what they miss; how often their
-    derivatives were asked for. The search keeps what is best."""
+    """Search for what meets the constraints by least squares of what they miss, from the best so far and, if that ends
+    short of them, from the start; how often derivatives were asked for. The search keeps what is best."""
     from scipy.optimize import least_squares
 
     lower, upper = search.bounds
@@ -39,9 +39,12 @@ def nearer(search: Search) -> int:
         by = jacobian(search.at(y), search.unknowns, quantities) * search.scale / sizes[:, None]
         return np.nan_to_num(np.where(((own < low) | (own > high))[:, None], by, 0.0))
 
-    tolerance = search.problem.settings.tolerance
-    found = least_squares(
-        values, np.clip(search.best[2], lower, upper), slopes, bounds=(lower, upper), method="trf",
-        ftol=tolerance, xtol=tolerance, gtol=tolerance * 1e-4, max_nfev=search.problem.settings.max_iterations,
-    )  # fmt: skip
-    return int(found.njev)
+    tolerance, taken = search.problem.settings.tolerance, 0
+    for start in (search.best[2].copy(), np.zeros(search.unknowns.count)):
+        if search.best[0] > 0.0:
+            found = least_squares(
+                values, np.clip(start, lower, upper), slopes, bounds=(lower, upper), method="trf", ftol=tolerance,
+                xtol=tolerance, gtol=tolerance * 1e-4, max_nfev=search.problem.settings.max_iterations,
+            )  # fmt: skip
+            taken += int(found.njev)
+    return taken

@@ -32,7 +32,11 @@ class Squared(Protocol):
     problem: Any
     unknowns: Any
     aims: Any
-    at: Any
+
+    @property
+    def at(self) -> Any:
+        """The equilibrium at scaled unknowns."""
+        ...
 
     def residuals(self, y: Floats) -> Floats:
         """Residuals (k,)."""

@@ -85,7 +85,7 @@ def _swings(found: Equilibrium, frequency: float, motion: Floats) -> Floats:
     slots, squares = found.system.slots, (motion**2).sum(axis=1)
     own = squares[: slots.count].copy()
     own[slots.particles] += squares[slots.first]
-    return np.sign(frequency) * (2.0 * np.pi * frequency) ** 2 * own
+    return np.asarray(np.sign(frequency) * (2.0 * np.pi * frequency) ** 2 * own)
 
 
 def _softness(found: Equilibrium, group: Group, memory: Floats, x: Floats, motion: Floats) -> Floats:
