@@ -103,8 +103,9 @@ def shown(open_studio: Opened, where: str, size: dict[str, int], theme: str) -> 
     service.act("readable", "play?fast=true")
     service.at_rest("readable")
     studio.open("readable")
-    for panel in studio.page.locator("details:not([open]) > summary").all()[::-1]:
-        panel.click()
+    closed = studio.page.locator("details:not([open]) > summary")
+    while closed.count():  # the first of them is in sight: those around it are open
+        closed.first.click()
     studio.page.get_by_label("Particle number").fill("0")
     studio.page.keyboard.press("Enter")
     studio.page.get_by_role("heading", name="Particle 0").wait_for()
