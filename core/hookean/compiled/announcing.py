@@ -17,7 +17,7 @@ LINE = "Compiling the engine for this computer: once, up to a minute for the fir
 
 
 def later(seconds: float, act: Callable[[], None]) -> Callable[[], None]:
-    """Do something in a thread after some seconds; returns what calls it off."""
+    """Call a function in a thread after some seconds; returns the function that cancels it."""
     timer = threading.Timer(seconds, act)
     timer.daemon = True
     timer.start()
@@ -25,7 +25,7 @@ def later(seconds: float, act: Callable[[], None]) -> Callable[[], None]:
 
 
 class Waiting:
-    """How long a process has compiled, or waited for another process that does. It reports it once, after `AFTER`.
+    """How long a process has compiled, or waited for another process that does. It reports that once, after `AFTER`.
 
     `clock` is the time in seconds, `later` calls a function after some seconds.
     """
@@ -36,14 +36,14 @@ class Waiting:
 
     @contextmanager
     def on(self, name: str) -> Iterator[None]:
-        """While the code of a function is made."""
+        """Measure the time in which the code of a function is made."""
         began = self.clock()
-        call_off = None if self._reported else self.later(max(AFTER - self._spent, 0.0), lambda: self._report(name))
+        cancel = None if self._reported else self.later(max(AFTER - self._spent, 0.0), lambda: self._report(name))
         try:
             yield
         finally:
-            if call_off is not None:
-                call_off()
+            if cancel is not None:
+                cancel()
             took = self.clock() - began
             with self._lock:
                 self._spent += took

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.linear import lopsided
+from hookean.linear import unsymmetric
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -57,7 +57,7 @@ class Factors:
         factor = self.factor(values)
         if factor is None or factor.negatives:
             return None
-        x = factor.solve(b) if skew is None else lopsided.solve(factor.solve, skew, b)
+        x = factor.solve(b) if skew is None else unsymmetric.solve(factor.solve, skew, b)
         return x if np.isfinite(x).all() else None
 
     def _supernodal(self, lower: Any) -> Factor | None:

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from hookean.linear.directions import Directions, begin, sharp
 from hookean.linear.film_tangent import patterned
-from hookean.linear.lopsided import lopsided
 from hookean.linear.pattern import Pattern
+from hookean.linear.unsymmetric import skew_part
 from hookean.solvers.base import Solver
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _step(
     definite."""
     values = pattern.tangent(system, state, turns)
     rhs, unit = pattern.gather(left), state.scratch["unit"][pattern.dofs // 3]
-    skew = lopsided(system, pattern.dofs)
+    skew = skew_part(system, pattern.dofs)
     while shift <= 1e4:
         shifted = values.copy()
         shifted[pattern.diagonal] += shift * unit

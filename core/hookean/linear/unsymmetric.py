@@ -20,11 +20,11 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 EXACT = 1e-12  # part of a solution that may be missing
-STEPS = 60  # of GMRES, before what it has found is taken
+STEPS = 60  # of GMRES at most
 
 
-def lopsided(system: System, dofs: Ints) -> Any:
-    """S (u, u), sparse, of the unknowns `dofs` (u,), where all slots are folded; None where there is none."""
+def skew_part(system: System, dofs: Ints) -> Any:
+    """S (u, u), sparse, of the unknowns `dofs` (u,), where all slots are folded, or None if the tangent is symmetric."""
     import scipy.sparse as sparse
 
     number = np.full(system.x.size, -1)
