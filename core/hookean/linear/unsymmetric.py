@@ -24,7 +24,7 @@ STEPS = 60  # of GMRES at most
 
 
 def skew_part(system: System, dofs: Ints) -> Any:
-    """S (u, u), sparse, of the unknowns `dofs` (u,), where all slots are folded; None where the tangent is symmetric."""
+    """S (u, u), sparse, of the unknowns `dofs` (u,), with all slots folded; None where the tangent is symmetric."""
     import scipy.sparse as sparse
 
     number = np.full(system.x.size, -1)
