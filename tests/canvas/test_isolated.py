@@ -30,6 +30,9 @@ MODEL = Path(__file__).parents[2] / "gh_examples" / "9.4-cable" / "model.3dm"
 LOOSE = {"iterations", "progress", "report", "status", "residual", "energy", "url", "version", "sessions"}
 """Outputs that tell how a run went, not where it ended."""
 
+ABOUT = "import os; os.fstat(os.open(os.devnull, os.O_RDONLY))"
+"""What the client asks of a server's file before it trusts it: Jython cannot answer in recent versions of Java."""
+
 
 @cache
 def interpreter(version: str) -> list[str]:
@@ -37,7 +40,7 @@ def interpreter(version: str) -> list[str]:
     if found := pythons.interpreter(version):
         return [found, *(["-I"] if version != "2.7" else ["-E", "-s"])]
     jython = shutil.which("jython") if version == "2.7" else None
-    return [jython] if jython else []
+    return [jython] if jython and subprocess.run([jython, "-c", ABOUT], capture_output=True).returncode == 0 else []
 
 
 @cache
