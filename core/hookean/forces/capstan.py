@@ -8,8 +8,9 @@ slipped. Over the saddle between two lines the cable turns by an angle phi, and 
 
 Each sum grows with the strain of its last line, so there is exactly one such state. `prefixes` finds from line to line
 the strain that a line would have if the cable ended with it; `strains` then goes back from the end. A line looks back
-only over saddles that slip, and over those that slipped the same way before at once, as in the pool of adjacent
-violators of isotonic regression.
+only over saddles that slip: at once over those that slipped the same way before, as in the pool of adjacent violators
+of isotonic regression, and over all where what slipped before still holds. So the looks grow nearly with the number of
+saddles; with its square at worst, where each line changes how far a long slip reaches.
 """
 
 from __future__ import annotations
@@ -27,7 +28,8 @@ STIFFNESS, REST, FRICTION, WAY, SHARE = range(COLUMNS, COLUMNS + 5)  # columns o
 # columns of the table of one cable, by the place of a line in it; of the run of saddles before it that slip one way:
 # which way, the place where it begins, and the sums and the last factor of the strains in it, for 1 in this line
 ROW, LENGTH, OWN, LONGER, RATIO, STRAIN, RUN_WAY, RUN_FROM, RUN_OWN, RUN_LONGER, RUN_FACTOR, GRIP = range(12)
-TABLE = 12
+ALL_OWN, ALL_LONGER, LOW, HIGH = range(12, 16)  # those sums of all slips before it, and for which strains they hold
+TABLE = 16
 
 STEEPEST = 60.0  # of mu phi: beyond it nothing slips that has any force
 LARGEST = 1e150  # factor between strains of one run
@@ -77,35 +79,71 @@ def slips(table: Any, at: Any, strain: Any) -> Any:
 
 
 @device
+def narrowed(table: Any, at: Any, way: Any, factor: Any, low: Any, high: Any) -> Any:
+    """The part between `low` and `high` for which the saddle before a line slips that way, or holds; the line has
+    `factor` times as much in it. Empty for factors too small to divide by."""
+    if factor < 1.0 / LARGEST:
+        high = 0.0
+    elif at > 0:
+        most = table[at - 1, STRAIN] * table[at, RATIO] / factor
+        least = table[at - 1, STRAIN] / table[at, RATIO] / factor
+        if way > 0:
+            low = max(low, most)
+        elif way < 0:
+            high = min(high, least)
+        else:
+            low, high = max(low, least), min(high, most)
+    return low, high
+
+
+@device
+def back(table: Any, j: Any) -> Any:
+    """Write the strain of a line if the cable ended with it, and what slips then; returns how many saddles were looked
+    at."""
+    at, own, longer, factor, run = j, table[j, OWN], table[j, LONGER], 1.0, 0
+    low, high, looks, last, pure, whole = 0.0, np.inf, 1, 1.0, True, False
+    way = slips(table, at, longer / own)
+    while way != 0 and not whole:
+        low, high = narrowed(table, at, way, factor, low, high)
+        factor *= table[at, RATIO] if way < 0 else 1.0 / table[at, RATIO]
+        at -= 1
+        own += factor * table[at, OWN]
+        longer += table[at, LONGER]
+        all_own, all_longer = own + factor * table[at, ALL_OWN], longer + table[at, ALL_LONGER]
+        strain = factor * (all_longer / all_own)
+        whole = factor * LARGEST > 1.0 and table[at, LOW] < strain and strain < table[at, HIGH]
+        if whole:
+            low, high = max(low, table[at, LOW] / factor), min(high, table[at, HIGH] / factor)
+        if table[at, RUN_WAY] == way:
+            own += factor * table[at, RUN_OWN]
+            longer += table[at, RUN_LONGER]
+            factor *= table[at, RUN_FACTOR]
+            at = int(table[at, RUN_FROM])
+        pure = pure and run * way >= 0 and factor <= LARGEST
+        if pure:
+            run = way
+            table[j, RUN_FROM], table[j, RUN_FACTOR] = at, factor
+            table[j, RUN_OWN], table[j, RUN_LONGER] = own - table[j, OWN], longer - table[j, LONGER]
+        if whole:
+            own, longer = all_own, all_longer
+        elif factor > LARGEST:
+            own, factor, last = own / LARGEST, factor / LARGEST, last / LARGEST
+        way = slips(table, at, factor * (longer / own))
+        looks += 1
+    if not whole:
+        low, high = narrowed(table, at, 0, factor, low, high)
+    table[j, RUN_WAY], table[j, STRAIN] = run, max(last * (longer / own), 0.0)
+    table[j, ALL_OWN], table[j, ALL_LONGER] = own - table[j, OWN], longer - table[j, LONGER]
+    table[j, LOW], table[j, HIGH] = low, high if last == 1.0 else 0.0  # after a division by LARGEST: never
+    return looks
+
+
+@device
 def prefixes(table: Any, count: Any) -> Any:
     """Write the strain of each line if the cable ended with it; returns how many saddles were looked at."""
     looks = 0
     for j in range(count):
-        at, own, longer, factor, last = j, table[j, OWN], table[j, LONGER], 1.0, 1.0
-        run, pure = 0, True
-        way = slips(table, at, longer / own)
-        looks += 1
-        while way != 0:
-            factor *= table[at, RATIO] if way < 0 else 1.0 / table[at, RATIO]
-            at -= 1
-            own += factor * table[at, OWN]
-            longer += table[at, LONGER]
-            if table[at, RUN_WAY] == way:
-                own += factor * table[at, RUN_OWN]
-                longer += table[at, RUN_LONGER]
-                factor *= table[at, RUN_FACTOR]
-                at = int(table[at, RUN_FROM])
-            pure = pure and run * way >= 0 and factor <= LARGEST
-            if pure:
-                run = way
-                table[j, RUN_FROM], table[j, RUN_FACTOR] = at, factor
-                table[j, RUN_OWN], table[j, RUN_LONGER] = own - table[j, OWN], longer - table[j, LONGER]
-            if factor > LARGEST:
-                own, factor, last = own / LARGEST, factor / LARGEST, last / LARGEST
-            way = slips(table, at, factor * (longer / own))
-            looks += 1
-        table[j, RUN_WAY] = run
-        table[j, STRAIN] = max(last * (longer / own), 0.0)
+        looks += back(table, j)
     return looks
 
 
