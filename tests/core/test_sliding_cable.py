@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from hookean import InputError, Scene, SlidingCable, relax
+from hookean import InputError, Scene, Simulation, SlidingCable, relax
 from hookean.compiled import dispatch
+from hookean.designing.sensitivity import sensitivity
 from hookean.forces import capstan
 from hookean.system.system import System, compile
 
@@ -240,6 +241,46 @@ def test_what_has_slipped_stays() -> None:
     assert forces[1][1] / forces[1][0] == pytest.approx(ratio, rel=1e-12)
     assert forces[2][0] / forces[2][1] == pytest.approx(ratio, rel=1e-12)
     assert state.memory[0].sum() == pytest.approx(0.0, abs=1e-14)
+
+
+def test_in_physical_time_slips_take_energy() -> None:
+    """A weight that bounces on a cable over a rough saddle: memory changes with the steps, its sum stays 0, and the
+    bounces halve at least without any damping; without friction they stay."""
+    x = [[0, 0, 0], [3, 0, 0], [3, 0, -2.0]]
+    ends = []
+    for mu in (0.0, 0.1):
+        cable = {"kind": "sliding_cable", "particles": [[0, 1], [1, 2]], "friction": mu, "axial_stiffness": 200.0}
+        scene = Scene(
+            particles=x,
+            masses=1.0,
+            forces=[cable, {"kind": "unary", "particles": [2], "vector": [0, 0, -10.0]}],
+            anchors=[{"particles": [0, 1]}],
+            settings={"solver": "verlet", "time_step": 0.01, "drag": 0.0, "sub_iterations": 1},
+        )
+        simulation = Simulation(scene)
+        heights = []
+        for _ in range(1200):
+            simulation.step()
+            heights.append(simulation.state.x[2, 2])
+        ends.append((np.ptp(heights[:200]), np.ptp(heights[-200:]), simulation.state.memory[0]))
+    (first, last, _), (rough, less, memory) = ends
+    assert last == pytest.approx(first, rel=0.01)
+    assert less < 0.5 * rough and memory.any() and abs(memory.sum()) < 1e-12
+
+
+def test_a_patch_changes_friction_but_does_not_bring_it() -> None:
+    """Nor has a cable with friction derivatives; both are one sentence."""
+    smooth, rough = (over(SADDLES, mu) for mu in (0.0, [0.0, 0.1, 0.2, 0.3]))
+    assert compile(smooth).groups[0].conservative and not compile(rough).groups[0].conservative
+    with pytest.raises(InputError, match="/forces/0: this field sets how it acts; send a new scene"):
+        Simulation(smooth).patch({"forces": {"0": {"friction": 0.3}}})
+    simulation = Simulation(rough)
+    simulation.patch({"forces": {"0": {"friction": 0.4}}})
+    block = simulation.system.groups[0].block
+    assert (block.parameters[:, block.names.index("friction")] == 0.4).all()
+    variables, goals = [{"force": 0, "field": "friction"}], [{"kind": "position", "particles": [1], "axes": "z"}]
+    with pytest.raises(InputError, match="a sliding_cable with friction has no tangent, so nothing can be"):
+        sensitivity({"scene": rough, "variables": variables, "goals": goals})
 
 
 def laid(longer: np.ndarray, ratio: float) -> np.ndarray:
