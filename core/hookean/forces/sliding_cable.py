@@ -1,4 +1,4 @@
-"""Sliding cable: a cable that runs over saddles without friction, with one force all along it."""
+"""Sliding cable: a cable that runs over saddles, with one force all along it, or with friction on each saddle."""
 
 from __future__ import annotations
 
@@ -7,18 +7,20 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import model_validator
 
+from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.errors import InputError
-from hookean.forces import elastic, groups
+from hookean.forces import capstan, elastic, groups
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.groups import begins, following
 from hookean.forces.line_lengths import length_and_force, line, pull
-from hookean.values.columns import IndexRows, Labels, Lines, fault
+from hookean.values.columns import IndexRows, Labels, Lines, NonNegatives, fault
 from hookean.values.fields import Field, Maybe
 
 K, REST = groups.COLUMNS, groups.COLUMNS + 1  # columns of the parameters
 
 LEAST = 1e-12  # length of a cable, below which EA / L0 has no meaning [length]
+SHORTEST = 1e-6  # part of the mean rest length of a cable's lines that each has at least, with friction
 
 
 @device
@@ -54,14 +56,22 @@ def sliding_cable_kernel(x, v, indices, parameters, memory, f, w):  # type: igno
 
 
 class SlidingCable(groups.Grouped):
-    """A cable that slides over saddles without friction: E = EA (L - L0)^2 / (2 L0), L the length of all its lines.
+    """A cable that slides over saddles, with friction if given: E = EA (L - L0)^2 / (2 L0), L the length of its lines.
 
     The tension T = EA (L - L0) / L0 is the same in each line, whatever their lengths, so at a free pulley both lines
     make the same angle with what the pulley carries. Below L0 the cable is slack. Lines with the same number are one
     cable; without numbers all are. Give the stiffness as EA, or as a material and a section, and the prestress, if any,
     as the force at the start or as the rest length of a whole cable. A line of zero length has no direction and no
-    force. For a tension that does not depend on the length, use `constant_tension`. Source: Aufaure, "A finite element
-    of cable passing through a pulley", 1993.
+    force. For a tension that does not depend on the length, use `constant_tension`.
+
+    With friction mu the forces before and after a saddle, where the cable turns by the angle phi, differ at most by the
+    factor exp(mu phi). Within it nothing slips and each line is elastic on its own; at the limit the cable slips. It
+    starts with one force all along. What has slipped stays so for the next run, and in physical time for the next step.
+    The lines of a cable follow one another in the order of their rows then. Forces with friction have no energy, and no
+    tangent: such a model relaxes, its stability is unknown, and it has no gradients.
+
+    Sources: Aufaure, "A finite element of cable passing through a pulley", 1993; Euler, "Remarques sur l'effet du
+    frottement dans l'equilibre", 1762, and Eytelwein, "Handbuch der Statik fester Koerper", 1808 (friction).
     """
 
     kind: Literal["sliding_cable"] = "sliding_cable"
@@ -75,6 +85,10 @@ class SlidingCable(groups.Grouped):
         default=None, gt=0, le=1e12, description="L0 of a whole cable [length]; default: the start length"
     )
     force: float | None = Field(default=None, ge=0, le=1e12, description="Prestress: tension at the start [force]")
+
+    friction: NonNegatives = Field(
+        default=0.0, description="mu [-], or one for each line: on the saddle between it and the line before it"
+    )
 
     formula: ClassVar[str] = "E = EA (L - L0)²/(2 L0)"
     arity: ClassVar[int] = 2
@@ -98,8 +112,14 @@ class SlidingCable(groups.Grouped):
             raise fault("rest_length and force given; give at most one of them")
         return self
 
+    @property
+    def compiled_as(self) -> type[Force]:
+        """`RoughSlidingCable` where there is friction."""
+        return RoughSlidingCable if np.any(self.friction) else SlidingCable
+
     def compile(self, places: Places) -> Block:
-        """Arrays for the kernel: links of the cables, EA / L0 and L0; InputError if one has no length."""
+        """Arrays for the kernel: links of the cables, EA / L0 and L0; InputError if one has no length. With friction
+        also mu, how a line follows the one before it, and its own part of L0."""
         index = places.elements(self)
         links = groups.links(index, self.group)
         axial = self.axial_stiffness
@@ -116,11 +136,21 @@ class SlidingCable(groups.Grouped):
             rest = rest * axial / (axial + self.force)
         if not (rest > LEAST).all():
             raise InputError("", "a cable of a sliding_cable has no length at the start; give a rest_length")
-        return Block.of(index, links=links, stiffness=axial / rest, rest=rest)
+        if self.compiled_as is SlidingCable:
+            return Block.of(index, links=links, stiffness=axial / rest, rest=rest)
+        shared, count = (np.bincount(head, own, len(index))[head], np.bincount(head, minlength=len(index))[head])
+        own = np.where(shared > 0.0, np.maximum(own, SHORTEST * shared / count), 1.0)
+        share = rest * own / np.bincount(head, own, len(index))[head]
+        return Block.of(
+            index, memory=1, links=links, stiffness=axial / rest, rest=rest, friction=self.friction,
+            way=_ways(index, links), share=share,
+        )  # fmt: skip
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length of each line [length], and the force of its cable [force]."""
         length = length_and_force(block, x, element_forces)["length"]
+        if self.compiled_as is not SlidingCable:
+            return length_and_force(block, x, element_forces)
         return {"length": length, "force": block.parameters[:, K] * longer(block, x)}
 
     @classmethod
@@ -177,12 +207,52 @@ class SlidingCable(groups.Grouped):
         return cls(particles=pairs, group=[0, 7, 0, 7, 0], axial_stiffness=60.0, force=40.0), np.array(x)
 
 
+class RoughSlidingCable(SlidingCable):
+    """What `sliding_cable` compiles to where there is friction (see there)."""
+
+    variant: ClassVar[bool] = True
+    conservative: ClassVar[bool] = False
+    remembers: ClassVar[bool] = True
+    yielding: ClassVar[tuple[str, ...]] = ("friction",)
+    kernel: ClassVar[Any] = staticmethod(capstan.rough_cable_kernel)
+    end_of_step: ClassVar[Any] = staticmethod(capstan.rough_cable_note)
+
+    @classmethod
+    def gathered(
+        cls, block: Block, memory: Floats, x: Floats, node: int | None
+    ) -> list[tuple[type[Force], Block]] | None:
+        """Particles by themselves, as stiff as they feel: a bound from above."""
+        if not len(block.indices):
+            return []
+        own, w = np.unique(block.indices), np.zeros(len(x))
+        dispatch.compiled(cls.kernel, "force")(
+            x, np.zeros_like(x), block.indices, block.parameters, memory, np.zeros_like(x), w
+        )
+        return [(groups.Whole, groups.bounded(own[:, None], w[own]))]
+
+    @classmethod
+    def no_tangent(cls, block: Block, *, sparse: bool) -> str:
+        """Where a cable slips, its tangent is not symmetric."""
+        return "a sliding_cable with friction has no tangent"
+
+
 def longer(block: Block, x: Floats) -> Floats:
     """By how much (m,) the cable of each line is longer than at rest; 0 where it is slack."""
     head: Ints = groups.heads(block)
     length = lengths(x[block.indices[:, 1]] - x[block.indices[:, 0]])
     total = np.bincount(head, length, len(head))[head] if len(head) else length
     return np.maximum(total - block.parameters[:, REST], 0.0)
+
+
+def _ways(index: Ints, links: Floats) -> Floats:
+    """For each line (m,) 1 where its direction goes on that of the line before it in its cable, -1 where one of the two
+    is given from its end to its start: they then share their ends, or their starts."""
+    found = np.ones(len(index))
+    before = np.flatnonzero(links[:, groups.NEXT])
+    after = before + links[before, groups.NEXT].astype(np.int64)
+    (a, b), (c, d) = index[before].T, index[after].T
+    found[after] = np.where((b != c) & (a != d) & ((a == c) | (b == d)), -1.0, 1.0)
+    return found
 
 
 def _slopes(x: Floats, index: Ints) -> Floats:
