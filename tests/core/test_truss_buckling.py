@@ -1,5 +1,5 @@
-"""Linear buckling of trusses, cables and cloth that move before they buckle: closed forms, and a program for trusses
-that is written here."""
+"""Linear buckling of trusses, cables, cloth and shells that move before they buckle: closed forms, and a program for
+trusses that is written here."""
 
 from __future__ import annotations
 
@@ -148,8 +148,26 @@ def test_a_strip_of_cloth_on_springs_buckles() -> None:
     np.testing.assert_allclose(factors(x, forces, held, 4, meshes=mesh), 2.0 * c / (b * sines), rtol=1e-6)
 
 
+@pytest.mark.parametrize("aside", [0.0, 0.02])
+def test_a_pressed_plate_buckles_whether_it_bends_before_or_not(aside: float) -> None:
+    """A strip of D and width b as cloth and shell, clamped by a first row of quads a wide and pressed by 1, also with a
+    force across: pi^2 D b / (2 (L - a / 2))^2 (Euler), as its first folds are at a. To 1 / (4 8^2), of a chain of 8."""
+    n, length, width, bending = 8, 2.0, 0.5, 3.0
+    x = lattice(n, width)[0][:, [0, 2, 1]] * [length / n, 1.0, 1.0]
+    i = np.arange(n)
+    mesh = {"strip": {"vertices": x, "faces": np.column_stack([2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1])}}
+    skin = {"kind": "membrane", "mesh": "strip", "warp_stiffness": 1e6, "poisson": 0.3, "warp": [1.0, 0, 0]}
+    forces = [skin, {"kind": "shell", "mesh": "strip", "strength": bending, "poisson": 0.0}]
+    forces.append(push([2 * n, 2 * n + 1], [-0.5, 0, aside]))
+    found = factors(x, forces, [{"particles": range(4)}], 1, meshes=mesh)[0]
+    euler = np.pi**2 * bending * width / (4.0 * (length * (1.0 - 0.5 / n)) ** 2)
+    assert found == pytest.approx(euler, rel=0.25 / n**2)
+
+
 FREE: list[Spec] = [
     springs([[0, 1], [1, 2], [0, 2], [2, 3]], [3.0, 5.0, 2.0, 7.0]),
+    {"kind": "hinge", "particles": [[0, 2, 1, 3], [1, 2, 0, 3]], "strength": [3.0, 5.0]},
+    {"kind": "shell", "mesh": "skin", "strength": 4.0, "poisson": 0.3},
     {"kind": "membrane", "mesh": "skin", "warp_stiffness": 60.0, "weft_stiffness": 20.0, "shear_stiffness": 9.0,
      "poisson": 0.2, "warp": [1.0, 0.4, 0.1]},
 ]  # fmt: skip

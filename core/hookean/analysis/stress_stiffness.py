@@ -52,7 +52,7 @@ def _blocks(group: Group, memory: Floats, x: Floats, moved: Floats) -> Floats:
     if group.cls.stressed is None:
         return _of_lines(group, memory, x, moved)
     blocks = np.zeros((count, 3 * arity, 3 * arity))
-    along = np.ascontiguousarray(moved[block.indices].reshape(count, -1))
+    along = np.column_stack([memory, moved[block.indices].reshape(count, -1)])
     dispatch.compiled(group.cls.stressed, "hessian")(x, block.indices, block.parameters, along, blocks)
     return blocks
 
