@@ -13,7 +13,7 @@ from hookean.analysis.arc_length import _sum
 from hookean.analysis.at_rest import AtRest, divided, load_numbers, relaxed
 from hookean.analysis.frequencies import MOST, _scaled
 from hookean.analysis.matrices import Unknowns, factor
-from hookean.compiled import dispatch
+from hookean.analysis.stress_stiffness import known, stress_stiffness
 from hookean.errors import InputError
 from hookean.scene.scene import Scene
 from hookean.system.balance import extents
@@ -61,10 +61,10 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
     """Linear buckling factors and modes: (K + lambda G) phi = 0.
 
     K is the exact tangent stiffness in equilibrium without `loads`, with prestress and all other loads; u = K^-1 F the
-    linear movement under `loads`; G the stiffness of the forces that u brings to beams where they are, and the rate at
-    which the tangent of all else changes along u, by central differences, with the tangent of loads that follow the
-    shape. The factors hold as far as the structure moves little before it buckles;
-    use `load_path` where it does not (shallow arches, cable nets).
+    linear movement under `loads`; G the stiffness that the forces have which u brings to lines, cloth, shells, hinges
+    and beams, where they are, and the rate at which the tangent of all else changes along u, by central differences,
+    with the tangent of loads that follow the shape. The factors hold as far as the structure moves little before it
+    buckles; use `load_path` where it does not (shallow arches, cable nets).
 
     - `scene`: The structure with its loads.
     - `count`: How many factors.
@@ -103,12 +103,13 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
 
 
 def _change(unknowns: Unknowns, rest: AtRest, moved: Floats) -> Any:
-    """The rate at which the tangent changes along a movement (n, 3), where that is not the stiffness of its forces.
+    """The stiffness of the forces that a movement (n, 3) brings; of elements without known strains the rate at which
+    their tangent changes along it.
 
     Of what bends, the rate along a straight movement is no measure: its ends come nearer only by a term of second
     order, without which it is strained along itself, and that is many times stiffer than its forces."""
-    inner = [group.cls.stressed is None for group in rest.system.groups]
-    return _sum(_rate(unknowns, _chosen(rest, inner), moved), _stressed(unknowns, rest, moved))
+    rate = _rate(unknowns, _chosen(rest, [not known(group) for group in rest.system.groups]), moved)
+    return _sum(rate, stress_stiffness(unknowns, rest.system, rest.state, moved))
 
 
 def _chosen(rest: AtRest, kept: Sequence[bool]) -> AtRest:
@@ -118,29 +119,6 @@ def _chosen(rest: AtRest, kept: Sequence[bool]) -> AtRest:
     return replace(
         rest, system=replace(rest.system, groups=groups, _components=None), state=replace(rest.state, memory=memory)
     )
-
-
-def _stressed(unknowns: Unknowns, rest: AtRest, moved: Floats) -> Any:
-    """The stiffness that the forces of a movement (n, 3) have where the shape is."""
-    import scipy.sparse as sparse
-
-    number = np.full(rest.state.x.size, -1)
-    number[unknowns.dofs] = np.arange(size := len(unknowns.dofs))
-    found = sparse.csc_matrix((size, size))
-    for group in rest.system.groups:
-        block = group.block
-        if group.cls.stressed is None or not len(block.indices):
-            continue
-        count, arity = block.indices.shape
-        blocks = np.zeros((count, 3 * arity, 3 * arity))
-        along = np.ascontiguousarray(moved[block.indices].reshape(count, -1))
-        kernel = dispatch.compiled(group.cls.stressed, "hessian")
-        kernel(rest.state.x, block.indices, block.parameters, along, blocks)
-        mine = number[(3 * block.indices[:, :, None] + np.arange(3)).reshape(count, -1)]
-        row, column = (np.broadcast_to(m, blocks.shape) for m in (mine[:, :, None], mine[:, None, :]))
-        kept = (row >= 0) & (column >= 0)
-        found = found + sparse.coo_matrix((blocks[kept], (row[kept], column[kept])), shape=(size, size)).tocsc()
-    return (found + found.T) * 0.5
 
 
 def _rate(unknowns: Unknowns, rest: AtRest, moved: Floats) -> Any:

@@ -179,7 +179,7 @@ class Force(Model):
     central: ClassVar[Callable[..., None] | None] = None
     # the same of `gathered` elements, from their block and the positions
     tangent: ClassVar[Callable[[Block, Floats], Floats] | None] = None
-    # what the forces of a small movement add to its tangent; the kernel gets the movement in the place of memory
+    # what the forces of a small movement add to its tangent; the kernel gets the movement after the memory
     stressed: ClassVar[Callable[..., None] | None] = None
     # the part of its tangent that is not symmetric (m, 3 arity, 3 arity), where slots are folded (see `rotations`)
     skew: ClassVar[Callable[[Block], Floats] | None] = None

@@ -53,6 +53,26 @@ def hinge_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-un
                 blocks[e, i, j] = stiff * g[i // 3, i % 3] * g[j // 3, j % 3] + parameters[e, 0] * elastic * h[i, j]
 
 
+def hinge_stressed(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    """The stiffness of the moments that a small movement, after the rest angle in `memory` (m, 1 + 12), brings."""
+    g, h = np.zeros((4, 5)), np.zeros((12, 12))
+    for e in range(indices.shape[0]):
+        a, b, c, d = indices[e, 0], indices[e, 1], indices[e, 2], indices[e, 3]
+        angle = fold(x, a, b, c, d, g)
+        if np.isnan(angle):
+            continue
+        off, elastic = bent(parameters, memory, e, angle)
+        if off != elastic:
+            continue
+        rate = 0.0
+        for i in range(12):
+            rate += parameters[e, 0] * g[i // 3, i % 3] * memory[e, 1 + i]
+        bends(x, a, b, c, d, g, h)
+        for i in range(12):
+            for j in range(12):
+                blocks[e, i, j] = rate * h[i, j]
+
+
 def hinge_yield(x, indices, parameters, memory):  # type: ignore[no-untyped-def]
     g = np.zeros((4, 5))
     for e in range(indices.shape[0]):
@@ -94,6 +114,7 @@ class Hinge(Force):
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     kernel: ClassVar[Any] = staticmethod(hinge_kernel)
     hessian: ClassVar[Any] = staticmethod(hinge_hessian)
+    stressed: ClassVar[Any] = staticmethod(hinge_stressed)
     end_of_step: ClassVar[Any] = staticmethod(hinge_yield)
 
     def compile(self, places: Places) -> Block:

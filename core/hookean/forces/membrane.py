@@ -81,6 +81,17 @@ def membrane_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no
     return energy
 
 
+@device
+def strained(parameters: Any, e: Any, g: Any, slope: Any) -> None:
+    """Write the derivatives (3, 9) of the strain (E11, E22, 2 E12) by the corners."""
+    for i in range(3):
+        p, q = parameters[e, SLOPES + i], parameters[e, SLOPES + 3 + i]
+        for c in range(3):
+            slope[0, 3 * i + c] = p * g[0, c]
+            slope[1, 3 * i + c] = q * g[1, c]
+            slope[2, 3 * i + c] = p * g[1, c] + q * g[0, c]
+
+
 def membrane_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
     g, strain, s, t, v = np.zeros((2, 3)), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
     stiff, slope = np.zeros((3, 3)), np.zeros((3, 9))
@@ -89,12 +100,7 @@ def membrane_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no
         deform(x, indices, parameters, e, g, strain)
         _, state, u = respond(parameters[e, CLOTH:STRAIN], strain, s, parameters[e, WRINKLING] != 0.0)
         stiffen(parameters[e, CLOTH:STRAIN], strain, state, u, t, v, stiff)
-        for i in range(3):
-            p, q = parameters[e, SLOPES + i], parameters[e, SLOPES + 3 + i]
-            for c in range(3):
-                slope[0, 3 * i + c] = p * g[0, c]
-                slope[1, 3 * i + c] = q * g[1, c]
-                slope[2, 3 * i + c] = p * g[1, c] + q * g[0, c]
+        strained(parameters, e, g, slope)
         for i in range(9):
             for j in range(9):
                 entry = 0.0
@@ -106,6 +112,31 @@ def membrane_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no
                     r, o = parameters[e, SLOPES + j // 3], parameters[e, SLOPES + 3 + j // 3]
                     entry += s[0] * p * r + s[1] * q * o + s[2] * (p * o + q * r)
                 blocks[e, i, j] = area * entry
+
+
+def membrane_stressed(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    """The stiffness of the stress that a small movement, `memory` (m, 9) of the corners, brings: its rate times the
+    second derivatives of the strain."""
+    g, strain, s, t, v = np.zeros((2, 3)), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
+    stiff, slope = np.zeros((3, 3)), np.zeros((3, 9))
+    for e in range(indices.shape[0]):
+        deform(x, indices, parameters, e, g, strain)
+        _, state, u = respond(parameters[e, CLOTH:STRAIN], strain, s, parameters[e, WRINKLING] != 0.0)
+        stiffen(parameters[e, CLOTH:STRAIN], strain, state, u, t, v, stiff)
+        strained(parameters, e, g, slope)
+        for a in range(3):
+            strain[a] = 0.0
+            for i in range(9):
+                strain[a] += slope[a, i] * memory[e, i]
+        for a in range(3):
+            s[a] = stiff[a, 0] * strain[0] + stiff[a, 1] * strain[1] + stiff[a, 2] * strain[2]
+        for i in range(3):
+            p, q = parameters[e, SLOPES + i], parameters[e, SLOPES + 3 + i]
+            for j in range(3):
+                r, o = parameters[e, SLOPES + j], parameters[e, SLOPES + 3 + j]
+                entry = s[0] * p * r + s[1] * q * o + s[2] * (p * o + q * r)
+                for c in range(3):
+                    blocks[e, 3 * i + c, 3 * j + c] = parameters[e, AREA] * entry
 
 
 def membrane_stress(x, indices, parameters, found):  # type: ignore[no-untyped-def]
@@ -197,6 +228,7 @@ class Membrane(Force):
     }
     kernel: ClassVar[Any] = staticmethod(membrane_kernel)
     hessian: ClassVar[Any] = staticmethod(membrane_hessian)
+    stressed: ClassVar[Any] = staticmethod(membrane_stressed)
     example_faces: ClassVar[list[list[int]]] = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]
 
     @model_validator(mode="after")

@@ -57,6 +57,54 @@ def curve(x: Any, indices: Any, parameters: Any, e: Any, g: Any, turn: Any, bent
             bent[k] += parameters[e, AXES + 3 * k + i] * part
 
 
+@device
+def parts(parameters: Any, e: Any, row: Any) -> None:
+    """Write the derivatives (9, 3) of sqrt(A) K by the turns of the nine edges."""
+    row[:] = 0.0
+    for i in range(3):
+        for j in range(5):
+            for k in range(3):
+                part = parameters[e, AXES + 3 * k + i] * parameters[e, PARTS + 5 * i + j]
+                row[FIVE[i, j], k] += part
+
+
+@device
+def add_turn(x: Any, indices: Any, e: Any, h: Any, moment: Any, g: Any, second: Any, block: Any) -> None:
+    """Add a moment times the second derivatives of the turn of an edge to the block of a triangle."""
+    a, b, c, d = (
+        indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]], indices[e, HINGES[h, 3]]
+    )  # fmt: skip
+    bends(x, a, b, c, d, g[h], second)
+    for i in range(12):
+        for j in range(12):
+            p, q = 3 * HINGES[h, i // 3] + i % 3, 3 * HINGES[h, j // 3] + j % 3
+            block[p, q] += moment * second[i, j]
+
+
+def shell_stressed(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    """The stiffness of the moments that a small movement, `memory` (m, 36), brings: their rates times the second
+    derivatives of the turns."""
+    g, second = np.zeros((9, 4, 5)), np.zeros((12, 12))
+    turn, bent, row = np.zeros(9), np.zeros(3), np.zeros((9, 3))
+    for e in range(indices.shape[0]):
+        curve(x, indices, parameters, e, g, turn, bent)
+        parts(parameters, e, row)
+        bent[:] = 0.0
+        for h in range(9):
+            if not np.isnan(turn[h]):
+                rate = 0.0
+                for i in range(12):
+                    rate += g[h, i // 3, i % 3] * memory[e, 3 * HINGES[h, i // 3] + i % 3]
+                for k in range(3):
+                    bent[k] += row[h, k] * rate
+        for h in range(9):
+            if not np.isnan(turn[h]):
+                moment = 0.0
+                for k in range(3):
+                    moment += parameters[e, STRENGTH] * row[h, k] * bent[k]
+                add_turn(x, indices, e, h, moment, g, second, blocks[e])
+
+
 def shell_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
     g, second = np.zeros((9, 4, 5)), np.zeros((12, 12))
     turn, bent, row, slope = np.zeros(9), np.zeros(3), np.zeros((9, 3)), np.zeros((3, 36))
@@ -64,13 +112,8 @@ def shell_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-un
         block = blocks[e]
         block[:] = 0.0
         slope[:] = 0.0
-        row[:] = 0.0
         curve(x, indices, parameters, e, g, turn, bent)
-        for i in range(3):
-            for j in range(5):
-                for k in range(3):
-                    part = parameters[e, AXES + 3 * k + i] * parameters[e, PARTS + 5 * i + j]
-                    row[FIVE[i, j], k] += part
+        parts(parameters, e, row)
         for h in range(9):
             if np.isnan(turn[h]):
                 continue
@@ -79,14 +122,7 @@ def shell_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-un
                 moment += parameters[e, STRENGTH] * row[h, k] * bent[k]
                 for i in range(12):
                     slope[k, 3 * HINGES[h, i // 3] + i % 3] += row[h, k] * g[h, i // 3, i % 3]
-            a, b, c, d = (
-                indices[e, HINGES[h, 0]], indices[e, HINGES[h, 1]], indices[e, HINGES[h, 2]], indices[e, HINGES[h, 3]]
-            )  # fmt: skip
-            bends(x, a, b, c, d, g[h], second)
-            for i in range(12):
-                for j in range(12):
-                    p, q = 3 * HINGES[h, i // 3] + i % 3, 3 * HINGES[h, j // 3] + j % 3
-                    block[p, q] += moment * second[i, j]
+            add_turn(x, indices, e, h, moment, g, second, block)
         for p in range(36):
             for q in range(36):
                 for k in range(3):
@@ -165,6 +201,7 @@ class Shell(Force):
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "force"}
     kernel: ClassVar[Any] = staticmethod(shell_kernel)
     hessian: ClassVar[Any] = staticmethod(shell_hessian)
+    stressed: ClassVar[Any] = staticmethod(shell_stressed)
     example_faces: ClassVar[list[list[int]]] = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]
 
     @model_validator(mode="before")

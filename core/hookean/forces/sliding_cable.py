@@ -13,7 +13,7 @@ from hookean.errors import InputError
 from hookean.forces import capstan, elastic, groups
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.groups import begins, following
-from hookean.forces.line_lengths import length_and_force, line, pull
+from hookean.forces.line_lengths import apart, length_and_force, line, pull
 from hookean.values.columns import IndexRows, Labels, Lines, NonNegatives, fault
 from hookean.values.fields import Field, Maybe
 
@@ -35,6 +35,17 @@ def stretch(x: Any, indices: Any, parameters: Any, first: Any) -> Any:
     return total, count
 
 
+@device
+def faster(x: Any, indices: Any, moved: Any, e: Any, d: Any) -> Any:
+    """Length of a line, and its rate along a movement (m, 6); write its direction, zero for length 0."""
+    length, d[0], d[1], d[2] = line(x, indices, e)
+    rate = 0.0
+    for c in range(3):
+        d[c] /= length if length > 0.0 else 1.0
+        rate += d[c] * (moved[e, 3 + c] - moved[e, c])
+    return length, rate
+
+
 def sliding_cable_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     energy = 0.0
     for first in range(indices.shape[0]):
@@ -53,6 +64,31 @@ def sliding_cable_kernel(x, v, indices, parameters, memory, f, w):  # type: igno
                 w[indices[e, i]] += 2.0 * (count * k + density)
             e = following(parameters, e)
     return energy
+
+
+def sliding_cable_stressed(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
+    """Of each line, across it, the rate of its force density along a small movement, `memory` (m, 6) of both ends: the
+    force follows the length of the whole cable."""
+    d = np.zeros(3)
+    for first in range(indices.shape[0]):
+        if not begins(parameters, first):
+            continue
+        longer, _ = stretch(x, indices, parameters, first)
+        if longer <= 0.0:
+            continue
+        rate, e = 0.0, first
+        while e >= 0:
+            rate += parameters[first, K] * faster(x, indices, memory, e, d)[1]
+            e = following(parameters, e)
+        e = first
+        while e >= 0:
+            length, more = faster(x, indices, memory, e, d)
+            if length > 0.0:
+                density = (rate - parameters[first, K] * longer * more / length) / length
+                for i in range(3):
+                    for j in range(3):
+                        apart(blocks, e, i, j, density * ((1.0 if i == j else 0.0) - d[i] * d[j]))
+            e = following(parameters, e)
 
 
 class SlidingCable(groups.Grouped):
@@ -94,6 +130,7 @@ class SlidingCable(groups.Grouped):
     arity: ClassVar[int] = 2
     outputs: ClassVar[dict[str, str]] = {"length": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(sliding_cable_kernel)
+    stressed: ClassVar[Any] = staticmethod(sliding_cable_stressed)
 
     @model_validator(mode="before")
     @classmethod
