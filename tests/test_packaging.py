@@ -80,7 +80,7 @@ def test_packages_are_accepted_by_an_index_and_build_the_same_bytes_twice(sdist:
     }
     for one, *again in twice.values():
         assert all(one.name == other.name and one.read_bytes() == other.read_bytes() for other in again)
-    command = [sys.executable, "-m", "twine", "check", "--strict", *(str(one) for one, _ in twice.values())]
+    command = [sys.executable, "-m", "twine", "check", "--strict", *(str(one) for one, *_ in twice.values())]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 

@@ -295,7 +295,7 @@ def test_triangles_by_points_are_one_film_and_polygons_push_their_edges_out(tmp_
     for i in range(6):
         d.goal("SoapFilm", {"Pts": None, "Strength": 2.0}, pts=[middle, rim[i], rim[(i + 1) % 6]],
                guid=UUID("0c68b153-3c88-4e62-9827-f3793c013f88"))  # fmt: skip
-    d.goal("AnchorXYZ", {"P": None, "X": True, "Y": True, "Z": True, "Strength": 1.0}, p=rim)
+    d.goal("AnchorXYZ", {"P": None, "X": True, "Y": True, "Z": True, "Strength": 1000.0}, p=rim)
     d.load(middle, 0.0, 0.0, 3.0)
     d.at_rest((0, 0, np.sqrt(0.75) / np.sqrt((3 * 2 / 3.0) ** 2 - 1)))
 

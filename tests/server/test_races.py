@@ -428,7 +428,7 @@ def test_an_answer_over_the_socket_is_never_older_than_the_state_before_it() -> 
             told.append(json.loads(text))
 
     async def watched() -> None:
-        client = _Client(Socket(), Sessions(), live)  # type: ignore[arg-type]
+        client = _Client(Socket(), Sessions(), live, changes=False)  # type: ignore[arg-type]
         tasks = [asyncio.create_task(client.send()), asyncio.create_task(client.receive())]
         while not any("id" in message for message in told):
             await asyncio.sleep(0.001)
