@@ -110,7 +110,7 @@ SETTINGS = (
 
 
 class Drawn(Kangaroo):
-    """A definition drawn from a seed; `told` says what is in it."""
+    """A definition drawn from a seed; `told` lists its parts."""
 
     def __init__(self, seed: int, goals: tuple[str, ...] = (), solver: str = "") -> None:
         super().__init__(f"drawn {seed}", f"Drawn {seed}", "A definition drawn at random.")

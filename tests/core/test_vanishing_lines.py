@@ -136,7 +136,7 @@ def foam(cells: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_a_foam_collapses_to_the_same_energy_by_all_solvers(seed: int) -> None:
     """Sixty cells whose edges pull alike: most of them vanish. The energy is convex, so that all equilibria have the
-    same. What does not come to rest there says so."""
+    same. A run that does not come to rest reports that."""
     x, lines, rim = foam(60, seed)
     found = relax(web(x, lines, rim, tolerance=1e-6, solver="newton"))
     assert found.converged

@@ -191,7 +191,7 @@ def test_the_same_result_gives_the_same_bytes(result: Result, tmp_path: Path, en
 
 def test_beams_and_springs_by_their_axial_stiffness_are_written(tmp_path: Path) -> None:
     """Springs given as EA or as a material and a section have that EA (Abaqus), one for each element; a clamp holds
-    three rotations, and a foot on a ball none (IFC); what Abaqus files leave out is told."""
+    three rotations, and a foot on a ball none (IFC); Abaqus files report what they leave out."""
     steel = {"E": 210e6, "G": 81e6, "density": 7.85}
     spec = {
         "particles": [[0, 0, 0], [2, 0, 1], [4, 0, 0], [2, 1, 3]],

@@ -66,7 +66,7 @@ def test_bytes_that_are_no_frame_are_refused(data: bytes) -> None:
 
 @seeds(40)
 def test_a_frame_of_changes_leads_from_the_one_before_to_the_next_to_the_bit(seed: int) -> None:
-    """Of some numbers that differ, 8 bytes for each behind the header; where they are half of all, there is none."""
+    """Of some numbers that differ, 8 bytes for each behind the header; no such frame where half of all differ."""
     random = np.random.default_rng(seed)
     old, new = shown(50, 30, 4), shown(50, 30, 4)
     differ = random.permutation(50)[: random.integers(0, 40)]

@@ -109,7 +109,7 @@ def hurried(given: Tree) -> Tree:
     try:
         found = json.loads(texts[0]) if texts else {"kind": "settings", "units": {}, "settings": {}}
     except (TypeError, ValueError):
-        return given  # no settings; the Engine says so
+        return given  # no settings; the Engine reports it
     if len(texts) > 1 or not isinstance(found, dict) or found.get("kind") != "settings":
         return given
     return Tree.of([json.dumps({"fast": True, **found})])
