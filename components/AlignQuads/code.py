@@ -6,6 +6,6 @@ others follow over shared edges. Triangles stay.
 Shared side: opposite sides of both quads
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.align_quads(ghenv, _mesh, _strict_)
+mesh = remeshing.align_quads(ghenv, _mesh, _strict_)

@@ -6,6 +6,6 @@ error: no such groups exist.
 Line: one end in each group
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_lines as lines
 
-first, second = tools.bipartite(ghenv, _lines, _tolerance_)
+first, second = lines.bipartite(ghenv, _lines, _tolerance_)

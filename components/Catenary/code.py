@@ -8,6 +8,6 @@ y = a cosh(x / a), sinh(u) / u = sqrt(L^2 - h^2) / b, u = b / 2a
 with b across and h along gravity
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_lines as lines
 
-catenary, points, lines = tools.catenary(ghenv, _start, _end, _length, _gravity_, _count_)
+catenary, points, lines = lines.catenary(ghenv, _start, _end, _length, _gravity_, _count_)

@@ -7,6 +7,6 @@ branch give a branch each.
 Faces that share an edge: different colours
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_quads as quads
 
-pattern, first, second = tools.checkerboard(ghenv, _mesh, _strict_)
+pattern, first, second = quads.checkerboard(ghenv, _mesh, _strict_)

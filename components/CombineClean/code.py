@@ -6,6 +6,6 @@ triangles; those without three corners go. Of faces with the same corners the fi
 Same: |a - p| at most the tolerance
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.combine_clean(ghenv, _meshes, _tolerance_)
+mesh = remeshing.combine_clean(ghenv, _meshes, _tolerance_)

@@ -5,9 +5,9 @@ The same number as lower and upper makes it equal.
 lower <= value <= upper
 """
 
-from hookean_client import canvas_design
+from hookean_client import canvas_goals
 
-constraints = canvas_design.constraints(
+constraints = canvas_goals.constraints(
     ghenv,
     _kind,
     (points_, forces_, anchors_, meshes_),

@@ -6,6 +6,6 @@ meshes in one branch give a branch each.
 Faces: as many as edges; vertices: the old ones, then the centres
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.diagonalize(ghenv, _mesh)
+mesh = remeshing.diagonalize(ghenv, _mesh)

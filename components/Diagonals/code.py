@@ -6,6 +6,6 @@ each.
 Quad a b c d: a-c, b-d
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_quads as quads
 
-diagonals = tools.diagonals(ghenv, _mesh, _pattern_)
+diagonals = quads.diagonals(ghenv, _mesh, _pattern_)

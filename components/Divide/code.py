@@ -6,6 +6,6 @@ again. Several curves in one branch give a branch each.
 L(k) = k L / N
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_curves as curves
 
-points = tools.divide(ghenv, _curve, _count_)
+points = curves.divide(ghenv, _curve, _count_)

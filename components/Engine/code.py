@@ -8,9 +8,9 @@ met, wherever it is moved to, also after a reset.
 M a = F - drag v until |F| / mean load <= residual
 """
 
-from hookean_client import canvas
+from hookean_client import canvas_engine
 
-found = canvas.engine(ghenv, _forces, anchors_, settings_, geometry_, _reset, _on_)
+found = canvas_engine.solve(ghenv, _forces, anchors_, settings_, geometry_, _reset, _on_)
 iterations = found.iterations
 particles = found.particles
 geometry = found.geometry

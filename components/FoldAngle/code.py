@@ -6,6 +6,6 @@ Hinge. Lists are matched by the longest.
 Angle between the triangles start-end-tip 1 and end-start-tip 2
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_points as points
 
-angle = tools.fold_angle(ghenv, _start, _end, _tip_1, _tip_2)
+angle = points.fold_angle(ghenv, _start, _end, _tip_1, _tip_2)

@@ -6,9 +6,9 @@ have a goal each; points have one together.
 sum of weight (value - target)^2, or of weight x value without a target
 """
 
-from hookean_client import canvas_design
+from hookean_client import canvas_goals
 
-goals = canvas_design.goals(
+goals = canvas_goals.goals(
     ghenv,
     _kind,
     (points_, forces_, anchors_, meshes_),

@@ -6,6 +6,6 @@ edges. Several meshes in one branch give a branch each.
 Triangles start-end-tip 1 and end-start-tip 2
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_quads as quads
 
-start, end, tip_1, tip_2 = tools.hinge_points(ghenv, _mesh)
+start, end, tip_1, tip_2 = quads.hinge_points(ghenv, _mesh)

@@ -5,6 +5,6 @@ From each point to all later ones.
 Lines: n (n - 1) / 2 of n points
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_points as points
 
-lines = tools.interconnect_points(ghenv, _points)
+lines = points.interconnect_points(ghenv, _points)

@@ -6,6 +6,6 @@ hinges. The curve passes all points; those in one place are passed once.
 Spline of degree d over the lengths of the chords
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_curves as curves
 
-curve = tools.interpolate(ghenv, _points, _count_, _degree_)
+curve = curves.interpolate(ghenv, _points, _count_, _degree_)

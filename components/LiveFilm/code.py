@@ -6,6 +6,6 @@ The mesh as drawn may be coarse.
 Area: least, with the rim or the volume as given
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.live_film(ghenv, _mesh, _length, _volume_)
+mesh = remeshing.live_film(ghenv, _mesh, _length, _volume_)

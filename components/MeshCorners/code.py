@@ -6,6 +6,6 @@ one branch give a branch each.
 Sum of the angles of the faces at a vertex < limit
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_meshes as meshes
 
-corners, indices = tools.mesh_corners(ghenv, _mesh, _angle_, _order_)
+corners, indices = meshes.mesh_corners(ghenv, _mesh, _angle_, _order_)

@@ -6,6 +6,6 @@ edges of their own.
 Edges of a closed mesh without holes of V vertices and F faces: V + F - 2
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_meshes as meshes
 
-edges, naked = tools.mesh_edges(ghenv, _mesh)
+edges, naked = meshes.mesh_edges(ghenv, _mesh)

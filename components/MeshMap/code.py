@@ -7,6 +7,6 @@ and faces of the source, moved.
 p = u A + v B + w C + d h n in both meshes
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_points as points
 
-points = tools.mesh_map(ghenv, _point, _source, _target, _distance_)
+points = points.mesh_map(ghenv, _point, _source, _target, _distance_)

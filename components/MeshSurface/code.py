@@ -7,6 +7,6 @@ Trimmed faces are refused: mesh those in Rhino.
 Vertex (i, j) = S(u0 + i (u1 - u0) / U, v0 + j (v1 - v0) / V)
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_meshes as meshes
 
-mesh = tools.mesh_surface(ghenv, _surface, _u_, _v_)
+mesh = meshes.mesh_surface(ghenv, _surface, _u_, _v_)

@@ -5,6 +5,6 @@ Several meshes in one branch give a branch each.
 p(i) = vertex i
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_meshes as meshes
 
-points = tools.mesh_vertices(ghenv, _mesh)
+points = meshes.mesh_vertices(ghenv, _mesh)

@@ -6,6 +6,6 @@ a radius about the centre, normal to the axis, does not move.
 Cross ratios of distances: unchanged
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_points as points
 
-points = tools.moebius_transformation(ghenv, _points, _angle, _axis_, _centre_, _radius_)
+points = points.moebius_transformation(ghenv, _points, _angle, _axis_, _centre_, _radius_)

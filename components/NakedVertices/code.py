@@ -6,6 +6,6 @@ branch each.
 Naked: on an edge of one face only; clothed: in faces and on no such edge
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_meshes as meshes
 
-clothed_index, naked_index, clothed_points, naked_points = tools.naked_vertices(ghenv, _mesh)
+clothed_index, naked_index, clothed_points, naked_points = meshes.naked_vertices(ghenv, _mesh)

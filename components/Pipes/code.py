@@ -6,6 +6,6 @@ ends have flat caps. Connect the mesh to Refine with _smooth_ for round pipes.
 Ring: r / tan(a / 2) from its node, a the smallest angle there
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_lines as lines
 
-mesh = tools.pipes(ghenv, _lines, _radius, _sides_, _tolerance_)
+mesh = lines.pipes(ghenv, _lines, _radius, _sides_, _tolerance_)

@@ -6,6 +6,6 @@ an inner vertex close to a polygon. Force densities are the nearest to 1 that ba
 Line: q l long, normal to its edge
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_quads as quads
 
-lines, densities = tools.reciprocal_diagram(ghenv, _mesh)
+lines, densities = quads.reciprocal_diagram(ghenv, _mesh)

@@ -7,6 +7,6 @@ each.
 Faces: 4^level for each
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.refine(ghenv, _mesh, _level_, _smooth_)
+mesh = remeshing.refine(ghenv, _mesh, _level_, _smooth_)

@@ -7,6 +7,6 @@ longer one. Several meshes in one branch give a branch each.
 Faces: 2^level for each
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.refine_strips(ghenv, _mesh, _level_, _direction_)
+mesh = remeshing.refine_strips(ghenv, _mesh, _level_, _direction_)

@@ -8,6 +8,6 @@ Several meshes in one branch give a branch each.
 Edges: 4/5 to 4/3 of the length (Botsch and Kobbelt, 2004)
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.remesh(ghenv, _mesh, _length, _angle_, _iterations_)
+mesh = remeshing.remesh(ghenv, _mesh, _length, _angle_, _iterations_)

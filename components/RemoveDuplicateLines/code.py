@@ -5,6 +5,6 @@ The first of each kind stays; order and direction of the others are kept.
 Same: |a - p| and |b - q|, or |a - q| and |b - p|, at most the tolerance
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_lines as lines
 
-lines = tools.remove_duplicate_lines(ghenv, _lines, _tolerance_)
+lines = lines.remove_duplicate_lines(ghenv, _lines, _tolerance_)

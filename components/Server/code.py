@@ -3,9 +3,9 @@
 The Engine and all components that need the service start it by themselves where they can.
 """
 
-from hookean_client import canvas
+from hookean_client import canvas_server
 
-found = canvas.server(ghenv, start_, stop_, studio_)
+found = canvas_server.stand(ghenv, start_, stop_, studio_)
 status = found.status
 url = found.url
 version = found.version

@@ -6,6 +6,6 @@ little shorter than its pieces. Several curves in one branch give a branch each.
 N lines between N + 1 points at k L / N
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_curves as curves
 
-lines, lengths = tools.shatter(ghenv, _curve, _count_)
+lines, lengths = curves.shatter(ghenv, _curve, _count_)

@@ -6,6 +6,6 @@ Several polylines in one branch give a branch each.
 Angle between a piece and the next > limit
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_curves as curves
 
-corners, parts = tools.split_at_corners(ghenv, _polyline, _angle_)
+corners, parts = curves.split_at_corners(ghenv, _polyline, _angle_)

@@ -5,6 +5,6 @@ Faces are in one strip where they share an edge of a family, the rungs of a ladd
 Strip: faces joined across warp, or weft
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_quads as quads
 
-strips = tools.strips(ghenv, _mesh, _direction_)
+strips = quads.strips(ghenv, _mesh, _direction_)

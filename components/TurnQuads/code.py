@@ -5,6 +5,6 @@ The second side of each quad becomes the first, so many times. Triangles stay.
 Corners a b c d: b c d a
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.turn_quads(ghenv, _mesh, _turns_)
+mesh = remeshing.turn_quads(ghenv, _mesh, _turns_)

@@ -6,6 +6,6 @@ their order, the lengths of their sides and of the diagonals on which quads are 
 Triangles: the same lengths in the plane
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_remeshing as remeshing
 
-mesh = tools.unroll_strips(ghenv, _mesh, _direction_, _gap_)
+mesh = remeshing.unroll_strips(ghenv, _mesh, _direction_, _gap_)

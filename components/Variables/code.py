@@ -8,6 +8,6 @@ with the field mass, their masses vary.
 lower <= u <= upper
 """
 
-from hookean_client import canvas_design
+from hookean_client import canvas_goals
 
-variables = canvas_design.variables(ghenv, _force, _field, anchors_, _axes_, _tie_, lower_, upper_, name_)
+variables = canvas_goals.variables(ghenv, _force, _field, anchors_, _axes_, _tie_, lower_, upper_, name_)

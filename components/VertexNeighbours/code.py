@@ -7,6 +7,6 @@ faces at the vertex.
 A branch of neighbours for each vertex
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_meshes as meshes
 
-points, neighbours, indices, normals = tools.vertex_neighbours(ghenv, _mesh, vertices_)
+points, neighbours, indices, normals = meshes.vertex_neighbours(ghenv, _mesh, vertices_)

@@ -7,6 +7,6 @@ strict is False. Several meshes in one branch give a branch each.
 Opposite sides of a quad: one family; neighbouring sides: the other
 """
 
-from hookean_client import canvas_tools as tools
+from hookean_client import canvas_quads as quads
 
-warp, weft, warp_naked, weft_naked = tools.warp_weft(ghenv, _mesh, _strict_)
+warp, weft, warp_naked, weft_naked = quads.warp_weft(ghenv, _mesh, _strict_)

@@ -6,34 +6,21 @@ other goals or another scene start it again from the best values so far. For Pyt
 
 import hashlib
 
-from . import canvas, canvas_engine, canvas_sweep
+from . import __version__ as VERSION
+from .canvas_values import flag
+from .canvas_geometry import missing
+from . import canvas_setup as setup
+from .canvas_items import text
+from .canvas_values import word
+from . import canvas_words as words
+from . import canvas_sweep
 from . import canvas_geometry as geometry
 from . import canvas_link as link
 from . import canvas_scene as compose
-from . import canvas_tools as tools
-from .canvas_geometry import TEXT, Unfit, listed
+from .canvas_geometry import Unfit, listed
 
 LOOK = 120  # milliseconds to the next look at a search that runs
-KINDS = (
-    "position",
-    "length",
-    "force",
-    "force_density",
-    "load_path",
-    "output",
-    "reaction",
-    "area",
-    "volume",
-    "planarity",
-    "fairness",
-    "offset",
-    "strain_energy",
-    "frequency",
-)
-AXES = ("x", "y", "z", "xy", "xz", "yz", "xyz")
 METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp", "augmented_lagrangian")
-PARTICLES = ("drawn", "mass")  # fields of particles at points
-TIES = ("each", "all")
 _searches = {}  # by component in an open document
 
 
@@ -45,165 +32,16 @@ class Outputs(object):
     ) = None
 
 
-# texts
-
-
-def variables(ghenv, forces, field, anchors, axes, tie, lower, upper, name):
-    """What may vary as text: a column of each force that is named, where anchors hold their particles, or what of
-    particles at points varies: where they are drawn, or their mass."""
-
-    def work():
-        owners = [{"force": _name(item)} for item in listed(forces)]
-        places = geometry.points(anchors)
-        if not owners and places and _text(field) in PARTICLES:
-            owners, places = [{"points": places}], []
-        held = [{"anchor_at": place} for place in places]
-        if owners and held:
-            raise Unfit("forces and anchors are connected; connect one of them")
-        if not owners and not held:
-            raise compose.missing("_force is missing; give the name of a force, or points of anchors")
-        own = {"tie": _tie(tie)}
-        if owners:
-            own["field"] = _text(field)
-            if not own["field"]:
-                raise compose.missing("_field is missing; give the name of a column, such as rest_length")
-        own.update(_some(axes=_axes(axes), lower=_number(lower, "lower"), upper=_number(upper, "upper")))
-        title = _text(name)
-        if title:
-            own["name"] = title
-        return [_item("variable", dict(owner, **own)) for owner in owners + held]
-
-    return canvas._told(ghenv, work)
-
-
-def goals(ghenv, kind, places, **given):
-    """Goals as text: `target`, or a range from `lower` to `upper` (neither: minimised), and `weight`."""
-    return canvas._told(ghenv, lambda: _measured("goal", kind, places, given, ("target", "lower", "upper", "weight")))
-
-
-def constraints(ghenv, kind, places, **given):
-    """Constraints as text: `lower`, `upper`."""
-
-    def work():
-        if not listed(given["lower"]) and not listed(given["upper"]):
-            raise compose.missing("lower_ or upper_ is missing; give one or both")
-        return _measured("constraint", kind, places, given, ("lower", "upper"))
-
-    return canvas._told(ghenv, work)
-
-
-def _measured(what, kind, places, given, limits):
-    """Entries of one quantity: at points, of forces, of anchors or of meshes."""
-    if not listed(kind):
-        raise compose.missing("_kind is missing; give one of %s" % ", ".join(KINDS))
-    kind = tools.word(kind, KINDS, "kind") if str(listed(kind)[0]).strip() in KINDS + _numbers() else _text(kind)
-    own = {"kind": kind}
-    own.update(_some(axes=_axes(given.get("axes")), column=_text(given.get("column")) or None))
-    for flag in ("equal", "total", "size"):
-        if listed(given.get(flag)) and tools.flag(given[flag], False):
-            own[flag] = True
-    elements = [int(geometry.number(item)) for item in listed(given.get("elements"))]
-    if elements:
-        own["elements"] = elements
-    for limit in limits:
-        own.update(_some(**{limit: _values(given[limit], limit)}))
-    if _text(given.get("name")):
-        own["name"] = _text(given["name"])
-    points, forces, anchors, meshes = places
-    owners = [{"force": _name(item)} for item in listed(forces)]
-    owners += [{"anchor_at": place} for place in geometry.points(anchors)]
-    owners += [{"mesh": mesh_name(geometry.mesh(item))} for item in listed(meshes)]
-    at = geometry.points(points)
-    if at:
-        owners.append({"points": at})
-    if not owners:
-        raise compose.missing("connect points, names of forces, anchors or meshes of which %s is measured" % kind)
-    return [_item(what, dict(own, **owner)) for owner in owners]
-
-
-def _numbers():
-    return tuple(str(i) for i in range(len(KINDS)))
-
-
-def mesh_name(plain):
-    """The name that a mesh has in the scene."""
-    return "mesh-" + hashlib.sha1(compose.text(link.packed(plain)).encode("ascii")).hexdigest()[:12]
-
-
-def _item(what, entry):
-    return compose.text({"kind": what, what: entry})
-
-
-def _tie(given):
-    """A word, or lists of elements that have one value each."""
-    rows = [items for _, items in geometry.branches(given) if items]
-    if not rows:
-        return "each"
-    if len(rows) == 1 and len(rows[0]) == 1:
-        return tools.word(rows[0], TIES, "tie")
-    try:
-        return [[int(geometry.number(item)) for item in row] for row in rows]
-    except Unfit as unfit:
-        raise Unfit("tie: %s" % unfit)
-
-
-def _some(**values):
-    return {name: value for name, value in values.items() if value is not None}
-
-
-def _text(given):
-    items = listed(given)
-    return str(items[0]).strip() if items else ""
-
-
-def _name(item):
-    """The name of a force: text, or the output of a force component."""
-    if isinstance(item, TEXT) and '"source"' in item:
-        [value] = compose.read([item], None, "_force")
-        return str(value.get("name") or value["source"]["title"])
-    found = str(item).strip()
-    return int(found) if found.isdigit() else found
-
-
-def _axes(given):
-    found = _text(given).lower()
-    if found and found not in AXES:
-        raise Unfit("axes: unknown %s; known: %s" % (geometry.called(found), ", ".join(AXES)))
-    return found or None
-
-
-def _number(given, name):
-    items = listed(given)
-    try:
-        return geometry.number(items[0]) if items else None
-    except Unfit as unfit:
-        raise Unfit("%s: %s" % (name, unfit))
-
-
-def _values(given, name):
-    """One number, several, or points as rows of three."""
-    try:
-        found = [compose._value(item) for item in listed(given)]
-    except Unfit as unfit:
-        raise Unfit("%s: %s" % (name, unfit))
-    if any(isinstance(one, (bool,) + TEXT) for one in found):
-        raise Unfit("%s: numbers or points are expected" % name)
-    return None if not found else found[0] if len(found) == 1 and not isinstance(found[0], list) else found
-
-
-# the search
-
-
 class Wanted(object):
     """The inputs of a search, read: the problem and its text without values to start from."""
 
     def __init__(self, scene, problem, makers, placed):
         self.scene, self.problem, self.makers, self.placed = scene, problem, makers, placed
         self.falls = None
-        self.text = compose.text(problem)
-        self.signature = hashlib.sha1((canvas.VERSION + self.text).encode("ascii")).hexdigest()
+        self.text = text(problem)
+        self.signature = hashlib.sha1((VERSION + self.text).encode("ascii")).hexdigest()
         count = {name: problem[name] for name in ("variables",)}
-        self.unknowns = compose.text([count, [one["name"] for one in scene["forces"]], compose.places(scene)])
+        self.unknowns = text([count, [one["name"] for one in scene["forces"]], compose.places(scene)])
 
 
 class Search(canvas_sweep.Sweep):
@@ -215,8 +53,8 @@ class Search(canvas_sweep.Sweep):
         problem = wanted.problem
         if self.best is not None and self.best[0] == wanted.unknowns:
             problem = dict(problem, start=self.best[1])
-        body = compose.text(problem).encode("ascii")
-        key = hashlib.sha1(canvas.VERSION.encode("ascii") + body).hexdigest() + self._again
+        body = text(problem).encode("ascii")
+        key = hashlib.sha1(VERSION.encode("ascii") + body).hexdigest() + self._again
         self.status = client.post("/v1/design", body, headers={"idempotency-key": key}, timeout=120.0)
         self.job, self.signature = "/v1/jobs/%s" % self.status["id"], wanted.signature
         if client.get(self.job)["status"] == "cancelled":
@@ -255,35 +93,35 @@ def _flat(value):
 def design(ghenv, forces, anchors, settings, rides, variables, goals, constraints, method, run):
     """One solution of the component: its outputs."""
     document = ghenv.Component.OnPingDocument()
-    key = (canvas.identity(ghenv), str(getattr(document, "RuntimeID", id(document))))
+    key = (words.identity(ghenv), str(getattr(document, "RuntimeID", id(document))))
     found = _searches.setdefault(key, Search())
     made = Outputs()
     given = (forces, anchors, settings, rides, variables, goals, constraints, method)
-    read = canvas._told(ghenv, lambda: _wanted(ghenv, *given))
+    read = words.told(ghenv, lambda: _wanted(ghenv, *given))
     if read is not None and found.wanted is not None and read.signature == found.wanted.signature:
         read = found.wanted
-    wanted = read if tools.flag(run, True) else None
+    wanted = read if flag(run, True) else None
     if wanted is not None or found.job is not None:
         found.look(wanted)
         if found.task is not None:
             found.task.wait(link.service.patience(link.WAIT))
         _tell(ghenv, found)
     else:
-        canvas.note(ghenv, "" if read is None else "off")
+        words.note(ghenv, "" if read is None else "off")
     if read is not None and found.answer is not None:
-        canvas._told(ghenv, lambda: _show(ghenv, made, found, read))
+        words.told(ghenv, lambda: _show(ghenv, made, found, read))
     return made
 
 
 def _wanted(ghenv, forces, anchors, settings, rides, variables, goals, constraints, method):
     read = compose.read([str(item) for item in listed(forces)], None, "_forces")
     if not read:
-        raise compose.missing("_forces is missing; connect the outputs of force components")
-    given = canvas_engine._anchors(ghenv, anchors)
+        raise missing("_forces is missing; connect the outputs of force components")
+    given = setup.anchors(ghenv, anchors)
     held = [dict(one, home=one["point"], target=one["target"] or one["point"]) for one in given]
     setting = compose.read(settings, "settings", "settings_")[-1:]
     carried = [compose.ride(item) for _, items in geometry.branches(rides) for item in items if item is not None]
-    unit = canvas_engine._length_unit()
+    unit = geometry.length_unit()
     scene = compose.compose(read, held, setting[0] if setting else None, [entry for entry, _ in carried], unit)
     problem = {"scene": scene}
     for name, value in (("variables", variables), ("goals", goals), ("constraints", constraints)):
@@ -291,13 +129,13 @@ def _wanted(ghenv, forces, anchors, settings, rides, variables, goals, constrain
         entries = [one[what] for one in compose.read(listed(value), what, name)]
         problem[name] = [_placed(entry, given, what) for entry in entries]
     if not problem["variables"]:
-        raise compose.missing("_variables is missing; connect the output of Variables")
+        raise missing("_variables is missing; connect the output of Variables")
     if not problem["goals"] and not problem["constraints"]:
-        raise compose.missing("_goals is missing; connect the output of Goals or of Constraints")
+        raise missing("_goals is missing; connect the output of Goals or of Constraints")
     if listed(method):
-        problem["settings"] = {"method": tools.word(method, METHODS, "method")}
+        problem["settings"] = {"method": word(method, METHODS, "method")}
     makers = [make for _, make in carried]
-    return Wanted(scene, problem, makers, lambda said: canvas_engine.placed(read, held, said))
+    return Wanted(scene, problem, makers, lambda said: setup.placed(read, held, said))
 
 
 def _placed(entry, anchors, what):
@@ -316,36 +154,36 @@ def _tell(ghenv, found):
     """Words on how the search stands, and the next look at it."""
     task, status = found.task, found.status
     if task is not None and task.done and task.problem is not None and not link.wants_server(task.problem):
-        canvas.note(ghenv, "refused")
+        words.note(ghenv, "refused")
         said = task.trouble.replace("/scene/", "/")
-        canvas.error(ghenv, link.plainly(found.wanted.placed(said) if found.wanted is not None else said))
+        words.error(ghenv, link.plainly(found.wanted.placed(said) if found.wanted is not None else said))
         return
     trouble = task.trouble if task is not None else None
     if trouble:
-        (canvas.remark if task.patient else canvas.warning)(ghenv, trouble)
+        (words.remark if task.patient else words.warning)(ghenv, trouble)
     if found.settled:
         if found.wanted is None:
-            canvas.note(ghenv, "off")
+            words.note(ghenv, "off")
         elif status["status"] == "failed":
-            canvas.note(ghenv, "failed")
-            canvas.error(ghenv, link.plainly(status["message"]))
+            words.note(ghenv, "failed")
+            words.error(ghenv, link.plainly(status["message"]))
         else:
             _tell_end(ghenv, found)
         return
     progress = (status or {}).get("progress") if found.ours else None
-    canvas.note(ghenv, "objective %.4g" % progress["objective"] if progress else "working")
-    canvas.schedule(ghenv, LOOK if not trouble else 500)
+    words.note(ghenv, "objective %.4g" % progress["objective"] if progress else "working")
+    words.schedule(ghenv, LOOK if not trouble else 500)
 
 
 def _tell_end(ghenv, found):
     answer = found.answer
     if answer is None:
         return
-    canvas.note(ghenv, "%.4g" % answer["objective"] if answer["status"] == "converged" else answer["status"])
+    words.note(ghenv, "%.4g" % answer["objective"] if answer["status"] == "converged" else answer["status"])
     if answer["status"] != "converged":
-        canvas.warning(ghenv, answer["message"])
+        words.warning(ghenv, answer["message"])
     for sentence in answer["warnings"] + (found.rows or {}).get("warnings", []):
-        canvas.warning(ghenv, link.plainly(found.wanted.placed(sentence)))
+        words.warning(ghenv, link.plainly(found.wanted.placed(sentence)))
 
 
 def _show(ghenv, made, found, wanted):
@@ -366,7 +204,7 @@ def _show(ghenv, made, found, wanted):
         from .canvas_moments import places
 
         made.geometry = [make(places(one)) for one, make in zip(result["geometry"], wanted.makers)]
-    made.scene = compose.text(answer["scene"])
+    made.scene = text(answer["scene"])
     made.report = [answer["message"]] + [
         _bound(entry) for entry in answer["variables"] if any(_flat(entry["at_bound"]))
     ]

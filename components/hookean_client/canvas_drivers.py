@@ -1,16 +1,18 @@
 """Components that count solutions of the canvas: Counter, Sequence and Trail. No service is asked. For Python 2.7 to
 3.13."""
 
-from . import canvas
+from .canvas_geometry import missing
+from . import canvas_words as words
 from . import canvas_geometry as geometry
-from .canvas_tools import below, flag, whole
+from .canvas_branches import below
+from .canvas_values import flag, whole
 
 _counts = {}  # how many solutions a component has counted, by component and run
 _trails = {}  # the places of each point so far, by component and run
 
 
 def _key(ghenv):
-    return canvas.identity(ghenv), canvas.run_of(ghenv)
+    return words.identity(ghenv), words.run_of(ghenv)
 
 
 def counter(ghenv, reset, interval):
@@ -22,10 +24,10 @@ def counter(ghenv, reset, interval):
         held = flag(reset, False)
         _counts[key] = 0 if held or key not in _counts else _counts[key] + 1
         if pause and not held:
-            canvas.schedule(ghenv, pause)
+            words.schedule(ghenv, pause)
         return _counts[key]
 
-    return canvas._told(ghenv, work)
+    return words.told(ghenv, work)
 
 
 def sequence(ghenv, frames, restart, interval):
@@ -39,10 +41,10 @@ def sequence(ghenv, frames, restart, interval):
         frame = 0 if held or key not in _counts else min(_counts[key] + 1, last)
         _counts[key] = frame
         if frame < last and not held:
-            canvas.schedule(ghenv, pause)
+            words.schedule(ghenv, pause)
         return frame == 0, frame
 
-    return canvas._told(ghenv, work) or (None, None)
+    return words.told(ghenv, work) or (None, None)
 
 
 def trail(ghenv, points, reset, record):
@@ -51,7 +53,7 @@ def trail(ghenv, points, reset, record):
     def work():
         rows = geometry.points(points)
         if not rows:
-            raise canvas.scene.missing("points are missing; connect them")
+            raise missing("points are missing; connect them")
         key = _key(ghenv)
         known = _trails.get(key)
         if known is None or flag(reset, False) or len(known) != len(rows):
@@ -63,4 +65,4 @@ def trail(ghenv, points, reset, record):
         curves = [geometry.to_polyline(path) if len(path) > 1 else None for path in known]
         return curves, below(ghenv, [[geometry.to_point(row) for row in path] for path in known])
 
-    return canvas._told(ghenv, work) or (None, None)
+    return words.told(ghenv, work) or (None, None)

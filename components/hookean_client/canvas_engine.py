@@ -7,17 +7,18 @@ Python 2.7 to 3.13.
 import hashlib
 import os
 
-from . import canvas
+from . import canvas_words as words
 from . import canvas_draw as drawing
 from . import canvas_geometry as geometry
 from . import canvas_grab as grabbing
 from . import canvas_link as link
 from . import canvas_scene as compose
-from .canvas_geometry import listed
+from . import canvas_setup as setup
+from .canvas_geometry import listed, missing
+from .canvas_items import plain, text
 from .canvas_player import Player
 
 FRAME, POLL = 30, 100  # milliseconds to the next solution: while it runs, while it waits
-MANY = 8  # sentences on forces and anchors with points that met nothing
 OUTPUTS = ("iterations", "particles", "geometry", "forces", "reactions", "residual", "energy", "status", "report",
            "results")  # fmt: skip
 _players, _keys = {}, {}  # by session; the session of a component in an open document
@@ -47,10 +48,10 @@ class Wanted(object):
         return compose.compose(self.forces, anchors, self.setting, carried, self.length)
 
 
-def solve(ghenv, forces, anchors, settings, rides, reset, on=True):
+def solve(ghenv, forces, anchors=None, settings=None, rides=None, reset=True, on=True):
     """One solution of the engine: its outputs."""
     player = _player(ghenv)
-    wanted = canvas._told(ghenv, lambda: _wanted(ghenv, player, forces, anchors, settings, rides, (reset, on)))
+    wanted = words.told(ghenv, lambda: _wanted(ghenv, player, forces, anchors, settings, rides, (reset, on)))
     if wanted is None:
         return Outputs()
     player.wanted = wanted
@@ -74,7 +75,7 @@ def solve(ghenv, forces, anchors, settings, rides, reset, on=True):
 def _player(ghenv):
     """The player of a component: one for each component in each file; another one, that goes on from the first, once
     the definition is saved under another name."""
-    document, component = ghenv.Component.OnPingDocument(), canvas.identity(ghenv)
+    document, component = ghenv.Component.OnPingDocument(), words.identity(ghenv)
     path = getattr(document, "FilePath", None)
     path = os.path.normcase(os.path.abspath(str(path))) if path else ""
     digest = hashlib.sha1(path.encode("utf-8")).hexdigest()[:16]
@@ -82,7 +83,7 @@ def _player(ghenv):
     here = (component, str(getattr(document, "RuntimeID", id(document))))
     before = _players.get(_keys.get(here)) if _keys.get(here) != key else None
     if key not in _players or _players[key].ended:
-        title = "%s in %s" % (canvas.source(ghenv)["title"], os.path.basename(path) or "a new definition")
+        title = "%s in %s" % (words.source(ghenv)["title"], os.path.basename(path) or "a new definition")
         _players[key] = Player(key, title, before)
     _keys[here] = key
     _players[key].component = ghenv.Component
@@ -95,13 +96,13 @@ def _player(ghenv):
 def _wanted(ghenv, player, forces, anchors, settings, rides, switches):
     texts = [str(item) for item in listed(forces)]
     if not texts:
-        raise compose.missing("_forces is missing; connect the outputs of force components")
-    held = _anchors(ghenv, anchors)
+        raise missing("_forces is missing; connect the outputs of force components")
+    held = setup.anchors(ghenv, anchors)
     setting = compose.read(settings, "settings", "settings_")[-1:]
     held_at_start, on = [_switch(flag) for flag in switches]
     carried, prints = _rides(player, rides)
-    length = _length_unit()
-    signature = [texts, compose.text([held, setting, prints, held_at_start, on, length])]
+    length = geometry.length_unit()
+    signature = [texts, text([held, setting, prints, held_at_start, on, length])]
     old = player.wanted
     if old is not None and old.signature == signature:
         return old
@@ -115,57 +116,7 @@ def _wanted(ghenv, player, forces, anchors, settings, rides, switches):
 def _switch(given):
     """A truth value; True where nothing is connected."""
     flags = listed(given)
-    return not flags or bool(compose._value(flags[0]))
-
-
-def _anchors(ghenv, given):
-    """Anchors {"name", "group", "label", "branch", "point", "target", "axes"} in the order they come."""
-    found = []
-    for path, items in geometry.branches(given):
-        owners = _owners(ghenv, "anchors_", path, len(items))
-        for number, item in enumerate(items):
-            item = geometry.value(item)
-            if item is None:
-                continue
-            if isinstance(item, geometry.TEXT) and '"kind"' in item:
-                [value] = compose.read([item], "anchors", "anchors_")
-                source, ones = value["source"], value["items"]
-                owner, branch = (source["component"], source["title"]), "run %d" % source["run"]
-                rows = [(branch, i, one["point"], one["target"], one["axes"]) for i, one in enumerate(ones)]
-            else:
-                owner, first = owners[number]
-                rows = [(path, number - first, geometry.point(item), None, "xyz")]
-            for place, i, point, target, axes in rows:
-                group = "%s %s" % (owner[0], place)
-                label = "anchor %d of %s, branch %s" % (i, owner[1] or "anchors_", place)
-                found.append({"name": "%s %d" % (group, i), "group": group, "label": label, "branch": path,
-                              "point": point, "target": target, "axes": axes})  # fmt: skip
-    return found
-
-
-def _owners(ghenv, name, path, count):
-    """For each item of a branch who it comes from, as (id, name), and the number of the first item from there."""
-    params = [one for one in ghenv.Component.Params.Input if name in (one.NickName, one.Name)]
-    sources = list(params[0].Sources) if params else []
-    found = []
-    for source in sources:
-        owner = (str(source.InstanceGuid), str(getattr(source, "NickName", "")))
-        size = count if len(sources) == 1 else _size(source, path)
-        found += [(owner, len(found))] * size
-    if len(found) != count:
-        found = [(("input", name), 0)] * count
-    return found
-
-
-def _size(source, path):
-    """How many items a source has on a path."""
-    data = getattr(source, "VolatileData", None)
-    if data is None:
-        return 0
-    for i, known in enumerate(data.Paths):
-        if str(known) == path:
-            return len(list(data.get_Branch(known) if hasattr(data, "get_Branch") else data.Branches[i]))
-    return 0
+    return not flags or bool(plain(flags[0]))
 
 
 def _rides(player, given):
@@ -185,26 +136,13 @@ def _rides(player, given):
                 ride = [one for _, row in player.wanted.rides for one in row][at]
             else:
                 ride = compose.ride(item)
-            prints.append(mark or [path, i, compose.text(ride[0])])
+            prints.append(mark or [path, i, text(ride[0])])
             made.append(ride)
         found.append((path, made))
     return found, prints
 
 
-def _length_unit():
-    """The unit of the document in Rhino, None if hookean does not have it."""
-    try:
-        import Rhino
-
-        name = str(Rhino.RhinoDoc.ActiveDoc.ModelUnitSystem)
-    except (ImportError, AttributeError):
-        return None
-    units = {"Millimeters": "mm", "Centimeters": "cm", "Decimeters": "dm", "Meters": "m", "Kilometers": "km",
-             "Inches": "in", "Feet": "ft", "Yards": "yd"}  # fmt: skip
-    return units.get(name)
-
-
-# words
+# sentences
 
 
 def _tell(ghenv, player):
@@ -212,18 +150,18 @@ def _tell(ghenv, player):
     trouble, task = player.trouble, player.task
     refused = task is not None and task.done and player.refused is player.wanted
     if refused:
-        canvas.note(ghenv, "refused")
-        canvas.error(ghenv, placed(player.wanted.forces, player.wanted.anchors, trouble))
+        words.note(ghenv, "refused")
+        words.error(ghenv, setup.placed(player.wanted.forces, player.wanted.anchors, trouble))
         return
     if trouble:
         patient = task is not None and task.patient
-        (canvas.remark if patient else canvas.warning)(ghenv, trouble)
-        canvas.note(ghenv, "working" if patient else "no server" if player.kept is None else "waiting")
-        canvas.schedule(ghenv, 2 * POLL)
+        (words.remark if patient else words.warning)(ghenv, trouble)
+        words.note(ghenv, "working" if patient else "no server" if player.kept is None else "waiting")
+        words.schedule(ghenv, 2 * POLL)
         return
     if player.kept is not player.wanted or not player.frame():
-        canvas.note(ghenv, "working")
-        canvas.schedule(ghenv, POLL // 2)
+        words.note(ghenv, "working")
+        words.schedule(ghenv, POLL // 2)
         return
     frame = player.frame()
     said = {"running": "iteration %d", "converged": "at rest after %d"}.get(frame["status"], frame["status"])
@@ -231,43 +169,22 @@ def _tell(ghenv, player):
         said = "held at the start"
     elif player.kept.paused and frame["status"] != "converged":
         said = "paused at iteration %d"
-    canvas.note(ghenv, said % frame["iteration"] if "%" in said else said)
+    words.note(ghenv, said % frame["iteration"] if "%" in said else said)
     if not player.settled:
-        canvas.schedule(ghenv, FRAME)
-
-
-def placed(forces, anchors, said):
-    """A sentence on a scene of these forces and anchors with the names of components in the place of pointers."""
-    for i, one in enumerate(forces):
-        title = one["source"]["title"]
-        for name in ("points", "lines", "mesh"):
-            said = said.replace("/forces/%d/%s: %s: " % (i, name, one.get("name") or title), title + ": ")
-        said = said.replace("/forces/%d/" % i, title + ", ")
-    for i, one in enumerate(anchors):
-        said = said.replace("/anchors/%d/points: %s: " % (i, one["name"]), one["label"] + ": ")
-    said = said.replace("/settings/", "Settings, ").replace("weld_tolerance", "the tolerance in Settings")
-    return said[:1].upper() + said[1:]
-
-
-def sentences(report, forces, anchors):
-    """The sentences of a report: what met no particle, a sentence for each force and anchor, then warnings."""
-    missed = [placed(forces, anchors, one["message"]) + "." for one in report["missed"]]
-    if len(missed) > MANY:
-        missed[MANY:] = ["%d more forces or anchors have points that met no particle." % (len(missed) - MANY)]
-    return missed + [placed(forces, anchors, one) for one in report["warnings"]]
+        words.schedule(ghenv, FRAME)
 
 
 def _warn(ghenv, player):
     """What met no particle, by the names of components, and other warnings."""
-    said = sentences(player.state["report"], player.kept.forces, player.kept.anchors)
+    said = setup.sentences(player.state["report"], player.kept.forces, player.kept.anchors)
     for sentence in said:
-        canvas.warning(ghenv, sentence)
+        words.warning(ghenv, sentence)
     frame = player.frame()
     if player.falls:
-        canvas.warning(ghenv, player.falls)
+        words.warning(ghenv, player.falls)
         said.append(player.falls)
     if frame["status"] == "diverged" and player.exact:
-        (canvas.warning if player.falls else canvas.error)(ghenv, player.state["message"])
+        (words.warning if player.falls else words.error)(ghenv, player.state["message"])
     player.shown.report = said + player.shown.report
 
 
@@ -358,7 +275,7 @@ def _results(player, places):
         told["start"] = [[player.topology["start"][p] for p in row] for row in rows]
         if turned:
             told["rotations"] = [[list(turned.get(p, (1.0, 0.0, 0.0, 0.0))) for p in row] for row in rows]
-        made.append(compose.text(told))
+        made.append(text(told))
     return made
 
 

@@ -1,6 +1,6 @@
 """Free fall: a form that nothing holds, under loads that do not cancel. For Python 2.7 to 3.13."""
 
-from . import canvas_link as link
+from .canvas_packed import unpacked
 
 HOLDING = ("anchor_spring", "pull_to_curve", "pull_to_mesh")  # these hold particles in every direction
 ROUNDING = 1e-6  # of the sizes of the loads: what rounding leaves of a sum that is zero
@@ -44,7 +44,7 @@ def _held(scene, lost):
 
 def _floors(scene):
     """The normals of all floors."""
-    found = [link.unpacked(one.get("normal")) or (0.0, 0.0, 1.0) for one in scene["forces"] if one["kind"] == "floor"]
+    found = [unpacked(one.get("normal")) or (0.0, 0.0, 1.0) for one in scene["forces"] if one["kind"] == "floor"]
     return found + ([(0.0, 0.0, 1.0)] if (scene.get("settings") or {}).get("floor") else [])
 
 
@@ -60,17 +60,17 @@ def _loads(scene):
 
 
 def _unary(scene, one):
-    vectors = link.unpacked(one.get("vector")) or [0.0, 0.0, 0.0]
+    vectors = unpacked(one.get("vector")) or [0.0, 0.0, 0.0]
     if isinstance(vectors[0], (list, tuple)):
         return [(vector, 1.0) for vector in vectors]
-    places = link.unpacked(one.get("points")) or link.unpacked(one.get("particles"))
+    places = unpacked(one.get("points")) or unpacked(one.get("particles"))
     return [(vectors, float(len(places if places is not None else _mesh(scene, one)[0])))]
 
 
 def _self_weight(scene, one):
     """The weight, or 1 where the lengths of its lines are not known here."""
-    direction = link.unpacked(one.get("direction")) or [0.0, 0.0, -1.0]
-    weights, lines = link.unpacked(one.get("per_length")), link.unpacked(one.get("lines"))
+    direction = unpacked(one.get("direction")) or [0.0, 0.0, -1.0]
+    weights, lines = unpacked(one.get("per_length")), unpacked(one.get("lines"))
     if one.get("total") is not None:
         weight = float(one["total"])
     elif lines:
@@ -97,7 +97,7 @@ _LOADS = {"unary": _unary, "self_weight": _self_weight, "pressure": _pressure}
 
 def _mesh(scene, one):
     """Vertices and faces of the mesh of a force; none where it has none."""
-    found = link.unpacked((scene.get("meshes") or {}).get(one.get("mesh"))) or {}
+    found = unpacked((scene.get("meshes") or {}).get(one.get("mesh"))) or {}
     return found.get("vertices") or [], found.get("faces") or []
 
 

@@ -7,11 +7,12 @@ import threading
 import uuid
 from collections import OrderedDict
 
-from . import canvas
-from . import canvas_engine as engine
+from . import canvas_ask as asking
+from .canvas_geometry import missing
+from .canvas_packed import unpacked
+from .canvas_values import whole
+from . import canvas_words as words
 from . import canvas_geometry as geometry
-from . import canvas_link as link
-from . import canvas_tools as tools
 from .canvas_geometry import Unfit, listed
 
 UNITS = {"Millimeters": "mm", "Centimeters": "cm", "Decimeters": "dm", "Meters": "m", "Kilometers": "km",
@@ -31,14 +32,14 @@ class Drawing(object):
 
 def rhino_file(ghenv, given, layers, names, u, v):
     """What is drawn in a file on some layers, under some names; surfaces are meshed u by v. Empty until it is there."""
-    return canvas._told(ghenv, lambda: _read(ghenv, given, layers, names, u, v)) or Drawing()
+    return words.told(ghenv, lambda: _read(ghenv, given, layers, names, u, v)) or Drawing()
 
 
 def _read(ghenv, given, layers, names, u, v):
     items = listed(given)
     if not items:
-        raise canvas.scene.missing("file is missing; give the path of a .3dm file")
-    query = {"u": tools.whole(u, 10, "u")[0], "v": tools.whole(v, 10, "v")[0]}
+        raise missing("file is missing; give the path of a .3dm file")
+    query = {"u": whole(u, 10, "u")[0], "v": whole(v, 10, "v")[0]}
     found = drawn(ghenv, file_of(ghenv, items[0]), query)
     if found is None:
         return None
@@ -49,16 +50,16 @@ def _read(ghenv, given, layers, names, u, v):
     made = Drawing()
     faults = [fault for fault in [_add(made, one) for one in chosen] if fault]
     for fault in faults[:MANY]:
-        canvas.warning(ghenv, fault)
+        words.warning(ghenv, fault)
     if len(faults) > MANY:
-        canvas.warning(ghenv, "%d more surfaces cannot be meshed." % (len(faults) - MANY))
+        words.warning(ghenv, "%d more surfaces cannot be meshed." % (len(faults) - MANY))
     made.unit, made.layers = UNITS.get(found["unit"], found["unit"]), there
     for sentence in found["warnings"]:
-        canvas.remark(ghenv, sentence)
-    here = engine._length_unit()
+        words.remark(ghenv, sentence)
+    here = geometry.length_unit()
     if here is not None and here != made.unit:
         said = "The lengths of this file are in %s, those of the document in %s; they are not converted."
-        canvas.warning(ghenv, said % (made.unit, here))
+        words.warning(ghenv, said % (made.unit, here))
     return made
 
 
@@ -179,7 +180,7 @@ def drawn(ghenv, place, query):
                 shared.append(_sent(client, place, query))
             return shared[1]
 
-    return canvas.ask(ghenv, (canvas.run_of(ghenv), "file"), signature, work)
+    return asking.ask(ghenv, (words.run_of(ghenv), "file"), signature, work)
 
 
 def _shared(signature):
@@ -200,4 +201,4 @@ def _sent(client, place, query):
     body = b"--" + line + head + data + b"\r\n--" + line + b"--\r\n"
     kind = {"content-type": "multipart/form-data; boundary=" + line.decode("ascii")}
     asked = dict(query, arrays="buffer")
-    return link.unpacked(client.request("POST", "/v1/geometry/3dm", body, asked, kind, timeout=300.0))
+    return unpacked(client.request("POST", "/v1/geometry/3dm", body, asked, kind, timeout=300.0))

@@ -19,6 +19,13 @@ class Unfit(Exception):
     """Something that is no such geometry or number, with a sentence."""
 
 
+def missing(said):
+    """An `Unfit` for something that is not there yet, which is no fault."""
+    found = Unfit(said)
+    found.missing = True
+    return found
+
+
 def value(item):
     """What is inside Grasshopper's own wrapper of an item."""
     while hasattr(item, "ScriptVariable"):
@@ -258,6 +265,19 @@ def _nurbs(plain, controls, places):
 
 def _count(items):
     return int(items.Count) if hasattr(items, "Count") and not callable(items.Count) else len(items)
+
+
+def length_unit():
+    """The unit of the document in Rhino, None if hookean does not have it."""
+    try:
+        import Rhino
+
+        name = str(Rhino.RhinoDoc.ActiveDoc.ModelUnitSystem)
+    except (ImportError, AttributeError):
+        return None
+    units = {"Millimeters": "mm", "Centimeters": "cm", "Decimeters": "dm", "Meters": "m", "Kilometers": "km",
+             "Inches": "in", "Feet": "ft", "Yards": "yd"}  # fmt: skip
+    return units.get(name)
 
 
 # back to Rhino

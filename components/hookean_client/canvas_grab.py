@@ -7,10 +7,13 @@ is free again. The mouse never waits: a thread sends the newest place to the ses
 
 import threading
 
-from . import FAILURES, Problem, canvas
+from .canvas_geometry import Unfit
+from .canvas_items import text
+from . import canvas_words as words
+from . import FAILURES, Problem
 from . import canvas_geometry as geometry
 from . import canvas_link as link
-from .canvas_tools import default, flag
+from .canvas_values import default, flag
 
 KIND, RANGE = "grab", 3.0
 TINY = 1e-12
@@ -26,12 +29,12 @@ def grab(ghenv, on, reach, strength):
         for name, given, usual in (("range", reach, RANGE), ("strength", strength, 0.0)):
             number = geometry.number(default(given, usual)[0])
             if not number >= 0.0 or number > 1e12:
-                raise canvas.Unfit("%s: %s given; a number from 0 to 1e12 is expected" % (name, number))
+                raise Unfit("%s: %s given; a number from 0 to 1e12 is expected" % (name, number))
             numbers.append(number)
-        source = canvas.source(ghenv)
-        return canvas.scene.text({"kind": KIND, "range": numbers[0], "strength": numbers[1], "source": source})
+        source = words.source(ghenv)
+        return text({"kind": KIND, "range": numbers[0], "strength": numbers[1], "source": source})
 
-    return canvas._told(ghenv, work)
+    return words.told(ghenv, work)
 
 
 def follow(ghenv, player, wanted):
@@ -111,7 +114,7 @@ class Hand(object):
             thread = threading.Thread(target=self._work, name="hookean-grab")
             thread.daemon = True
             thread.start()
-        canvas.schedule(self.ghenv, 1)
+        words.schedule(self.ghenv, 1)
 
     def _work(self):
         """Send the newest goal, until there is none that was not sent."""

@@ -4,12 +4,10 @@ A component asks with `Task`s and looks at them in this solution and the next on
 tried again by itself. For Python 2.7 to 3.13.
 """
 
-import base64
-import struct
 import threading
 import time
 
-from . import FAILURES, Problem, buffer, connect
+from . import FAILURES, Problem, connect
 
 WAIT = 0.25  # seconds a component may hold the canvas up in a solution
 GLANCE = 0.005  # seconds that let threads work
@@ -167,34 +165,3 @@ def plainly(said):
         words = place.strip("/").replace("/", " ")
         said = (words[:1].upper() + words[1:] + ": " if words else "") + rest
     return said if said.endswith((".", "?", "!")) else said + "."
-
-
-def packed(value):
-    """Lists of points and of whole numbers as buffers, all the way down; other values as they are."""
-    if isinstance(value, dict):
-        return {key: packed(one) for key, one in value.items()}
-    flat = value if isinstance(value, (list, tuple)) else []
-    if not flat or not isinstance(flat[0], (list, tuple)):
-        return value
-    while flat and isinstance(flat[0], (list, tuple)):
-        flat = [part for row in flat for part in row]
-    kinds = set(map(type, flat))
-    if not flat or kinds & {dict, bool, type(None)}:
-        return value
-    return buffer(value, "d" if float in kinds else "q")
-
-
-def unpacked(value):
-    """The same with buffers as lists of lists."""
-    if isinstance(value, list):
-        return [unpacked(one) for one in value]
-    if not isinstance(value, dict):
-        return value
-    if set(value) != {"dtype", "shape", "base64"}:
-        return {key: unpacked(one) for key, one in value.items()}
-    raw = base64.b64decode(value["base64"])
-    code, size = {"<f8": ("d", 8), "<i8": ("q", 8), "<f4": ("f", 4), "<i4": ("i", 4)}[value["dtype"]]
-    flat = list(struct.unpack("<%d%s" % (len(raw) // size, code), raw))
-    for length in reversed(value["shape"][1:]):
-        flat = [flat[i : i + length] for i in range(0, len(flat), length)] if length else [[]] * value["shape"][0]
-    return flat

@@ -2,9 +2,13 @@
 
 import hashlib
 
-from . import canvas, canvas_engine
+from . import canvas_ask as asking
+from .canvas_geometry import missing
+from .canvas_items import text
+from .canvas_packed import unpacked
+from . import canvas_words as words
+from . import canvas_setup
 from . import canvas_geometry as geometry
-from . import canvas_link as link
 from . import canvas_scene as compose
 from .canvas_geometry import Unfit, listed
 
@@ -23,42 +27,42 @@ def moments(ghenv, forces, anchors, settings, rides, times):
     found = Moments()
 
     def work():
-        made, steps, step, makers, words = _asked(ghenv, forces, anchors, settings, rides, times)
+        made, steps, step, makers, sentences = _asked(ghenv, forces, anchors, settings, rides, times)
 
         def relax(client):
             return [client.relax(one, query={"arrays": "buffer"}, timeout=600.0) for one in made]
 
-        signature = hashlib.sha1(compose.text(made).encode("utf-8")).hexdigest()
-        answers = canvas.ask(ghenv, (canvas.run_of(ghenv), "moments"), signature, relax)
+        signature = hashlib.sha1(text(made).encode("utf-8")).hexdigest()
+        answers = asking.ask(ghenv, (words.run_of(ghenv), "moments"), signature, relax)
         if answers is None:
             return
-        answers = [link.unpacked(one) for one in answers]
+        answers = [unpacked(one) for one in answers]
         rows = [[geometry.to_point(place) for place in one["particles"]] for one in answers]
         found.particles = geometry.to_tree(_branches(rows))
         rows = [[make(places(entry)) for entry, make in zip(one["geometry"], makers)] for one in answers]
         found.geometry = geometry.to_tree(_branches(rows))
         found.times = [count * step for count in steps]
-        found.report = _report(ghenv, answers, words)
+        found.report = _report(ghenv, answers, sentences)
 
-    canvas._told(ghenv, work)
+    words.told(ghenv, work)
     return found
 
 
 def _asked(ghenv, forces, anchors, settings, rides, times):
-    """A scene for each moment, its number of steps, the step [time], what makes geometry of moved points, and `words`
-    as `setup` gives them."""
-    scene, step, makers, words = setup(ghenv, forces, anchors, settings, rides)
+    """A scene for each moment, its number of steps, the step [time], what makes geometry of moved points, and what
+    makes sentences, as `setup` gives them."""
+    scene, step, makers, sentences = setup(ghenv, forces, anchors, settings, rides)
     try:
         wanted = [geometry.number(one) for one in listed(times)]
     except Unfit as unfit:
         raise Unfit("_times: %s" % unfit)
     if not wanted:
-        raise compose.missing("_times is missing; connect one moment or more [time]")
+        raise missing("_times is missing; connect one moment or more [time]")
     if min(wanted) < 0:
         raise Unfit("_times: %g is before the start; give moments from 0 on" % min(wanted))
     steps = [int(one / step + 0.5) for one in wanted]
     made = [dict(scene, settings=dict(scene["settings"], max_iterations=count)) for count in steps]
-    return made, steps, step, makers, words
+    return made, steps, step, makers, sentences
 
 
 def setup(ghenv, forces, anchors, settings, rides):
@@ -66,18 +70,18 @@ def setup(ghenv, forces, anchors, settings, rides):
     moved points, and what makes sentences for people of a report on it."""
     read = compose.read(forces, None, "_forces")
     if not read:
-        raise compose.missing("_forces is missing; connect the outputs of force components")
+        raise missing("_forces is missing; connect the outputs of force components")
     held = [dict(one, home=one["point"], target=one["target"] or one["point"])
-            for one in canvas_engine._anchors(ghenv, anchors)]  # fmt: skip
+            for one in canvas_setup.anchors(ghenv, anchors)]  # fmt: skip
     setting = (compose.read(settings, "settings", "settings_")[-1:] or [None])[0]
     carried = [compose.ride(item) for _, items in geometry.branches(rides) for item in items if item is not None]
-    scene = compose.compose(read, held, setting, [entry for entry, _ in carried], canvas_engine._length_unit())
+    scene = compose.compose(read, held, setting, [entry for entry, _ in carried], geometry.length_unit())
     solver, step = scene["settings"].get("solver", "auto"), float(scene["settings"].get("time_step", STEP))
     if solver not in PHYSICAL:
         raise Unfit("settings_: %s has no physical time; moments need verlet or yoshida" % solver)
     fixed = {"solver": "yoshida" if solver == "yoshida" else "verlet", "tolerance": 0.0}
     made = dict(scene, settings=dict(scene["settings"], **fixed))
-    return made, step, [make for _, make in carried], lambda report: canvas_engine.sentences(report, read, held)
+    return made, step, [make for _, make in carried], lambda report: canvas_setup.sentences(report, read, held)
 
 
 def places(entry):
@@ -91,13 +95,13 @@ def _branches(rows):
     return [("{%d}" % i, row) for i, row in enumerate(rows)]
 
 
-def _report(ghenv, answers, words):
+def _report(ghenv, answers, sentences):
     """What a person should know: what met no particle, warnings, a motion that flew apart."""
-    said = words(answers[0]["report"])
+    said = sentences(answers[0]["report"])
     for sentence in said:
-        canvas.warning(ghenv, sentence)
+        words.warning(ghenv, sentence)
     for one in answers:
         if one["status"] == "diverged":
-            canvas.warning(ghenv, one["message"])
+            words.warning(ghenv, one["message"])
             said.append(one["message"])
     return said + ["%d particles, at rest or in motion at %d moments." % (len(answers[0]["particles"]), len(answers))]

@@ -7,6 +7,7 @@ those of a session that was left come back from its scene. For Python 2.7 to 3.1
 import threading
 import time
 
+from .canvas_packed import unpacked
 from . import Problem, connect
 from . import canvas_draw as drawing
 from . import canvas_fall as fall
@@ -181,7 +182,7 @@ class Player(object):
             except Problem:
                 self.anchors = before  # a scene that is refused gives no anchor a home
                 raise
-            self.topology = dict(link.unpacked(session.read("topology", arrays="buffer")), mark=form)
+            self.topology = dict(unpacked(session.read("topology", arrays="buffer")), mark=form)
             self.shared = None
         answer = self._set_going(session, wanted, new) or answer
         self.sent, self.form, self.where = scene, form, compose.places(scene)
@@ -211,11 +212,11 @@ class Player(object):
     def _fetch(self, session, _):
         began = link.now()
         before = session.read()
-        state = link.unpacked(session.state(arrays="buffer"))
+        state = unpacked(session.state(arrays="buffer"))
         state["at"] = (before["revision"], state["iterations"], state["status"])
         met = set(state["reactions"]["names"])
         if self.shared is None and any(one["name"] not in met for one in (self.sent or {}).get("anchors") or ()):
-            held = link.unpacked(session.read("anchors"))["anchors"]
+            held = unpacked(session.read("anchors"))["anchors"]
             self.shared = [(one["name"], p, one["axes"]) for one in held for p in one["particles"]]
         self.state, self._read = state, link.now()
         self._cost = self._read - began
@@ -241,7 +242,7 @@ class Player(object):
     def _recall(self, session):
         """The homes of the anchors of a session that was left."""
         try:
-            scene = link.unpacked(session.read("scene"))
+            scene = unpacked(session.read("scene"))
         except Problem as problem:
             if problem.status != 404:
                 raise

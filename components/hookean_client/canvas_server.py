@@ -13,6 +13,7 @@ try:
 except ImportError:  # Python 2
     from urllib import pathname2url
 
+from . import canvas_words as words
 from . import Problem, connect, state_folder
 from . import canvas_geometry as geometry
 from . import canvas_link as link
@@ -40,10 +41,10 @@ class Look(link.Task):
         return None
 
 
-def stand(ghenv, canvas, start, stop, studio):
-    """One solution of the component; `canvas` is the module that speaks on it."""
+def stand(ghenv, start, stop, studio):
+    """One solution of the component."""
     asked = tuple(_flag(flag) for flag in (start, stop, studio))
-    key = canvas.identity(ghenv)
+    key = words.identity(ghenv)
     before, task, shown = _looks.get(key, (None, None, Stand()))
     if task is None or before != asked or (task.done and link.now() - task.until > OLD):
         risen = [flag and not (before and before[i]) for i, flag in enumerate(asked)]
@@ -54,14 +55,14 @@ def stand(ghenv, canvas, start, stop, studio):
     trouble = task.trouble
     if trouble:
         shown = Stand(trouble, None, None, [])
-        canvas.warning(ghenv, trouble)
-        canvas.note(ghenv, "no server")
-        canvas.schedule(ghenv, 1000 * link.AGAIN)
+        words.warning(ghenv, trouble)
+        words.note(ghenv, "no server")
+        words.schedule(ghenv, 1000 * link.AGAIN)
     elif not task.done:
-        canvas.note(ghenv, "working")
-        canvas.schedule(ghenv, 100)
+        words.note(ghenv, "working")
+        words.schedule(ghenv, 100)
     else:
-        canvas.note(ghenv, "running")
+        words.note(ghenv, "running")
     return shown
 
 

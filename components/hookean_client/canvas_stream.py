@@ -2,11 +2,15 @@
 
 import hashlib
 
-from . import canvas, canvas_file
+from . import canvas_ask as asking
+from .canvas_geometry import missing
+from .canvas_packed import packed
+from .canvas_items import text
+from .canvas_packed import unpacked
+from . import canvas_words as words
+from . import canvas_file
 from . import canvas_geometry as geometry
-from . import canvas_link as link
 from . import canvas_moments as moments
-from . import canvas_scene as compose
 from .canvas_geometry import Unfit, listed
 
 FRAMES = 20000  # more of them are refused
@@ -24,16 +28,16 @@ def stream(ghenv, forces, anchors, settings, rides, file, column, force, scale, 
     found = Stream()
 
     def work():
-        scene, step, makers, words = moments.setup(ghenv, forces, anchors, settings, rides)
+        scene, step, makers, sentences = moments.setup(ghenv, forces, anchors, settings, rides)
         rows = _table(canvas_file.file_of(ghenv, _first(file, "_file")), str(_first(column, "_column")))
         loads = _loads(rows, geometry.point(_first(scale, "_scale")), float((listed(power) or [1.0])[0]))
         number = _number(scene, str(_first(force, "_force")))
         pieces = max(1, int(geometry.number((listed(every) or [0.1])[0]) / step + 0.5))
         scene = dict(scene, settings=dict(scene["settings"], sub_iterations=pieces))
         values, vectors = _frames(rows, loads, pieces * step)
-        told = compose.text([scene, number, vectors])
-        key = "stream:%s:%s" % (canvas.identity(ghenv), hashlib.sha1(told.encode("utf-8")).hexdigest()[:16])
-        states = canvas.ask(ghenv, "stream", key, lambda client: _played(client.session(key), scene, number, vectors))
+        told = text([scene, number, vectors])
+        key = "stream:%s:%s" % (words.identity(ghenv), hashlib.sha1(told.encode("utf-8")).hexdigest()[:16])
+        states = asking.ask(ghenv, "stream", key, lambda client: _played(client.session(key), scene, number, vectors))
         if states is None:
             return
         found.times, found.values = [i * pieces * step for i in range(len(values))], values
@@ -42,17 +46,17 @@ def stream(ghenv, forces, anchors, settings, rides, file, column, force, scale, 
         shapes = [[make(place) for make, place in zip(makers, state["geometry"])] for state in states]
         found.geometry = geometry.to_tree([("{%d}" % i, row) for i, row in enumerate(shapes)])
         found.report = ["%d frames of %g time, %d rows." % (len(states), pieces * step, len(rows))]
-        for sentence in words(states[0]["report"]):
-            canvas.warning(ghenv, sentence)
+        for sentence in sentences(states[0]["report"]):
+            words.warning(ghenv, sentence)
 
-    canvas._told(ghenv, work)
+    words.told(ghenv, work)
     return found
 
 
 def _first(given, name):
     items = listed(given)
     if not items:
-        raise compose.missing("%s is missing; connect it" % name)
+        raise missing("%s is missing; connect it" % name)
     return items[0]
 
 
@@ -109,7 +113,7 @@ def _frames(rows, loads, every):
 
 def _played(session, scene, number, vectors):
     """The state at each frame; the load is set at the start of a frame, and stands until the next one."""
-    session.put(link.packed(scene))
+    session.put(packed(scene))
     states, before = [], None
     try:
         for i, vector in enumerate(vectors):
@@ -118,7 +122,7 @@ def _played(session, scene, number, vectors):
             if vector != before:
                 session.edit({"forces": {str(number): {"vector": vector}}})
                 before = vector
-            state = link.unpacked(session.state(arrays="buffer"))
+            state = unpacked(session.state(arrays="buffer"))
             places = [moments.places(entry) for entry in state["geometry"]]
             kept = {name: state[name] for name in ("forces", "report")}
             states.append(dict(kept, geometry=places))

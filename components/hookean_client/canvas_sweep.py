@@ -8,12 +8,18 @@ import hashlib
 import json
 import uuid
 
-from . import canvas
+from . import __version__ as VERSION
+from .canvas_values import flag
+from .canvas_geometry import missing
+from . import canvas_setup as setup
+from .canvas_items import text
+from .canvas_items import plain
+from .canvas_values import word
+from . import canvas_words as words
 from . import canvas_fall as fall
 from . import canvas_geometry as geometry
 from . import canvas_link as link
 from . import canvas_scene as compose
-from . import canvas_tools as tools
 from .canvas_geometry import TEXT, Unfit, listed
 
 LOOK = 300  # milliseconds to the next look at a job that runs
@@ -111,31 +117,31 @@ class Wanted(object):
         self.scene, self.names, self.columns, self.placed = scene, names, columns, placed
         self.falls = None  # why its form falls freely, once the service has taken it
         self.patches = [_patch(names, values) for values in zip(*columns)]
-        self.body = compose.text({"scene": scene, "sweep": {"patches": self.patches}}).encode("ascii")
-        self.signature = hashlib.sha1(canvas.VERSION.encode("ascii") + self.body).hexdigest()
+        self.body = text({"scene": scene, "sweep": {"patches": self.patches}}).encode("ascii")
+        self.signature = hashlib.sha1(VERSION.encode("ascii") + self.body).hexdigest()
 
 
 def sweep(ghenv, forces, anchors, settings, scene, parameters, values, mode, results, run):
     """One solution of the component: its outputs."""
     document = ghenv.Component.OnPingDocument()
-    key = (canvas.identity(ghenv), str(getattr(document, "RuntimeID", id(document))))
+    key = (words.identity(ghenv), str(getattr(document, "RuntimeID", id(document))))
     found = _sweeps.setdefault(key, Sweep())
     made, given = Outputs(), (forces, anchors, settings, scene, parameters, values, mode)
-    read = canvas._told(ghenv, lambda: _wanted(ghenv, *given))
+    read = words.told(ghenv, lambda: _wanted(ghenv, *given))
     if read is not None and found.wanted is not None and read.signature == found.wanted.signature:
         read = found.wanted
-    wanted = read if tools.flag(run, False) else None
+    wanted = read if flag(run, False) else None
     if wanted is not None and wanted.falls:
-        canvas.warning(ghenv, wanted.falls)
+        words.warning(ghenv, wanted.falls)
     if wanted is not None or found.job is not None:
         found.look(wanted)
         if found.task is not None:
             found.task.wait(link.service.patience(link.WAIT))
         _tell(ghenv, found)
     else:
-        canvas.note(ghenv, "" if read is None else "off")
+        words.note(ghenv, "" if read is None else "off")
     if read is not None:
-        canvas._told(ghenv, lambda: _show(made, found, read, results))
+        words.told(ghenv, lambda: _show(made, found, read, results))
     return made
 
 
@@ -145,13 +151,13 @@ def sweep(ghenv, forces, anchors, settings, scene, parameters, values, mode, res
 def _wanted(ghenv, forces, anchors, settings, scene, parameters, values, mode):
     names = [_parameter(item) for item in listed(parameters)]
     if not names:
-        raise compose.missing("_parameters is missing; give names of fields, such as Springs.stiffness")
+        raise missing("_parameters is missing; give names of fields, such as Springs.stiffness")
     rows = [[_value(item) for item in items] for _, items in geometry.branches(values)]
     rows = [row for row in rows if row]
     if len(rows) != len(names):
         said = "values: %d branches for %d parameters; give a branch of values for each parameter"
         raise Unfit(said % (len(rows), len(names)))
-    columns = _columns(rows, tools.word(mode, ("product", "zip"), "mode"))
+    columns = _columns(rows, word(mode, ("product", "zip"), "mode"))
     made, placed = _scene(ghenv, forces, anchors, settings, scene)
     return Wanted(made, names, columns, placed)
 
@@ -167,7 +173,7 @@ def _parameter(item):
 
 def _value(item):
     """A value as JSON has it: a number, a flag, a word or a vector."""
-    return compose._value(geometry.value(item))
+    return plain(geometry.value(item))
 
 
 def _columns(rows, mode):
@@ -192,9 +198,9 @@ def _columns(rows, mode):
 
 def _patch(names, values):
     made = {}
-    for (owner, column), value in zip(names, values):
+    for (owner, column), one in zip(names, values):
         place = made.setdefault("settings", {}) if owner == "settings" else made.setdefault("forces", {})
-        (place if owner == "settings" else place.setdefault(owner, {}))[column] = value
+        (place if owner == "settings" else place.setdefault(owner, {}))[column] = one
     return made
 
 
@@ -213,44 +219,41 @@ def _scene(ghenv, forces, anchors, settings, scene):
             raise Unfit("scene: it is not the JSON text of a scene")
         return found, lambda said: said
     if not texts:
-        raise compose.missing("_forces is missing; connect the outputs of force components, or a scene")
-    from . import canvas_engine as engine
+        raise missing("_forces is missing; connect the outputs of force components, or a scene")
 
-    held = [
-        dict(one, home=one["point"], target=one["target"] or one["point"]) for one in engine._anchors(ghenv, anchors)
-    ]
+    held = [dict(one, home=one["point"], target=one["target"] or one["point"]) for one in setup.anchors(ghenv, anchors)]
     setting = compose.read(settings, "settings", "settings_")[-1:]
     read = compose.read([str(item) for item in texts], None, "_forces")
-    made = compose.compose(read, held, setting[0] if setting else None, [], engine._length_unit())
-    return made, lambda said: engine.placed(read, held, said)
+    made = compose.compose(read, held, setting[0] if setting else None, [], geometry.length_unit())
+    return made, lambda said: setup.placed(read, held, said)
 
 
-# words and outputs
+# sentences and outputs
 
 
 def _tell(ghenv, found):
     """Words on how the job stands, and the next look at it."""
     task, status = found.task, found.status
     if task is not None and task.done and task.problem is not None and not link.wants_server(task.problem):
-        canvas.note(ghenv, "refused")
+        words.note(ghenv, "refused")
         said = task.trouble.replace("/scene/", "/")
         said = found.wanted.placed(said) if found.wanted is not None else said
-        canvas.error(ghenv, link.plainly(said.replace("/sweep/forces/", "/")))
+        words.error(ghenv, link.plainly(said.replace("/sweep/forces/", "/")))
         return
     trouble = task.trouble if task is not None else None
     if trouble:
-        (canvas.remark if task.patient else canvas.warning)(ghenv, trouble)
+        (words.remark if task.patient else words.warning)(ghenv, trouble)
     for sentence in found.rows.get("warnings", ()) if found.ours and found.rows else ():
-        canvas.warning(ghenv, link.plainly(found.wanted.placed(sentence)))
+        words.warning(ghenv, link.plainly(found.wanted.placed(sentence)))
     if found.settled:
         told = "off" if found.wanted is None else "%d of %d" % (status["done"], status["total"])
-        canvas.note(ghenv, told)
+        words.note(ghenv, told)
         if found.wanted is not None and status["status"] == "failed":
-            canvas.error(ghenv, status["message"])
+            words.error(ghenv, status["message"])
         return
     told = "%d of %d" % (status["done"], status["total"]) if found.ours else "working"
-    canvas.note(ghenv, "no server" if trouble and not task.patient else told)
-    canvas.schedule(ghenv, LOOK if not trouble else 500)
+    words.note(ghenv, "no server" if trouble and not task.patient else told)
+    words.schedule(ghenv, LOOK if not trouble else 500)
 
 
 def _show(made, found, wanted, results):

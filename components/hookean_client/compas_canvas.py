@@ -6,9 +6,17 @@ the same engine.
 
 from __future__ import absolute_import
 
-from . import Problem, canvas, compas
+from .canvas_geometry import Unfit
+from . import canvas_ask as asking
+from . import canvas_geometry as geometry
+from . import canvas_items as items
+from .canvas_geometry import listed
+from .canvas_geometry import missing
+from .canvas_items import text
+from .canvas_packed import unpacked
+from . import canvas_words as words
+from . import Problem, compas
 from . import canvas_fall as fall
-from . import canvas_link as link
 from . import canvas_scene as scene
 
 
@@ -21,7 +29,7 @@ def springs(ghenv, structure, name=None, **columns):
 
 def load(ghenv, structure, vector=None, vertices=None, name=None):
     """Loads on vertices as text for the engine."""
-    vectors = [canvas.geometry.point(one) for one in canvas.listed(vector)] or None
+    vectors = [geometry.point(one) for one in listed(vector)] or None
     return _told(ghenv, lambda: _force(ghenv, compas.load(_structure(structure), vectors, _keys(vertices)), name))
 
 
@@ -32,8 +40,8 @@ def anchors(ghenv, structure, vertices=None, targets=None, x=True, y=True, z=Tru
     def make():
         found = _structure(structure)
         held = compas.anchors(found, _keys(vertices))
-        aims = canvas.geometry.points(targets) or None
-        return scene.anchors(canvas.source(ghenv), compas.values(held["points"]), aims, (x, y, z))
+        aims = geometry.points(targets) or None
+        return items.anchors(words.source(ghenv), compas.values(held["points"]), aims, (x, y, z))
 
     return _told(ghenv, make)
 
@@ -42,17 +50,17 @@ def structures(ghenv, items):
     """A Mesh of each of Rhino's meshes and one Graph of all lines, in order of appearance."""
 
     def make():
-        given = canvas.listed(items)
+        given = listed(items)
         if not given:
-            raise scene.missing("geometry is missing; connect meshes, lines or curves")
+            raise missing("geometry is missing; connect meshes, lines or curves")
         found, drawn = [], []
         for item in given:
-            if canvas.geometry.is_mesh(item):
-                plain = canvas.geometry.mesh(item)
+            if geometry.is_mesh(item):
+                plain = geometry.mesh(item)
                 found.append(compas.to_mesh(plain["vertices"], [_corners(face) for face in plain["faces"]]))
             else:
                 drawn.append(item)
-        return found + ([compas.to_graph(canvas.geometry.lines(drawn)[0])] if drawn else [])
+        return found + ([compas.to_graph(geometry.lines(drawn)[0])] if drawn else [])
 
     return _told(ghenv, make)
 
@@ -71,15 +79,15 @@ def relax(ghenv, given, forces, anchors_=None, settings_=None):
         branches = [(path, [_structure(item) for item in items]) for path, items in _branches(given)]
         flat = [item for _, items in branches for item in items]
         if not flat:
-            raise scene.missing("structures are missing; connect a COMPAS Mesh or Graph")
+            raise missing("structures are missing; connect a COMPAS Mesh or Graph")
         made, tolerance = _scene(flat, forces, anchors_, settings_)
-        answer = canvas.call(ghenv, "POST", "/v1/relax", made)
+        answer = asking.call(ghenv, "POST", "/v1/relax", made)
         if answer is None:
             return
         moved = iter(compas.relaxed(flat, answer, tolerance))
         rows = [(path, [next(moved) for _ in items]) for path, items in branches]
-        found.structures = canvas.geometry.to_tree(rows)
-        found.geometry = canvas.geometry.to_tree([(path, _drawn(items)) for path, items in rows])
+        found.structures = geometry.to_tree(rows)
+        found.geometry = geometry.to_tree([(path, _drawn(items)) for path, items in rows])
         found.status, found.residual = answer["status"], answer["residual"]
         found.report = _report(ghenv, answer, fall.sentence(made, fall.unmatched(answer["report"])))
 
@@ -91,14 +99,14 @@ def _scene(flat, forces, anchors_, settings_):
     """The scene, and the distance [length] within which vertices are one particle."""
     parts = scene.read(_flat(forces), None, "forces")
     if not parts:
-        raise scene.missing("forces are missing; connect COMPAS Springs")
+        raise missing("forces are missing; connect COMPAS Springs")
     setting = (scene.read(_flat(settings_), "settings", "settings") or [None])[0]
     held, given = [], _flat(anchors_)
-    for place in canvas.geometry.points([one for one in given if not isinstance(one, compas.TEXT)]):
+    for place in geometry.points([one for one in given if not isinstance(one, compas.TEXT)]):
         held.append({"name": "", "home": place, "target": place, "axes": "xyz"})
     for one in scene.read([one for one in given if isinstance(one, compas.TEXT)], "anchors", "anchors"):
         for item in one["items"]:
-            place, aim = link.unpacked(item["point"]), link.unpacked(item["target"])
+            place, aim = unpacked(item["point"]), unpacked(item["target"])
             told = {"name": one["source"]["title"], "home": place, "target": aim or place, "axes": item["axes"]}
             held.append(told)
     made = scene.compose(parts, held, setting, [])
@@ -114,8 +122,8 @@ def _report(ghenv, answer, falls):
     lines += ["%d coordinates were merged with other particles." % told["merged"]] if told["merged"] else []
     worth = ([falls] if falls else []) + list(told["warnings"]) + [_missed(one) for one in told["missed"]]
     for sentence in worth + ([answer["message"]] if answer["status"] != "converged" else []):
-        canvas.warning(ghenv, sentence)
-    canvas.note(ghenv, answer["status"].replace("_", " "))
+        words.warning(ghenv, sentence)
+    words.note(ghenv, answer["status"].replace("_", " "))
     return "\n".join(lines + worth)
 
 
@@ -126,39 +134,39 @@ def _missed(one):
 
 
 def _force(ghenv, made, name):
-    source = canvas.source(ghenv)
-    names = [str(one) for one in canvas.listed(name)]
-    return scene.text(dict(made, source=dict(source, title=names[0]) if names else source))
+    source = words.source(ghenv)
+    names = [str(one) for one in listed(name)]
+    return text(dict(made, source=dict(source, title=names[0]) if names else source))
 
 
 def _told(ghenv, make):
     """What `make()` makes; a sentence on the component, and None, where it cannot."""
     try:
         return make()
-    except canvas.Unfit as unfit:
+    except Unfit as unfit:
         said, missing = str(unfit), getattr(unfit, "missing", False)
     except Problem as problem:
         said, missing = problem.detail, False
-    canvas.say(ghenv, "Warning" if missing else "Error", said[:1].upper() + said[1:] + "." * (not said.endswith(".")))
+    words.say(ghenv, "Warning" if missing else "Error", said[:1].upper() + said[1:] + "." * (not said.endswith(".")))
     return None
 
 
 def _structure(item):
     if item is None:
-        raise scene.missing("a structure is missing; connect a COMPAS Mesh or Graph")
-    found = canvas.geometry.value(item)
+        raise missing("a structure is missing; connect a COMPAS Mesh or Graph")
+    found = geometry.value(item)
     compas.kind(found)
     return found
 
 
 def _values(given):
     """Numbers, or the name of an attribute; None where nothing is given."""
-    items = canvas.listed(given)
+    items = listed(given)
     numbers = []
     for item in items:
         try:
-            numbers.append(canvas.geometry.number(item))
-        except canvas.Unfit:
+            numbers.append(geometry.number(item))
+        except Unfit:
             if len(items) > 1:
                 raise
             return str(item)
@@ -167,7 +175,7 @@ def _values(given):
 
 def _keys(given):
     """Keys of vertices as text, so that 3, 3.0 and "3" are the same; None where none are given."""
-    items = canvas.listed(given)
+    items = listed(given)
     whole = [int(item) if isinstance(item, float) and item == int(item) else item for item in items]
     return [str(item).strip() for item in whole] or None
 
@@ -175,13 +183,13 @@ def _keys(given):
 def _branches(given):
     """Pairs of a path and items; a list may hold structures that could be walked through themselves."""
     if hasattr(given, "Paths"):
-        return canvas.geometry.branches(given)
+        return geometry.branches(given)
     items = given if isinstance(given, (list, tuple)) else [given]
     return [("{0}", [item for item in items if item is not None])]
 
 
 def _flat(given):
-    return [item for _, items in canvas.geometry.branches(given) for item in items if item is not None]
+    return [item for _, items in geometry.branches(given) for item in items if item is not None]
 
 
 def _corners(face):
@@ -198,13 +206,13 @@ def _drawn(items):
             number = {key: i for i, key in enumerate(at)}
             faces = [[number[key] for key in face] for face in compas.faces(item)]
             faces = [part for face in faces for part in _quads(face)]
-            found.append(canvas.geometry.to_mesh({"vertices": places, "faces": faces}))
+            found.append(geometry.to_mesh({"vertices": places, "faces": faces}))
         elif what in ("graph", "line"):
-            found += [canvas.geometry.to_line([at[a], at[b]]) for a, b in compas.edges(item)]
+            found += [geometry.to_line([at[a], at[b]]) for a, b in compas.edges(item)]
         elif what in ("polyline", "polygon"):
-            found.append(canvas.geometry.to_polyline(places + places[:1] * (what == "polygon")))
+            found.append(geometry.to_polyline(places + places[:1] * (what == "polygon")))
         else:
-            found += [canvas.geometry.to_point(place) for place in places]
+            found += [geometry.to_point(place) for place in places]
     return found
 
 

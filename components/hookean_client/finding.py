@@ -16,7 +16,13 @@ import sys
 import threading
 import time
 
-from . import FAILURES, REACH, Problem, _check, _cut, _now, _read, httplib
+try:
+    import http.client as httplib
+except ImportError:  # Python 2
+    import httplib
+
+from . import FAILURES, Problem
+from .client import REACH, _check, _cut, _now, _read
 
 STARTING = 30.0  # seconds a start may take
 ADVICE = "check who made it, then remove it, or set HOOKEAN_STATE to a folder that is yours alone."

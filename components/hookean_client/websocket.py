@@ -5,7 +5,8 @@ import hashlib
 import os
 import threading
 
-from . import FAILURES, REACH, Problem, _cut, _now, _read, _refusal, _shut
+from . import FAILURES, Problem
+from .client import REACH, _cut, _now, _read, _refusal, _shut
 
 PATIENCE = 60.0  # seconds a socket may be silent
 

@@ -12,7 +12,7 @@ MOTION = '''
 
 import math
 
-from hookean_client import canvas
+from hookean_client import canvas_ask, canvas_words
 
 STEP, FRAMES, MASS = 0.01, 500, 1.0  # s, at most, N s^2/cm
 EXTENSION = load / stiffness
@@ -54,7 +54,7 @@ def work(client):
     return [length(FRAMES), last * steps * STEP]
 
 
-found = canvas.ask(ghenv, (canvas.run_of(ghenv), "motion"), repr((load, stiffness, damping, steps)), work)
+found = canvas_ask.ask(ghenv, (canvas_words.run_of(ghenv), "motion"), repr((load, stiffness, damping, steps)), work)
 length_at_last, settled = found or (None, None)
 '''
 DOWN = """

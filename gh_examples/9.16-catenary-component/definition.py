@@ -37,7 +37,7 @@ weight = [Vector3d(*[x * length / count for x in g])]
 REFUSED = '''
 """How many of three lengths below the distance of A and B the catenary refuses."""
 
-from hookean_client import Problem, canvas
+from hookean_client import Problem, canvas_ask
 
 A, B, G = [[p.X, p.Y, p.Z] for p in (start, end, gravity)]
 least = sum((x - y) ** 2 for x, y in zip(A, B)) ** 0.5
@@ -56,7 +56,7 @@ def work(client):
     return count
 
 
-refused = canvas.ask(ghenv, "refused", repr((A, B, G)), work)
+refused = canvas_ask.ask(ghenv, "refused", repr((A, B, G)), work)
 '''
 CATENARY = """
 # The catenary y = c + sqrt(a^2 + (s - s0)^2) through three of its points at equal arc lengths s: y^2 - s^2 is linear in

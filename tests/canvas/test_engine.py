@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import hookean_client
 from canvas.canvasing import Bench, let_go, line, point, sentences, xyz
 from hookean_canvas.run import stand_in
-from hookean_client import canvas, canvas_draw, canvas_engine, canvas_link
+from hookean_client import canvas, canvas_draw, canvas_engine, canvas_link, canvas_words
 from hookean_client.canvas_player import Player
 from serving import Home, wait_for
 
@@ -80,7 +80,7 @@ class Cable:
 
     def solve(self, reset: bool) -> Any:
         text = canvas.settings(self.springs, **self.settings)
-        self.out = canvas.engine(self.engine, self.forces(), self.anchors, [text], self.geometry, reset)
+        self.out = canvas_engine.solve(self.engine, self.forces(), self.anchors, [text], self.geometry, reset)
         return self.out
 
     def hold(self) -> Any:
@@ -385,7 +385,7 @@ def test_inputs_that_belong_elsewhere_are_refused(home: Home) -> None:
         "A Line is not a point; connect points.": (cable.forces(), [line((0, 0, 0), (1, 0, 0))]),
     }
     for sentence, (forces, anchors) in said.items():
-        cable.bench.solve(cable.engine, lambda f=forces, a=anchors: canvas.engine(cable.engine, f, a))
+        cable.bench.solve(cable.engine, lambda f=forces, a=anchors: canvas_engine.solve(cable.engine, f, a))
         assert sentences(cable.engine) == [sentence]
 
 
@@ -397,7 +397,9 @@ def test_nobody_watches_for_long(home: Home, monkeypatch: pytest.MonkeyPatch) ->
     cable.run(lambda out: out.iterations)
     player, client = cable.player, hookean_client.connect(start=False)
     session = client.session(player.key)
-    cable.bench.run(cable.engine, lambda: canvas.schedule(cable.engine, 100), lambda _: not session.read()["playing"])
+    cable.bench.run(
+        cable.engine, lambda: canvas_words.schedule(cable.engine, 100), lambda _: not session.read()["playing"]
+    )
     assert player.frames is None
     client.close()
     before = cable.out.iterations

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from canvas.test_engine import Cable, close, home, rhino, served, xyz  # noqa: F401
-from hookean_client import canvas
+from hookean_client import canvas, canvas_engine
 from serving import Home
 
 
@@ -14,7 +14,7 @@ class Switched(Cable):
 
     def solve(self, reset: bool) -> object:
         text = canvas.settings(self.springs, **self.settings)
-        self.out = canvas.engine(self.engine, self.forces(), self.anchors, [text], self.geometry, reset, self.on)
+        self.out = canvas_engine.solve(self.engine, self.forces(), self.anchors, [text], self.geometry, reset, self.on)
         return self.out
 
 

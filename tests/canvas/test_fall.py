@@ -17,7 +17,7 @@ from canvas.test_tools import Placed
 from canvas.test_tools_sweep import cable, tree
 from hookean import Scene, relax
 from hookean_canvas.run import stand_in
-from hookean_client import canvas_fall, canvas_link, compas_canvas
+from hookean_client import canvas_fall, canvas_packed, compas_canvas
 from serving import Home
 
 LINE = {"kind": "springs", "particles": [[0, 1], [1, 2]]}
@@ -110,7 +110,7 @@ def test_a_sum_that_rounding_leaves_is_no_fall(vectors: list[tuple[float, float,
 
 def test_buffers_are_read_as_lists_are() -> None:
     told = shell(OPEN, 2.0)
-    packed = dict(told, meshes={"box": canvas_link.packed(OPEN)})
+    packed = dict(told, meshes={"box": canvas_packed.packed(OPEN)})
     assert packed != told and canvas_fall.sentence(packed) == canvas_fall.sentence(told) is not None
 
 

@@ -51,9 +51,10 @@ def client(folder: Path, version: str, extra: str = "") -> Path:
 COUNTING = '"""Help."""\nfrom hookean_client import counts, more\ncounts.count.append(1)\nfound = len(counts.count)\n'
 
 
-@pytest.mark.parametrize("version", PYTHONS)
-@pytest.mark.parametrize("flavour", inline.FLAVOURS)
-def test_a_script_needs_nothing_installed(version, flavour, tmp_path):
+@pytest.mark.parametrize(
+    ("flavour", "version"), [(f, v) for f in inline.FLAVOURS for v in PYTHONS if (f, v) != ("rhino8", "2.7")]
+)
+def test_a_script_needs_nothing_installed(flavour, version, tmp_path):
     """The client arrives under a name of its own, whole, and the component's help stays in front."""
     said = run(version, inline.inlined(CODE, flavour) + "print(name)\nprint(__doc__)\n", tmp_path).split("\n")
     assert said[:2] == [f"{inline.stamp()}.canvas", "Help."]
@@ -70,7 +71,8 @@ def test_every_shipped_script_compiles_for_rhino_8_and_keeps_its_help(name):
         tree = ast.parse(text, feature_version=(3, 9))
         assert ast.get_docstring(tree) == ast.get_docstring(ast.parse(code))
         assert max(map(len, text.splitlines())) <= 120
-    assert new == "#! python 3\n" + old
+    packed = [re.sub(r'""" *\n[^ "]{60,}"""|b(64|85)decode| +', "", one) for one in (new, old)]
+    assert packed[0] == "#!python3\n" + packed[1]
     assert new == inline.inlined(code, "rhino8")
 
 
@@ -175,14 +177,14 @@ def test_a_script_carries_what_it_needs_of_the_client_and_no_more():
     sources = {path.stem: path.read_text() for path in CLIENT.glob("*.py")}
     force = inline.carried("from hookean_client import canvas\ncanvas.force(ghenv, 'unary')", sources)
     assert force[0] == "__init__" and "canvas" in force and "canvas_engine" not in force and "compas" not in force
-    engine = inline.carried("from hookean_client import canvas\ncanvas.engine(ghenv, x)", sources)
+    engine = inline.carried("from hookean_client import canvas_engine\ncanvas_engine.solve(ghenv, x)", sources)
     assert set(force) < set(engine) and "canvas_engine" in engine and "canvas_sweep" not in engine
 
 
 def test_scripts_that_carry_different_parts_share_one_client():
     """Whichever runs first, the other adds what is missing to the same modules."""
     before = set(sys.modules)
-    parts = ["from hookean_client import canvas\nfound = canvas", "from hookean_client import canvas, canvas_tools"]
+    parts = ["from hookean_client import canvas\nfound = canvas", "from hookean_client import canvas, canvas_curves"]
     try:
         for order in (parts, parts[::-1]):
             spaces: list[dict[str, object]] = [{}, {}]

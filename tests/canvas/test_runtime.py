@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from canvas.canvasing import Bench, line, point, sentences
 from hookean import Scene
 from hookean_canvas.run import stand_in
-from hookean_client import canvas, canvas_geometry, canvas_link, canvas_scene
+from hookean_client import canvas, canvas_discretize, canvas_geometry, canvas_packed, canvas_scene
 from hookean_server.workers.discretize_task import OPERATIONS
 
 
@@ -31,7 +31,7 @@ def told(name: str, kind: str, **fields: Any) -> tuple[dict[str, Any], Any]:
     """A force read back, and the component that made it."""
     ghenv = Bench().component(name)
     text = canvas.force(ghenv, kind, **fields)
-    return (canvas_link.unpacked(json.loads(text)) if text else {}), ghenv
+    return (canvas_packed.unpacked(json.loads(text)) if text else {}), ghenv
 
 
 def test_lines_polylines_and_curves_become_springs_in_their_order(rhino: Any) -> None:
@@ -160,8 +160,8 @@ ROWS = st.integers(1, 3).flatmap(
 
 @given(st.dictionaries(st.text(max_size=3), ROWS | st.text() | st.lists(st.floats(allow_nan=False)) | st.booleans()))
 def test_arrays_come_back_from_buffers_bit_for_bit(value: dict[str, Any]) -> None:
-    sent = json.loads(json.dumps(canvas_link.packed(value)))
-    assert canvas_link.unpacked(sent) == value
+    sent = json.loads(json.dumps(canvas_packed.packed(value)))
+    assert canvas_packed.unpacked(sent) == value
 
 
 @given(st.lists(st.lists(st.integers(), max_size=5), min_size=1, max_size=4))
@@ -173,7 +173,7 @@ def test_the_longest_list_rules(lists: list[list[int]]) -> None:
 
 
 def test_operations_take_what_the_service_says() -> None:
-    found = {name: canvas.TAKES.get(name, "mesh") for name in OPERATIONS}
+    found = {name: canvas_discretize.TAKES.get(name, "mesh") for name in OPERATIONS}
     assert found == {name: operation.takes for name, operation in OPERATIONS.items()}
 
 

@@ -22,7 +22,7 @@ from hookean.files.rhino import threedm
 from hookean.values.mesh import Mesh
 from hookean_canvas.components import bundles
 from hookean_canvas.run import stand_in
-from hookean_client import canvas_engine, canvas_file, canvas_geometry
+from hookean_client import canvas_file, canvas_geometry
 from serving import Home
 from soak import examples
 
@@ -348,7 +348,7 @@ def test_a_file_that_was_saved_again_is_read_again(tmp_path: Path) -> None:
 
 def test_a_file_in_another_unit_than_the_document_is_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
     made = stand_in.Canvas().install()
-    monkeypatch.setattr(canvas_engine, "_length_unit", lambda: "mm")
+    monkeypatch.setattr(canvas_geometry, "length_unit", lambda: "mm")
     try:
         placed = Placed("RhinoFile")
         placed.run(_file=[str(EXAMPLES / "9.4-cable" / "model.3dm")])

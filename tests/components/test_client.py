@@ -17,12 +17,13 @@ import pytest
 
 import hookean_client
 from hookean_client import Problem, buffer, connect, finding
+from hookean_client import client as client_module
 from serving import CABLE, HANG, SOAK, SWING, Home, living, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
 
-CLIENTS: list[hookean_client.Client] = []
+CLIENTS: list[client_module.Client] = []
 
 
 @pytest.fixture
@@ -41,7 +42,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[hookean_client.Client]:
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[client_module.Client]:
     """A client of a server that runs, which it may not start."""
     home = Home(tmp_path_factory.mktemp("client") / "state")
     home.serve()
@@ -51,12 +52,12 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[hookean_client.
     home.end()
 
 
-def started(home: Home) -> hookean_client.Client:
+def started(home: Home) -> client_module.Client:
     CLIENTS.append(connect(folder=str(home.folder), python=sys.executable, timeout=HANG))
     return CLIENTS[-1]
 
 
-def beside(home: Home) -> hookean_client.Client:
+def beside(home: Home) -> client_module.Client:
     """The same of a server that runs already."""
     home.serve()
     return started(home)
@@ -65,7 +66,7 @@ def beside(home: Home) -> hookean_client.Client:
 # methods
 
 
-def test_relaxing_and_arrays(client: hookean_client.Client) -> None:
+def test_relaxing_and_arrays(client: client_module.Client) -> None:
     result = client.relax(CABLE, timeout=HANG)  # kernels may have to be compiled first
     assert result["status"] == "converged"
     springs, load = CABLE["forces"]
@@ -79,28 +80,28 @@ def test_relaxing_and_arrays(client: hookean_client.Client) -> None:
 
 
 def test_a_connection_counts_as_idle_since_its_last_request(
-    client: hookean_client.Client, monkeypatch: pytest.MonkeyPatch
+    client: client_module.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The service ends idle ones after 16 s. A process that gets no processor for so long sees its answer late, and
     must not send a request that cannot be repeated down a connection that has ended meanwhile."""
-    real, now, late = hookean_client._read, hookean_client._now, [0.0]
+    real, now, late = client_module._read, client_module._now, [0.0]
 
     def slow(answer: Any, most: int) -> Any:
         found = real(answer, most)
         late[0] += 20.0
         return found
 
-    monkeypatch.setattr(hookean_client, "_now", lambda: now() + late[0])
+    monkeypatch.setattr(client_module, "_now", lambda: now() + late[0])
     client.get("/v1/health")
     first = client._idle[-1][2]
-    monkeypatch.setattr(hookean_client, "_read", slow)
+    monkeypatch.setattr(client_module, "_read", slow)
     client.get("/v1/health")
     assert client._idle[-1][2] is first
     client.get("/v1/health")
     assert client._idle[-1][2] is not first
 
 
-def test_every_method_of_a_session(client: hookean_client.Client) -> None:
+def test_every_method_of_a_session(client: client_module.Client) -> None:
     session = client.session("a document:component ~1".replace(" ", "_"))
     assert session.put(CABLE, query={"label": "Cable"})["revision"] == 0
     assert session.read()["label"] == "Cable"
@@ -129,7 +130,7 @@ def test_every_method_of_a_session(client: hookean_client.Client) -> None:
     assert (gone.value.slug, gone.value.status) == ("not-found", 404)
 
 
-def test_a_problem_points_and_says(client: hookean_client.Client) -> None:
+def test_a_problem_points_and_says(client: client_module.Client) -> None:
     with pytest.raises(Problem) as found:
         client.relax({"particles": [[0, 0, "x"]]})
     problem = found.value
@@ -138,7 +139,7 @@ def test_a_problem_points_and_says(client: hookean_client.Client) -> None:
     assert pointer.startswith("/particles") and sentence and sentence in str(problem)
 
 
-def test_what_it_waits_for_ends_with_its_timeout(client: hookean_client.Client) -> None:
+def test_what_it_waits_for_ends_with_its_timeout(client: client_module.Client) -> None:
     count = 20_000  # far more than is solved in the time
     springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(count - 1)], "damping": 0}
     scene = {
@@ -153,7 +154,7 @@ def test_what_it_waits_for_ends_with_its_timeout(client: hookean_client.Client) 
     assert client.get("/v1/health")["service"] == "hookean"
 
 
-def test_frames_show_each_edit(client: hookean_client.Client) -> None:
+def test_frames_show_each_edit(client: client_module.Client) -> None:
     session = client.session("frames")
     session.put(SWING)
     frames = session.frames()
@@ -181,14 +182,14 @@ def test_frames_show_each_edit(client: hookean_client.Client) -> None:
     session.delete()
 
 
-def test_frames_of_no_session_end_with_a_sentence(client: hookean_client.Client) -> None:
+def test_frames_of_no_session_end_with_a_sentence(client: client_module.Client) -> None:
     frames = client.session("nobody").frames()
     wait_for(lambda: frames.ended)
     assert "no session with this key" in frames.message and frames.latest() is None
     assert frames.wait(timeout=5.0) is None
 
 
-def test_frames_end_when_the_session_is_forgotten(client: hookean_client.Client) -> None:
+def test_frames_end_when_the_session_is_forgotten(client: client_module.Client) -> None:
     session = client.session("forgotten")
     session.put(CABLE)
     frames = session.frames()
@@ -197,7 +198,7 @@ def test_frames_end_when_the_session_is_forgotten(client: hookean_client.Client)
     wait_for(lambda: frames.ended)
 
 
-def test_threads_share_a_client(client: hookean_client.Client) -> None:
+def test_threads_share_a_client(client: client_module.Client) -> None:
     found: list[str] = []
 
     def solve() -> None:
@@ -256,7 +257,7 @@ def test_a_start_goes_on_where_nobody_waits_for_it(home: Home, monkeypatch: pyte
         connect(folder=str(home.folder), python=sys.executable, timeout=0.0)
     assert found.value.slug == "starting"
     wait_for(lambda: home.told)
-    monkeypatch.setattr(hookean_client, "ANSWER", HANG)  # it has just started, and may be slow
+    monkeypatch.setattr(client_module, "ANSWER", HANG)  # it has just started, and may be slow
     client = connect(folder=str(home.folder), start=False)
     assert client.instance == home.told["instance"]
     assert not (home.folder / "starting").exists()

@@ -17,7 +17,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import hookean_client
-from hookean_client import Problem, buffer, decode
+from hookean_client import Problem, buffer
+from hookean_client.sessions import decode
 from hookean_client.websocket import Link
 from hookean_server.sessions import wire
 from serving import HANG

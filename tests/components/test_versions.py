@@ -17,7 +17,7 @@ from pythons import interpreter
 from serving import CABLE, HANG, Home
 
 SOURCE = Path(hookean_client.__file__)
-FINDING = SOURCE.with_name("finding.py")
+FILES = [SOURCE, *(SOURCE.with_name(name) for name in ("client.py", "finding.py", "sessions.py", "websocket.py"))]
 VERSIONS = ["2.7", *(f"3.{minor}" for minor in range(6, 15))]
 
 
@@ -37,8 +37,8 @@ SMOKE = """
 import json, sys, time
 sys.dont_write_bytecode = True
 sys.path.insert(0, sys.argv[1])
-import hookean_client
-hookean_client.ANSWER = 120.0
+import hookean_client.client
+hookean_client.client.ANSWER = 120.0
 scene = json.loads(sys.argv[3])
 client = hookean_client.connect(start=False, folder=sys.argv[2])
 scene["particles"] = hookean_client.buffer(scene["particles"])
@@ -106,7 +106,7 @@ def test_it_is_written_in_what_all_pythons_read() -> None:
         ast.JoinedStr, ast.AnnAssign, ast.AsyncFunctionDef, ast.Await, ast.YieldFrom, ast.Nonlocal, ast.Starred,
         ast.NamedExpr, ast.MatMult, ast.Match,
     )  # fmt: skip
-    text = "".join(path.read_text(encoding="ascii") for path in (SOURCE, FINDING))
+    text = "".join(path.read_text(encoding="ascii") for path in FILES)
     for node in ast.walk(ast.parse(text)):
         assert not isinstance(node, newer) or _star_of_a_call(node, text), ast.dump(node)
         if isinstance(node, ast.FunctionDef | ast.Lambda):
@@ -129,7 +129,7 @@ def _star_of_a_call(node: ast.AST, text: str) -> bool:
 
 def test_it_needs_the_standard_library_alone() -> None:
     found = set()
-    for node in [node for path in (SOURCE, FINDING) for node in ast.walk(ast.parse(path.read_text()))]:
+    for node in [node for path in FILES for node in ast.walk(ast.parse(path.read_text()))]:
         if isinstance(node, ast.Import):
             found |= {alias.name.split(".")[0] for alias in node.names}
         if isinstance(node, ast.ImportFrom) and not node.level:
@@ -139,8 +139,9 @@ def test_it_needs_the_standard_library_alone() -> None:
 
 def test_its_version_and_the_servers() -> None:
     import hookean
+    from hookean_client import sessions
     from hookean_server.sessions import wire
 
     assert hookean_client.__version__ == hookean.__version__
     assert hookean_client.WIRE == wire.VERSION
-    assert tuple(hookean_client.STATUSES) == wire.STATUSES
+    assert tuple(sessions.STATUSES) == wire.STATUSES

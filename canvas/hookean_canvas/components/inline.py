@@ -9,6 +9,7 @@ import json
 import re
 import tokenize
 import zlib
+from collections.abc import Callable, Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from importlib.util import find_spec
@@ -22,40 +23,43 @@ CLIENT = "hookean_client"
 FLAVOURS = ("rhino8", "rhino7")
 Flavour = Literal["rhino8", "rhino7"]
 
-BOOTSTRAP = '''
-def _hookean_client(names, packed):
+BOOTSTRAP = """
+def _hookean_client(*packed):
     # {client} {version}, kept in sys.modules under a name of its own: versions live side by side, state survives
-    import base64, json, sys, types, zlib
+    import base64, sys, types, zlib
 
-    if not set("{stamp}" + name for name in names.split("|")).difference(sys.modules):
-        return
     loaded = []
-    for name, source in json.loads(zlib.decompress(base64.b64decode(packed)).decode("ascii")):
-        name = str(name)
-        if name in sys.modules:
-            continue
-        sys.modules[name] = module = types.ModuleType(name)
-        loaded.append(name)
-        module.__file__, module.__package__ = "<%s>" % name, "{stamp}"
-        if "." in name:
-            setattr(sys.modules["{stamp}"], name.split(".")[1], module)
-        else:
-            module.__path__ = []
-        try:
-            exec(compile(str(source), module.__file__, "exec", 0, 1), module.__dict__)
-        except BaseException:
-            for name in loaded:
-                sys.modules.pop(name, None)
-            raise
+    for names, sources in packed:
+        sources = zlib.decompress(base64.{decode}("".join(sources.split()))).decode("ascii")
+        for name, source in zip(names.split("|"), sources.split("\\0")):
+            name = "{stamp}" + name
+            if name in sys.modules:
+                continue
+            sys.modules[name] = module = types.ModuleType(name)
+            loaded.append(name)
+            module.__file__, module.__package__ = "<%s>" % name, "{stamp}"
+            if "." in name:
+                setattr(sys.modules["{stamp}"], name.split(".")[1], module)
+            else:
+                module.__path__ = []
+            try:
+                exec(compile(str(source), module.__file__, "exec", 0, 1), module.__dict__)
+            except BaseException:
+                for name in loaded:
+                    sys.modules.pop(name, None)
+                raise
 
 
 _hookean_client(
-    "{names}",
-    """
-{packed}
-""",
+"""
+TOGETHER = (
+    ("__init__", "canvas_geometry", "canvas_packed", "canvas_words", "canvas_items", "canvas"),
+    ("client", "finding", "canvas_link", "canvas_ask"),
+    ("canvas_branches", "canvas_values", "canvas_discretize"),
 )
-'''
+"""Modules that travel as one: all scripts need the first, those that ask the service the second, tools the third."""
+ENCODE = {"rhino8": ("b85decode", base64.b85encode), "rhino7": ("b64decode", base64.b64encode)}
+"""Python 2.7 has no base 85."""
 
 
 def inlined(code: str, flavour: Flavour = "rhino8", client: Path | None = None) -> str:
@@ -68,12 +72,31 @@ def inlined(code: str, flavour: Flavour = "rhino8", client: Path | None = None) 
         raise InputError("flavour", f"{flavour!r} is not one of {', '.join(FLAVOURS)}.")
     sources = _sources(client or _installed())
     stamp, version = _stamped(sources)
-    names, packed = _pack(sources, tuple(carried(code, dict(sources))))
     lines = redirected(code, stamp, "code.py").splitlines(keepends=True)
     cut = _after_docstring(code)
-    bootstrap = BOOTSTRAP.format(stamp=stamp, client=CLIENT, version=version, names=names, packed=packed)
+    decode, encode = ENCODE[flavour]
     first = "#! python 3\n" if flavour == "rhino8" and not code.startswith("#!") else ""
-    return first + "".join(lines[:cut]) + bootstrap + "".join(lines[cut:])
+    whole = first + "".join(lines[:cut]) + BOOTSTRAP.format(stamp=stamp, client=CLIENT, version=version, decode=decode)
+    for names in _blocks(carried(code, dict(sources)), dict(sources)):
+        whole += _block(names, _packed(sources, names, encode), len(whole.encode("utf-8")))
+    return whole + ")\n" + "".join(lines[cut:])
+
+
+def _blocks(names: list[str], sources: dict[str, str]) -> list[tuple[str, ...]]:
+    """Modules as they are packed, in their order."""
+    joined = {name: tuple(one for one in block if one in sources) for block in TOGETHER for name in block}
+    return list(dict.fromkeys(joined.get(name, (name,)) for name in names))
+
+
+def _block(names: tuple[str, ...], packed: str, at: int) -> str:
+    """The argument of the bootstrap for modules, at a byte of the script.
+
+    Definitions hold scripts as base 64: what begins at a multiple of 3 bytes reads the same in every script, so that
+    what several scripts carry is stored once in the compressed file.
+    """
+    known = "|".join("" if name == "__init__" else f".{name}" for name in names)
+    head = f'    ("{known}", """'
+    return head + " " * (-(at + len(head) + 1) % 3) + "\n" + packed + '\n"""),\n'
 
 
 def stamp(client: Path | None = None) -> str:
@@ -107,16 +130,22 @@ def _imported(source: str, sources: dict[str, str], named: set[str] | None = Non
 
 @cache
 def _imports(source: str) -> list[tuple[str, set[str]]]:
-    """What `source` may import of the client: name of the function or class it stands in, or "", and modules."""
+    """What `source` may import of the client: name of the function or method it stands in, or "", and modules."""
     found = []
-    for node in ast.parse(source).body:
-        inside = node.name if isinstance(node, ast.FunctionDef | ast.ClassDef) else ""
+    for node in _parts(ast.parse(source)):
+        inside = node.name if isinstance(node, ast.FunctionDef) else ""
         for at in ast.walk(node):
             if isinstance(at, ast.ImportFrom):
                 path = [CLIENT] * at.level + (at.module or "").split(".")
                 parts = [part for part in path[1:] if part] or [alias.name for alias in at.names]
                 found.append((inside, set(parts) if path[0] == CLIENT else set()))
     return found
+
+
+def _parts(tree: ast.Module) -> Iterator[ast.stmt]:
+    """The statements of a module, those of its classes one by one."""
+    for node in tree.body:
+        yield from node.body if isinstance(node, ast.ClassDef) else [node]
 
 
 @cache
@@ -174,34 +203,34 @@ def _stamped(files: tuple[tuple[str, str], ...]) -> tuple[str, str]:
 
 
 @cache
-def _pack(files: tuple[tuple[str, str], ...], names: tuple[str, ...]) -> tuple[str, str]:
-    """Full names and packed text of some of the client's modules."""
-    sources, (stamp, _) = dict(files), _stamped(files)
-    modules = []
-    for name in names:
-        full = stamp if name == "__init__" else f"{stamp}.{name}"
-        modules.append([full, redirected(bare(sources[name]), stamp, f"{CLIENT}/{name}.py")])
-    data = base64.b64encode(zlib.compress(json.dumps(modules).encode("ascii"), 9)).decode("ascii")
-    told = "|".join(full.removeprefix(stamp) for full, _ in modules)
-    return '"\n    "'.join(told[i : i + 100] for i in range(0, len(told), 100)), "\n".join(
-        data[i : i + 116] for i in range(0, len(data), 116)
-    )
+def _packed(files: tuple[tuple[str, str], ...], names: tuple[str, ...], encode: Callable[[bytes], bytes]) -> str:
+    """Modules of the client, compressed, as text in lines."""
+    stamp = _stamped(files)[0]
+    sources = [redirected(bare(dict(files)[name]), stamp, f"{CLIENT}/{name}.py") for name in names]
+    data = encode(zlib.compress("\0".join(sources).encode("ascii"), 9)).decode("ascii")
+    return "\n".join(data[i : i + 116] for i in range(0, len(data), 116))
 
 
 def bare(source: str) -> str:
-    """`source` without comments and docstrings; every statement stays in its line."""
-    lines = source.splitlines(keepends=True)
+    """`source` without comments and docstrings, a space for each level; every statement stays in its line."""
+    lines, inside = source.splitlines(keepends=True), set()
     for token in tokenize.generate_tokens(iter(lines).__next__):
         if token.type == tokenize.COMMENT:
             row, column = token.start
             lines[row - 1] = lines[row - 1][:column].rstrip() + "\n"
+        if token.type == tokenize.STRING:
+            inside |= set(range(token.start[0], token.end[0]))
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False):
             first = node.body[0]
             start, end = first.lineno - 1, first.end_lineno or first.lineno
             lines[start] = lines[start][: first.col_offset] + ('""\n' if len(node.body) == 1 else "\n")
             lines[start + 1 : end] = ["\n"] * (end - start - 1)
-    return "".join(lines)
+    return "".join(line if i in inside else re.sub(r"^ +", _level, line) for i, line in enumerate(lines))
+
+
+def _level(spaces: re.Match[str]) -> str:
+    return " " * (len(spaces.group()) // 4)
 
 
 def _order(sources: dict[str, str]) -> list[str]:

@@ -88,13 +88,12 @@ def motion(sentence: str) -> str:
     return f'''
 """{sentence}"""
 
-from hookean_client import canvas
-from hookean_client import canvas_scene
+from hookean_client import canvas_ask, canvas_geometry, canvas_scene
 
 setting = canvas_scene.read([settings], "settings", "settings")[0]
 scene = canvas_scene.compose(canvas_scene.read(forces, None, "forces"), [], setting, [])
-scene["anchors"] = [{{"points": canvas.geometry.points(anchors)}}]
+scene["anchors"] = [{{"points": canvas_geometry.points(anchors)}}]
 scene["settings"]["max_iterations"] = int(round(time / scene["settings"]["time_step"]))
-answer = canvas.call(ghenv, "POST", "/v1/relax", scene)
-particles = answer and [canvas.geometry.to_point(p) for p in answer["particles"]]
+answer = canvas_ask.call(ghenv, "POST", "/v1/relax", scene)
+particles = answer and [canvas_geometry.to_point(p) for p in answer["particles"]]
 '''
