@@ -1,9 +1,7 @@
-"""The client of one server, and how bytes travel. For Python 2.7 to 3.13."""
+"""The client of one server. For Python 2.7 to 3.13."""
 
 import json
 import os
-import socket
-import threading
 import time
 
 try:
@@ -11,28 +9,22 @@ try:
 except ImportError:  # Python 2
     from urllib import urlencode
 
-from . import FAILURES, WIRE, Problem
-
-REACH, ANSWER = 0.2, 2.0  # seconds to reach a server, and for it to prove who it is
-LARGEST = 1 << 30  # bytes of an answer
-PIECE = 1 << 20  # bytes of it that are read at once
-_now = getattr(time, "monotonic", time.time)
+from . import FAILURES, Problem, finding, transport
 
 
 def found(start, python, timeout, place, parent, idle):
     """The client of the server of a folder; see `connect`."""
-    from . import finding
 
     def find(start, until):
-        known = finding.found(place, _now() + ANSWER)
+        known = finding.found(place, transport.now() + transport.ANSWER)
         while not known:
             if not start:
                 raise Problem("no-server", "No hookean server is running; start it with `hookean serve`.")
             finding.start(place, python, os.getpid() if parent is None else parent, idle)
-            if _now() > until:
+            if transport.now() > until:
                 raise Problem("starting", "The hookean server is starting; try again soon.")
             time.sleep(0.02)
-            known = finding.found(place, _now() + ANSWER)
+            known = finding.found(place, transport.now() + transport.ANSWER)
         return known
 
     client = Client(find, start)
@@ -49,7 +41,7 @@ class Client(object):
 
     def renew(self, timeout=15.0, start=None):
         """Find the server again, or start it."""
-        found = self._find(self._start if start is None else start, _now() + timeout)
+        found = self._find(self._start if start is None else start, transport.now() + timeout)
         told = [str(found[name]) for name in ("url", "token", "instance", "proof")]
         self.url, self.token, self.instance, self.proof = told
 
@@ -66,26 +58,26 @@ class Client(object):
     def request(self, method, path, body=None, query=None, headers=None, timeout=60.0):
         """JSON, or bytes. GET, PUT and DELETE are repeated where the connection is lost, all where there is a new
         token."""
-        until, given, token = _now() + timeout, (path, body, query, headers), self.token
+        until, given, token = transport.now() + timeout, (path, body, query, headers), self.token
         path = str(path) + "?" + urlencode([(k, v) for k, v in (query or {}).items() if v is not None])
         if body is not None and not isinstance(body, (bytes, bytearray)):
             body = json.dumps(body).encode("utf-8")
         for more in (method in ("GET", "PUT", "DELETE"), False):
             connection = self._connection(until)
             sent = {"authorization": "Bearer " + self.token, "content-type": "application/json"}
-            cut, began = _cut(connection, until), _now()
+            cut, began = transport.cut(connection, until), transport.now()
             try:
-                connection.sock.settimeout(max(0.01, until - _now()))
+                connection.sock.settimeout(max(0.01, until - transport.now()))
                 connection.request(method, path, body, dict(sent, **(headers or {})))
                 answer = connection.getresponse()
-                data = _read(answer, LARGEST)
-                if _now() > until:  # what was read may be a part of it
+                data = transport.read(answer, transport.LARGEST)
+                if transport.now() > until:  # what was read may be a part of it
                     answer.close()
                     raise EOFError("cut off")
                 break
             except FAILURES:
                 connection.close()
-                if _now() > until:
+                if transport.now() > until:
                     raise Problem("lost", "No answer to %s within %g s; it may still be done." % (method, timeout))
                 if not more:
                     raise Problem("lost", "No answer to %s; it may or may not have been done." % method)
@@ -93,13 +85,14 @@ class Client(object):
                 cut.cancel()
         if data is None:
             connection.close()
-            raise Problem("too-large", "The answer to %s has more than %d bytes." % (method, LARGEST), answer.status)
+            said = "The answer to %s has more than %d bytes." % (method, transport.LARGEST)
+            raise Problem("too-large", said, answer.status)
         if connection.sock is not None:
             self._idle.append((self.instance, began, connection))  # the answer may have waited for this process
         if answer.status == 401 and self._other_token(token, until):
-            return self.request(method, *given, timeout=max(0.01, until - _now()))
+            return self.request(method, *given, timeout=max(0.01, until - transport.now()))
         if answer.status >= 400 or 300 <= answer.status != 304:
-            raise _refusal(answer.status, data)
+            raise transport.refusal(answer.status, data)
         if data and (answer.getheader("content-type") or "").startswith("application/json"):
             try:
                 return json.loads(data.decode("utf-8"))
@@ -114,29 +107,27 @@ class Client(object):
 
     def _other_token(self, token, until):
         try:
-            self.renew(max(0.0, until - _now()), False)
+            self.renew(max(0.0, until - transport.now()), False)
         except Problem:
             pass
         return self.token != token
 
     def _connection(self, until, start=None):
-        from . import finding
-
         def reach():
-            return finding.reach(self.url, self.instance, self.proof, min(until, _now() + ANSWER))
+            return finding.reach(self.url, self.instance, self.proof, min(until, transport.now() + transport.ANSWER))
 
         try:
             while True:
                 instance, since, connection = self._idle.pop()
-                if instance == self.instance and _now() - since < 3.0:
+                if instance == self.instance and transport.now() - since < 3.0:
                     return connection
                 connection.close()
         except IndexError:
             connection = reach()
         while connection is None:
-            if _now() > until:
+            if transport.now() > until:
                 raise Problem("no-answer", "The hookean server does not answer.")
-            self.renew(max(0.0, until - _now()), start)
+            self.renew(max(0.0, until - transport.now()), start)
             connection = reach()
         return connection
 
@@ -147,58 +138,3 @@ def _method(name):
 
 for _name in ("get", "post", "put", "patch", "delete"):
     setattr(Client, _name, _method(_name))
-
-
-def _cut(connection, until):
-    """What ends a connection at a time, whatever drips down it, unless it is cancelled before."""
-    timer = threading.Timer(max(0.01, until - _now()), _shut, [connection, connection.sock])
-    timer.daemon = True
-    timer.start()
-    return timer
-
-
-def _shut(connection, sock=None):
-    try:
-        sock = sock or connection.sock
-        getattr(sock, "_sock", sock).shutdown(socket.SHUT_RDWR)
-    except FAILURES:
-        pass
-
-
-def _read(answer, most):
-    """The body; None where it has more than `most` bytes."""
-    data, whole = None, False
-    try:
-        data = None if (answer.length or 0) > most else _pieces(answer, most + 1)
-        whole = data is not None and len(data) <= most
-        if whole and answer.length:
-            raise EOFError("the server has gone")
-        return data if whole else None
-    finally:
-        if not whole:
-            answer.close()
-
-
-def _pieces(answer, count):
-    """Up to `count` bytes of the body; Python 3.9 fills a buffer with as many zeros as it is asked to read."""
-    pieces, left, piece = [], count, b"-"
-    while left and piece:
-        piece = answer.read(min(left, PIECE))
-        pieces.append(piece)
-        left -= len(piece)
-    return b"".join(pieces)
-
-
-def _refusal(status, data):
-    try:
-        said = json.loads(data.decode("utf-8"))
-        errors = [(e["pointer"], e["detail"]) for e in said.get("errors", [])]
-        return Problem(said["type"].split("/")[-1], said["detail"], status, errors)
-    except FAILURES:
-        return Problem("unknown", "The server answered with %d." % status, status)
-
-
-def _check(wire):
-    if wire != WIRE:
-        said = "Its frames have version %s, not %d; stop it with `hookean serve --stop`." % (wire, WIRE)
-        raise Problem("wrong-version", said)

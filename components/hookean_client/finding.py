@@ -21,8 +21,7 @@ try:
 except ImportError:  # Python 2
     import httplib
 
-from . import FAILURES, Problem
-from .client import REACH, _check, _cut, _now, _read
+from . import FAILURES, Problem, transport
 
 STARTING = 30.0  # seconds a start may take
 ADVICE = "check who made it, then remove it, or set HOOKEAN_STATE to a folder that is yours alone."
@@ -38,7 +37,7 @@ def found(place, until):
     if not connection:
         return None
     connection.close()
-    _check(said.get("wire"))
+    transport.check(said.get("wire"))
     _unlink(os.path.join(place, "starting"))
     return said
 
@@ -49,14 +48,14 @@ def reach(url, instance, proof, until):
     connection, cut = httplib.HTTPConnection(""), None
     try:
         host, _, port = url.split("//")[-1].rpartition(":")
-        connection = httplib.HTTPConnection(host.strip("[]"), int(port), timeout=REACH)
+        connection = httplib.HTTPConnection(host.strip("[]"), int(port), timeout=transport.REACH)
         connection.connect()
         connection.auto_open = 0
-        connection.sock.settimeout(max(0.01, until - _now()))
-        cut = _cut(connection, until)
+        connection.sock.settimeout(max(0.01, until - transport.now()))
+        cut = transport.cut(connection, until)
         nonce = binascii.hexlify(os.urandom(32)).decode("ascii")
         connection.request("GET", "/v1/proof?nonce=" + nonce)
-        said = json.loads(_read(connection.getresponse(), 1 << 16).decode("utf-8"))["proof"]
+        said = json.loads(transport.read(connection.getresponse(), 1 << 16).decode("utf-8"))["proof"]
         text = "hookean %s %s %s %s" % (instance, connection.sock.getpeername()[0], port, nonce)
         # the time of this comparison reveals nothing useful: the next nonce has another proof
         right = said == hmac.new(proof.encode("ascii"), text.encode("ascii"), hashlib.sha256).hexdigest()

@@ -9,8 +9,7 @@ try:
 except ImportError:  # Python 2
     from urllib import quote
 
-from . import FAILURES, Problem
-from .client import ANSWER, _check, _now, _shut
+from . import FAILURES, Problem, transport
 
 STATUSES = "running converged stalled diverged max_iterations time_limit cancelled".split()
 HEADER = struct.Struct("<4sHHIIQQddIIBBHf")
@@ -75,18 +74,18 @@ class Frames(object):
 
     def wait(self, fits=bool, timeout=10.0):
         """The newest frame once `fits(frame)`, or None."""
-        until = _now() + timeout
+        until = transport.now() + timeout
         with self._news:
             while not (self._frame and fits(self._frame)):
-                if self.ended or _now() >= until:
+                if self.ended or transport.now() >= until:
                     return None
-                self._news.wait(max(0.0, until - _now()))
+                self._news.wait(max(0.0, until - transport.now()))
             return self._frame
 
     def close(self):
         """No more frames."""
         self.ended, link = True, self._link
-        _shut(self._connection)
+        transport.shut(self._connection)
         if link is not None:
             link.end()
         with self._news:
@@ -99,7 +98,7 @@ class Frames(object):
         while not self.ended:
             before = self.received
             try:
-                self._connection = client._connection(_now() + ANSWER, False)
+                self._connection = client._connection(transport.now() + transport.ANSWER, False)
                 self._link = websocket.Link(self._connection, self._of.path + "/frames", client.token)
                 while not self.ended:
                     self._take(*self._link.receive())
@@ -107,7 +106,7 @@ class Frames(object):
                 self.message = problem.detail
                 self.ended |= problem.slug in ("not-found", "wrong-version")
                 if problem.status == 401:
-                    client._other_token(client.token, _now() + ANSWER)
+                    client._other_token(client.token, transport.now() + transport.ANSWER)
             except FAILURES as error:
                 self.message = "The connection was lost: %s." % error
             if self._link is not None:
@@ -115,7 +114,7 @@ class Frames(object):
             if self._connection is not None:  # also one that became no link
                 self._connection.close()
             pause = 0.25 if self.received > before else min(4.0, 2 * pause)
-            self._since = _now() if self.received > before else self._since
+            self._since = transport.now() if self.received > before else self._since
             with self._news:
                 self._news.notify_all()
                 if not self.ended:
@@ -124,12 +123,12 @@ class Frames(object):
     def _take(self, kind, data):
         frame, value = (decode(data), {}) if kind == 2 else (None, json.loads(data.decode("utf-8")))
         if "hello" in value:
-            _check(value["hello"])
+            transport.check(value["hello"])
             self.message = ""
             if self._since is not None:
                 seen, now = [(s.get("revision"), s.get("iteration")) for s in (self._frame or {}, value["session"])]
                 said = "Lost for %.1f s: from revision %s, iteration %s to %s, %s."
-                self.lost = self.lost[-19:] + [said % ((_now() - self._since,) + seen + now)]
+                self.lost = self.lost[-19:] + [said % ((transport.now() - self._since,) + seen + now)]
         with self._news:
             self.received += 1
             self._frame = frame or self._frame
@@ -145,7 +144,7 @@ def decode(data):
     if data[:4] != b"HKFR" or len(data) < HEADER.size:
         raise ValueError("not a frame")
     frame = dict(zip(FIELDS, HEADER.unpack(data[: HEADER.size])))
-    _check(frame["version"])
+    transport.check(frame["version"])
     end, last, count = 3 * frame["n"], 3 * frame["n"] + frame["m"], len(data) // 4 - 16
     if frame["flags"] & ~7 or frame["size"] != 64 or len(data) % 4 or count < last or (count - last) % 3:
         raise ValueError("not a frame")

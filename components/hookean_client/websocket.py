@@ -5,8 +5,7 @@ import hashlib
 import os
 import threading
 
-from . import FAILURES, Problem
-from .client import REACH, _cut, _now, _read, _refusal, _shut
+from . import FAILURES, Problem, transport
 
 PATIENCE = 60.0  # seconds a socket may be silent
 
@@ -20,12 +19,12 @@ class Link(object):
         key = base64.b64encode(os.urandom(16)).decode("ascii")
         headers = {"upgrade": "websocket", "connection": "upgrade", "authorization": "Bearer " + token}
         headers.update({"sec-websocket-key": key, "sec-websocket-version": "13"})
-        cut = _cut(connection, _now() + PATIENCE)
+        cut = transport.cut(connection, transport.now() + PATIENCE)
         try:
             connection.request("GET", path, headers=headers)
             self._answer = connection.getresponse()
             if self._answer.status != 101:
-                problem = _refusal(self._answer.status, _read(self._answer, 1 << 16))
+                problem = transport.refusal(self._answer.status, transport.read(self._answer, 1 << 16))
                 connection.close()
                 raise problem
         finally:
@@ -74,11 +73,11 @@ class Link(object):
     def end(self):
         """Close it."""
         try:
-            self._connection.sock.settimeout(REACH)
+            self._connection.sock.settimeout(transport.REACH)
             self.send(8, b"\x03\xe8", False)
         except FAILURES:
             pass
-        _shut(self._connection)  # a thread that reads or sends has to return first
+        transport.shut(self._connection)  # a thread that reads or sends has to return first
         self._connection.close()
 
     def _exactly(self, size):

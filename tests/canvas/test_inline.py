@@ -12,6 +12,7 @@ import pytest
 
 from hookean.errors import InputError
 from hookean_canvas.components import bundles, inline
+from hookean_canvas.definitions.write import Definition
 from pythons import interpreter
 
 CODE = '"""Help."""\n\nimport hookean_client\nfrom hookean_client import Problem, canvas\n\nname = canvas.__name__\n'
@@ -178,7 +179,27 @@ def test_a_script_carries_what_it_needs_of_the_client_and_no_more():
     force = inline.carried("from hookean_client import canvas\ncanvas.force(ghenv, 'unary')", sources)
     assert force[0] == "__init__" and "canvas" in force and "canvas_engine" not in force and "compas" not in force
     engine = inline.carried("from hookean_client import canvas_engine\ncanvas_engine.solve(ghenv, x)", sources)
-    assert set(force) < set(engine) and "canvas_engine" in engine and "canvas_sweep" not in engine
+    assert (
+        {*force} - {"canvas"} < set(engine)
+        and "canvas_link" not in force
+        and "canvas_engine" in engine
+        and "canvas_sweep" not in engine
+    )
+
+
+def test_a_definition_stores_once_what_its_scripts_share(tmp_path):
+    """A second component of a kind adds less to the compressed file than half of the client that it carries."""
+    sizes = []
+    for count in (1, 2):
+        made = Definition("shared", "Shared", "Settings that carry the same client.")
+        with made.group("Settings"):
+            for _ in range(count):
+                made.component("Settings")
+        made.save(tmp_path / "definition.gh")
+        sizes.append((tmp_path / "definition.gh").stat().st_size)
+    carried = bundles.read("Settings").code
+    packed = max(re.findall(r'""" *\n([^ "]{60,})"""', inline.inlined(carried)), key=len)
+    assert sizes[1] - sizes[0] < 0.5 * len(packed), sizes
 
 
 def test_scripts_that_carry_different_parts_share_one_client():

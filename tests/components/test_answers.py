@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-import hookean_client as client
+from hookean_client import transport
 
 
 class Socket:
@@ -39,7 +39,7 @@ def answer(body: bytes, *headers: bytes) -> Answer:
     return found
 
 
-@pytest.mark.parametrize("size", [0, 1, client.PIECE - 1, client.PIECE, 3 * client.PIECE + 1])
+@pytest.mark.parametrize("size", [0, 1, transport.PIECE - 1, transport.PIECE, 3 * transport.PIECE + 1])
 def test_an_answer_is_read_in_pieces(size: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Python 3.9, which Rhino 8 has, makes a buffer of all bytes that it is asked to read and fills it with zeros: a
     gigabyte for each answer, however short, where all that is allowed is asked for."""
@@ -47,20 +47,20 @@ def test_an_answer_is_read_in_pieces(size: int, monkeypatch: pytest.MonkeyPatch)
     body = bytes(i % 251 for i in range(1000)) * (size // 1000 + 1)
     body = body[:size]
     length = b"Content-Length: %d" % size
-    assert client._read(answer(body, length), client.LARGEST) == body
+    assert transport.read(answer(body, length), transport.LARGEST) == body
     chunked = b"%x\r\n%b\r\n" % (size, body) if size else b""
-    assert client._read(answer(chunked + b"0\r\n\r\n", b"Transfer-Encoding: chunked"), client.LARGEST) == body
-    assert client._read(answer(body), client.LARGEST) == body
-    assert Answer.most <= client.PIECE
+    assert transport.read(answer(chunked + b"0\r\n\r\n", b"Transfer-Encoding: chunked"), transport.LARGEST) == body
+    assert transport.read(answer(body), transport.LARGEST) == body
+    assert Answer.most <= transport.PIECE
 
 
 def test_what_is_longer_than_allowed_is_not_read() -> None:
     """Where the length is known nothing, else one byte more than allowed."""
-    assert client._read(answer(b"12345", b"Content-Length: 5"), 4) is None
-    assert client._read(answer(b"12345"), 4) is None
-    assert client._read(answer(b"12345"), 5) == b"12345"
+    assert transport.read(answer(b"12345", b"Content-Length: 5"), 4) is None
+    assert transport.read(answer(b"12345"), 4) is None
+    assert transport.read(answer(b"12345"), 5) == b"12345"
 
 
 def test_an_answer_that_is_cut_off_is_an_error() -> None:
     with pytest.raises(EOFError):
-        client._read(answer(b"123", b"Content-Length: 5"), 10)
+        transport.read(answer(b"123", b"Content-Length: 5"), 10)

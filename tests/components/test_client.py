@@ -16,14 +16,14 @@ from typing import Any
 import pytest
 
 import hookean_client
-from hookean_client import Problem, buffer, connect, finding
-from hookean_client import client as client_module
+from hookean_client import Problem, buffer, connect, finding, transport
+from hookean_client.client import Client
 from serving import CABLE, HANG, SOAK, SWING, Home, living, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
 
-CLIENTS: list[client_module.Client] = []
+CLIENTS: list[Client] = []
 
 
 @pytest.fixture
@@ -42,7 +42,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[client_module.Client]:
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
     """A client of a server that runs, which it may not start."""
     home = Home(tmp_path_factory.mktemp("client") / "state")
     home.serve()
@@ -52,12 +52,12 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[client_module.C
     home.end()
 
 
-def started(home: Home) -> client_module.Client:
+def started(home: Home) -> Client:
     CLIENTS.append(connect(folder=str(home.folder), python=sys.executable, timeout=HANG))
     return CLIENTS[-1]
 
 
-def beside(home: Home) -> client_module.Client:
+def beside(home: Home) -> Client:
     """The same of a server that runs already."""
     home.serve()
     return started(home)
@@ -66,7 +66,7 @@ def beside(home: Home) -> client_module.Client:
 # methods
 
 
-def test_relaxing_and_arrays(client: client_module.Client) -> None:
+def test_relaxing_and_arrays(client: Client) -> None:
     result = client.relax(CABLE, timeout=HANG)  # kernels may have to be compiled first
     assert result["status"] == "converged"
     springs, load = CABLE["forces"]
@@ -79,29 +79,27 @@ def test_relaxing_and_arrays(client: client_module.Client) -> None:
     assert client.relax(scene, query={"arrays": "list"}, timeout=HANG)["particles"] == result["particles"]
 
 
-def test_a_connection_counts_as_idle_since_its_last_request(
-    client: client_module.Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_connection_counts_as_idle_since_its_last_request(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
     """The service ends idle ones after 16 s. A process that gets no processor for so long sees its answer late, and
     must not send a request that cannot be repeated down a connection that has ended meanwhile."""
-    real, now, late = client_module._read, client_module._now, [0.0]
+    real, now, late = transport.read, transport.now, [0.0]
 
     def slow(answer: Any, most: int) -> Any:
         found = real(answer, most)
         late[0] += 20.0
         return found
 
-    monkeypatch.setattr(client_module, "_now", lambda: now() + late[0])
+    monkeypatch.setattr(transport, "now", lambda: now() + late[0])
     client.get("/v1/health")
     first = client._idle[-1][2]
-    monkeypatch.setattr(client_module, "_read", slow)
+    monkeypatch.setattr(transport, "read", slow)
     client.get("/v1/health")
     assert client._idle[-1][2] is first
     client.get("/v1/health")
     assert client._idle[-1][2] is not first
 
 
-def test_every_method_of_a_session(client: client_module.Client) -> None:
+def test_every_method_of_a_session(client: Client) -> None:
     session = client.session("a document:component ~1".replace(" ", "_"))
     assert session.put(CABLE, query={"label": "Cable"})["revision"] == 0
     assert session.read()["label"] == "Cable"
@@ -130,7 +128,7 @@ def test_every_method_of_a_session(client: client_module.Client) -> None:
     assert (gone.value.slug, gone.value.status) == ("not-found", 404)
 
 
-def test_a_problem_points_and_says(client: client_module.Client) -> None:
+def test_a_problem_points_and_says(client: Client) -> None:
     with pytest.raises(Problem) as found:
         client.relax({"particles": [[0, 0, "x"]]})
     problem = found.value
@@ -139,7 +137,7 @@ def test_a_problem_points_and_says(client: client_module.Client) -> None:
     assert pointer.startswith("/particles") and sentence and sentence in str(problem)
 
 
-def test_what_it_waits_for_ends_with_its_timeout(client: client_module.Client) -> None:
+def test_what_it_waits_for_ends_with_its_timeout(client: Client) -> None:
     count = 20_000  # far more than is solved in the time
     springs = {"kind": "springs", "particles": [[i, i + 1] for i in range(count - 1)], "damping": 0}
     scene = {
@@ -154,7 +152,7 @@ def test_what_it_waits_for_ends_with_its_timeout(client: client_module.Client) -
     assert client.get("/v1/health")["service"] == "hookean"
 
 
-def test_frames_show_each_edit(client: client_module.Client) -> None:
+def test_frames_show_each_edit(client: Client) -> None:
     session = client.session("frames")
     session.put(SWING)
     frames = session.frames()
@@ -182,14 +180,14 @@ def test_frames_show_each_edit(client: client_module.Client) -> None:
     session.delete()
 
 
-def test_frames_of_no_session_end_with_a_sentence(client: client_module.Client) -> None:
+def test_frames_of_no_session_end_with_a_sentence(client: Client) -> None:
     frames = client.session("nobody").frames()
     wait_for(lambda: frames.ended)
     assert "no session with this key" in frames.message and frames.latest() is None
     assert frames.wait(timeout=5.0) is None
 
 
-def test_frames_end_when_the_session_is_forgotten(client: client_module.Client) -> None:
+def test_frames_end_when_the_session_is_forgotten(client: Client) -> None:
     session = client.session("forgotten")
     session.put(CABLE)
     frames = session.frames()
@@ -198,7 +196,7 @@ def test_frames_end_when_the_session_is_forgotten(client: client_module.Client) 
     wait_for(lambda: frames.ended)
 
 
-def test_threads_share_a_client(client: client_module.Client) -> None:
+def test_threads_share_a_client(client: Client) -> None:
     found: list[str] = []
 
     def solve() -> None:
@@ -257,7 +255,7 @@ def test_a_start_goes_on_where_nobody_waits_for_it(home: Home, monkeypatch: pyte
         connect(folder=str(home.folder), python=sys.executable, timeout=0.0)
     assert found.value.slug == "starting"
     wait_for(lambda: home.told)
-    monkeypatch.setattr(client_module, "ANSWER", HANG)  # it has just started, and may be slow
+    monkeypatch.setattr(transport, "ANSWER", HANG)  # it has just started, and may be slow
     client = connect(folder=str(home.folder), start=False)
     assert client.instance == home.told["instance"]
     assert not (home.folder / "starting").exists()

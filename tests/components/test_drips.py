@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-import hookean_client.client
+import hookean_client.transport
 import hookean_client.websocket
 from hookean_client import Problem
 from hookean_client.client import Client
@@ -152,7 +152,7 @@ def test_an_answer_cut_short_is_lost(server: Hostile, client: Client) -> None:
 
 @pytest.mark.parametrize("head", ["Content-Length: 3000000\r\n\r\n", "Connection: close\r\n\r\n"])
 def test_a_body_has_a_limit(server: Hostile, client: Client, head: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hookean_client.client, "LARGEST", 1_000_000)
+    monkeypatch.setattr(hookean_client.transport, "LARGEST", 1_000_000)
     server.script = drips(OK + head, b" " * 100_000, 0.0)
     with pytest.raises(Problem) as found:
         client.post("/v1/relax", b"{}")

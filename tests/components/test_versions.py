@@ -17,7 +17,10 @@ from pythons import interpreter
 from serving import CABLE, HANG, Home
 
 SOURCE = Path(hookean_client.__file__)
-FILES = [SOURCE, *(SOURCE.with_name(name) for name in ("client.py", "finding.py", "sessions.py", "websocket.py"))]
+FILES = [
+    SOURCE,
+    *(SOURCE.with_name(name) for name in ("client.py", "finding.py", "transport.py", "sessions.py", "websocket.py")),
+]
 VERSIONS = ["2.7", *(f"3.{minor}" for minor in range(6, 15))]
 
 
@@ -37,8 +40,8 @@ SMOKE = """
 import json, sys, time
 sys.dont_write_bytecode = True
 sys.path.insert(0, sys.argv[1])
-import hookean_client.client
-hookean_client.client.ANSWER = 120.0
+import hookean_client.transport
+hookean_client.transport.ANSWER = 120.0
 scene = json.loads(sys.argv[3])
 client = hookean_client.connect(start=False, folder=sys.argv[2])
 scene["particles"] = hookean_client.buffer(scene["particles"])

@@ -23,7 +23,7 @@ from typing import Any
 import httpx
 import pytest
 
-import hookean_client.client
+import hookean_client.transport
 from hookean_client import finding
 from hookean_server.lifecycle import discovery
 from hookean_server.lifecycle.discovery import Distrusted, Found, ask, check, find, proven
@@ -258,7 +258,7 @@ def test_a_stranger_who_trickles_holds_nobody_up(home: Home, tmp_path: Path, mon
     like = find(home.folder)
     assert like is not None
     monkeypatch.setattr(discovery, "ANSWER", 1.0)
-    monkeypatch.setattr(hookean_client.client, "ANSWER", 1.0)
+    monkeypatch.setattr(hookean_client.transport, "ANSWER", 1.0)
     left = threading.Semaphore(0)
     with socket.create_server(("127.0.0.1", 0)) as listening:
 

@@ -54,7 +54,7 @@ _hookean_client(
 """
 TOGETHER = (
     ("__init__", "canvas_geometry", "canvas_packed", "canvas_words", "canvas_items", "canvas"),
-    ("client", "finding", "canvas_link", "canvas_ask"),
+    ("transport", "finding", "client", "canvas_link", "canvas_ask"),
     ("canvas_branches", "canvas_values", "canvas_discretize"),
 )
 """Modules that travel as one: all scripts need the first, those that ask the service the second, tools the third."""
