@@ -55,7 +55,7 @@ def _pieces(answer, count):
 
 
 def refusal(status, data):
-    """The problem that an answer of the server tells of."""
+    """The problem that an answer of the server reports."""
     try:
         said = json.loads(data.decode("utf-8"))
         errors = [(e["pointer"], e["detail"]) for e in said.get("errors", [])]
