@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from hookean.compiled import dispatch
 from hookean.discretize import meshes
 from hookean.forces import Block, Force
+from hookean.system.loose_ends import loose_ends
 
 if TYPE_CHECKING:
     from hookean.system.system import System
@@ -97,7 +98,7 @@ def cautions(system: System) -> list[str]:
         from hookean.system.near_misses import near_misses
 
         warnings += near_misses(system)
-    return warnings
+    return warnings + loose_ends(system)
 
 
 def without_size(system: System, number: int, load: Force) -> str:

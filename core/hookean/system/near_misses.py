@@ -52,7 +52,7 @@ def near_misses(system: System) -> list[str]:
     Of the two directions of a pair the one with the larger part of a force's particles is reported.
     """
     forces = [
-        _Force(system, part, group.particles[part.rows])
+        Force(system, part, group.particles[part.rows])
         for group in system.groups
         for part in (group.parts if group.cls.role == "internal" and group.cls.solid else ())
         if part.rows.stop > part.rows.start
@@ -65,7 +65,7 @@ def near_misses(system: System) -> list[str]:
     most = min(MOST, max(LEAST, ALTOGETHER // max(1, len(forces))))
     best: dict[tuple[int, int], _Met] = {}
     for g, force in enumerate(forces):
-        near = _compared(x, force, owners.beside(x, g, force), most)
+        near = compared(x, force, owners.beside(x, g, force), most)
         if not len(near.rows):
             continue
         elements = force.take(near.rows)
@@ -90,7 +90,7 @@ class _Elements:
 
 
 @dataclass(frozen=True)
-class _Near:
+class Near:
     """Pairs of an element (its row) and a particle, with their distance; whether `all` particles were compared."""
 
     rows: Ints
@@ -98,11 +98,11 @@ class _Near:
     distance: Floats
     all: bool
 
-    def take(self, chosen: Ints | Mask) -> _Near:
-        return _Near(self.rows[chosen], self.particles[chosen], self.distance[chosen], self.all)
+    def take(self, chosen: Ints | Mask) -> Near:
+        return Near(self.rows[chosen], self.particles[chosen], self.distance[chosen], self.all)
 
 
-class _Force:
+class Force:
     """A force of a system: the particles of its elements, and the lines and faces that others may lie on.
 
     Rows of elements count the lines first, then the faces.
@@ -165,7 +165,7 @@ class _Force:
 class _Owners:
     """The forces that each particle belongs to, by their places among those compared, in ascending order."""
 
-    def __init__(self, forces: list[_Force], count: int) -> None:
+    def __init__(self, forces: list[Force], count: int) -> None:
         mine = [np.unique(force.index) for force in forces]
         self.totals = np.array([len(particles) for particles in mine], np.int64)
         particles, owner = np.concatenate(mine), np.repeat(np.arange(len(mine)), self.totals)
@@ -191,7 +191,7 @@ class _Owners:
         wanted = forces * self.count + particles
         return np.asarray(self.pairs[np.minimum(np.searchsorted(self.pairs, wanted), len(self.pairs) - 1)] == wanted)
 
-    def beside(self, x: Floats, g: int, force: _Force) -> Ints:
+    def beside(self, x: Floats, g: int, force: Force) -> Ints:
         """Particles of other forces that are not beyond all elements of force g along the longest side of the scene."""
         if self._along is None:
             axis = int(np.argmax(np.ptp(x.take(self.used, axis=0), axis=0)))
@@ -210,14 +210,14 @@ class _Owners:
         return np.asarray(found)
 
 
-def _compared(x: Floats, force: _Force, foreign: Ints, most: int = MOST) -> _Near:
+def compared(x: Floats, force: Force, foreign: Ints, most: int = MOST) -> Near:
     """Elements and foreign particles with less than a tenth of the element's length between them.
 
     Elements are compared by their size, within a factor of two, in cells as large as they are.
     """
     middle, reach = force.spheres()
     size = np.frexp(reach)[1].clip(-1000)  # of those without a length 0
-    found = [_Near(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), True)]
+    found = [Near(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), True)]
     for octave in np.flatnonzero(np.bincount(size + 1000)) - 1000:
         rows, radius = np.flatnonzero((size == octave) & (reach > 0.0)), float(np.ldexp(1.0, int(octave)))
         near = foreign
@@ -226,11 +226,11 @@ def _compared(x: Floats, force: _Force, foreign: Ints, most: int = MOST) -> _Nea
         some = near[:: max(1, -(-len(near) // most))]
         rows = rows[_beside(middle[rows], x.take(some, axis=0), radius)]
         first, second = _pairs(middle[rows], x.take(some, axis=0), radius)
-        pairs = _Near(rows[first], some[second], np.zeros(len(first)), len(some) == len(near))
+        pairs = Near(rows[first], some[second], np.zeros(len(first)), len(some) == len(near))
         elements = force.take(pairs.rows)
         apart = distances(x.take(pairs.particles, axis=0), x.take(elements.corners, axis=0))
-        found.append(_Near(pairs.rows, pairs.particles, apart, pairs.all).take(apart < NEAR * elements.length))
-    return _Near(
+        found.append(Near(pairs.rows, pairs.particles, apart, pairs.all).take(apart < NEAR * elements.length))
+    return Near(
         np.concatenate([near.rows for near in found]),
         np.concatenate([near.particles for near in found]),
         np.concatenate([near.distance for near in found]),
@@ -313,7 +313,7 @@ def _reach(x: Floats, owners: _Owners, spacing: Floats, elements: _Elements, par
     return np.where(tie, 0.0, reach)
 
 
-def _spacing(forces: list[_Force], count: int) -> Floats:
+def _spacing(forces: list[Force], count: int) -> Floats:
     """The shortest line at each particle, infinite where there is none."""
     shortest = np.full(count, np.inf)
     for force in forces:
@@ -341,24 +341,28 @@ class _Met:
     def share(self) -> float:
         return self.count / self.total
 
-    def sentence(self, forces: list[_Force], names: Counter[str]) -> str:
+    def sentence(self, forces: list[Force], names: Counter[str]) -> str:
         """What a person reads of it."""
-        system = forces[self.g].system
-        spot = ", ".join(f"{c:.6g}" for c in system.x[self.first])
-        away = self.away * (self.away > ROUNDING * system.size)
         one, other = (
             force.name if force.name and names[force.name] == 1 else f"/forces/{number}"
             for force, number in ((forces[i].part.force, forces[i].part.number) for i in (self.f, self.g))
         )
         return (
             f"{one}: {'' if self.all else 'at least '}{self.count} of {self.total} particles lie on {WORDS[self.kind]} "
-            f"of {other}, within a tenth of their length, but are not joined to it; the first is particle {self.first} "
-            f"at ({spot}), {away:.3g} {system.scene.units.length} away. Divide both the same way or raise "
-            "weld_tolerance"
+            f"of {other}, within a tenth of their length, but are not joined to it; the first is "
+            f"{spot(forces[self.g], self.first, self.away)}. Divide both the same way or raise weld_tolerance"
         )
 
 
-def _met(owners: _Owners, force: _Force, g: int, near: _Near) -> Iterator[_Met]:
+def spot(force: Force, particle: int, away: float) -> str:
+    """A particle, where it is, and how far [length] it is away from an element of a force."""
+    system = force.system
+    place = ", ".join(f"{c:.6g}" for c in system.x[particle])
+    away *= away > ROUNDING * system.size
+    return f"particle {particle} at ({place}), {away:.3g} {system.scene.units.length} away"
+
+
+def _met(owners: _Owners, force: Force, g: int, near: Near) -> Iterator[_Met]:
     """What of each other force lies on force g."""
     kind = force.take(near.rows).kind
     order = np.lexsort((near.distance, kind, near.particles))
