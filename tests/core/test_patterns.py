@@ -278,8 +278,28 @@ def test_compensation_makes_the_strips_smaller_along_warp_and_weft(form: hookean
     smaller = hookean.cutting_patterns(form, rows=4, compensation=(0.02, 0.005)).strips[0]
     np.testing.assert_allclose(smaller.points * [1.02, 1.005], plain.points, atol=1e-12)
     np.testing.assert_allclose(np.ptp(plain.points, axis=0)[0], 10.0, rtol=0.1)  # warp along the strip
-    # biaxial Hooke: e1 = n1 / k1 - nu n2 / k2
-    np.testing.assert_allclose(strains((2e3, 1e3), (600e3, 500e3), 0.3), (2 / 600 - 0.3 / 500, 1 / 500 - 0.6 / 600))
+
+
+def test_the_strains_of_compensation_are_those_of_the_membrane() -> None:
+    """Biaxial Hooke with a symmetric compliance [[1 / k1, -nu / k1], [-nu / k1, 1 / k2]]; and a square sheet of
+    `membrane` pulled by the same forces per width at its corners, to the order of the strains of 4e-6."""
+    np.testing.assert_allclose(strains((2e3, 1e3), (600e3, 500e3), 0.3), (1.7 / 600, 1 / 500 - 0.6 / 600))
+    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    n = np.array([3e-3, 2e-3])
+    sheet = {
+        "particles": square,
+        "meshes": {"m": {"vertices": square, "faces": [[0, 1, 2], [0, 2, 3]]}},
+        "forces": [
+            {"kind": "membrane", "mesh": "m", "warp_stiffness": 800, "weft_stiffness": 600, "poisson": 0.3,
+             "warp": [1, 0, 0]},
+            {"kind": "unary", "particles": [0, 1, 2, 3],
+             "vector": [[*(np.sign(np.array(at[:2]) - 0.5) * n / 2), 0] for at in square]},
+        ],
+        "anchors": [{"particles": [0]}, {"particles": [1], "axes": "yz"}, {"particles": [2, 3], "axes": "z"}],
+        "settings": {"tolerance": 1e-12},
+    }  # fmt: skip
+    pulled = hookean.relax(hookean.Scene.read(sheet)).particles
+    np.testing.assert_allclose([pulled[1, 0] - 1, pulled[3, 1] - 1], strains(tuple(n), (800, 600), 0.3), rtol=1e-4)
 
 
 def test_seams_have_allowances_and_marks_that_meet(form: hookean.Result) -> None:

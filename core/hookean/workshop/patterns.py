@@ -194,10 +194,11 @@ def cutting_patterns(
 def strains(
     prestress: tuple[float, float], stiffness: tuple[float, float], poisson: float = 0.0
 ) -> tuple[float, float]:
-    """The strains [-] of cloth along warp and weft under a prestress [force/length] there: e1 = n1 / k1 - nu n2 / k2,
-    e2 = n2 / k2 - nu n1 / k1 with stiffnesses k [force/length] and one Poisson's ratio nu."""
-    first, second = prestress[0] / stiffness[0], prestress[1] / stiffness[1]
-    return first - poisson * second, second - poisson * first
+    """The strains [-] of cloth along warp and weft under a prestress [force/length] there, as `membrane` has them: e1 =
+    (n1 - nu n2) / k1, e2 = n2 / k2 - nu n1 / k1 with stiffnesses k [force/length]. Poisson's ratio nu is how much the
+    cloth contracts along the weft where the warp is pulled."""
+    (n1, n2), (k1, k2) = prestress, stiffness
+    return (n1 - poisson * n2) / k1, n2 / k2 - poisson * n1 / k1
 
 
 def _surface(surface: Any, name: str | None) -> tuple[Mesh, Units]:
