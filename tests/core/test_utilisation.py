@@ -82,6 +82,7 @@ def test_a_cantilever_uses_axial_force_and_bending() -> None:
             {"kind": "unary", "particles": [2], "vector": [50.0, 0, -load]},
         ],
         "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "settings": {"tolerance": 1e-10},
     })  # fmt: skip
     area = np.pi * thickness * (diameter - thickness)
     modulus = np.pi / 64 * (diameter**4 - (diameter - 2 * thickness) ** 4) / (diameter / 2)
