@@ -1,4 +1,4 @@
-"""Beams in Abaqus input files, read back by meshio, and solved by matrices that only the numbers of the file go into."""
+"""Beams in Abaqus input files, read back by meshio, and solved by matrices into which only the file goes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def frame(**more: Any) -> Spec:
         "particles": [[0, 0, 0], [1, 0.5, 2], [3, 0.5, 2.5], [1, 3, 2], [3, 0, 5]],
         "forces": [
             {"kind": "beam", "name": "rib", "particles": [[0, 1], [1, 2]], **TUBE, "normal": [0.2, 1, 0.1]},
-            {"kind": "beam", "name": "purlin", "particles": [[1, 3]], **{**TUBE, "Iz": 0.01}, **more},
+            {"kind": "beam", "name": "purlin", "particles": [[1, 3]], **TUBE, "Iz": 0.01, **more},
             {"kind": "springs", "name": "stay", "particles": [[2, 4]], "axial_stiffness": 5.0, "force": 1e-7},
             {"kind": "unary", "particles": [2], "vector": [0, 2e-6, -1e-6], "moment": [1e-6, 0, 2e-6]},
         ],

@@ -236,9 +236,7 @@ def test_what_a_file_cannot_hold_is_one_sentence(tmp_path: Path, monkeypatch: py
     result = hookean.relax(feet)
     with pytest.raises(InputError, match="units ft and N given"):
         result.save(tmp_path / "a.ifc")
-    with pytest.raises(
-        InputError, match="neither beams nor springs with a rest length to write; freeze the form first"
-    ):
+    with pytest.raises(InputError, match="neither beams nor springs with a rest length to write; freeze"):
         result.save(tmp_path / "a.inp")
     for package, ending, extra in (("meshio", "vtu", "exchange"), ("ifcopenshell", "ifc", "ifc")):
         monkeypatch.setitem(__import__("sys").modules, package, None)
