@@ -12,7 +12,7 @@ STRUCTURES = {
     "analysis", "area_weight", "beam", "beam_buckling", "beam_mechanisms", "beam_paths", "beam_units", "cables",
     "constant_tension", "exact_reactions", "frame_buckling", "hydrostatic", "hypar_roof", "kratos", "line_weight",
     "load_cases", "lost_loads", "materials", "membrane", "obstacle_course", "patterns", "shell", "sliding_cable",
-    "support", "temperature", "truss_buckling", "utilisation", "wind_pressure",
+    "support", "prestress_factor", "temperature", "truss_buckling", "utilisation", "wind_pressure",
 }  # fmt: skip
 """Files of tests in which loads and reactions of all that comes to rest balance (see `balances`)."""
 
