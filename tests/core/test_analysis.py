@@ -163,7 +163,7 @@ def column(n: int, stiffness: float = 1e9) -> Spec:
         {"kind": "unary", "name": "wind", "particles": [n // 2], "vector": [0.0, 0, 0]},
     ]
     anchors = [{"particles": [0]}, {"particles": [n], "axes": "xy"}, {"particles": np.arange(1, n), "axes": "y"}]
-    return {"particles": x, "forces": forces, "anchors": anchors}
+    return {"particles": x, "forces": forces, "anchors": anchors, "settings": {"tolerance": 1e-9}}
 
 
 @pytest.mark.parametrize("n", [4, 20, 450])
@@ -205,6 +205,7 @@ def truss(half: float, rise: float, stiffness: float = 100.0) -> Scene:
             "particles": [[-half, 0, 0], [0, 0, rise], [half, 0, 0]],
             "forces": [springs, load],
             "anchors": [{"particles": [0, 2]}, {"particles": [1], "axes": "y"}],
+            "settings": {"tolerance": 1e-10},
         }
     )
 

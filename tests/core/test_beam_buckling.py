@@ -62,7 +62,7 @@ def sideways(count: int) -> float:
     while high - low > 4e-4:
         middle = 0.5 * (low + high)
         forces = [row(count, section), load(count, (0, 0, -middle))]
-        found = relax(scene(straight(count), forces, solver="newton", allow_unstable=True))
+        found = relax(scene(straight(count), forces, solver="newton", allow_unstable=True, tolerance=1e-9))
         assert found.converged and found.stability in ("stable", "unstable")
         low, high = (middle, high) if found.stability == "stable" else (low, middle)
     return 0.5 * (low + high)

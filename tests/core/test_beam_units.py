@@ -33,7 +33,7 @@ def tower(length: float, force: float, **settings: Any) -> Spec:
             {"kind": "unary", "particles": [12], "vector": [0, 0, 0], "moment": [0, 0, 500.0 * force * length]},
         ],
         "anchors": [{"particles": [0, 1, 2, 3], "rotations": "xyz"}, {"particles": [16]}],
-        "settings": settings,
+        "settings": {"tolerance": 1e-10, **settings},
     }
 
 

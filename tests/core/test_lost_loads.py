@@ -133,6 +133,7 @@ def row(*loads: dict[str, Any], **more: Any) -> Scene:
         "particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
         "forces": [{"kind": "springs", "particles": [[0, 1], [1, 2]], "stiffness": 100.0, "rest_factor": 0.8}, *loads],
         "anchors": [{"particles": [0, 2]}],
+        "settings": {"tolerance": 1e-10},
     }
     return Scene.read({**scene, **more})
 

@@ -171,7 +171,8 @@ def test_a_sheared_sheet_wrinkles_at_45_degrees() -> None:
     end[:, 0] += gamma * x[:, 1]
     membrane = Membrane(mesh="m", warp_stiffness=stiff, poisson=0.3, wrinkling=True)
     held = [{"particles": rim, "targets": end[rim]}, {"particles": np.arange(len(x)), "axes": "z"}]
-    found = relax(Scene(particles=x, meshes={"m": vars(mesh)}, forces=[membrane], anchors=held))
+    tight = {"tolerance": 1e-10}
+    found = relax(Scene(particles=x, meshes={"m": vars(mesh)}, forces=[membrane], anchors=held, settings=tight))
     cloth = found.force("membrane")
     assert found.converged and (cloth["state"] == WRINKLED).all()
     assert cloth["largest"] == pytest.approx(np.full(len(cloth["state"]), stiff * gamma / 2), rel=5 * gamma)
@@ -236,7 +237,8 @@ def airbag(count: int) -> Result:
     cloth = Membrane(mesh="m", warp_stiffness=588e6 * 0.6e-3, poisson=0.4, wrinkling=True)
     pressure = {"kind": "pressure", "mesh": "m", "pressure": 5e3}
     held = [{"particles": seam, "axes": "z"}, *middle]
-    return relax(Scene(particles=x, meshes={"m": vars(mesh)}, forces=[cloth, pressure], anchors=held))
+    tight = {"tolerance": 1e-10}
+    return relax(Scene(particles=x, meshes={"m": vars(mesh)}, forces=[cloth, pressure], anchors=held, settings=tight))
 
 
 @pytest.mark.parametrize("count", [8, pytest.param(16, marks=pytest.mark.slow)])

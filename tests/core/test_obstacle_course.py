@@ -24,7 +24,7 @@ def settled(
         materials={"it": material},
         forces=[*both, load],
         anchors=held,
-        settings={"solver": "newton", "tolerance": 1e-5, "position_tolerance": None},
+        settings={"solver": "newton", "tolerance": 1e-10, "position_tolerance": None},
     )
     found = relax(scene)
     assert found.converged, found.message

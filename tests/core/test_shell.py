@@ -115,7 +115,7 @@ def deflection(mesh: Any, *more: Any, free: bool = False) -> float:
                 *more,
             ],
             anchors=anchors,
-            settings={"tolerance": 1e-8, "solver": "newton"},
+            settings={"tolerance": 1e-10, "solver": "newton"},
         )
     )
     assert result.converged, result.message
@@ -509,7 +509,7 @@ def plate(rings: int, nu: float, clamped: bool) -> float:
             {"kind": "area_weight", "mesh": "skin", "weight": 0.01, "per": "start"},
         ],
         anchors=[{"particles": held, "axes": "z"}, {"particles": np.arange(len(x)), "axes": "xy"}],
-        settings={"solver": "newton", "tolerance": 1e-7},
+        settings={"solver": "newton", "tolerance": 1e-10},
     )
     found = relax(scene)
     assert found.converged

@@ -32,6 +32,7 @@ def column(degrees: Any, *, ends: str, **more: Any) -> Scene:
             "sections": {"rod": ROD},
             "forces": [{**beam, "material": "steel", "section": "rod", "temperature": degrees}],
             "anchors": anchors[ends],
+            "settings": {"tolerance": 1e-11},
             **more,
         }
     )
@@ -90,6 +91,7 @@ def sheet(degrees: float | None, *, held: bool, **more: Any) -> Scene:
             "anchors": [{"points": vertices, "axes": "z"}, {"points": edge}]
             if held
             else [*flat, {"points": [p for p in vertices if p[1] == 0.0], "axes": "y"}],
+            "settings": {"tolerance": 1e-11},
             **more,
         }
     )

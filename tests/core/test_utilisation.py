@@ -82,12 +82,32 @@ def test_a_cantilever_uses_axial_force_and_bending() -> None:
             {"kind": "unary", "particles": [2], "vector": [50.0, 0, -load]},
         ],
         "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "settings": {"tolerance": 1e-10},
     })  # fmt: skip
     area = np.pi * thickness * (diameter - thickness)
     modulus = np.pi / 64 * (diameter**4 - (diameter - 2 * thickness) ** 4) / (diameter / 2)
     expected = [50.0 / area + 2.0 * load / modulus, 50.0 / area + 1.0 * load / modulus]
     # the tip falls by P l^3 / 3EI = 7e-5 m, so that 50 N have a moment of 4e-3 N m of 20 N m
     np.testing.assert_allclose(relax(scene).force("beam")["utilisation"], np.array(expected) / f, rtol=5e-4)
+
+
+def test_moments_about_both_axes_count_where_they_meet() -> None:
+    """A clamped beam with a force along y and a moment about y at its end, which is held along z: My is 0.9 there and
+    -0.45 at the clamp (a propped cantilever carries half of it over, Timoshenko), Mz 1 at the clamp and 0 at the end.
+    The clamp uses 0.45 + 1, the end 0.9 of W f = 1."""
+    scene = Scene.read({
+        "particles": [[0, 0, 0], [1, 0, 0]],
+        "materials": {"m": {"E": 1e6, "G": 4e5, "strength": 10.0}},
+        "sections": {"s": {"area": 1.0, "Iy": 1.0, "Iz": 1.0, "J": 1.0, "Wy": 0.1, "Wz": 0.1}},
+        "forces": [
+            {"kind": "beam", "particles": [[0, 1]], "material": "m", "section": "s"},
+            {"kind": "unary", "particles": [1], "vector": [0, 1.0, 0], "moment": [0, 0.9, 0]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}, {"particles": [1], "axes": "z"}],
+        "settings": {"tolerance": 1e-10},
+    })  # fmt: skip
+    # angles of 1e-6 rad, of which N is 1e-6 of W f
+    assert relax(scene).force("beam")["utilisation"] == pytest.approx([1.45], rel=1e-5)
 
 
 def test_cloth_uses_its_warp_or_its_weft() -> None:

@@ -15,6 +15,7 @@ from hookean.errors import InputError
 from hookean.forces import Block, Force, base, elastic
 from hookean.forces.base import Places
 from hookean.forces.membrane import Membrane
+from hookean.forces.sliding_cable import SlidingCable, taut
 from hookean.forces.soapfilm import SoapFilm
 from hookean.forces.springs import Springs
 from hookean.running.result import Result, Status, gather
@@ -62,10 +63,10 @@ class Frozen:
     `scene` has the elastic elements; it keeps the start shape, meshes and load cases of the scene it comes from.
     `particles` (n, 3) [length] is the form, and `form` the result of finding it. `notes` are sentences on forces that
     stay as they were although they are not elastic, and on films. `lengths` and `tensions` (m,) are those of the
-    elastic lines in the form, by the number of their force; `films` are the numbers of what was a film and is cloth;
-    `expansions` [1/K] are known of lines of a material, and `temperatures` [K], one or one for each element, of those
-    that have one in the form; `rotations` (r, 4) are the unit quaternions w, x, y, z of the
-    ends of beams.
+    elastic lines in the form, by the number of their force; `cloth` (m, 3) [force/length] are the stresses of triangles
+    of membranes there, and `slides` the length and the strain of a sliding cable; `expansions` [1/K] are known of lines
+    of a material, and `temperatures` [K], one or one for each element, of those that have one in the form; `rotations`
+    (r, 4) are the unit quaternions w, x, y, z of the ends of beams.
     """
 
     scene: Scene
@@ -74,7 +75,8 @@ class Frozen:
     notes: tuple[str, ...] = ()
     lengths: dict[int, Floats] = field(default_factory=dict)
     tensions: dict[int, Floats] = field(default_factory=dict)
-    films: tuple[int, ...] = ()
+    cloth: dict[int, Floats] = field(default_factory=dict)
+    slides: dict[int, tuple[float, float]] = field(default_factory=dict)
     expansions: dict[int, float] = field(default_factory=dict)
     temperatures: dict[int, Floats] = field(default_factory=dict)
     rotations: Floats = field(default_factory=lambda: np.zeros((0, 4)))
@@ -102,15 +104,17 @@ def freeze(scene: Scene) -> Frozen:
     """
     stages = scene.stages or Stages()
     system, state, form = _form(scene, stages)
-    notes, films = list[str](), tuple[int, ...]()
+    notes = list[str]()
     if system.films is not None:
-        system, state, films, notes = _clothed(system, state, stages)
+        system, state, notes = _clothed(system, state, stages)
         scene = system.scene
     forces = list(scene.forces)
     lengths: dict[int, Floats] = {}
     tensions: dict[int, Floats] = {}
     expansions: dict[int, float] = {}
     temperatures: dict[int, Floats] = {}
+    cloth: dict[int, Floats] = {}
+    slides: dict[int, tuple[float, float]] = {}
     for group, memory in zip(system.groups, state.memory, strict=True):
         element_forces = system.element_forces(group, state, memory) if group.cls.role == "internal" else None
         for part in group.parts:
@@ -119,6 +123,10 @@ def freeze(scene: Scene) -> Frozen:
                 continue
             block = group.of(part)
             block.memory = memory[part.rows]
+            if issubclass(group.cls, Membrane):
+                cloth[part.number] = Membrane.second(block, state.x)
+            if group.cls is SlidingCable and (slide := taut(block, state.x)) is not None:
+                slides[part.number] = slide
             if group.cls.kind_name in FREEZERS and element_forces is not None:
                 columns = part.force.measure(block, state.x, element_forces[part.rows])
                 line = _line(system, stages, part, block, columns)
@@ -130,21 +138,22 @@ def freeze(scene: Scene) -> Frozen:
                     temperatures[part.number] = np.asarray(own, dtype=np.float64)
             elif group.cls.kind_name in HEATED and (known := _own_expansion(part.force, system.places)) is not None:
                 expansions[part.number] = known
-            elif group.cls.role == "internal" and group.cls.kind_name not in ELASTIC:
+            elif group.cls.role == "internal" and part.number not in slides and group.cls.kind_name not in ELASTIC:
                 name = force.name or force.kind_name
                 notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
     frozen = scene.replaced(forces=tuple(forces))
     turned = system.slots.quaternions(state.x)
     found = state.x[: system.slots.count].copy()
-    model = Frozen(frozen, found, form, tuple(notes), lengths, tensions, films, expansions, temperatures, turned)
+    known = (lengths, tensions, cloth, slides, expansions, temperatures)
+    model = Frozen(frozen, found, form, tuple(notes), *known, turned)
     other = compile(frozen)
     if not np.array_equal(other.x, system.x):
         raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")
     return model
 
 
-def _clothed(system: System, state: State, stages: Stages) -> tuple[System, State, tuple[int, ...], list[str]]:
-    """A form whose films are cloth that is at rest: its system and state, the numbers of the films, and notes."""
+def _clothed(system: System, state: State, stages: Stages) -> tuple[System, State, list[str]]:
+    """A form whose films are cloth that is at rest: its system and state, and notes."""
     scene = system.scene
     forces, films = list(scene.forces), list[int]()
     for group, memory in zip(system.groups, state.memory, strict=True):
@@ -174,7 +183,7 @@ def _clothed(system: System, state: State, stages: Stages) -> tuple[System, Stat
     if moved > SETTLED * float(np.linalg.norm(np.ptp(state.x[:count], axis=0))):
         unit = scene.units.length
         notes.append(f"the form moved by up to {moved:.2g} {unit} to where the cloth is at rest")
-    return other, there, tuple(films), notes
+    return other, there, notes
 
 
 def _form(scene: Scene, stages: Stages) -> tuple[System, State, Result]:
@@ -268,7 +277,7 @@ def frozen_springs(line: Line) -> Force:
             raise _missing(line, "have no rest length")
         stiffness = p[:, 0]
     else:
-        stiffness, rest = cut_to(line.axial_stiffness, line.length, line.tension, line.pointer)
+        stiffness, rest = cut_to(line.axial_stiffness, line.length, line.tension, line.pointer, rest)
     own, high, low = line.force, np.maximum(p[:, 4], 0.0), np.maximum(p[:, 5], 0.0)
     assert isinstance(own, Springs)
     lower = np.maximum(low, rest) if line.wanted.tension_only and not own.tension_only else low
@@ -303,9 +312,12 @@ def frozen_tension(line: Line) -> Force:
     )
 
 
-def cut_to(given: Floats, length: Floats, tension: Floats, pointer: str) -> tuple[Floats, Floats]:
+def cut_to(
+    given: Floats, length: Floats, tension: Floats, pointer: str, slack: Floats | None = None
+) -> tuple[Floats, Floats]:
     """Stiffness [force/length] and rest length [length] of elements of EA (one, or m) [force] with a tension (m,) at
-    their length (m,)."""
+    their length (m,). Those without a tension have the rest length `slack` (m,), where that is given and not 0: they
+    hang slack, or have a gap to close, and keep it."""
     count = len(tension)
     if given.ndim and len(given) != count:
         said = f"{len(given)} values of axial_stiffness for {count} elements; give one value or one for each"
@@ -316,6 +328,8 @@ def cut_to(given: Floats, length: Floats, tension: Floats, pointer: str) -> tupl
         said = f"element {spot} pushes with {-tension[spot]:.4g}, more than its axial stiffness {ea[spot]:.4g}"
         raise InputError(pointer, f"{said}; give a larger one")
     rest = length * ea / (ea + tension)
+    if slack is not None:
+        rest = np.where((tension == 0.0) & (slack > 0.0), slack, rest)
     if (rest <= 0.0).any():
         spot = int(np.argmin(rest))
         raise InputError(pointer, f"element {spot} has zero length in the form; move its ends apart")
@@ -331,24 +345,3 @@ def _missing(line: Line, why: str) -> InputError:
 
 FREEZERS: dict[str, Callable[[Line], Force]] = {"springs": frozen_springs, "constant_tension": frozen_tension}
 """By the kind of a force: what makes it elastic."""
-
-
-def prestressed(frozen: Frozen, factor: float) -> Scene:
-    """The elastic scene with the tensions of the form times a factor: lengths l stay, L0 = l EA / (EA + factor T); and
-    so do the shapes of cloth."""
-    if factor == 1.0:
-        return frozen.scene
-    forces = list(frozen.scene.forces)
-    for number, tension in frozen.tensions.items():
-        force, length = forces[number], frozen.lengths[number]
-        assert isinstance(force, Springs)
-        ea = np.asarray(force.stiffness) * np.asarray(force.rest_length)
-        stiffness, rest = cut_to(ea, length, factor * tension, f"/forces/{number}")
-        slack = np.asarray(force.lower_cutoff) >= np.asarray(force.rest_length)
-        lower = np.where(slack, rest, force.lower_cutoff)
-        forces[number] = force.replaced(stiffness=stiffness, rest_length=rest, lower_cutoff=lower)
-    for number in frozen.films:
-        cloth = forces[number]
-        assert isinstance(cloth, Membrane)
-        forces[number] = cloth.replaced(prestress=factor * cloth.prestress)
-    return frozen.scene.replaced(forces=tuple(forces))

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.analysis.envelope import Envelope, envelope
-from hookean.analysis.freezing import Frozen, freeze, prestressed
+from hookean.analysis.freezing import Frozen, freeze
 from hookean.analysis.load_factors import scaled, warmed
+from hookean.analysis.prestressing import prestressed
 from hookean.errors import InputError
 from hookean.forces import KINDS, Force
 from hookean.forces.springs import Springs
@@ -28,6 +29,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 IDLE = "loads that do not act"
+ROUNDING = 1e-12  # strain below which a cable is as long as it was made, and not slack
 
 
 @dataclass(repr=False)
@@ -91,8 +93,9 @@ class LoadCases:
         return envelope(shown, self.form.units)
 
     def summary(self) -> list[str]:
-        """Some lines for each case."""
-        return [line for case in self.cases.values() for line in (case.name, *(f"  {s}" for s in case.summary()))]
+        """Some lines for each case, and the notes on the elastic model."""
+        cases = [line for case in self.cases.values() for line in (case.name, *(f"  {s}" for s in case.summary()))]
+        return [*cases, *self.frozen.notes]
 
     def __repr__(self) -> str:
         return "\n".join(["Load cases", *(f"  {line}" for line in self.summary())])
@@ -213,8 +216,10 @@ def solve_case(frozen: Frozen, name: str) -> CaseResult:
 
 
 def slack_elements(force: Force, columns: Mapping[str, Any]) -> Ints:
-    """The elements of a force that hang slack: springs shorter than their lower cutoff. `columns` of its result."""
+    """The elements of a force that hang slack: springs shorter than their lower cutoff, or than their rest length if
+    they are `tension_only`. `columns` of its result."""
     if not isinstance(force, Springs) or "length" not in columns:
         return np.zeros(0, np.int64)
     length, lower = np.asarray(columns["length"]), np.asarray(force.lower_cutoff)
-    return np.flatnonzero((lower > 0.0) & (length < lower))
+    short = np.asarray(columns["strain"]) < -ROUNDING if force.tension_only else False
+    return np.flatnonzero(((lower > 0.0) & (length < lower)) | short)

@@ -160,6 +160,16 @@ def membrane_stress(x, indices, parameters, found):  # type: ignore[no-untyped-d
             found[e, 2] = (s[2] * long + s[1] * along) / long
 
 
+def membrane_second(x, indices, parameters, found):  # type: ignore[no-untyped-def]
+    """Write the stress of each triangle per width of the start shape, along warp, weft and in shear (the second Piola-
+    Kirchhoff stress), to which a prestress adds."""
+    g, strain = np.zeros((2, 3)), np.zeros(3)
+    for e in range(indices.shape[0]):
+        if parameters[e, AREA] != 0.0:
+            deform(x, indices, parameters, e, g, strain)
+            respond(parameters[e, CLOTH:STRAIN], strain, found[e], parameters[e, WRINKLING] != 0.0)
+
+
 class Membrane(Force):
     """Elastic cloth on a mesh, woven of warp and weft: E = A0 W(strain), at any displacement.
 
@@ -273,6 +283,18 @@ class Membrane(Force):
         return {
             "warp": warp, "weft": weft, "shear": shear, "largest": middle + radius, "least": least, "state": state,
         }  # fmt: skip
+
+    @classmethod
+    def second(cls, block: Block, x: Floats) -> Floats:
+        """Stress (m, 3) of the triangles as `prestress` has it: per width of the start shape [force/length]."""
+        found = np.zeros((len(block.indices), 3))
+        dispatch.compiled(membrane_second)(x, block.indices, block.parameters, found)
+        return found
+
+    def prestressed(self, more: Floats, faces: Ints) -> Membrane:
+        """The same cloth with more stress (m, 3) in each of the triangles of these faces (k, 4) of its mesh."""
+        own = stresses(self, halves(faces)[2], len(faces))
+        return self.replaced(prestress=own + more)
 
     @classmethod
     def example(cls) -> tuple[Membrane, Floats]:

@@ -281,6 +281,16 @@ def longer(block: Block, x: Floats) -> Floats:
     return np.maximum(total - block.parameters[:, REST], 0.0)
 
 
+def taut(block: Block, x: Floats) -> tuple[float, float] | None:
+    """The length [length] and the strain (L - L0) / L0 [-] of the cable of a force that has one, without friction; None
+    where it has more, or that hangs slack."""
+    more = longer(block, x)
+    if not len(more) or len(np.unique(groups.heads(block))) > 1 or more[0] <= 0.0:
+        return None
+    rest = block.parameters[0, REST]
+    return float(rest + more[0]), float(more[0] / rest)
+
+
 def _ways(index: Ints, links: Floats) -> Floats:
     """For each line (m,) 1 where its direction goes on that of the line before it in its cable, -1 where one of the two
     is given from its end to its start: they then share their ends, or their starts."""

@@ -46,7 +46,8 @@ def relax_state(
     near: bool = False,
 ) -> Result:
     """`relax` from a state; `state` is left at the last good shape. `time_limit` counts from `began`, a time of
-    `time.monotonic` [s], or from now. `near`: an equilibrium is near, such as the form that a load case starts from."""
+    `time.monotonic` [s], or from now. `near`: an equilibrium is near, such as the form that a load case starts from;
+    exact steps then go on until loads and reactions balance."""
     began = time.monotonic() if began is None else began
     refusal = method.refuse(system)
     if refusal:
@@ -64,6 +65,8 @@ def relax_state(
     status = watch.look(system, state, known=True)
     while True:
         if status is Status.CONVERGED:
+            if near and not method.physical:
+                watch.finish(system, state)
             status = watch.onward(system, state)
         if status is not Status.RUNNING:
             break

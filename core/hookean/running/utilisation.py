@@ -57,15 +57,14 @@ def _beams(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats 
     if strength is None:
         return None
     known = places.section(force.section).properties
-    used = np.abs(columns["force"]) / known["area"]
+    bent = np.zeros((2, len(columns["force"])))  # at each end; between them it is no larger, as moments are linear
     for axis in "yz":
-        most = np.maximum(np.abs(columns[f"M{axis}0"]), np.abs(columns[f"M{axis}1"]))
-        if f"W{axis}" not in known:
-            if most.any():
-                return None  # it bends by an unknown section modulus
-            continue
-        used = used + most / known[f"W{axis}"]
-    return np.asarray(used / strength)
+        moments = np.abs([columns[f"M{axis}0"], columns[f"M{axis}1"]])
+        if f"W{axis}" in known:
+            bent += moments / known[f"W{axis}"]
+        elif moments.any():
+            return None  # it bends by an unknown section modulus
+    return np.asarray((np.abs(columns["force"]) / known["area"] + bent.max(axis=0)) / strength)
 
 
 def _sheets(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:

@@ -15,6 +15,7 @@ from hookean.running.result import Status
 from hookean.solvers import Solver
 from hookean.stability import time_steps
 from hookean.stability.equilibrium import Equilibrium, Stability, amiss, assess, excess, leave
+from hookean.stability.exact_reactions import finer
 from hookean.system.balance import Balance, balance
 from hookean.system.impulses import next_moment
 from hookean.system.state import State
@@ -118,6 +119,11 @@ class Watch:
         if limit is not None and time.monotonic() - self.started > limit:
             return Status.TIME_LIMIT
         return Status.RUNNING
+
+    def finish(self, system: System, state: State) -> None:
+        """Go on from equilibrium by exact steps until loads and reactions balance."""
+        self.found = finer(system, state, self.found, self.method)
+        self.good = state.copy()
 
     def onward(self, system: System, state: State) -> Status:
         """What follows from equilibrium: RUNNING where the solver leaves one that is unstable, or goes on until the

@@ -49,7 +49,8 @@ def freeze_form(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> D
             {"force": number, "length": frozen.lengths[number], "tension": tension}
             for number, tension in frozen.tensions.items()
         ],
-        "films": list(frozen.films),
+        "cloth": [{"force": number, "stress": stress} for number, stress in frozen.cloth.items()],
+        "slides": list(frozen.slides.items()),
         "expansions": list(frozen.expansions.items()),
         "temperatures": list(frozen.temperatures.items()),
     }
@@ -67,7 +68,8 @@ def solve_one(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Don
         np.array(value["particles"], dtype=float).reshape(-1, 3),
         lengths={line["force"]: np.array(line["length"], dtype=float) for line in lines},
         tensions={line["force"]: np.array(line["tension"], dtype=float) for line in lines},
-        films=tuple(value["films"]),
+        cloth={part["force"]: np.array(part["stress"], dtype=float).reshape(-1, 3) for part in value["cloth"]},
+        slides={number: (whole, strain) for number, (whole, strain) in value["slides"]},
         expansions=dict(value["expansions"]),
         temperatures={number: np.array(own, dtype=float) for number, own in value["temperatures"]},
         rotations=np.array(value["rotations"], dtype=float).reshape(-1, 4),

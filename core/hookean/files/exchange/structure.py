@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.files.exchange.beams import Beams
+from hookean.forces.beam import Beam
 from hookean.forces.springs import Springs
 from hookean.running.result import Result
 from hookean.system.system import System, compile
@@ -20,7 +22,8 @@ Ints = NDArray[np.int64]
 @dataclass(frozen=True)
 class Lines:
     """The elements of one force along lines: `pairs` (m, 2) of particles, `columns` of numbers (m,) by name, with the
-    `dimensions` of these, and of springs `axial_stiffness` EA (m,) [force], 0 where there is none."""
+    `dimensions` of these, and of springs `axial_stiffness` EA (m,) [force] and `rest_length` (m,) [length], 0 where
+    there is none."""
 
     name: str
     kind: str
@@ -28,6 +31,7 @@ class Lines:
     columns: dict[str, Floats]
     dimensions: dict[str, str]
     axial_stiffness: Floats
+    rest_length: Floats
 
     @property
     def force(self) -> Floats:
@@ -38,8 +42,9 @@ class Lines:
 @dataclass(frozen=True)
 class Structure:
     """A result for other programs. All of `points` (n, 3) [length], `displacements` (n, 3) [length] from the start,
-    `loads` and `reactions` (n, 3) [force], `held` (n, 3) axes, `clamped` (n, 3) rotations about axes;
-    `faces` (m, 4) of meshes by name, in particles."""
+    `loads` and `reactions` (n, 3) [force], `moments` (n, 3) [force length] of loads, `held` (n, 3) axes, `clamped`
+    (n, 3) rotations about axes; `faces` (m, 4) of meshes by name, in particles; `beams` of each force that has some;
+    `others` are the names of forces between particles that are neither."""
 
     points: Floats
     displacements: Floats
@@ -48,8 +53,11 @@ class Structure:
     held: NDArray[np.bool_]
     clamped: NDArray[np.bool_]
     loads: Floats
+    moments: Floats
     reactions: Floats
     units: Units
+    beams: tuple[Beams, ...] = ()
+    others: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, result: Result, system: System | None = None) -> Structure:
@@ -66,6 +74,9 @@ class Structure:
         clamped = np.zeros((count, 3), dtype=bool)
         clamped[system.slots.particles] = state.free[system.slots.first] == 0
         faces = {name: system.places.faces(name) for name in system.scene.meshes}
+        loads = system.evaluate(state, only="load")[0]
+        moments = np.zeros((count, 3))
+        moments[system.slots.particles] = system.slots.moments(loads, system.slots.particles)
         return cls(
             state.x[:count],
             (state.x - system.x)[:count],
@@ -73,10 +84,22 @@ class Structure:
             {name: found[(found >= 0).all(axis=1)] for name, found in faces.items()},
             state.free[:count] == 0,
             clamped,
-            system.evaluate(state, only="load")[0][:count],
+            loads[:count],
+            moments,
             reactions,
             result.units,
+            tuple(
+                Beams.of(force, np.asarray(entry["particles"]), system)
+                for force, entry in zip(system.scene.forces, result.forces, strict=True)
+                if isinstance(force, Beam) and np.size(entry.get("particles", ()))
+            ),
+            tuple(_others(result)),
         )
+
+    @property
+    def start(self) -> Floats:
+        """Where the points were at the start (n, 3) [length]."""
+        return self.points - self.displacements
 
     @property
     def pairs(self) -> Ints:
@@ -91,21 +114,34 @@ def _lines(system: System, result: Result) -> list[Lines]:
         if type(force).role != "internal" or pairs.ndim != 2 or pairs.shape[1] != 2:
             continue
         columns = {n: np.asarray(entry[n], dtype=float) for n in type(force).outputs if np.ndim(entry.get(n, 0.0)) == 1}
-        stiffness = known.get(number, np.zeros(len(pairs)))
+        stiffness, rest = known.get(number, (np.zeros(len(pairs)), np.zeros(len(pairs))))
         name = force.name or force.kind_name
-        found.append(Lines(name, force.kind_name, pairs, columns, dict(type(force).outputs), stiffness))
+        found.append(Lines(name, force.kind_name, pairs, columns, dict(type(force).outputs), stiffness, rest))
     return found
 
 
-def _axial(system: System) -> dict[int, Floats]:
-    """EA (m,) [force] of the elements of springs, k L0 however they are given, by the number of their force."""
+def _others(result: Result) -> list[str]:
+    """The names of forces that are neither loads nor along lines."""
+    assert result.scene is not None
+    found = []
+    for force, entry in zip(result.scene.forces, result.forces, strict=True):
+        pairs = np.asarray(entry.get("particles", ()))
+        if type(force).role == "support" or (type(force).role == "internal" and pairs.shape[1:] != (2,)):
+            found.append(force.name or force.kind_name)
+    return found
+
+
+def _axial(system: System) -> dict[int, tuple[Floats, Floats]]:
+    """EA (m,) [force] of the elements of springs, k L0 however they are given, and L0 (m,) [length], by the number of
+    their force."""
     found = {}
     for group in system.groups:
         if group.cls is not Springs:
             continue
         for part in group.parts:
             p = group.block.parameters[part.rows]
-            found[part.number] = p[:, 0] * (p[:, 2] * p[:, 3] + group.block.memory[part.rows, 0])
+            rest = p[:, 2] * p[:, 3] + group.block.memory[part.rows, 0]
+            found[part.number] = (p[:, 0] * rest, rest)
     return found
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from hookean.atomic_write import check_target
 
 if TYPE_CHECKING:
+    from hookean.files.exchange.structure import Structure
     from hookean.running.result import Result
     from hookean.system.system import System
 
@@ -35,7 +36,14 @@ def exchange(result: Result, target: Path, system: System | None = None) -> list
     structure = Structure.of(result, system)
     import_module(f"hookean.files.exchange.{EXCHANGED[ending]}").write(structure, target)
     said = [f"A {ending} file stores the shape, its lines and results, not the model; save the scene, too."]
-    left = [group.name for group in structure.lines if not (group.axial_stiffness > 0.0).any()]
-    if ending == ".inp" and left:
-        said.append(f"{', '.join(left)}: not in the file, which has lines with an axial stiffness alone, as trusses.")
+    if ending == ".inp":
+        said += _left(structure)
     return said
+
+
+def _left(structure: Structure) -> list[str]:
+    """What an Abaqus file leaves out, as sentences."""
+    without = [g.name for g in structure.lines if g.kind != "beam" and not (g.axial_stiffness > 0.0).any()]
+    left = [*without, *structure.others]
+    said = [f"{', '.join(left)}: not in the file, which has beams and lines with an axial stiffness."] if left else []
+    return said + [f"{part.name}: the file does not hold {what}." for part in structure.beams for what in part.left]
