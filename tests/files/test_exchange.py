@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from pathlib import Path
 
@@ -222,6 +223,74 @@ def test_beams_and_springs_by_their_axial_stiffness_are_written(tmp_path: Path) 
         if point.AppliedCondition is not None:
             held[point.Name] = [axis.wrappedValue for axis in list(point.AppliedCondition)[1:]]
     assert held == {f"particle {n}": [True] * 3 + [n == 0] * 3 for n in (0, 2, 3)}
+
+
+@pytest.fixture(scope="module")
+def mast() -> Result:
+    """Two beams, hinged about y at the end, with an eccentric foot that two anchors clamp, under a moment alone."""
+    spec = {
+        "particles": [[0, 0, 0], [0, 0, 2], [2, 0, 2]],
+        "forces": [
+            {"kind": "beam", "name": "mast", "particles": [[0, 1]], "E": 1e6, "G": 4e5, "A": 1.0, "Iy": 0.01,
+             "Iz": 0.02, "J": 0.02, "normal": [1, 0, 0], "offset_start": [0.1, 0, 0]},
+            {"kind": "beam", "name": "arm", "particles": [[1, 2]], "E": 1e6, "G": 4e5, "A": 1.0, "Iy": 0.01,
+             "Iz": 0.02, "J": 0.02, "normal": [0, 0, 1], "release_end": "y"},
+            {"kind": "unary", "name": "push", "particles": [1], "vector": [0, 0, 0], "moment": [5, 1, 0]},
+        ],
+        "anchors": [{"name": "foot", "particles": [0]}, {"particles": [0], "axes": "", "rotations": "xyz"},
+                    {"name": "end", "particles": [2]}],
+        "units": {"length": "m", "force": "kN"},
+    }  # fmt: skip
+    found = hookean.relax(Scene.read(spec))
+    assert found.converged and np.abs(found.reactions["moment"]).max() > 0.1
+    return found
+
+
+def test_moments_of_loads_and_supports_are_in_every_file(mast: Result, tmp_path: Path) -> None:
+    moment = mast.reactions["moment"][mast.reactions["particles"].tolist().index(0)].tolist()
+    for ending in ("ifc", "vtu", "dxf", "compas.json", "csv"):
+        mast.save(tmp_path / f"mast.{ending}")
+    read = ifcopenshell.open(str(tmp_path / "mast.ifc"))
+    [load] = read.by_type("IfcStructuralLoadSingleForce")
+    assert [load.ForceX, load.MomentX, load.MomentY, load.MomentZ] == [0.0, 5.0, 1.0, 0.0]
+    foot = next(c for c in read.by_type("IfcStructuralPointConnection") if c.Name == "particle 0")
+    numbers = {p.Name: p.NominalValue.wrappedValue
+               for own in foot.IsDefinedBy for p in own.RelatingPropertyDefinition.HasProperties}  # fmt: skip
+    assert [numbers[f"reaction moment {axis} [kN m]"] for axis in "xyz"] == moment
+    points = meshio.read(tmp_path / "mast.vtu").point_data
+    assert points["load moment [kN m]"][1].tolist() == [5, 1, 0]
+    assert points["reaction moment [kN m]"][0].tolist() == moment
+    graph = compas.json_load(str(tmp_path / "mast.compas.json"))
+    assert graph.node_attributes(1, ["mx", "my", "mz"]) == [5, 1, 0] and graph.node_attribute(0, "clamped") == "xyz"
+    assert graph.node_attributes(0, ["rmx", "rmy", "rmz"]) == moment
+    told = [[value for code, value in thing.get_xdata("HOOKEAN")]
+            for thing in ezdxf.readfile(tmp_path / "mast.dxf").modelspace().query("POINT")]  # fmt: skip
+    assert ["reaction moment [kN m]", *moment] in [row[-4:] for row in told]
+    assert ["moment [kN m]", 5.0, 1.0, 0.0] in told
+    with open(tmp_path / "mast.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["kind"] == "reaction"]
+    assert [row["force"] for row in rows] == ["foot", "end"]
+    assert [float(rows[0][f"moment {axis} [kN m]"]) for axis in "xyz"] == moment
+
+
+def test_beams_in_ifc_are_rigid_with_their_hinges_and_eccentric_ends(mast: Result, tmp_path: Path) -> None:
+    """A release lets a beam turn about its own y alone; an offset is an eccentricity of the connection."""
+    mast.save(tmp_path / "mast.ifc")
+    read = ifcopenshell.open(str(tmp_path / "mast.ifc"))
+    log = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(read, log)
+    assert not log.statements
+    members = read.by_type("IfcStructuralCurveMember")
+    assert [member.PredefinedType for member in members] == ["RIGID_JOINED_MEMBER"] * 2
+    np.testing.assert_allclose(members[1].Axis.DirectionRatios, [0, 0, 1], atol=1e-12)
+    joints = read.by_type("IfcRelConnectsStructuralMember")
+    [free] = [joint for joint in joints if joint.AppliedCondition is not None]
+    assert free.RelatingStructuralMember == members[1] and free.RelatedStructuralConnection.Name == "particle 2"
+    assert [axis.wrappedValue for axis in list(free.AppliedCondition)[1:]] == [True, True, True, True, False, True]
+    np.testing.assert_allclose(free.ConditionCoordinateSystem.RefDirection.DirectionRatios, [1, 0, 0], atol=1e-12)
+    [off] = read.by_type("IfcRelConnectsWithEccentricity")
+    assert off.RelatedStructuralConnection.Name == "particle 0"
+    assert off.ConnectionConstraint.EccentricityInX == 0.1
 
 
 def test_names_are_plain_and_each_there_once() -> None:

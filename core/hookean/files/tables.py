@@ -149,14 +149,17 @@ def _reactions(system: System, result: Result, built: Built | None) -> Section:
     if keys:
         owner = _looked_up(np.concatenate(keys), np.concatenate(owners), particles)
     force = np.asarray(result.reactions["force"], dtype=np.float64).reshape(-1, 3)
+    columns = {"force": force}
+    if len(result.rotations["particles"]):
+        columns["moment"] = np.asarray(result.reactions["moment"], dtype=np.float64).reshape(-1, 3)
     names = [str(name) for name in result.reactions["names"]]
     return Section(
         -1,
         "reactions",
         "reaction",
         particles[:, None],
-        {"force": force},
-        {"force": "force"},
+        columns,
+        {"force": "force", "moment": "force length"},
         tuple(items),
         owner,
         names,

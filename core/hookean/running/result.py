@@ -344,7 +344,8 @@ def _ridden(entry: dict[str, Any], columns: dict[str, Floats], inputs: NDArray[n
 def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
     held = held_particles(system, state)
     names = dict.fromkeys(held.tolist(), "")
-    for anchor in system.held:
+    # what holds axes names a reaction before what holds rotations alone; else the last one
+    for anchor in sorted(system.held, key=lambda anchor: not anchor.free.all()):
         names.update(dict.fromkeys(anchor.particles.tolist(), anchor.name))
     return {
         "particles": held,

@@ -14,20 +14,26 @@ from hookean.files.exchange.structure import Structure
 
 
 def document(structure: Structure, name: str = "") -> dict[str, Any]:
-    """A Graph document. Nodes have `is_support`, `fixed` (axes), loads `px py pz`, reactions `rx ry rz` and
-    displacements `dx dy dz`; edges `force_name`, `kind`, `axial_stiffness` and the columns of their force; the graph
-    has `units`. Of several elements between two particles the first is an edge."""
+    """A Graph document. Nodes have `is_support`, `fixed` (axes), `clamped` (rotations about axes), loads `px py pz` and
+    their moments `mx my mz`, reactions `rx ry rz` and their moments `rmx rmy rmz`, and displacements `dx dy dz`; edges
+    `force_name`, `kind`, `axial_stiffness` and the columns of their force; the graph has `units`. Of several elements
+    between two particles the first is an edge."""
     _, first = np.unique(np.sort(structure.pairs, axis=1), axis=0, return_index=True)
     order = np.sort(first)
     made = compas_json.graph(structure.points, structure.pairs[order], name)
     data = made["data"]
     for number, node in enumerate(data["node"].values()):
-        held = structure.held[number]
-        if held.any():
-            node.update(is_support=True, fixed="".join(a for a, on in zip("xyz", held, strict=True) if on))
+        held, clamped = (_axes(of[number]) for of in (structure.held, structure.clamped))
+        if held:
+            node.update(is_support=True, fixed=held)
             node.update(zip(("rx", "ry", "rz"), structure.reactions[number].tolist(), strict=True))
+        if clamped:
+            node.update(is_support=True, clamped=clamped)
+            node.update(zip(("rmx", "rmy", "rmz"), structure.reaction_moments[number].tolist(), strict=True))
         if structure.loads[number].any():
             node.update(zip(("px", "py", "pz"), structure.loads[number].tolist(), strict=True))
+        if structure.moments[number].any():
+            node.update(zip(("mx", "my", "mz"), structure.moments[number].tolist(), strict=True))
         node.update(zip(("dx", "dy", "dz"), structure.displacements[number].tolist(), strict=True))
     wanted, start = set(order.tolist()), 0
     for group in structure.lines:
@@ -41,6 +47,10 @@ def document(structure: Structure, name: str = "") -> dict[str, Any]:
         start += len(group.pairs)
     data["attributes"] = {"units": structure.units.model_dump()}
     return made
+
+
+def _axes(on: Any) -> str:
+    return "".join(axis for axis, held in zip("xyz", on, strict=True) if held)
 
 
 def write(structure: Structure, target: Path) -> None:

@@ -7,11 +7,15 @@ from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hookean.atomic_write import put
 from hookean.errors import InputError
+from hookean.files.exchange.beams import Beams
 from hookean.files.exchange.structure import Structure
 from hookean.files.optional import needed
+
+Floats = NDArray[np.float64]
 
 PREFIXES = {"mm": "MILLI", "cm": "CENTI", "dm": "DECI", "m": None, "km": "KILO"}
 FORCES = {"N": None, "kN": "KILO", "MN": "MEGA"}
@@ -19,8 +23,9 @@ FORCES = {"N": None, "kN": "KILO", "MN": "MEGA"}
 
 def write(structure: Structure, target: Path) -> None:
     """Write an IFC4 structural analysis model: a curve member for each line element, named after its force, with its
-    numbers in a property set; a point connection for each particle, held ones with their fixed axes and reaction; a
-    point action for each load.
+    numbers in a property set, beams rigidly joined but for their releases, with their eccentric ends; a point
+    connection for each particle, held ones with their fixed axes and rotations and reaction; a point action for each
+    load.
 
     Raises InputError for units that IFC's SI units do not have.
     """
@@ -59,6 +64,8 @@ class _Writer:
             make("IfcSIUnit", UnitType="LENGTHUNIT", Name="METRE", Prefix=PREFIXES[str(s.units.length)]),
             make("IfcSIUnit", UnitType="FORCEUNIT", Name="NEWTON", Prefix=FORCES[str(s.units.force)]),
         ]
+        torque = [make("IfcDerivedUnitElement", Unit=unit, Exponent=1) for unit in units]
+        units.append(make("IfcDerivedUnit", Elements=torque, UnitType="TORQUEUNIT"))
         project = self.root("IfcProject", self.name, RepresentationContexts=[context],
                             UnitsInContext=make("IfcUnitAssignment", Units=units))  # fmt: skip
         place = make("IfcLocalPlacement", RelativePlacement=axes)
@@ -92,29 +99,35 @@ class _Writer:
         shape = self._shape(context, vertex, "Vertex")
         made = self.root("IfcStructuralPointConnection", f"particle {number}", Representation=shape,
                          AppliedCondition=condition)  # fmt: skip
-        if held.any():
-            unit = self.structure.units.force
-            reaction = self.structure.reactions[number].tolist()
-            self._properties(made, {f"reaction {a} [{unit}]": c for a, c in zip("xyz", reaction, strict=True)})
+        if condition is not None:
+            numbers, units = self.structure.reactions[number].tolist(), self.structure.units
+            told = {f"reaction {a} [{units.force}]": c for a, c in zip("xyz", numbers, strict=True)}
+            if self.structure.clamped[number].any():
+                numbers, unit = self.structure.reaction_moments[number].tolist(), units.of("force length")
+                told.update({f"reaction moment {a} [{unit}]": c for a, c in zip("xyz", numbers, strict=True)})
+            self._properties(made, told)
         return made
 
     def _members(self, context: Any, vertices: list[Any], connections: list[Any]) -> list[Any]:
-        members = []
+        members, beams = [], iter(self.structure.beams)
         up = self.file.create_entity("IfcDirection", DirectionRatios=(0.0, 0.0, 1.0))
         side = self.file.create_entity("IfcDirection", DirectionRatios=(1.0, 0.0, 0.0))
         for group in self.structure.lines:
             along = self.structure.points[group.pairs[:, 1]] - self.structure.points[group.pairs[:, 0]]
             steep = np.abs(along[:, 2]) > 0.99 * np.linalg.norm(along, axis=1)
+            rigid = next(beams) if group.kind == "beam" else None
             for row, (a, b) in enumerate(group.pairs.tolist()):
                 edge = self.file.create_entity("IfcEdge", EdgeStart=vertices[a], EdgeEnd=vertices[b])
-                kind = "CABLE" if group.force[row] > 0.0 else "PIN_JOINED_MEMBER"
+                kind, axis = "CABLE" if group.force[row] > 0.0 else "PIN_JOINED_MEMBER", side if steep[row] else up
+                if rigid is not None:
+                    kind, axis = "RIGID_JOINED_MEMBER", self._direction(rigid.axes[row, 2])
                 member = self.root(
                     "IfcStructuralCurveMember", f"{group.name} {row}", ObjectType=group.name, PredefinedType=kind,
-                    Representation=self._shape(context, edge, "Edge"), Axis=side if steep[row] else up,
+                    Representation=self._shape(context, edge, "Edge"), Axis=axis,
                 )  # fmt: skip
-                for end in (a, b):
-                    self.root("IfcRelConnectsStructuralMember", "", RelatingStructuralMember=member,
-                              RelatedStructuralConnection=connections[end])  # fmt: skip
+                for end, particle in enumerate((a, b)):
+                    joint = {"RelatingStructuralMember": member, "RelatedStructuralConnection": connections[particle]}
+                    self._join(joint, rigid, row, end, vertices[particle])
                 units = self.structure.units
                 self._properties(
                     member,
@@ -126,11 +139,31 @@ class _Writer:
                 members.append(member)
         return members
 
+    def _join(self, joint: dict[str, Any], beams: Beams | None, row: int, end: int, vertex: Any) -> None:
+        """The end of a member at its connection; of a beam with the rotations that are free, and its eccentricity."""
+        make, kind = self.file.create_entity, "IfcRelConnectsStructuralMember"
+        if beams is not None and beams.releases[end]:
+            x, _, z = beams.axes[row]
+            own = make("IfcAxis2Placement3D", Location=make("IfcCartesianPoint", Coordinates=(0.0, 0.0, 0.0)),
+                       Axis=self._direction(z), RefDirection=self._direction(x))  # fmt: skip
+            fixed = [True] * 3 + [axis not in beams.releases[end] for axis in "xyz"]
+            free = make("IfcBoundaryNodeCondition", "release", *(make("IfcBoolean", axis) for axis in fixed))
+            joint = {**joint, "AppliedCondition": free, "ConditionCoordinateSystem": own}
+        if beams is not None and beams.offsets[row, end].any():
+            x, y, z = beams.offsets[row, end].tolist()
+            off = make("IfcConnectionPointEccentricity", PointOnRelatingElement=vertex, EccentricityInX=x,
+                       EccentricityInY=y, EccentricityInZ=z)  # fmt: skip
+            kind, joint = "IfcRelConnectsWithEccentricity", {**joint, "ConnectionConstraint": off}
+        self.root(kind, "", **joint)
+
+    def _direction(self, along: Floats) -> Any:
+        return self.file.create_entity("IfcDirection", DirectionRatios=tuple(along.tolist()))
+
     def _actions(self, connections: list[Any]) -> list[Any]:
         actions = []
-        for number in np.flatnonzero((self.structure.loads != 0.0).any(axis=1)).tolist():
-            x, y, z = self.structure.loads[number].tolist()
-            load = self.file.create_entity("IfcStructuralLoadSingleForce", Name="load", ForceX=x, ForceY=y, ForceZ=z)
+        numbers = np.concatenate([self.structure.loads, self.structure.moments], axis=1)
+        for number in np.flatnonzero((numbers != 0.0).any(axis=1)).tolist():
+            load = self.file.create_entity("IfcStructuralLoadSingleForce", "load", *numbers[number].tolist())
             action = self.root("IfcStructuralPointAction", f"load {number}", AppliedLoad=load,
                                GlobalOrLocal="GLOBAL_COORDS", DestabilizingLoad=False)  # fmt: skip
             self.root("IfcRelConnectsStructuralActivity", "", RelatingElement=connections[number],

@@ -42,9 +42,9 @@ class Lines:
 @dataclass(frozen=True)
 class Structure:
     """A result for other programs. All of `points` (n, 3) [length], `displacements` (n, 3) [length] from the start,
-    `loads` and `reactions` (n, 3) [force], `moments` (n, 3) [force length] of loads, `held` (n, 3) axes, `clamped`
-    (n, 3) rotations about axes; `faces` (m, 4) of meshes by name, in particles; `beams` of each force that has some;
-    `others` are the names of forces between particles that are neither."""
+    `loads` and `reactions` (n, 3) [force], `moments` and `reaction_moments` (n, 3) [force length] of both, `held`
+    (n, 3) axes, `clamped` (n, 3) rotations about axes; `faces` (m, 4) of meshes by name, in particles; `beams` of each
+    force that has some; `others` are the names of forces between particles that are neither."""
 
     points: Floats
     displacements: Floats
@@ -55,6 +55,7 @@ class Structure:
     loads: Floats
     moments: Floats
     reactions: Floats
+    reaction_moments: Floats
     units: Units
     beams: tuple[Beams, ...] = ()
     others: tuple[str, ...] = ()
@@ -67,10 +68,10 @@ class Structure:
         state = system.start()
         system.slots.put(state, result.particles, result.rotations["quaternions"])
         count = system.slots.count
-        reactions = np.zeros((count, 3))
-        reactions[np.asarray(result.reactions["particles"], dtype=np.int64)] = np.asarray(
-            result.reactions["force"]
-        ).reshape(-1, 3)
+        reactions, held = np.zeros((2, count, 3)), np.asarray(result.reactions["particles"], dtype=np.int64)
+        reactions[0, held] = np.asarray(result.reactions["force"]).reshape(-1, 3)
+        if len(system.slots.particles):
+            reactions[1, held] = result.reactions["moment"]
         clamped = np.zeros((count, 3), dtype=bool)
         clamped[system.slots.particles] = state.free[system.slots.first] == 0
         faces = {name: system.places.faces(name) for name in system.scene.meshes}
@@ -86,7 +87,7 @@ class Structure:
             clamped,
             loads[:count],
             moments,
-            reactions,
+            *reactions,
             result.units,
             tuple(
                 Beams.of(force, np.asarray(entry["particles"]), system)

@@ -15,7 +15,8 @@ from hookean.files.optional import needed
 
 def write(structure: Structure, target: Path) -> None:
     """Write a structure. Numbers have their units in their names; `group` is the number of a cell's force or mesh, and
-    each of these is a cell array of 0 and 1 by its name. Cells without a quantity have 0."""
+    each of these is a cell array of 0 and 1 by its name. Cells without a quantity have 0. Where there are beams, points
+    have moments, too."""
     meshio = needed("meshio", "exchange", target.name)
     blocks, owners = cells(structure)
     names = [*(f"force {group.name}" for group in structure.lines), *(f"mesh {name}" for name in structure.faces)]
@@ -29,13 +30,17 @@ def write(structure: Structure, target: Path) -> None:
         data[f"{column} [{structure.units.of(dimension) or '-'}]"] = [
             lines if kind == "line" else np.zeros(len(rows)) for kind, rows in blocks
         ]
-    length, force = structure.units.length, structure.units.force
+    length, force, moment = (structure.units.of(unit) for unit in ("length", "force", "force length"))
     point_data = {
         f"displacement [{length}]": structure.displacements,
         f"load [{force}]": structure.loads,
         f"reaction [{force}]": structure.reactions,
         "held": structure.held.astype(float),
     }
+    if len(structure.beams):
+        point_data[f"load moment [{moment}]"] = structure.moments
+        point_data[f"reaction moment [{moment}]"] = structure.reaction_moments
+        point_data["clamped"] = structure.clamped.astype(float)
     mesh = meshio.Mesh(structure.points, blocks, point_data=point_data, cell_data=data)
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / "structure.vtu"
