@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 import shutil
@@ -364,6 +365,24 @@ def test_relax_solves_a_load_case_and_checks_it(folder: Path) -> None:
     found = run("relax", "cable.json", "--case", "snow", "--check", "limits.toml")
     assert "model: 1 elements are slack, the first is element 1 of cable; at most 0 may be" in found.output
     assert run("relax", "cable.json", "--case", "rain").exit_code == 2
+
+
+def test_a_case_of_beams_has_the_closed_form(folder: Path) -> None:
+    """A cantilever under P = 1 N at its end: P L^3 / 3 EI = 1/3 mm; the moment at the clamp is P L."""
+    beam = {"kind": "beam", "name": "b", "particles": [[0, 1]], "E": 1e6, "G": 4e5, "A": 0.1, "Iy": 1e-3, "Iz": 1e-3,
+            "J": 1e-3}  # fmt: skip
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0]],
+        "forces": [beam, {"kind": "unary", "name": "P", "particles": [1], "vector": [0, 0, -1]}],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "load_cases": {"P": {"forces": ["P"]}},
+    }
+    (folder / "beam.json").write_text(json.dumps(scene))
+    found = run("relax", "beam.json", "--case", "P", "-o", "out.3dm", "--csv", "out.csv")
+    assert found.exit_code == 0 and "moved by up to 0.0003333 m" in found.output, found.output
+    with open(folder / "out.csv", newline="") as file:
+        [row] = [row for row in csv.DictReader(file) if row["kind"] == "reaction"]
+    assert float(row["moment y [N m]"]) == pytest.approx(-1.0, rel=1e-6)
 
 
 def test_a_recipe_has_load_cases(folder: Path) -> None:

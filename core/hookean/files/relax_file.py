@@ -170,9 +170,9 @@ def _under_case(scene: Scene, case: str) -> tuple[System, Result]:
     found = load_cases(scene, [case])
     result = found.cases[case].result
     assert result.scene is not None
-    system, _ = found.frozen.system(result.scene)
+    system, state = found.frozen.system(result.scene)
     result.report.warnings[:0] = found.frozen.notes
-    return replace(system, x=found.frozen.particles), result
+    return replace(system, x=state.x), result
 
 
 def check_output(target: Path | None, source: Path, *, folder: bool = True) -> None:

@@ -87,7 +87,8 @@ class Structure:
             clamped,
             loads[:count],
             moments,
-            *reactions,
+            reactions[0],
+            reactions[1],
             result.units,
             tuple(
                 Beams.of(force, np.asarray(entry["particles"]), system)
