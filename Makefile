@@ -7,7 +7,7 @@ EXAMPLE = gh_examples/9.24-membrane
 # Python keeps what it compiles: each of the many processes of a test run would compile it again
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: run test quick soak mutants floors bench bench-service bench-studio bench-design figures definitions screenshots docs site page studio lint clean
+.PHONY: run test quick soak mutants floors bench bench-service bench-studio bench-design figures definitions screenshots docs site page studio lint style types clean
 STUDIO = $(wildcard studio/*.* studio/src/*.* studio/src/*/*.*)
 
 run: .venv/run
@@ -17,12 +17,15 @@ run: .venv/run
 		--picture out/membrane.png --csv out/membrane.csv
 	@$(BIN)/hookean serve --port $(PORT)
 
-# much of it waits for other processes: four workers keep two processors busy; while one of these checks the style, the
-# other makes what all workers use: compiled tests and the documentation
+# much of it waits for other processes: five workers keep two processors busy; what all of them use is made before,
+# compiled tests and the documentation; types are checked beside it, and what is wrong with them is printed at the end
 test: .venv/test
-	@{ $(BIN)/python -m pytest --collect-only -q; $(BIN)/python hatch_build.py site; } >/dev/null 2>&1 & \
-		$(MAKE) lint && wait
-	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 30
+	@$(MAKE) --no-print-directory style
+	@nice $(MAKE) --no-print-directory types >.venv/types.log 2>&1 & types=$$!; \
+	$(BIN)/python hatch_build.py site >/dev/null 2>&1 & site=$$!; \
+	$(BIN)/python -m pytest --collect-only -q >/dev/null 2>&1; wait $$site; \
+	$(BIN)/python -m pytest -n 5 --dist loadfile --no-loadscope-reorder --durations 30; tests=$$?; \
+	wait $$types; types=$$?; cat .venv/types.log; exit $$((tests || types))
 
 quick: .venv/test # laws, core, files: what an edit of the engine breaks
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow" tests/laws tests/core tests/discretize tests/files
@@ -76,9 +79,13 @@ page: .venv/test
 studio: # the page while one works on it, at localhost:5173, with the service that runs; needs Node
 	cd studio && npm install && npm run dev
 
-lint: .venv/test
+lint: style types
+
+style: .venv/test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
+
+types: .venv/test
 	$(BIN)/mypy
 	$(BIN)/python hatch_build.py check
 
