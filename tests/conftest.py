@@ -27,8 +27,8 @@ APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium
 
 
 def unit(test: str) -> str:
-    """What a worker takes as a whole: a file, with its fixtures; a function of `APART`; half of the tests with a browser,
-    which share it, its service and the scripts it has compiled."""
+    """What a worker takes as a whole: a file, with its fixtures; a function of `APART`; half of the tests with a
+    browser, which share it, its service and the scripts it has compiled."""
     file, _, function = test.partition("::")
     if file.startswith("tests/studio/"):
         return "studio, first half" if file < "tests/studio/test_q" else "studio, second half"

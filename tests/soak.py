@@ -20,8 +20,8 @@ def sampled(values: Iterable[Any], every: int) -> list[Any]:
 
 
 def examples(count: int) -> int:
-    """How many examples hypothesis draws: `count` in `make soak`, elsewhere a third of them, at least 10."""
-    return count if SOAK else max(10, count // 3)
+    """How many examples hypothesis draws: `count` in `make soak`, elsewhere a fifth of them, at least 8."""
+    return count if SOAK else max(8, count // 5)
 
 
 Test = Callable[..., None]

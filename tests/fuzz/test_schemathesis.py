@@ -26,8 +26,8 @@ from server.conftest import Served
 from serving import CABLE, HANG, app
 from soak import SOAK
 
-CASES = 300 if SOAK else 5
-RUNS, STEPS = (200, 20) if SOAK else (10, 10)
+CASES = 300 if SOAK else 3
+RUNS, STEPS = (200, 20) if SOAK else (5, 10)
 LABELS = sorted(f"{method.upper()} {path}" for path, item in app().openapi()["paths"].items() for method in item)
 CHECKS = [
     checks.status_code_conformance,
