@@ -20,8 +20,8 @@ settings.load_profile("untimed")
 WAITING = ("server", "faults", "components")
 """Folders whose tests wait for other processes half of the time."""
 COMPUTING = ("docs", "tests", "fuzz", "canvas", "laws", "files")
-"""Folders whose tests keep a processor busy, the longest first, so that no worker is left alone with one of them; all
-others follow."""
+"""Folders whose tests keep a processor busy; all others follow. In both the longest tests come first, so that no worker
+is left alone with one of them."""
 APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium.py")
 """Long files whose functions share nothing that takes long to make: several workers can have a part of one."""
 
@@ -75,13 +75,10 @@ def order(items: list[pytest.Item]) -> None:
     units = list(dict.fromkeys(unit(item.nodeid) for item in items))
     folders = {unit(item.nodeid): item.path.parent.name for item in items}
     places = {name: -1.0 for name in units if folders[name] == "studio"}
-    waiting = [name for name in units if folders[name] in WAITING]
-    rank = {folder: place for place, folder in enumerate(COMPUTING)}
-    computing = sorted(
-        (name for name in units if name not in places and folders[name] not in WAITING),
-        key=lambda name: rank.get(folders[name], len(rank)),
-    )
-    for row in (waiting, computing):
+    rank = {folder: place for place, folder in enumerate((*WAITING, *COMPUTING))}
+    others = sorted((name for name in units if name not in places), key=lambda name: rank.get(folders[name], len(rank)))
+    for waits in (True, False):
+        row = [name for name in others if (folders[name] in WAITING) is waits]
         places.update((name, place / len(row)) for place, name in enumerate(row))
     items.sort(key=lambda item: places[unit(item.nodeid)])
 

@@ -20,7 +20,7 @@ from soak import SOAK
 
 from ..laws.scenes import FAMILIES, random_scene
 
-SEEDS = range(500 if SOAK else 20)
+SEEDS = range(500 if SOAK else 40)
 Spec = dict[str, Any]
 
 

@@ -16,7 +16,7 @@ from hookean.system.system import compile
 from serving import SOAK
 
 Spec = dict[str, Any]
-SEEDS = range(500 if SOAK else 30)
+SEEDS = range(500 if SOAK else 60)
 SOLVERS = ("auto", "newton", "relaxation")
 
 

@@ -24,7 +24,7 @@ from hookean.solvers.auto import SOLVES
 from hookean.system.system import System, compile
 from soak import SOAK, THREADS
 
-SEEDED = settings(max_examples=300 if SOAK else 12, derandomize=True, deadline=None)
+SEEDED = settings(max_examples=300 if SOAK else 30, derandomize=True, deadline=None)
 EPS = float(np.finfo(float).eps)
 WAYS = ("front", "levels", "smoothed", "last resort")
 

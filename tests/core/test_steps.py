@@ -21,7 +21,7 @@ from serving import SOAK
 
 from ..laws.scenes import random_scene
 
-COUNT = 500 if SOAK else 8
+COUNT = 500 if SOAK else 15
 CUBE = 2.0 ** (1.0 / 3.0)
 PARTS = {"verlet": (1.0,), "yoshida": (1.0 / (2.0 - CUBE), -CUBE / (2.0 - CUBE), 1.0 / (2.0 - CUBE))}
 

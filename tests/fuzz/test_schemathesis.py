@@ -2,7 +2,7 @@
 not described, none that does not fit its schema, none that says the service failed, none without the credentials that
 are described; and in the order that its links lead, from what makes a session or a job to all that is done with it.
 
-Five of 300 cases an operation and 10 of 200 runs along links in `make test`, all in `make soak`.
+Three of 300 cases an operation and 5 of 200 runs along links in `make test`, all in `make soak`.
 """
 
 from __future__ import annotations
