@@ -2,6 +2,8 @@
 PYTHON ?= python3
 PORT ?= 8765
 BIN = .venv/bin
+INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check
+STYLE = $(BIN)/ruff check && $(BIN)/ruff format --check
 EXAMPLE = gh_examples/9.24-membrane
 
 # Python keeps what it compiles: each of the many processes of a test run would compile it again
@@ -17,18 +19,21 @@ run: .venv/run
 		--picture out/membrane.png --csv out/membrane.csv
 	@$(BIN)/hookean serve --port $(PORT)
 
-# much of it waits for other processes: four workers keep two processors busy; while one of these checks the style, the
-# other makes what all workers use: compiled tests and the documentation
+# much of it waits for other processes: four workers keep two processors busy; what all of them use is made before,
+# compiled tests and the documentation; types are checked beside it, and what is wrong with them is printed at the end
 test: .venv/test
-	@{ $(BIN)/python -m pytest --collect-only -q; $(BIN)/python hatch_build.py site; } >/dev/null 2>&1 & \
-		$(MAKE) lint && wait
-	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 30
+	$(STYLE)
+	@{ nice $(BIN)/mypy && nice $(BIN)/python hatch_build.py check; } >.venv/types.log 2>&1 & types=$$!; \
+	$(BIN)/python hatch_build.py site >/dev/null 2>&1 & site=$$!; \
+	$(BIN)/python -m pytest --collect-only -q >/dev/null 2>&1; wait $$site; \
+	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 30; tests=$$?; \
+	wait $$types; types=$$?; cat .venv/types.log; exit $$((tests || types))
 
 quick: .venv/test # laws, core, files: what an edit of the engine breaks
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow" tests/laws tests/core tests/discretize tests/files
 
 soak: .venv/test # without the extra oracle, as where it has no wheel, its tests are skipped
-	-$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[oracle]'
+	-$(INSTALL) -e '.[oracle]'
 	HOOKEAN_SOAK=1 $(BIN)/python -m pytest -n 2 --dist loadfile --cov --cov-report term
 	$(MAKE) floors
 	$(MAKE) mutants
@@ -77,8 +82,7 @@ studio: # the page while one works on it, at localhost:5173, with the service th
 	cd studio && npm install && npm run dev
 
 lint: .venv/test
-	$(BIN)/ruff check
-	$(BIN)/ruff format --check
+	$(STYLE)
 	$(BIN)/mypy
 	$(BIN)/python hatch_build.py check
 
@@ -86,21 +90,22 @@ lint: .venv/test
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'hookean needs Python 3.11 or newer: make PYTHON=python3.12')"
 	@echo "Installing into .venv, a minute or two ..."
 	@$(PYTHON) -m venv .venv
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	@$(INSTALL) $(if $(WITH),--no-compile) -e '.$(WITH)'
 	@touch $@
 
-.venv/test: .venv/run
-	@echo "Installing what the tests need ..."
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
+# all at once, for each installation builds the page and compares versions; then compiled by all processors, not by one
+.venv/test: pyproject.toml hatch_build.py $(STUDIO)
+	@$(MAKE) --no-print-directory -B .venv/run WITH='[test]'
+	@-$(BIN)/python -m compileall -q -j 0 .venv/lib >/dev/null 2>&1
 	@touch $@
 
 .venv/site: .venv/run
 	@echo "Installing what the documentation needs ..."
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[site]'
+	@$(INSTALL) -e '.[site]'
 	@touch $@
 
 .venv/mutants: .venv/test
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[mutants]'
+	@$(INSTALL) -e '.[mutants]'
 	@touch $@
 
 clean:

@@ -17,18 +17,21 @@ settings.register_profile(
 settings.load_profile("untimed")
 
 
-LONGEST_FIRST = ("studio", "docs", "tests", "server", "faults", "fuzz", "components", "canvas", "laws")
-"""Folders whose tests take long; they run before the others, so that no worker is left alone with one of them."""
+WAITING = ("server", "faults", "components")
+"""Folders whose tests wait for other processes half of the time."""
+COMPUTING = ("docs", "tests", "fuzz", "canvas", "laws", "files")
+"""Folders whose tests keep a processor busy; all others follow. In both the longest tests come first, so that no worker
+is left alone with one of them."""
 APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium.py")
 """Long files whose functions share nothing that takes long to make: several workers can have a part of one."""
 
 
 def unit(test: str) -> str:
-    """What a worker takes as a whole: a file, with its fixtures; a function of `APART`; all tests with a browser, which
-    share it, its service and the scripts it has compiled."""
+    """What a worker takes as a whole: a file, with its fixtures; a function of `APART`; half of the tests with a
+    browser, which share it, its service and the scripts it has compiled."""
     file, _, function = test.partition("::")
     if file.startswith("tests/studio/"):
-        return "studio"
+        return "studio, first half" if file < "tests/studio/test_q" else "studio, second half"
     return f"{file}::{function.partition('[')[0]}" if file.endswith(APART) else file
 
 
@@ -58,13 +61,26 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave what takes long to `make soak`; begin with the folders of `LONGEST_FIRST`."""
+    """Leave what takes long to `make soak`; share the others out with `order`."""
     left = [] if SOAK else [item for item in items if item.get_closest_marker("soak")]
     if left:
         config.hook.pytest_deselected(items=left)
         items[:] = [item for item in items if not item.get_closest_marker("soak")]
-    places = {folder: place for place, folder in enumerate(LONGEST_FIRST)}
-    items.sort(key=lambda item: places.get(item.path.parent.name, len(places)))
+    order(items)
+
+
+def order(items: list[pytest.Item]) -> None:
+    """The studio's tests first, for they take longest; then files that wait and files that compute in turn, so that at
+    any time some workers wait while others compute."""
+    units = list(dict.fromkeys(unit(item.nodeid) for item in items))
+    folders = {unit(item.nodeid): item.path.parent.name for item in items}
+    places = {name: -1.0 for name in units if folders[name] == "studio"}
+    rank = {folder: place for place, folder in enumerate((*WAITING, *COMPUTING))}
+    others = sorted((name for name in units if name not in places), key=lambda name: rank.get(folders[name], len(rank)))
+    for waits in (True, False):
+        row = [name for name in others if (folders[name] in WAITING) is waits]
+        places.update((name, place / len(row)) for place, name in enumerate(row))
+    items.sort(key=lambda item: places[unit(item.nodeid)])
 
 
 @pytest.fixture(scope="session", autouse=True)

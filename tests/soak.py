@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 SOAK = os.environ.get("HOOKEAN_SOAK") == "1"
+MUTANTS = "HOOKEAN_REACHED" in os.environ
+"""Whether the code that is tested is one of `make mutants`."""
 
 
 def sampled(values: Iterable[Any], every: int) -> list[Any]:
@@ -20,8 +22,10 @@ def sampled(values: Iterable[Any], every: int) -> list[Any]:
 
 
 def examples(count: int) -> int:
-    """How many examples hypothesis draws: `count` in `make soak`, elsewhere a third of them, at least 10."""
-    return count if SOAK else max(10, count // 3)
+    """How many examples hypothesis draws: `count` in `make soak`, in `make mutants` a third of them, at least 10,
+    elsewhere a fifth, at least 8."""
+    least, part = (10, 3) if MUTANTS else (8, 5)
+    return count if SOAK else max(least, count // part)
 
 
 Test = Callable[..., None]

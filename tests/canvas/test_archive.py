@@ -19,7 +19,7 @@ from hookean_canvas.archive import Chunk, Item, Type
 from hookean_canvas.archive.binary import inflate, of_plain, to_plain
 from soak import SOAK
 
-CASES = 1000 if SOAK else 40
+CASES = 1000 if SOAK else 20
 ID = uuid.UUID("00112233-4455-6677-8899-aabbccddeeff")
 
 

@@ -18,7 +18,7 @@ from hookean_canvas.archive.binary import deflate, of_plain, to_plain
 from hookean_canvas.archive.chunk import DEEPEST
 from soak import SOAK
 
-CASES = 3000 if SOAK else 300
+CASES = 3000 if SOAK else 150
 
 
 def sample() -> Chunk:

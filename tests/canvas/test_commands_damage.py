@@ -26,7 +26,7 @@ from hookean_canvas.run.internalised import unreadable
 from hookean_canvas.run.stored import Unread
 from soak import SOAK
 
-CASES = 300 if SOAK else 8
+CASES = 300 if SOAK else 5
 COMMANDS = {
     "show": ["show"],
     "show --all": ["show", "--all"], "show --json": ["show", "--json", "--code"], "check": ["check", "--strict"],

@@ -134,7 +134,7 @@ def test_objects_stay_where_they_stand_where_there_is_room() -> None:
     assert old.items() <= new.items() and not any("were moved" in note for note in report.notes)
 
 
-@settings(max_examples=200 if SOAK else 20, deadline=None)
+@settings(max_examples=200 if SOAK else 10, deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8)), min_size=12, max_size=12, unique=True))
 def test_what_becomes_larger_pushes_others_on_and_nothing_comes_to_overlap(cells: list[tuple[int, int]]) -> None:
     """Objects in cells of a grid at random; each keeps its order with any other that is right of it, or below."""
@@ -584,7 +584,7 @@ GOALS: list[tuple[str, str, str]] = [
 ]
 
 
-@settings(max_examples=300 if SOAK else 30, deadline=None)
+@settings(max_examples=300 if SOAK else 15, deadline=None)
 @given(st.data())
 def test_no_wire_is_lost_unseen_however_things_are_wired(data: st.DataObject) -> None:
     d = Kangaroo("random", "Random", "Any components, any wires.")
@@ -599,7 +599,7 @@ def test_no_wire_is_lost_unseen_however_things_are_wired(data: st.DataObject) ->
     translated(d)
 
 
-@settings(max_examples=1000 if SOAK else 60, deadline=None)
+@settings(max_examples=1000 if SOAK else 25, deadline=None)
 @given(
     st.sampled_from([cable, star, tent]),
     st.integers(0, 10**6),

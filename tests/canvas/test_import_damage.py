@@ -22,7 +22,7 @@ from hookean_canvas.command import app
 from hookean_canvas.kangaroo.ids import COMPONENTS
 from soak import SOAK
 
-CASES = 2000 if SOAK else 60
+CASES = 2000 if SOAK else 30
 shell = CliRunner()
 
 

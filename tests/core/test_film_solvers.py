@@ -17,7 +17,7 @@ from hookean.solvers import solver
 from hookean.stability.equilibrium import Stability
 from hookean.system.balance import balance
 from hookean.system.system import compile
-from soak import examples
+from soak import examples, sampled
 
 from .film_meshes import area, disc, film, inside, patch, scene, slopes, square, thinnest, triangles, tube
 from .test_soapfilm import off_scherk, scherk
@@ -125,7 +125,7 @@ def test_a_film_folded_over_itself_is_not_at_rest() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["relaxation", "momentum", "verlet", "yoshida"])
+@pytest.mark.parametrize("name", sampled(["relaxation", "momentum", "verlet", "yoshida"], 2))
 def test_all_solvers_find_scherks_surface(name: str) -> None:
     """From a flat start, by relaxation, by Kangaroo's steps and in time: the same film, with order 2 (+- 0.4).
 

@@ -20,6 +20,7 @@ from hookean.running.run import relax_state
 from hookean.solvers import solver
 from hookean.system.balance import balance
 from hookean.system.system import compile
+from soak import sampled
 
 from .formed import FAMILIES, formed
 
@@ -116,7 +117,7 @@ def assert_stays(seed: int) -> None:
             np.testing.assert_allclose(after["force"], before["force"], atol=1e-6 * scale)
 
 
-@pytest.mark.parametrize("seed", range(len(FAMILIES)))
+@pytest.mark.parametrize("seed", sampled(range(len(FAMILIES)), 3))
 def test_a_frozen_form_does_not_move(seed: int) -> None:
     """One of each family."""
     assert_stays(seed)
@@ -160,7 +161,7 @@ def test_cloth_of_a_curved_film_keeps_its_shape_and_notes_the_change_of_stress()
     np.testing.assert_allclose(stress.mean(axis=0), [tension, tension, 0.0], atol=0.05 * tension)
 
 
-@pytest.mark.parametrize("seed", [1, 2, 6])
+@pytest.mark.parametrize("seed", sampled([1, 2, 6], 3))
 def test_cases_in_any_order_give_the_same_bits(seed: int) -> None:
     """And side by side on an executor."""
     spec = formed(seed)

@@ -241,7 +241,7 @@ def airbag(count: int) -> Result:
     return relax(Scene(particles=x, meshes={"m": vars(mesh)}, forces=[cloth, pressure], anchors=held, settings=tight))
 
 
-@pytest.mark.parametrize("count", [8, pytest.param(16, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [8, pytest.param(16, marks=pytest.mark.soak)])
 def test_the_square_airbag_rises_as_published(count: int) -> None:
     """The centre rises by 21.5 cm (Contri and Schrefler, "A geometrically nonlinear finite element analysis of wrinkled
     membrane surfaces by a no-compression material model", 1988): within 2 %, with wrinkles along the seam."""

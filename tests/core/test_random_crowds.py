@@ -1,7 +1,7 @@
 """Random scenes of several parts and many kinds of force: an evaluator in plain numpy agrees with every status.
 
 Each scene is two to four parts, far from one another, heavy beside light: springs with groups, planes, lines, locks,
-volumes and spheres that touch, held, held on one axis, held by soft supports alone, or free. `make test` runs a tenth;
+volumes and spheres that touch, held, held on one axis, held by soft supports alone, or free. `make test` runs 25;
 HOOKEAN_SOAK=1 all.
 """
 
@@ -20,7 +20,7 @@ from hookean import Result, Scene, relax
 from serving import SOAK
 
 Spec = dict[str, Any]
-COUNT = 500 if SOAK else 50
+COUNT = 500 if SOAK else 25
 SOLVERS = ("auto", "auto", "newton", "relaxation")
 EPS = 1.1e-16
 
@@ -270,15 +270,15 @@ def test_an_evaluator_of_its_own_agrees_with_the_status(seed: int) -> None:
 
 @pytest.mark.slow
 def test_the_evaluator_notices_what_is_not_at_rest() -> None:
-    """Negative control: of 20 scenes at rest, one particle moved by a thousandth breaks the verdict."""
+    """Negative control: of 10 scenes at rest, one particle moved by a thousandth breaks the verdict."""
     seen = 0
-    for seed in range(40):
+    for seed in range(20):
         spec = scene_of(seed)
         found = solved(spec)
-        if found.converged and seen < 20:
+        if found.converged and seen < 10:
             x = found.particles.copy()
             particle = int(np.argmax(Judge(spec, x).free.min(axis=1)))
             x[particle] += 1e-3
             assert judged(spec, x) == "moving", seed
             seen += 1
-    assert seen >= 10
+    assert seen >= 5

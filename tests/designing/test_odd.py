@@ -207,7 +207,7 @@ class Chain:
         return missed, objective
 
 
-@settings(max_examples=200 if SOAK else 12)
+@settings(max_examples=200 if SOAK else 6)
 @given(seed=st.integers(0, 10**6))
 def test_the_status_of_random_problems_is_true(seed: int) -> None:
     """`converged`: the values meet bounds and constraints to 1e-5 by another evaluation, and no small step that does is

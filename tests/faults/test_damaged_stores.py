@@ -22,7 +22,7 @@ from serving import SOAK
 
 from .stores import FILES, HARMS, Ledger, copied, lived
 
-STORES = 1000 if SOAK else 40
+STORES = 1000 if SOAK else 20
 LIVES = 8
 
 

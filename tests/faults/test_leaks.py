@@ -19,9 +19,9 @@ from hookean_server.sessions.wire import decode
 from server.conftest import Served
 from serving import CABLE, HANG, SOAK, wait_for
 
-CYCLES, WARM = 50 if SOAK else 6, 10
-VANISHING = 500 if SOAK else 50
-SLOW = 200 if SOAK else 20
+CYCLES, WARM = 50 if SOAK else 4, 10
+VANISHING = 500 if SOAK else 25
+SLOW = 200 if SOAK else 10
 MIB = 2**20
 
 

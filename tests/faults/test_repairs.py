@@ -17,6 +17,7 @@ from hookean_server.keeping.manifest import Manifest
 from hookean_server.sessions import rows
 from hookean_server.store import Store
 from serving import SOAK
+from soak import sampled
 
 from .stores import copied, lived
 from .test_damaged_stores import account, opened
@@ -59,7 +60,7 @@ def repaired(path: Path, step: int) -> int:
     return forking.run(CODE, str(path), str(step)).returncode
 
 
-@pytest.mark.parametrize("harm", ["bits", "wal gone"])
+@pytest.mark.parametrize("harm", sampled(["bits", "wal gone"], 2))
 def test_a_repair_that_is_killed_goes_on_at_the_next_start(harm: str, tmp_path: Path) -> None:
     """At every step that changes a file: afterwards all is there or named as it would be without the kill, and nothing
     unfinished is left."""

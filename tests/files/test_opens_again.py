@@ -62,7 +62,7 @@ def scene_in(data: bytes) -> tuple[Scene, tuple[str, ...]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sampled(FIGURES, 8))
+@pytest.mark.parametrize("name", sampled(FIGURES, 12))
 def test_a_figure_opens_again_as_the_same_model(name: str, tmp_path: Path) -> None:
     simulation = edited(FIGURES[name].scene())
     wanted = simulation.edited_scene().canonical

@@ -22,7 +22,7 @@ from serving import CABLE, SOAK
 
 from .machines import agrees_with_its_model
 
-RUNS, STEPS = (2000, 20) if SOAK else (10, 12)
+RUNS, STEPS = (2000, 20) if SOAK else (6, 12)
 WISHES = 60  # for a new start of the server until one is granted
 
 KEYS = st.sampled_from(("x", "y"))

@@ -21,8 +21,8 @@ from serving import HANG, SOAK, wait_for
 
 from . import damage
 
-COUNT = 2000 if SOAK else 80
-SERVED = 100 if SOAK else 8
+COUNT = 2000 if SOAK else 40
+SERVED = 100 if SOAK else 5
 SECONDS = 5.0  # of computing that one file may take here
 
 

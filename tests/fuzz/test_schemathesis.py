@@ -2,7 +2,7 @@
 not described, none that does not fit its schema, none that says the service failed, none without the credentials that
 are described; and in the order that its links lead, from what makes a session or a job to all that is done with it.
 
-Five of 300 cases an operation and 10 of 200 runs along links in `make test`, all in `make soak`.
+Three of 300 cases an operation and 5 of 200 runs along links in `make test`, all in `make soak`.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from server.conftest import Served
 from serving import CABLE, HANG, app
 from soak import SOAK
 
-CASES = 300 if SOAK else 5
-RUNS, STEPS = (200, 20) if SOAK else (10, 10)
+CASES = 300 if SOAK else 3
+RUNS, STEPS = (200, 20) if SOAK else (5, 10)
 LABELS = sorted(f"{method.upper()} {path}" for path, item in app().openapi()["paths"].items() for method in item)
 CHECKS = [
     checks.status_code_conformance,

@@ -20,7 +20,7 @@ from serving import CABLE, SOAK
 
 from .machines import agrees_with_its_model
 
-RUNS, STEPS = (500, 30) if SOAK else (8, 12)
+RUNS, STEPS = (500, 30) if SOAK else (5, 12)
 WISHES = 25  # for a new start of the server until one is granted
 
 LOADS = st.integers(-6, -1).map(float)

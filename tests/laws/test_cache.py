@@ -50,6 +50,7 @@ def found(functions: dict[str, list[int]]) -> bool:
     return all(hits > 0 and not misses for hits, misses in functions.values())
 
 
+@pytest.mark.soak
 @pytest.mark.slow
 def test_the_second_process_compiles_nothing(copied: tuple[Path, dict[str, str]], first: Any) -> None:
     """One spring: in the first process its kernel, the loop and what is beside misses; in the second all of it hits."""

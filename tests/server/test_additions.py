@@ -20,7 +20,7 @@ from .conftest import Served, problem
 from .test_opening import LINE, POLYLINE, SHEET
 
 NAMES = [example.name for example in examples()]
-SOME = NAMES[1::5]
+SOME = NAMES[1::9]
 OTHERS = [name for name in NAMES if name not in SOME]
 FILES: dict[str, tuple[str, bytes]] = {
     "sheet": ("sheet.obj", SHEET.encode()),

@@ -24,7 +24,7 @@ def test_all_figures_are_listed_in_the_order_of_the_chapter(client: httpx.Client
         assert entry["sentence"].rstrip(".") != entry["title"]
 
 
-@pytest.mark.parametrize("name", sampled(NAMES, 4))
+@pytest.mark.parametrize("name", sampled(NAMES, 8))
 def test_a_figure_is_a_session_that_moves(client: httpx.Client, name: str) -> None:
     """Ten frames from its start, and it has not diverged; nothing is said of a time step too large."""
     read = client.get(f"/v1/examples/{name}/scene")

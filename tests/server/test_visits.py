@@ -117,13 +117,13 @@ def test_bodies_that_do_not_come_take_no_place_of_the_owner(served: Served) -> N
 
 @pytest.mark.skipif(os.name != "posix", reason="limits of open files")
 def test_connections_that_say_nothing_leave_room_for_the_owner() -> None:
-    """Each takes one of 200 open files; 600 are opened. The oldest that no token came on is closed, so sessions are
+    """Each takes one of 200 open files; 400 are opened. The oldest that no token came on is closed, so sessions are
     made, which takes files too, others can connect, and the owner's connection stays."""
     served = Served("import resource; resource.setrlimit(resource.RLIMIT_NOFILE, (200, 200));", workers=1).ready()
     with ExitStack() as stack:
         stack.callback(served.end)
         stream = stack.enter_context(served.client.stream("GET", "/v1/sessions"))
-        for _ in range(600):
+        for _ in range(400):
             sock = stack.enter_context(socket.create_connection(("127.0.0.1", served.port), timeout=HANG))
             with suppress(OSError):  # it is closed already
                 sock.sendall(b"GET /v1/he")

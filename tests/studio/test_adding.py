@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from serving import CABLE
+from soak import sampled
 
 from .browser import Studio, net
 
@@ -36,7 +37,7 @@ def focused(studio: Studio) -> Any:
     return studio.page.evaluate("() => document.activeElement?.dataset?.force")
 
 
-@pytest.mark.parametrize("scene", ["lines", "mesh", "file"])
+@pytest.mark.parametrize("scene", sampled(["mesh", "lines", "file"], 3))
 def test_loads_and_self_weight_are_added_to_any_scene(tab: Studio, scene: str):
     """Each is in the scene and has the focus; Undo takes it back, Remove removes it."""
     if scene == "file":

@@ -1,5 +1,5 @@
 """Every figure of the gallery and every format in the page: opened, a load added, solved, seen, saved, opened again as
-the same model. One in four, all in `make soak`; all share a page."""
+the same model. One of each, all in `make soak`; all share a page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from hookean.commands.examples import examples
-from soak import SOAK, sampled
+from soak import sampled
 
 from .browser import Studio
 
@@ -19,7 +19,6 @@ pytestmark = pytest.mark.slow
 NAMES = [example.name for example in examples()]
 FORMATS = {"3dm": "3dm", "obj": "obj", "compas": "json", "scene": "json", "hookean": "hookean"}
 FIGURE = "9.24-membrane"
-FEW = 4 if SOAK else 11
 
 
 def opened(studio: Studio, name: str, data: bytes) -> str:
@@ -65,13 +64,13 @@ def used(studio: Studio) -> None:
             service.client.delete(f"/v1/sessions/{one}")
 
 
-@pytest.mark.parametrize("name", sampled(NAMES, FEW))
+@pytest.mark.parametrize("name", sampled(NAMES, len(NAMES)))
 def test_a_figure_is_used_in_the_page(studio: Studio, name: str) -> None:
     studio.choose(name)
     used(studio)
 
 
-@pytest.mark.parametrize("form", sampled(FORMATS, 4))
+@pytest.mark.parametrize("form", sampled(FORMATS, len(FORMATS)))
 def test_a_format_is_used_in_the_page(studio: Studio, form: str) -> None:
     """The membrane as a file of the format."""
     service = studio.service

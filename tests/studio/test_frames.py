@@ -10,8 +10,9 @@ from serving import SOAK
 
 from .browser import Studio, net
 
-SIDE = 100 if SOAK else 40
-FRAMES = 100 if SOAK else 25
+SIDE = 100 if SOAK else 30
+FRAMES = 100 if SOAK else 10
+MOVES = 60 if SOAK else 25
 BOUND = 6.0
 """Milliseconds for reading a frame and handing it to the graphics card."""
 
@@ -120,7 +121,7 @@ def test_no_frame_older_than_an_acknowledged_edit_is_drawn(swinging: Studio):
     x, y = swinging.place(0)
     page.mouse.move(x, y)
     page.mouse.down()
-    for step in range(60):
+    for step in range(MOVES):
         page.mouse.move(x + 1.5 * step, y - 40 * np.sin(step / 12))
         page.wait_for_timeout(40)
     page.mouse.up()

@@ -11,7 +11,7 @@ from .browser import Studio
 
 pytestmark = pytest.mark.slow
 SCENES = ["9.24-membrane", "basento", "miura", "linkage", "inflation", "hypar-roof"] if SOAK else ["9.24-membrane"]
-ACTIONS = 150 if SOAK else 60
+ACTIONS = 150 if SOAK else 30
 KEYS = ["f", "a", "p", " ", ".", "Escape", "x", "Control+z", "Control+Shift+z", "Alt+ArrowUp", "Tab", "ArrowLeft", "+"]
 CLICK = """(part) => {
     const controls = document.querySelectorAll("button, summary, input[type=checkbox], input[type=radio]");

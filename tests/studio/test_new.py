@@ -15,7 +15,13 @@ from .browser import Studio
 
 @pytest.mark.parametrize(
     ("name", "typed"),
-    [("saddle", {"rise": 2, "held": "edges"}), ("radial_net", {"rays": 8}), ("cable", {}), ("tensegrity", {})],
+    [
+        ("saddle", {"rise": 2, "held": "edges"}),
+        *(
+            pytest.param(*one, marks=pytest.mark.soak)
+            for one in [("radial_net", {"rays": 8}), ("cable", {}), ("tensegrity", {})]
+        ),
+    ],
 )
 def test_a_model_is_made_and_solved(studio: Studio, name: str, typed: dict[str, Any]):
     """The form, whose fields are those of the schema, sends what was typed; a hypar 10 x 10 m among them."""

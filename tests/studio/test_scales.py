@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from hookean import family
+from soak import sampled
 
 from .browser import Studio, net
 
@@ -55,7 +56,7 @@ def stops(studio: Studio) -> NDArray[np.float64]:
     return np.array([[float(n) / 255 for n in rgb] for rgb in re.findall(r"rgb\((\d+), (\d+), (\d+)\)", drawn)])
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("theme", sampled(["light", "dark"], 2))
 def test_scales_are_chosen_and_their_colours_told_apart_by_any_eyes(open_studio: Any, theme: str) -> None:
     """Springs of -10, 0.1, 1, 10 and 100 N. Two colours of the scale differ by at least 10 (CIE 1976), four times what
     is just noticeable (2.3), for every common kind of eyes."""
@@ -95,7 +96,7 @@ def test_scales_are_chosen_and_their_colours_told_apart_by_any_eyes(open_studio:
         assert apart[np.triu_indices(len(seen), 1)].min() > 10
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("theme", sampled(["dark", "light"], 2))
 def test_a_picked_spring_has_a_dark_and_a_light_line_on_every_colour(open_studio: Any, theme: str) -> None:
     """Across its middle the lightest and darkest pixel have a contrast of 7 at least (WCAG 2.2, 1.4.11 asks for 3)."""
     studio = open_studio(theme=theme)

@@ -98,6 +98,7 @@ def test_roles_values_and_units_are_chosen(studio: Studio, roof: Path) -> None:
                 assert np.allclose(one[name], other[name], rtol=1e-3, atol=1e-3 * np.abs(other[name]).max())
 
 
+@pytest.mark.soak
 def test_a_skin_is_drawn_tight_between_feet_and_fingers(studio: Studio) -> None:
     """The model of the tutorial is that of the figure's recipe, but for the edge cables that this has: made here by
     the Python API without them."""

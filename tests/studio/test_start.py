@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from serving import CABLE, HANG
+from soak import sampled
 
 from .browser import Studio
 from .conftest import Opened
@@ -169,7 +170,10 @@ def test_an_obj_and_a_scene_are_opened_from_a_file(studio: Studio, tmp_path: Pat
     studio.rests_at(equilibrium(CABLE))
 
 
-@pytest.mark.parametrize("content", [b"", b"not a model at all", b"3D Geometry File Format " + bytes(200)])
+NONE = [b"3D Geometry File Format " + bytes(200), b"not a model at all", b""]
+
+
+@pytest.mark.parametrize("content", sampled(NONE, 3))
 def test_a_file_that_is_none_is_refused_in_a_sentence(studio: Studio, content: bytes):
     studio.allowed = [r"\b4\d\d\b"]
     drop(studio, "broken.3dm", content)

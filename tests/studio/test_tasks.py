@@ -99,6 +99,7 @@ def test_a_hanging_net_is_turned_over(studio: Studio):
     assert sums(studio)[2] == pytest.approx(-2 * 7 * 5, rel=1e-3)
 
 
+@pytest.mark.soak
 def test_a_tensegrity_finds_its_twist(studio: Studio):
     """Struts in compression and cables in tension are those of the Python API, in the table, too."""
     key = tasks.tensegrity(studio, unseen)
