@@ -20,11 +20,27 @@ LARGE = 4.0  # times the mean radius: what is larger looks at all others
 PARALLEL = 1e-12  # square of the angle of two segments below which they are parallel
 FARTHEST = 1e15  # cells from the origin
 FEWEST = 3  # cells along an axis, so that the two beside one are different
-PER_CELL = 2.0  # cells of an element that there is place for, at most
+PER_CELL = 2  # cells of an element that there is place for, at most
+LOW, SIDE, CELLS = 0, 3, 6  # of a grid: its lowest cell, cells along each axis; where each cell starts, then rows
 ABREAST, BITS = 4, 64  # elements that are compared at once, bits of a number
 ONE, BRUIJN = np.uint64(1), np.uint64(0x03F79D71B4CB0A89)  # the upper six bits of this times a power of 2 are unique
 LOWEST = np.zeros(BITS, np.uint64)  # which bit is set, by these six
 LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(BITS)]] = np.arange(BITS)
+
+
+@device
+def grid_words(count: Any) -> Any:
+    """How many numbers a grid of some elements has."""
+    return CELLS + max(PER_CELL * count, FEWEST**3) + 2 + count + ABREAST
+
+
+@device
+def cells_of(grid: Any, count: Any) -> Any:
+    """Of the grid of some elements the sides, where each cell starts and where the last ends, and the rows of elements
+    in the order of cells."""
+    side = grid[SIDE:CELLS]
+    cells = side[0] * side[1] * side[2]
+    return side, grid[CELLS + 1 : CELLS + 2 + cells], grid[CELLS + 2 + cells : CELLS + 2 + cells + count + ABREAST]
 
 
 @device
@@ -68,7 +84,7 @@ def sides(spheres: Any, scale: Any, low: Any, side: Any) -> Any:
     for c in range(3):
         low[c] = cell_of(least[c], scale)
         side[c] = min(max(cell_of(most[c], scale) - low[c] + 1, FEWEST), max(count, FEWEST))
-    room = max(PER_CELL * count, float(FEWEST**3))
+    room = float(max(PER_CELL * count, FEWEST**3))
     while float(side[0]) * float(side[1]) * float(side[2]) > room:
         longest = 0
         for c in range(3):
@@ -249,17 +265,21 @@ def thin(spheres, parameters, start, order, beyond, found, first, count) -> Any:
 
 
 @device
-def find_pairs(spheres, parameters, start, order, beyond, picky, found) -> Any:  # type: ignore[no-untyped-def]
+def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) -> Any:  # type: ignore[no-untyped-def]
     """List all pairs of elements (n, SEEN or more) that are within `beyond` of their reach, once each; how many, -1 if
-    there is no place for them. `picky`: some may ignore others, or are capsules."""
+    there is no place for them, and the width of the cells of `grid`, in which all are, else 0. `picky`: some may ignore
+    others, or are capsules."""
     size, mean, widest = spheres.shape[0], 0.0, 0.0
     for i in range(size):
         mean += spheres[i, 3] / size
     for i in range(size):
         widest = max(widest, spheres[i, 3]) if spheres[i, 3] <= LARGE * mean else widest
-    width, low, side = 2.0 * widest + beyond, np.empty(3, np.int64), np.empty(3, np.int64)
-    cells = sides(spheres, 1.0 / width, low, side)
-    first, number = np.zeros(cells + 2, np.int64), np.empty(size + ABREAST, np.int64)
+    width, low = 2.0 * widest + beyond, grid[LOW:SIDE]
+    cells = sides(spheres, 1.0 / width, low, grid[SIDE:CELLS])
+    side, _, number = cells_of(grid, size)
+    first = grid[CELLS : CELLS + 2 + cells]
+    for n in range(cells + 2):
+        first[n] = 0
     beside = np.zeros((4, size + ABREAST))
     xs, ys, zs, radii = beside[0], beside[1], beside[2], beside[3]
     sort_cells(spheres, 1.0 / width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
@@ -280,8 +300,9 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, found) -> Any: 
                     if picky:
                         count = thin(spheres, parameters, start, order, beyond, found, before, count)
     if first[cells] < size:
-        count = meet_large(spheres, parameters, start, order, LARGE * mean, beyond, picky, found, count)
-    return count
+        width, most = 0.0, LARGE * mean
+        count = meet_large(spheres, parameters, start, order, most, beyond, picky, found, count)
+    return count, width
 
 
 @device
