@@ -344,16 +344,17 @@ def test_the_few_that_stray_join_the_list_anew(ordered: bool, fall: float, group
 
 
 def test_a_list_that_too_many_leave_is_made_again() -> None:
-    """One in 64 may join it anew, and one more; with two more that stray, the list is a new one."""
+    """One in 32 may join it anew, and one more; the list that another one leaves is a new one."""
     x = cloud(18, 640, ordered=True)
     block, fresh, still = spheres(x), spheres(x), np.zeros_like(x)
-    room, rng = block.rooms[0], np.random.default_rng(18)
+    room, most = block.rooms[0], neighbours.most_strays(640)
+    assert most == 640 // 32 + 1
     packed(block, x, still)
-    for number, used in ((11, 1.0), (12, 0.0)):
-        x[rng.permutation(640)[:number] if not used else np.arange(number)] += 0.2
+    for strays, used in ((range(most), 1.0), (range(most), 2.0), (range(most + 1), 0.0)):
+        x[strays] += 0.2
         fresh.rooms[0][0, neighbours.COUNT] = -1.0
         assert (packed(block, x, still) == packed(fresh, x, still)).all()
-        assert (room[0, neighbours.USED], room[0, neighbours.STRAYS]) == (used, 11.0 * used)
+        assert (room[0, neighbours.USED], room[0, neighbours.STRAYS]) == (used, most * (used > 0.0))
 
 
 def test_beside_a_large_sphere_a_list_is_made_again() -> None:

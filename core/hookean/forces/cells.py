@@ -21,6 +21,7 @@ PARALLEL = 1e-12  # square of the angle of two segments below which they are par
 FARTHEST = 1e15  # cells from the origin
 FEWEST = 3  # cells along an axis, so that the two beside one are different
 PER_CELL = 2  # cells of an element that there is place for, at most
+SORTED = 4  # columns of elements in the order of cells: x, y, z and radius
 LOW, SIDE, CELLS = 0, 3, 6  # of a grid: its lowest cell, cells along each axis; where each cell starts, then rows
 ABREAST, BITS = 4, 64  # elements that are compared at once, bits of a number
 ONE, BRUIJN = np.uint64(1), np.uint64(0x03F79D71B4CB0A89)  # the upper six bits of this times a power of 2 are unique
@@ -31,7 +32,7 @@ LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(BITS)]]
 @device
 def grid_words(count: Any) -> Any:
     """How many numbers a grid of some elements has."""
-    return CELLS + max(PER_CELL * count, FEWEST**3) + 2 + count + ABREAST
+    return CELLS + 2 * max(PER_CELL * count, FEWEST**3) + 2 + 2 * count + ABREAST + SORTED * (count + ABREAST)
 
 
 @device
@@ -41,6 +42,31 @@ def cells_of(grid: Any, count: Any) -> Any:
     side = grid[SIDE:CELLS]
     cells = side[0] * side[1] * side[2]
     return side, grid[CELLS + 1 : CELLS + 2 + cells], grid[CELLS + 2 + cells : CELLS + 2 + cells + count + ABREAST]
+
+
+@device
+def chains_of(grid: Any, count: Any) -> Any:
+    """Of the grid of some elements chains of those that have moved to another cell: the first of each cell, and of each
+    element the next, both by numbers from 1."""
+    after = CELLS + 2 + count + ABREAST + max(PER_CELL * count, FEWEST**3)
+    return grid[after + count :], grid[after : after + count]
+
+
+@device
+def sorted_in(grid: Any, count: Any) -> Any:
+    """Of the grid of some elements their coordinates and radii in the order of cells, each in an array of its own."""
+    start, size = grid.shape[0] - SORTED * (count + ABREAST), count + ABREAST
+    table = grid[start:].view(np.float64)
+    return table[:size], table[size : 2 * size], table[2 * size : 3 * size], table[3 * size :]
+
+
+@device
+def cell_at(x: Any, y: Any, z: Any, scale: Any, grid: Any) -> Any:
+    """The cell of a point along each axis, folded into the grid."""
+    a = cell_of(x, scale) - grid[LOW]
+    b = cell_of(y, scale) - grid[LOW + 1]
+    c = cell_of(z, scale) - grid[LOW + 2]
+    return a % grid[SIDE], b % grid[SIDE + 1], c % grid[SIDE + 2]
 
 
 @device
@@ -127,6 +153,22 @@ def sort_cells(spheres, scale, low, side, most, first, number, xs, ys, zs, radii
 
 
 @device
+def runs_at(a: Any, b: Any, c: Any, side: Any, first: Any, runs: Any) -> Any:
+    """The elements of a cell and the 26 about it as runs in the order of cells; how many runs."""
+    count, length = 0, side[2]
+    for n in range(9):
+        p, q = (a + n // 3 + side[0] - 1) % side[0], (b + n % 3 + side[1] - 1) % side[1]
+        k = (p * side[1] + q) * length
+        runs[count, 0], runs[count, 1] = first[k + max(c - 1, 0)], first[k + min(c + 2, length)]
+        count += 1
+        if c == 0 or c == length - 1:
+            other = length - 1 if c == 0 else 0
+            runs[count, 0], runs[count, 1] = first[k + other], first[k + other + 1]
+            count += 1
+    return count
+
+
+@device
 def columns_about(a: Any, b: Any, side: Any, columns: Any) -> None:
     """Where the column of cells (a, b) along z starts, and the four of the eight beside it that its elements look in;
     behind the last column comes the first."""
@@ -166,23 +208,22 @@ def near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach) -> Any:  # type: ig
 
 
 @device
-def meet(xs, ys, zs, radii, number, one, runs, several, beyond, found, count, begins) -> Any:  # type: ignore[no-untyped-def]
-    """List an element with all in some runs, in the first with the later ones, that are within `beyond` of its reach;
-    how many pairs are listed then, -1 if there is no place. Bits of several comparisons are read together, since the
-    end of each reading is a branch that no processor foresees."""
-    i, bits, full = np.uint64(one), np.uint64(0), 0
-    x, y, z, reach = xs[i], ys[i], zs[i], radii[i] + beyond
+def meet(xs, ys, zs, radii, number, x, y, z, reach, own, runs, several, found, count, begins) -> Any:  # type: ignore[no-untyped-def]
+    """List a row with all elements in some runs that are within their radius and `reach` of a point; how many pairs are
+    listed then, -1 if there is no place. Bits of several comparisons are read together, since the end of each reading
+    is a branch that no processor foresees."""
+    bits, full = np.uint64(0), 0
     for n in range(several):
-        begin, end = (runs[n, 0] if n else one + 1), runs[n, 1]
+        begin, end = runs[n, 0], runs[n, 1]
         while begin < end:
             if full == BITS // ABREAST:
-                count = write_bits(bits, begins, number[i], number, found, count)
+                count = write_bits(bits, begins, own, number, found, count)
                 bits, full = np.uint64(0), 0
             near = np.uint64(near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach))
             bits |= near << np.uint64(ABREAST * full)
             begins[np.uint64(full)] = begin
             full, begin = full + 1, begin + ABREAST
-    return write_bits(bits, begins, number[i], number, found, count)
+    return write_bits(bits, begins, own, number, found, count)
 
 
 @device
@@ -278,10 +319,12 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) ->
     cells = sides(spheres, 1.0 / width, low, grid[SIDE:CELLS])
     side, _, number = cells_of(grid, size)
     first = grid[CELLS : CELLS + 2 + cells]
+    chains, _ = chains_of(grid, size)
     for n in range(cells + 2):
         first[n] = 0
-    beside = np.zeros((4, size + ABREAST))
-    xs, ys, zs, radii = beside[0], beside[1], beside[2], beside[3]
+    for n in range(cells):
+        chains[n] = 0
+    xs, ys, zs, radii = sorted_in(grid, size)
     sort_cells(spheres, 1.0 / width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
     columns, runs, begins = np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(BITS // ABREAST, np.int64)
     first = first[1:]
@@ -295,8 +338,11 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) ->
                     continue
                 several = runs_about(c, side[2], columns, first, runs)
                 for s in range(first[k], first[k + 1]):
-                    before = count
-                    count = meet(xs, ys, zs, radii, number, s, runs, several, beyond, found, count, begins)
+                    i, before, runs[0, 0] = np.uint64(s), count, s + 1  # in its own cell with the later ones
+                    x, y, z, reach = xs[i], ys[i], zs[i], radii[i] + beyond
+                    count = meet(
+                        xs, ys, zs, radii, number, x, y, z, reach, number[i], runs, several, found, count, begins
+                    )
                     if picky:
                         count = thin(spheres, parameters, start, order, beyond, found, before, count)
     if first[cells] < size:

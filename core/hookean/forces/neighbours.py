@@ -34,8 +34,7 @@ HERE_CAPSULE = 16  # the sphere, half axis, radius, force at the start, at the e
 SUMS = 4  # of each sphere what a kernel sums: its force and a zero; then, apart, how often it counts for the stiffness
 BEGAN = 3  # of each sphere: where it was as the list was made
 PER_ELEMENT = 24  # pairs of an element that there is place for, on average
-ALONE = 64  # as many elements as this to one that may join a list anew; and at most so many
-MOST_STRAYS = 1024
+ALONE = 32  # as many elements as this to one that may join a list anew
 LOCAL = 2.0  # how much longer than layer by layer the way through elements as given may be
 LEAST, FIRST, MOST = 1.25, 2.0, 8.0  # the range of a list in skins
 MOST_OF = 4.0  # times the mean square of speeds: more than those of all but a few, in the spread of a gas
@@ -90,7 +89,7 @@ def forget(room: Any, radius: Any, group: Any) -> None:
 @device
 def most_strays(count: Any) -> Any:
     """How many of some elements may join a list anew."""
-    return min(count // ALONE + 1, MOST_STRAYS)
+    return count // ALONE + 1
 
 
 @device

@@ -1,8 +1,8 @@
 """Strays: the few spheres that leave their place in a list of neighbours join it anew, and the list goes on.
 
 Where speeds differ, a few spheres are far from their places long before most. Such a stray gets a new place, where it
-is, its old pairs go, and those about the new place come: from the grid of cells in which the list was found, and of
-other strays, which are not where that grid has them, one by one. All pairs in reach are listed again, in their order.
+is, its old pairs go, and those about the new place come, from the grid of cells in which the list was found; strays are
+in a chain of their new cell. All pairs in reach are listed again, in their order.
 """
 
 from __future__ import annotations
@@ -13,7 +13,21 @@ import numpy as np
 
 from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
-from hookean.forces.cells import LOW, RADIUS, both, cell_of, cells_of, ends, ignore
+from hookean.forces.cells import (
+    ABREAST,
+    BITS,
+    RADIUS,
+    SIDE,
+    both,
+    cell_at,
+    cells_of,
+    chains_of,
+    ends,
+    ignore,
+    meet,
+    runs_at,
+    sorted_in,
+)
 from hookean.forces.neighbours import (
     COUNT,
     FOUND,
@@ -83,11 +97,12 @@ def join_anew(at: Any, seen: Any, room: Any, most: Any) -> Any:
         anew[i] = NOW
         seen[i, 0], seen[i, 1], seen[i, 2] = at[i, 0] - x, at[i, 1] - y, at[i, 2] - z
     head[0, STRAYS] = before
-    found = np.empty((2, ABOUT * several), np.int64)
-    count = 0
+    found, count, scale = np.empty((2, ABOUT * several), np.int64), 0, 1.0 / head[0, WIDTH]
+    runs, begins = np.empty((18, 2), np.int64), np.empty(BITS // ABREAST, np.int64)
+    link(seen, known, before, scale, grid)
     for n in range(several):
-        count = about(seen, strays[n], head[0, RANGE], 1.0 / head[0, WIDTH], grid, anew, found[0], count)
-        count = beside(seen, strays[n], head[0, RANGE], known, before, anew, found[0], count)
+        count = about(seen, strays[n], head[0, RANGE], scale, grid, anew, runs, begins, found[0], count)
+    unlink(seen, known, before, scale, grid)
     if count < 0:
         return False
     sort_pairs(found[0], count, size, found[1])
@@ -98,45 +113,79 @@ def join_anew(at: Any, seen: Any, room: Any, most: Any) -> Any:
 
 
 @device
+def apart(seen: Any, i: Any, j: Any) -> Any:
+    """Whether two spheres are not of one group, and do not ignore each other."""
+    return seen[i, 4] != seen[j, 4] or seen[i, 4] == 0.0
+
+
+@device
 def within(seen: Any, i: Any, j: Any, beyond: Any) -> Any:
     """Whether two spheres do not ignore each other, and have places within a range beyond their reach."""
     d0, d1, d2 = seen[i, 0] - seen[j, 0], seen[i, 1] - seen[j, 1], seen[i, 2] - seen[j, 2]
     reach = seen[i, 3] + seen[j, 3] + beyond
-    return d0 * d0 + d1 * d1 + d2 * d2 < reach * reach and (seen[i, 4] != seen[j, 4] or seen[i, 4] == 0.0)
+    return d0 * d0 + d1 * d1 + d2 * d2 < reach * reach and apart(seen, i, j)
 
 
 @device
-def about(seen, i, beyond, scale, grid, anew, found, count) -> Any:  # type: ignore[no-untyped-def]
-    """List a stray with all that are no strays, in the cell of its place and the 26 about it; how many pairs are listed
-    then, -1 if there is no place."""
-    side, first, number = cells_of(grid, seen.shape[0])
-    a = cell_of(seen[i, 0], scale) - grid[LOW]
-    b = cell_of(seen[i, 1], scale) - grid[LOW + 1]
-    c = cell_of(seen[i, 2], scale) - grid[LOW + 2]
-    for n in range(27):
-        p, q, r = (a + n // 9 - 1) % side[0], (b + n // 3 % 3 - 1) % side[1], (c + n % 3 - 1) % side[2]
-        k = (p * side[1] + q) * side[2] + r
-        for s in range(first[k], first[k + 1]):
-            j = number[s]
-            if anew[j] == 0 and within(seen, i, j, beyond):
-                if count < 0 or count >= found.shape[0]:
-                    return -1
-                found[count] = both(i, j)
-                count += 1
-    return count
-
-
-@device
-def beside(seen, i, beyond, known, several, anew, found, count) -> Any:  # type: ignore[no-untyped-def]
-    """List a stray with all others, once each; how many pairs are listed then, -1 if there is no place."""
+def link(seen: Any, known: Any, several: Any, scale: Any, grid: Any) -> None:
+    """Put strays into the chains of the cells of their places."""
+    chains, following = chains_of(grid, seen.shape[0])
     for n in range(several):
-        j = known[n]
-        if (anew[j] == 1 or j > i) and within(seen, i, j, beyond):
-            if count < 0 or count >= found.shape[0]:
-                return -1
-            found[count] = both(i, j)
-            count += 1
-    return count
+        i = known[n]
+        a, b, c = cell_at(seen[i, 0], seen[i, 1], seen[i, 2], scale, grid)
+        k = (a * grid[SIDE + 1] + b) * grid[SIDE + 2] + c
+        following[i], chains[k] = chains[k], i + 1
+
+
+@device
+def unlink(seen: Any, known: Any, several: Any, scale: Any, grid: Any) -> None:
+    """Empty these chains."""
+    chains, _ = chains_of(grid, seen.shape[0])
+    for n in range(several):
+        i = known[n]
+        a, b, c = cell_at(seen[i, 0], seen[i, 1], seen[i, 2], scale, grid)
+        chains[(a * grid[SIDE + 1] + b) * grid[SIDE + 2] + c] = 0
+
+
+@device
+def about(seen, i, beyond, scale, grid, anew, runs, begins, found, count) -> Any:  # type: ignore[no-untyped-def]
+    """List a stray with all in the cell of its place and the 26 about it, with one that joins as well once; how many
+    pairs are listed then, -1 if there is no place."""
+    (side, first, number), before = cells_of(grid, seen.shape[0]), count
+    xs, ys, zs, radii = sorted_in(grid, seen.shape[0])
+    a, b, c = cell_at(seen[i, 0], seen[i, 1], seen[i, 2], scale, grid)
+    several, reach = runs_at(a, b, c, side, first, runs), seen[i, 3] + beyond
+    count = meet(
+        xs, ys, zs, radii, number, seen[i, 0], seen[i, 1], seen[i, 2], reach, i, runs, several, found, count, begins
+    )
+    for n in range(before, count):
+        one, other = ends(found[n])
+        found[before] = found[n]
+        before += 1 if anew[one] + anew[other] == NOW and apart(seen, one, other) else 0
+    chains, following = chains_of(grid, seen.shape[0])
+    for n in range(27):
+        p, q = wrapped(a + n // 9 - 1, side[0]), wrapped(b + n // 3 % 3 - 1, side[1])
+        j = chains[(p * side[1] + q) * side[2] + wrapped(c + n % 3 - 1, side[2])] - 1
+        while j >= 0:
+            if (anew[j] == 1 or j > i) and within(seen, i, j, beyond):
+                before = add(i, j, found, before)
+            j = following[j] - 1
+    return before if count >= 0 else -1
+
+
+@device
+def wrapped(cell: Any, length: Any) -> Any:
+    """A cell along an axis that may be one before the first or behind the last."""
+    return cell + length if cell < 0 else cell - length if cell >= length else cell
+
+
+@device
+def add(i: Any, j: Any, found: Any, count: Any) -> Any:
+    """List a pair; how many are listed then, -1 if there is no place."""
+    if count < 0 or count >= found.shape[0]:
+        return -1
+    found[count] = both(i, j)
+    return count + 1
 
 
 @device
