@@ -312,3 +312,88 @@ def test_spheres_that_swing_keep_their_places() -> None:
         packed(block, x + (0.8 * way if step % 2 else -0.8 * way), still)
         made += step >= 20 and room[0, neighbours.USED] == 0.0
     assert made <= 4  # of a range that settles
+
+
+@pytest.mark.parametrize("ordered", [True, False])
+@pytest.mark.parametrize("fall", [0.0, -0.5])
+@pytest.mark.parametrize("group", [0, 3])
+def test_the_few_that_stray_join_the_list_anew(ordered: bool, fall: float, group: int) -> None:
+    """Ten of 700 spheres fly through the others, which swing and may all fall: one list serves, has each pair once, in
+    order, and all in reach; forces are those of a list made for the step, to the bit."""
+    rng = np.random.default_rng(17)
+    x = cloud(17, 700, ordered=ordered)
+    groups = group * (np.arange(700) % 4 == 0)
+    block, fresh, still = spheres(x, collision_group=groups), spheres(x, collision_group=groups), np.zeros_like(x)
+    room, way, fast = block.rooms[0], np.zeros_like(x), rng.choice(700, 10, replace=False)
+    way[fast] = rng.normal(size=(10, 3))
+    way *= 0.08 / np.maximum(np.sqrt((way**2).sum(axis=1)), 1e-9)[:, None]
+    packed(block, x, still)
+    for step in range(12):
+        x = x + way + [0.0, 0.0, fall]
+        swung = x + rng.uniform(-0.02, 0.02, x.shape)
+        fresh.rooms[0][0, neighbours.COUNT] = -1.0
+        assert (packed(block, swung, still) == packed(fresh, swung, still)).all()
+        assert room[0, neighbours.USED] == step + 1.0
+    assert room[0, neighbours.STRAYS] == 10.0
+    pairs = neighbours.pairs_in(room.ctypes.data)[0][: int(room[0, neighbours.FOUND])]
+    assert (np.diff((pairs & 0xFFFFFFFF) << 32 | pairs >> 32) > 0).all()
+    fresh.rooms[0][0, neighbours.COUNT] = -1.0
+    expected = whole(fresh, x)
+    assert all(np.array_equal(one, other) for one, other in zip(whole(block, x), expected, strict=True))
+    assert room[0, neighbours.USED] > 12.0  # the skin of `whole` is in the same list
+
+
+def test_a_list_that_too_many_leave_is_made_again() -> None:
+    """One in 32 may join it anew, and one more; the list that another one leaves is a new one."""
+    x = cloud(18, 640, ordered=True)
+    block, fresh, still = spheres(x), spheres(x), np.zeros_like(x)
+    room, most = block.rooms[0], neighbours.most_strays(640)
+    assert most == 640 // 32 + 1
+    packed(block, x, still)
+    for strays, used in ((range(most), 1.0), (range(most), 2.0), (range(most + 1), 0.0)):
+        x[strays] += 0.2
+        fresh.rooms[0][0, neighbours.COUNT] = -1.0
+        assert (packed(block, x, still) == packed(fresh, x, still)).all()
+        assert (room[0, neighbours.USED], room[0, neighbours.STRAYS]) == (used, most * (used > 0.0))
+
+
+def test_beside_a_large_sphere_a_list_is_made_again() -> None:
+    """It is in no cell, so that those about a stray would miss it: forces are those over all pairs."""
+    x = cloud(19, 300, ordered=True)
+    radius = np.full(300, 0.5)
+    radius[150] = 4.0
+    block, still = spheres(x, radius), np.zeros_like(x)
+    packed(block, x, still)
+    assert block.rooms[0][0, neighbours.WIDTH] == 0.0 < block.rooms[0][0, neighbours.FOUND]
+    x[:2] = x[150] + [[2.0, 0.0, 0.0], [0.0, 3.0, 0.0]]
+    expected, _ = of_all_pairs(x, radius, 10.0)
+    assert np.abs(packed(block, x, still) - expected).max() <= 1e-12 * np.abs(expected).max()
+    assert block.rooms[0][0, neighbours.USED] == 0.0
+
+
+def test_a_stray_that_meets_too_many_makes_a_new_list() -> None:
+    """Pairs that join are as many as there is place for, 64 of a stray: of 200 spheres in one place it has more."""
+    x = cloud(20, 2000, ordered=True)
+    x[:200] = 50.0 + np.random.default_rng(20).uniform(0.0, 0.3, (200, 3))
+    block, still = spheres(x), np.zeros_like(x)
+    room = block.rooms[0]
+    packed(block, x, still)
+    assert room[0, neighbours.COUNT] == 2000.0
+    x[1999] = 50.0
+    expected, _ = of_all_pairs(x, np.full(2000, 0.5), 10.0)
+    assert np.abs(packed(block, x, still) - expected).max() <= 1e-12 * np.abs(expected).max()
+    assert room[0, neighbours.USED] == 0.0
+
+
+def test_spheres_that_no_list_serves_twice_have_the_shortest() -> None:
+    """A way of five skins a step in directions that change: farther than half of the greatest range, 4; slower again,
+    the range grows again."""
+    x = cloud(21, 400, ordered=True)
+    block, skin, rng, still = spheres(x), 0.075, np.random.default_rng(21), np.zeros_like(x)
+    room = block.rooms[0]
+    for skins, part in ((5.0, neighbours.LEAST), (1.0, neighbours.MOST)):
+        for _ in range(40):
+            turn = rng.normal(size=x.shape)
+            x = x + skins * skin * turn / np.sqrt((turn**2).sum(axis=1))[:, None]
+            packed(block, x, still)
+        assert room[0, neighbours.RANGE] == part * skin

@@ -20,11 +20,53 @@ LARGE = 4.0  # times the mean radius: what is larger looks at all others
 PARALLEL = 1e-12  # square of the angle of two segments below which they are parallel
 FARTHEST = 1e15  # cells from the origin
 FEWEST = 3  # cells along an axis, so that the two beside one are different
-PER_CELL = 2.0  # cells of an element that there is place for, at most
+PER_CELL = 2  # cells of an element that there is place for, at most
+SORTED = 4  # columns of elements in the order of cells: x, y, z and radius
+LOW, SIDE, CELLS = 0, 3, 6  # of a grid: its lowest cell, cells along each axis; where each cell starts, then rows
 ABREAST, BITS = 4, 64  # elements that are compared at once, bits of a number
 ONE, BRUIJN = np.uint64(1), np.uint64(0x03F79D71B4CB0A89)  # the upper six bits of this times a power of 2 are unique
 LOWEST = np.zeros(BITS, np.uint64)  # which bit is set, by these six
 LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(BITS)]] = np.arange(BITS)
+
+
+@device
+def grid_words(count: Any) -> Any:
+    """How many numbers a grid of some elements has."""
+    return CELLS + 2 * max(PER_CELL * count, FEWEST**3) + 2 + 2 * count + ABREAST + SORTED * (count + ABREAST)
+
+
+@device
+def cells_of(grid: Any, count: Any) -> Any:
+    """Of the grid of some elements the sides, where each cell starts and where the last ends, and the rows of elements
+    in the order of cells."""
+    side = grid[SIDE:CELLS]
+    cells = side[0] * side[1] * side[2]
+    return side, grid[CELLS + 1 : CELLS + 2 + cells], grid[CELLS + 2 + cells : CELLS + 2 + cells + count + ABREAST]
+
+
+@device
+def chains_of(grid: Any, count: Any) -> Any:
+    """Of the grid of some elements chains of those that have moved to another cell: the first of each cell, and of each
+    element the next, both by numbers from 1."""
+    after = CELLS + 2 + count + ABREAST + max(PER_CELL * count, FEWEST**3)
+    return grid[after + count :], grid[after : after + count]
+
+
+@device
+def sorted_in(grid: Any, count: Any) -> Any:
+    """Of the grid of some elements their coordinates and radii in the order of cells, each in an array of its own."""
+    start, size = grid.shape[0] - SORTED * (count + ABREAST), count + ABREAST
+    table = grid[start:].view(np.float64)
+    return table[:size], table[size : 2 * size], table[2 * size : 3 * size], table[3 * size :]
+
+
+@device
+def cell_at(x: Any, y: Any, z: Any, scale: Any, grid: Any) -> Any:
+    """The cell of a point along each axis, folded into the grid."""
+    a = cell_of(x, scale) - grid[LOW]
+    b = cell_of(y, scale) - grid[LOW + 1]
+    c = cell_of(z, scale) - grid[LOW + 2]
+    return a % grid[SIDE], b % grid[SIDE + 1], c % grid[SIDE + 2]
 
 
 @device
@@ -68,7 +110,7 @@ def sides(spheres: Any, scale: Any, low: Any, side: Any) -> Any:
     for c in range(3):
         low[c] = cell_of(least[c], scale)
         side[c] = min(max(cell_of(most[c], scale) - low[c] + 1, FEWEST), max(count, FEWEST))
-    room = max(PER_CELL * count, float(FEWEST**3))
+    room = float(max(PER_CELL * count, FEWEST**3))
     while float(side[0]) * float(side[1]) * float(side[2]) > room:
         longest = 0
         for c in range(3):
@@ -111,6 +153,22 @@ def sort_cells(spheres, scale, low, side, most, first, number, xs, ys, zs, radii
 
 
 @device
+def runs_at(a: Any, b: Any, c: Any, side: Any, first: Any, runs: Any) -> Any:
+    """The elements of a cell and the 26 about it as runs in the order of cells; how many runs."""
+    count, length = 0, side[2]
+    for n in range(9):
+        p, q = (a + n // 3 + side[0] - 1) % side[0], (b + n % 3 + side[1] - 1) % side[1]
+        k = (p * side[1] + q) * length
+        runs[count, 0], runs[count, 1] = first[k + max(c - 1, 0)], first[k + min(c + 2, length)]
+        count += 1
+        if c == 0 or c == length - 1:
+            other = length - 1 if c == 0 else 0
+            runs[count, 0], runs[count, 1] = first[k + other], first[k + other + 1]
+            count += 1
+    return count
+
+
+@device
 def columns_about(a: Any, b: Any, side: Any, columns: Any) -> None:
     """Where the column of cells (a, b) along z starts, and the four of the eight beside it that its elements look in;
     behind the last column comes the first."""
@@ -150,23 +208,22 @@ def near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach) -> Any:  # type: ig
 
 
 @device
-def meet(xs, ys, zs, radii, number, one, runs, several, beyond, found, count, begins) -> Any:  # type: ignore[no-untyped-def]
-    """List an element with all in some runs, in the first with the later ones, that are within `beyond` of its reach;
-    how many pairs are listed then, -1 if there is no place. Bits of several comparisons are read together, since the
-    end of each reading is a branch that no processor foresees."""
-    i, bits, full = np.uint64(one), np.uint64(0), 0
-    x, y, z, reach = xs[i], ys[i], zs[i], radii[i] + beyond
+def meet(xs, ys, zs, radii, number, x, y, z, reach, own, runs, several, found, count, begins) -> Any:  # type: ignore[no-untyped-def]
+    """List a row with all elements in some runs that are within their radius and `reach` of a point; how many pairs are
+    listed then, -1 if there is no place. Bits of several comparisons are read together, since the end of each reading
+    is a branch that no processor foresees."""
+    bits, full = np.uint64(0), 0
     for n in range(several):
-        begin, end = (runs[n, 0] if n else one + 1), runs[n, 1]
+        begin, end = runs[n, 0], runs[n, 1]
         while begin < end:
             if full == BITS // ABREAST:
-                count = write_bits(bits, begins, number[i], number, found, count)
+                count = write_bits(bits, begins, own, number, found, count)
                 bits, full = np.uint64(0), 0
             near = np.uint64(near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach))
             bits |= near << np.uint64(ABREAST * full)
             begins[np.uint64(full)] = begin
             full, begin = full + 1, begin + ABREAST
-    return write_bits(bits, begins, number[i], number, found, count)
+    return write_bits(bits, begins, own, number, found, count)
 
 
 @device
@@ -249,19 +306,25 @@ def thin(spheres, parameters, start, order, beyond, found, first, count) -> Any:
 
 
 @device
-def find_pairs(spheres, parameters, start, order, beyond, picky, found) -> Any:  # type: ignore[no-untyped-def]
+def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) -> Any:  # type: ignore[no-untyped-def]
     """List all pairs of elements (n, SEEN or more) that are within `beyond` of their reach, once each; how many, -1 if
-    there is no place for them. `picky`: some may ignore others, or are capsules."""
+    there is no place for them, and the width of the cells of `grid`, in which all are, else 0. `picky`: some may ignore
+    others, or are capsules."""
     size, mean, widest = spheres.shape[0], 0.0, 0.0
     for i in range(size):
         mean += spheres[i, 3] / size
     for i in range(size):
         widest = max(widest, spheres[i, 3]) if spheres[i, 3] <= LARGE * mean else widest
-    width, low, side = 2.0 * widest + beyond, np.empty(3, np.int64), np.empty(3, np.int64)
-    cells = sides(spheres, 1.0 / width, low, side)
-    first, number = np.zeros(cells + 2, np.int64), np.empty(size + ABREAST, np.int64)
-    beside = np.zeros((4, size + ABREAST))
-    xs, ys, zs, radii = beside[0], beside[1], beside[2], beside[3]
+    width, low = 2.0 * widest + beyond, grid[LOW:SIDE]
+    cells = sides(spheres, 1.0 / width, low, grid[SIDE:CELLS])
+    side, _, number = cells_of(grid, size)
+    first = grid[CELLS : CELLS + 2 + cells]
+    chains, _ = chains_of(grid, size)
+    for n in range(cells + 2):
+        first[n] = 0
+    for n in range(cells):
+        chains[n] = 0
+    xs, ys, zs, radii = sorted_in(grid, size)
     sort_cells(spheres, 1.0 / width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
     columns, runs, begins = np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(BITS // ABREAST, np.int64)
     first = first[1:]
@@ -275,13 +338,17 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, found) -> Any: 
                     continue
                 several = runs_about(c, side[2], columns, first, runs)
                 for s in range(first[k], first[k + 1]):
-                    before = count
-                    count = meet(xs, ys, zs, radii, number, s, runs, several, beyond, found, count, begins)
+                    i, before, runs[0, 0] = np.uint64(s), count, s + 1  # in its own cell with the later ones
+                    x, y, z, reach = xs[i], ys[i], zs[i], radii[i] + beyond
+                    count = meet(
+                        xs, ys, zs, radii, number, x, y, z, reach, number[i], runs, several, found, count, begins
+                    )
                     if picky:
                         count = thin(spheres, parameters, start, order, beyond, found, before, count)
     if first[cells] < size:
-        count = meet_large(spheres, parameters, start, order, LARGE * mean, beyond, picky, found, count)
-    return count
+        width, most = 0.0, LARGE * mean
+        count = meet_large(spheres, parameters, start, order, most, beyond, picky, found, count)
+    return count, width
 
 
 @device

@@ -15,7 +15,8 @@ from hookean.forces.base import Block, Floats, Force, Ints, Places
 from hookean.forces.cells import ends
 from hookean.forces.collide import Crowd, crowd, overlapping
 from hookean.forces.crowd_rows import NEAREST, SKIN, STIFFNESS, end_of_crowd
-from hookean.forces.neighbours import listed, order_in, pairs_listed, some_pairs, tables
+from hookean.forces.neighbours import order_in, pairs_listed, tables
+from hookean.forces.strays import listed, some_pairs
 from hookean.values.columns import IndexRows, Labels, Points, Table, fault
 from hookean.values.fields import Field, Maybe
 

@@ -27,18 +27,15 @@ from hookean.forces.neighbours import (
     capacity,
     forget,
     gather,
-    listed,
     make_room,
     order_in,
     pairs_listed,
     renew,
-    seen_in,
     served,
-    some_pairs,
     tables,
-    unmoved,
 )
 from hookean.forces.springs import Springs
+from hookean.forces.strays import listed, serves, some_pairs
 from hookean.values.columns import IndexRows, Labels, Points, Positives
 from hookean.values.fields import Field, Maybe
 
@@ -138,12 +135,12 @@ def push_all(parameters, start, here, sums, counts, order, short, room, margin) 
 def push_packed(x, indices, crowd, parameters, f) -> None:  # type: ignore[no-untyped-def]
     """Forces of a packed crowd of spheres."""
     start, size, room, skin = int(crowd[BEGIN]), int(crowd[SIZE]), crowd[ADDRESS], crowd[REACH]
-    (here, sums, counts), order, seen = tables(room, size), order_in(room, size), seen_in(room)
+    (here, sums, counts), order = tables(room, size), order_in(room, size)
     most, straight, a = served(room, size, skin, 0.0), crowd[PARTICLE] >= 0.0, int(max(crowd[PARTICLE], 0.0))
     at = x[a : a + size] if straight else here
     if not straight:
         gather(x, indices, start, here, sums, counts, order, True)
-    short = most >= 0.0 and unmoved(at, seen, most)
+    short = most >= 0.0 and serves(at, room, most)
     if not short:
         gather(x, indices, start, here, sums, counts, order, True)
         short = renew(here, parameters, start, order, room, skin)

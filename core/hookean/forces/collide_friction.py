@@ -10,7 +10,8 @@ from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats
 from hookean.forces.cells import RADIUS, ends
 from hookean.forces.crowd_rows import NEAREST, ROOM, SKIN, STIFFNESS, end_of_crowd
-from hookean.forces.neighbours import listed, order_in, pairs_listed, some_pairs, tables
+from hookean.forces.neighbours import order_in, pairs_listed, tables
+from hookean.forces.strays import listed, some_pairs
 
 RATIO, FRICTION, DASHPOT = 5, 6, 7  # columns of the parameters, after those of `collide`
 PARTNER, PLACE, SLOT = 0, 1, 4  # of the memory of a contact: number of the other sphere and 1, where it holds on

@@ -22,19 +22,22 @@ import numpy as np
 
 from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
-from hookean.forces.cells import GROUP, RADIUS, SEEN, SEEN_CAPSULE, both, ends, find_pairs, ignore
+from hookean.forces.cells import GROUP, RADIUS, SEEN, SEEN_CAPSULE, ends, find_pairs, grid_words
 
 # the head of a room: elements and pairs it has place for; range beyond the reach, elements listed, particles of an
-# element; pairs listed, how often the list was used, whether rows are elements as given; how many uses ahead places are
-SIZE, PAIRS, RANGE, COUNT, ENDS, FOUND, USED, AS_GIVEN, AHEAD = range(9)
-HEAD = 9
+# element; pairs listed, how often the list was used, whether rows are elements as given; uses that places are ahead;
+# width of the cells in which all elements are, or 0; how many elements have joined the list anew (`strays`)
+SIZE, PAIRS, RANGE, COUNT, ENDS, FOUND, USED, AS_GIVEN, AHEAD, WIDTH, STRAYS = range(11)
+HEAD = 11
 HERE = 4  # of each element now: x y z and a zero
 HERE_CAPSULE = 16  # the sphere, half axis, radius, force at the start, at the end, nothing, stiffness
 SUMS = 4  # of each sphere what a kernel sums: its force and a zero; then, apart, how often it counts for the stiffness
 BEGAN = 3  # of each sphere: where it was as the list was made
 PER_ELEMENT = 24  # pairs of an element that there is place for, on average
+ALONE = 32  # as many elements as this to one that may join a list anew
 LOCAL = 2.0  # how much longer than layer by layer the way through elements as given may be
 LEAST, FIRST, MOST = 1.25, 2.0, 8.0  # the range of a list in skins
+MOST_OF = 4.0  # times the mean square of speeds: more than those of all but a few, in the spread of a gas
 BALANCE = 45.0  # range in skins times uses of a list at which making it costs as much as the pairs it has too many
 ONE = np.uint64(1)
 STEP = 1.5  # by which the range changes
@@ -50,8 +53,9 @@ def make_room(corners: Any) -> np.ndarray:
     order = in_layers(middles)
     as_given = way(middles) <= LOCAL * way(middles[order])
     words = HERE + SUMS + 1 + SEEN if size == 1 else HERE_CAPSULE + SEEN_CAPSULE
-    room = np.zeros((1, HEAD + (words + 1 + 2 * PER_ELEMENT + BEGAN) * count))
-    room[0, :HEAD] = count, PER_ELEMENT * count, 0.0, -1.0, size, 0.0, 0.0, as_given, 0.0
+    more = grid_words(count) + most_strays(count)
+    room = np.zeros((1, HEAD + (words + 1 + 2 * PER_ELEMENT + BEGAN + 1) * count + more))
+    room[0, :HEAD] = count, PER_ELEMENT * count, 0.0, -1.0, size, 0.0, 0.0, as_given, 0.0, 0.0, 0.0
     start = HEAD + words * count
     room[0, start : start + count] = np.arange(count) if as_given else order
     return room
@@ -80,6 +84,12 @@ def forget(room: Any, radius: Any, group: Any) -> None:
         order = order[:count].astype(np.int64)
         if not (np.array_equal(seen[:, 3], radius[order]) and np.array_equal(seen[:, 4], group[order])):
             room[0, COUNT] = -1.0
+
+
+@device
+def most_strays(count: Any) -> Any:
+    """How many of some elements may join a list anew."""
+    return count // ALONE + 1
 
 
 @device
@@ -130,6 +140,18 @@ def began_in(room: Any) -> Any:
 
 
 @device
+def grid_in(room: Any) -> Any:
+    """The grid of cells (`cells`) in the room at an address; which elements have joined the list anew, 1; and their
+    rows."""
+    size = capacity(room)
+    _, _, _, reach, _ = parts(room)
+    grid = reach + 8.0 * (rows(room, 1.0, HEAD)[0, PAIRS] + BEGAN * size)
+    words, most = grid_words(size), most_strays(size)
+    anew = rows(grid + 8.0 * words, 1.0, size + most)[0].view(np.int64)
+    return rows(grid, 1.0, words)[0].view(np.int64), anew[:size], anew[size:]
+
+
+@device
 def order_in(room: Any, count: Any) -> Any:
     """The element of each row in the room at an address; where some of them are left out, their own order."""
     head = rows(room, 1.0, HEAD)
@@ -177,17 +199,17 @@ def near_seen(at: Any, seen: Any, most: Any, x: Any, y: Any, z: Any) -> Any:
 
 @device
 def drift(at: Any, seen: Any) -> Any:
-    """How far all spheres have moved alike: the middle of the box about their ways from their places."""
-    x0 = x1 = at[0, 0] - seen[0, 0]
-    y0 = y1 = at[0, 1] - seen[0, 1]
-    z0 = z1 = at[0, 2] - seen[0, 2]
-    for n in range(at.shape[0]):
+    """How far spheres have moved on average; zero if that is not a number."""
+    x = y = z = 0.0
+    count = at.shape[0]
+    for n in range(count):
         i = np.uint64(n)
-        dx, dy, dz = at[i, 0] - seen[i, 0], at[i, 1] - seen[i, 1], at[i, 2] - seen[i, 2]
-        x0, x1 = min(x0, dx), max(x1, dx)
-        y0, y1 = min(y0, dy), max(y1, dy)
-        z0, z1 = min(z0, dz), max(z1, dz)
-    return 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1)
+        x += at[i, 0] - seen[i, 0]
+        y += at[i, 1] - seen[i, 1]
+        z += at[i, 2] - seen[i, 2]
+    if not abs(x + y + z) < np.inf:
+        return 0.0, 0.0, 0.0
+    return x / count, y / count, z / count
 
 
 @device
@@ -299,15 +321,15 @@ def sort_pairs(pairs: Any, count: Any, size: Any, aside: Any) -> None:
 
 @device
 def course(here: Any, room: Any) -> Any:
-    """How many uses ahead the places of a new list are to be, and the greatest speed [length/use]; the speeds, beside
-    the mean one, replace where spheres were.
+    """How many uses ahead the places of a new list are to be, the greatest speed [length/use], and that of most; the
+    speeds, beside the mean one, replace where spheres were.
 
     A sphere of speed u and a place t ahead is within s of it from t before until s / u after: for T uses, half of them
     is best. T is what the last list had. What swings does not keep its speed: t is less by the cosine of the speeds of
     the last list, as the places show them, and of the one before."""
     head, count = rows(room, 1.0, HEAD), here.shape[0]
     if here.shape[1] != HERE or head[0, COUNT] != count or head[0, USED] < 1.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     seen, began, used, before = seen_in(room), began_in(room), head[0, USED], head[0, AHEAD]
     m0 = m1 = m2 = along = now = then = fastest = 0.0
     for n in range(count):
@@ -325,9 +347,9 @@ def course(here: Any, room: Any) -> Any:
         fastest = max(fastest, square)
         began[i, 0], began[i, 1], began[i, 2] = u0 / used, u1 / used, u2 / used
     if not 0.0 < now < np.inf:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     alike = max(along / np.sqrt(now * then), 0.0) if before > 0.0 and 0.0 < then < np.inf else 0.0
-    return 0.5 * used * alike, np.sqrt(fastest) / used
+    return 0.5 * used * alike, np.sqrt(fastest) / used, np.sqrt(min(fastest, MOST_OF * now / count)) / used
 
 
 @device
@@ -348,9 +370,13 @@ def list_pairs(here, parameters, start, order, room, beyond, ahead, fastest) -> 
             seen[i, 1] += ahead * began[i, 1]
             seen[i, 2] += ahead * began[i, 2]
     pairs, reach = pairs_in(room)
-    met = find_pairs(seen, parameters, start, order, beyond, picky, pairs)
+    grid, anew, _ = grid_in(room)
+    met, head[0, WIDTH] = find_pairs(seen, parameters, start, order, beyond, picky, grid, pairs)
     if met < 0:
         return False
+    for n in range(count):
+        anew[n] = 0
+    head[0, STRAYS] = 0.0
     sort_pairs(pairs, met, count, reach.view(np.int64))  # the reach is written after that
     radius = 3 if seen.shape[1] == SEEN else SEEN + 3
     for n in range(met):
@@ -382,8 +408,10 @@ def renew(here: Any, parameters: Any, start: Any, order: Any, room: Any, skin: A
         beyond /= STEP
     elif uses * beyond * STEP < BALANCE * skin:
         beyond *= STEP
+    ahead, fastest, usual = course(here, room)
+    if usual - min(ahead * usual, 0.5 * MOST_AHEAD * (MOST - 1.0) * skin) > 0.5 * MOST * skin:
+        beyond = 0.0  # no list serves twice: the one that is made in the least time
     beyond, least = min(max(beyond, LEAST * skin), MOST * skin), LEAST * skin
-    ahead, fastest = course(here, room)
     if list_pairs(here, parameters, start, order, room, beyond, limited(ahead, fastest, beyond - skin), fastest):
         made = True
     else:
@@ -404,29 +432,3 @@ def limited(ahead: Any, fastest: Any, left: Any) -> Any:
     if fastest == 0.0:
         return 0.0
     return 0.5 * min(max(2.0 * ahead * fastest, LEAST_AHEAD * left), MOST_AHEAD * left) / fastest
-
-
-@device
-def listed(x, indices, parameters, start, here, sums, counts, order, room, skin) -> Any:  # type: ignore[no-untyped-def]
-    """Gather elements, and see that the list in the room at an address holds all pairs within a skin [length] of their
-    reach: it is made again if needed. If there is no place for it, False: every pair has to be checked."""
-    gather(x, indices, start, here, sums, counts, order, False)
-    count = here.shape[0]
-    most = served(room, count, skin, skin)
-    seen = seen_in(room)
-    same = as_seen(here, parameters, start, order, seen, most)
-    if same and (here.shape[1] != HERE or unmoved(here, seen, most)):
-        return True
-    return renew(here, parameters, start, order, room, skin)
-
-
-@device
-def some_pairs(parameters: Any, start: Any, order: Any, i: Any, pairs: Any, reach: Any) -> Any:
-    """Without a list: the pairs of a row with all later ones that it does not ignore; how many."""
-    count = 0
-    for j in range(i + 1, order.shape[0]):
-        e, o = start + int(order[i]), start + int(order[j])
-        if not ignore(parameters, e, o):
-            pairs[count], reach[count] = both(i, j), parameters[e, RADIUS] + parameters[o, RADIUS]
-            count += 1
-    return count

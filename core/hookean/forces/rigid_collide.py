@@ -39,7 +39,7 @@ from hookean.forces.convex import (
     touch,
 )
 from hookean.forces.groups import following
-from hookean.forces.neighbours import listed, make_room, order_in, pairs_listed, some_pairs, tables
+from hookean.forces.neighbours import make_room, order_in, pairs_listed, tables
 from hookean.forces.rigid_body import CENTRE, SHAPE
 from hookean.forces.rigid_friction import ANCHOR, PARTNER, STARTED, grip, hold_on
 from hookean.forces.rigid_places import (
@@ -51,6 +51,7 @@ from hookean.forces.rigid_places import (
     crowd_sizes,
     gather,
 )
+from hookean.forces.strays import listed, some_pairs
 from hookean.values.columns import IndexRows, Labels, NonNegatives, Points
 from hookean.values.fields import Field, Maybe
 
