@@ -25,6 +25,7 @@ from hookean_canvas.run.components import inputs_of, native_for, outputs_of, run
 from hookean_canvas.run.graph import Graph, Node, Port
 from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind
 from hookean_canvas.run.natives.expressions import evaluated
+from hookean_canvas.run.natives.kinds import over_unit_domain, radians
 from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.run.trees import ITEM, TREE, Run, Tree, modified, runs
 from hookean_canvas.run.unsupported import ENGINE, require_known
@@ -168,9 +169,7 @@ class Canvas:
     def _evaluate(self, node: Node) -> None:
         for port in node.outputs:
             self._results[port.id] = Tree()
-        if node.locked:
-            return
-        if node.guid in INERT:
+        if node.locked or node.guid in INERT:
             return
         if node.id in self._aside:
             self._say(node, "warning", f"left out, as no Engine needs it: {self._aside[node.id]}")
@@ -189,7 +188,11 @@ class Canvas:
         if not port.sources and port.data is not None:
             found.take(port.data)
         found = modified(found, port.mapping, port.reverse, port.simplify)
-        return self._expressed(node, port, found) if port.expression else found
+        if port.expression:
+            found = self._expressed(node, port, found)
+        if port.degrees:
+            found = self._converted(node, port, found, radians)
+        return found.each(over_unit_domain) if port.unit else found
 
     def _expressed(self, node: Node, port: Port, tree: Tree) -> Tree:
         """Each value x after the expression that a person has put on the input."""
@@ -222,7 +225,8 @@ class Canvas:
         results = run_native(node, native, given, say)
         for (output, _), tree in zip(outputs_of(node, native) or [], results, strict=True):
             if output is not None:
-                self._results[output.id] = modified(tree, output.mapping, output.reverse, output.simplify)
+                found = modified(tree, output.mapping, output.reverse, output.simplify)
+                self._results[output.id] = found.each(over_unit_domain) if output.unit else found
 
     def _script(self, node: Node, script: Script) -> None:
         del script.component.messages[:]

@@ -21,7 +21,10 @@ from hookean_canvas.run.trees import Tree, path_of
 
 @dataclass
 class Port:
-    """An input, an output, or a whole floating parameter. `sources` are ids of ports; `data` is persistent data."""
+    """An input, an output, or a whole floating parameter. `sources` are ids of ports; `data` is persistent data.
+
+    `unit`: curves and surfaces in it are given parameters from 0 to 1; `degrees`: its angles are in degrees.
+    """
 
     id: UUID
     name: str
@@ -36,6 +39,8 @@ class Port:
     data: Tree | None = None
     faint: bool = False
     expression: str = ""
+    unit: bool = False
+    degrees: bool = False
 
 
 @dataclass
@@ -232,6 +237,8 @@ def port(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Port:
         data=_persistent(data, refused) if data is not None else None,
         faint=given(chunk, "WireDisplay", 0) != 0,
         expression=given(chunk, "InternalExpression", ""),
+        unit=given(chunk, "Reparameterize", False),
+        degrees=given(chunk, "UseDegrees", False),
     )
 
 

@@ -25,6 +25,8 @@ VALUES = (
 
 
 ENGINE = "Hookean Engine"
+CARRIED = "geometry_"
+"""The input of an Engine for what moves with the particles."""
 
 _STORED = "how files store its values is not published; put them on a panel instead"
 _KERNEL = "it needs Rhino's kernel; internalise what it gives in Grasshopper"
@@ -73,11 +75,16 @@ def unsupported(graph: Graph) -> Counter[tuple[str, str]]:
 
 
 def _needed(graph: Graph) -> set[UUID]:
-    """The objects that an Engine's result depends on, by their ids; all where there is no Engine."""
-    waiting = [node.id for node in graph.nodes if node.name == ENGINE] or [node.id for node in graph.nodes]
+    """The objects that an Engine's shape depends on, by their ids; all where there is no Engine.
+
+    What an Engine carries along is only shown, and what a disabled object would take is not used.
+    """
+    running = [node.id for node in graph.nodes if not node.locked]
+    waiting = [node.id for node in graph.nodes if node.name == ENGINE and not node.locked] or running
     before: dict[UUID, list[UUID]] = {}
-    for start, _, end, _ in graph.wires():
-        before.setdefault(end.id, []).append(start.id)
+    for start, _, end, port in graph.wires():
+        if not (start.locked or end.locked or (end.name == ENGINE and port.name == CARRIED)):
+            before.setdefault(end.id, []).append(start.id)
     needed = set(waiting)
     while waiting:
         found = set(before.get(waiting.pop(), ())) - needed
@@ -89,6 +96,8 @@ def _needed(graph: Graph) -> set[UUID]:
 def _unknown(graph: Graph) -> Iterator[tuple[Node, str, str]]:
     """Each object or stored value that cannot be run: the object, what it is, and why."""
     for node in graph.nodes:
+        if node.locked:
+            continue
         why = _strange(node)
         if why:
             yield node, node.name, why

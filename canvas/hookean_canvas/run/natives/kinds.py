@@ -42,6 +42,29 @@ def as_kind(kind: str, value: Any) -> Any:
     return found
 
 
+def radians(angle: Any) -> Any:
+    """An angle in degrees as radians; anything but a number stays."""
+    number = _number(angle) if isinstance(angle, (str, int, float)) else None
+    return angle if number is None else math.radians(number)
+
+
+def over_unit_domain(value: Any) -> Any:
+    """A curve or surface with parameters from 0 to 1, as a parameter that is reparameterized gives it."""
+    one = rhino3dm.Interval(0.0, 1.0)
+    if isinstance(value, rhino3dm.Line):
+        value = _curve(value)
+    if isinstance(value, rhino3dm.Curve):
+        value = value.Duplicate()
+        value.Domain = one
+    elif isinstance(value, rhino3dm.Brep) and len(value.Faces) == 1 and value.IsSurface:
+        value = value.Faces[0].UnderlyingSurface()
+    if isinstance(value, rhino3dm.Surface) and hasattr(value, "SetDomain"):
+        value = value.ToNurbsSurface() if isinstance(value, rhino3dm.BrepFace) else value.Duplicate()
+        for axis in (0, 1):
+            value.SetDomain(axis, one)
+    return value
+
+
 def _described(value: Any) -> str:
     if isinstance(value, str):
         return "Text"
