@@ -1,4 +1,4 @@
-"""What a person sets on inputs and objects: parameters from 0 to 1, degrees, disabled objects; points of Rhino files."""
+"""What a person sets on inputs and objects: parameters from 0 to 1, degrees, disabled objects; points of Rhino."""
 
 from __future__ import annotations
 

@@ -19,13 +19,14 @@ from uuid import UUID
 import rhino3dm
 
 from hookean.errors import InputError
-from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, NUMBER_SLIDER, PANEL, VALUE_LIST
+from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, GRAPH_MAPPER, NUMBER_SLIDER, PANEL, VALUE_LIST
 from hookean_canvas.run import stand_in as untyped
 from hookean_canvas.run.components import inputs_of, native_for, outputs_of, run_native
 from hookean_canvas.run.graph import Graph, Node, Port
-from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind
+from hookean_canvas.run.mapping import mapper_of
+from hookean_canvas.run.natives import Input, Native, Unfit, as_kind, is_inert
 from hookean_canvas.run.natives.expressions import evaluated
-from hookean_canvas.run.natives.kinds import over_unit_domain, radians
+from hookean_canvas.run.natives.kinds import kind_of, over_unit_domain, radians
 from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.run.trees import ITEM, TREE, Run, Tree, modified, runs
 from hookean_canvas.run.unsupported import ENGINE, require_known
@@ -169,7 +170,7 @@ class Canvas:
     def _evaluate(self, node: Node) -> None:
         for port in node.outputs:
             self._results[port.id] = Tree()
-        if node.locked or node.guid in INERT:
+        if node.locked or is_inert(node.guid, node.name, node.plugin):
             return
         if node.id in self._aside:
             self._say(node, "warning", f"left out, as no Engine needs it: {self._aside[node.id]}")
@@ -207,7 +208,10 @@ class Canvas:
             own = Tree.of([value] if value is not None else OWN[node.guid](node))
             return self._expressed(node, port, own) if port.expression else own
         found = self._given(node, port)
-        return self._cast(node, port, PARAMETERS[node.guid][1], found) if node.guid in PARAMETERS else found
+        if node.guid == GRAPH_MAPPER and (mapped := mapper_of(node)) is not None:
+            return self._cast(node, port, "number", found).each(lambda x: None if x is None else mapped(x))
+        kind = kind_of(node.guid, "" if node.plugin else node.name)
+        return found if kind is None else self._cast(node, port, kind, found)
 
     def _native(self, node: Node, native: Native) -> None:
         def say(level: str, text: str) -> None:

@@ -11,17 +11,24 @@ from hookean_canvas.archive import guids
 from hookean_canvas.run.clusters import why_closed
 from hookean_canvas.run.components import inputs_of, native_for, outputs_of
 from hookean_canvas.run.graph import Graph, Node
-from hookean_canvas.run.natives import INERT, PARAMETERS
+from hookean_canvas.run.mapping import UNKNOWN, mapper_of
+from hookean_canvas.run.natives import PARAMETERS, is_inert
 from hookean_canvas.run.natives.display import SWATCH
+from hookean_canvas.run.natives.kinds import kind_of
 from hookean_canvas.run.scripts import SCRIPTS, code_of
 from hookean_canvas.run.stored import Unread
 from hookean_canvas.run.trees import Tree
+from hookean_canvas.run.values import OWN
 
 VALUES = (
     guids.NUMBER_SLIDER, guids.BOOLEAN_TOGGLE, guids.PANEL, guids.VALUE_LIST, guids.BUTTON, guids.RELAY,
-    guids.PARAM_VIEWER, guids.TIMER, SWATCH,
+    guids.PARAM_VIEWER, guids.TIMER, guids.GENE_POOL, guids.DIGIT_SCROLLER, guids.CONTROL_KNOB, SWATCH,
 )  # fmt: skip
 """Objects that hold or pass on values, besides parameters."""
+OWN_NUMBER = (guids.GENE_POOL, guids.DIGIT_SCROLLER, guids.CONTROL_KNOB)
+"""Objects that hold numbers in a way that versions of Grasshopper may write differently."""
+PASSING = ("Data Recorder",)
+"""Objects that are known by their names and hand on what they get."""
 
 
 ENGINE = "Hookean Engine"
@@ -33,7 +40,7 @@ _KERNEL = "it needs Rhino's kernel; internalise what it gives in Grasshopper"
 _DOCUMENT = "it reads the open document of Rhino; internalise what it gives in Grasshopper"
 _CODE = "its code is not Python"
 _WHY = {
-    _STORED: ("Graph Mapper", "MD Slider", "Gene Pool", "Control Knob", "Digit Scroller", "Colour Picker"),
+    _STORED: ("MD Slider", "Calendar", "Path Mapper"),
     _KERNEL: (
         "Patch", "Sweep2", "Solid Union", "Solid Difference", "Solid Intersection", "Region Union",
         "Region Difference", "Region Intersection", "Mesh Union", "Mesh Difference", "Mesh Intersection", "Split Brep",
@@ -101,7 +108,7 @@ def _unknown(graph: Graph) -> Iterator[tuple[Node, str, str]]:
         why = _strange(node)
         if why:
             yield node, node.name, why
-        for port in node.inputs if not why and node.guid not in INERT else ():
+        for port in node.inputs if not why and not is_inert(node.guid, node.name, node.plugin) else ():
             odd = [value for value in (port.data or Tree()).values_in_order() if isinstance(value, Unread)]
             if not port.sources:
                 what = node.name if node.floating else f"{node.name}, {port.name or port.nickname}"
@@ -111,8 +118,12 @@ def _unknown(graph: Graph) -> Iterator[tuple[Node, str, str]]:
 
 def _strange(node: Node) -> str:
     """Why an object has no stand-in; empty where it has one."""
-    if node.guid in INERT:
+    if is_inert(node.guid, node.name, node.plugin):
         return ""
+    if node.guid == guids.GRAPH_MAPPER:
+        return "" if mapper_of(node) is not None else UNKNOWN
+    if node.guid in OWN_NUMBER and not node.inputs[0].sources and not OWN[node.guid](node):
+        return _STORED
     if node.guid in SCRIPTS:
         return "" if code_of(node) is not None else "its code is not Python"
     native = native_for(node)
@@ -121,6 +132,9 @@ def _strange(node: Node) -> str:
             return ""
         held, usual = (f"{len(one.inputs)} inputs and {len(one.outputs)} outputs" for one in (node, native))
         return f"it has {held}, not {usual}"
+    own = "" if node.plugin else node.name
+    if node.floating and (own in PASSING or kind_of(node.guid, own)):
+        return ""
     if node.guid in PARAMETERS or node.guid in VALUES:
         return "" if node.floating else "it has inputs or outputs of its own"
     if node.guid == guids.CLUSTER:

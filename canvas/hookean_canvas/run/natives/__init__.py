@@ -34,12 +34,13 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     vectors,
 )
 from hookean_canvas.run.natives.declare import BY_NAME, NATIVES, PLUGINS, Input, Native, Output, Unfit, native_of
-from hookean_canvas.run.natives.display import INERT
+from hookean_canvas.run.natives.display import INERT, INERT_NAMES, is_inert
 from hookean_canvas.run.natives.kinds import PARAMETERS, as_kind
 
 __all__ = [
     "BY_NAME",
     "INERT",
+    "INERT_NAMES",
     "NATIVES",
     "PARAMETERS",
     "PLUGINS",
@@ -48,5 +49,6 @@ __all__ = [
     "Output",
     "Unfit",
     "as_kind",
+    "is_inert",
     "native_of",
 ]

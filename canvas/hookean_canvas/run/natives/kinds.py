@@ -23,10 +23,17 @@ _KINDS = {
     "Domain": "domain", "Colour": "colour", "Circle": "curve", "Circular Arc": "curve", "Rectangle": "curve",
     "Geometry": "geometry", "Brep": "brep", "Surface": "surface", "Box": "box", "Transform": "transform",
     "Mesh Face": "face", "Data Path": "path", "Shader": "any", "Domain²": "any", "File Path": "any", "Guid": "any",
-    "Time": "any", "Complex": "any", "Matrix": "any", "Twisted Box": "any", "Mesher Settings": "any",
+    "Time": "any", "Complex": "any", "Matrix": "any", "Twisted Box": "any", "Mesher Settings": "any", "Group": "any",
+    "Mesh Point": "any", "Culture": "any", "Field": "any", "Location": "any",
 }  # fmt: skip
 PARAMETERS: dict[UUID, tuple[str, str]] = {guids.PARAMETERS[name]: (name, kind) for name, kind in _KINDS.items()}
 """Floating parameters: their names and the kind of values they hold."""
+
+
+def kind_of(guid: UUID, name: str) -> str | None:
+    """The kind of values of a floating parameter, by its id, or by its name where it is an older version of one."""
+    return PARAMETERS[guid][1] if guid in PARAMETERS else _KINDS.get(name)
+
 
 _NUMBERS = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _DOMAIN = re.compile(rf"\s*({_NUMBERS.pattern})\s+[tT][oO]\s+({_NUMBERS.pattern})\s*")

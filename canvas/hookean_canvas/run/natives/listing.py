@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
-from hookean_canvas.run.natives import INERT, NATIVES, PARAMETERS, PLUGINS
+from hookean_canvas.run.natives import INERT, INERT_NAMES, NATIVES, PARAMETERS, PLUGINS
 
 START = "<!-- natives, made by hookean_canvas.run.natives.listing -->"
 END = "<!-- end of natives -->"
@@ -30,7 +30,7 @@ def listing() -> str:
         for subject, heading in SUBJECTS.items()
     }
     rows["Parameters"] = [name for name, _ in PARAMETERS.values()]
-    rows["Without effect"] = list(dict.fromkeys(INERT.values()))
+    rows["Without effect"] = list(dict.fromkeys([*INERT.values(), *sorted(INERT_NAMES)]))
     differ = sorted({f"{native.name}: {native.remark}" for native in natives if native.remark})
     lines = [_wrapped(f"- **{heading}**: {', '.join(names)}.") for heading, names in rows.items()]
     return "\n".join([*lines, "", "What differs from Grasshopper:", "", *(_wrapped(f"- {line}.") for line in differ)])
