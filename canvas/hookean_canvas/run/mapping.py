@@ -1,8 +1,8 @@
 """The Graph Mapper: the curve that a person has drawn in it, as a function of numbers.
 
-Grasshopper stores it in the chunk `LocalGraph`: the domains of both axes, and in `Graph` the id of the kind of curve and
-its grips. A Bézier curve has four, the first and the last at the ends. The names of the numbers are not published, so
-they are read by their letters x and y; where these do not give four grips from one side to the other, the object is
+Grasshopper stores it in the chunk `LocalGraph`: the domains of both axes, and in `Graph` the id of the kind of curve,
+and its grips. A Bézier curve has four, the first and the last at the ends. The names of the numbers are not published,
+so they are read by their letters x and y; where these do not give four grips from one side to the other, the object is
 named as one that cannot run. Ids: public code that draws such a curve elsewhere.
 """
 

@@ -17,6 +17,8 @@ SUBJECTS = {
     "curves_at": "Along curves", "surfaces_at": "On surfaces", "sets": "Sets", "tools": "Tools of Kangaroo",
     "chance": "By chance", "edges": "Edges and control points",
     "places": "Places and meetings", "morphs": "Morphs", "meshes_more": "More on meshes and solids",
+    "points_more": "Neighbours and coordinates", "planes": "Planes that are turned", "meetings": "Intersections",
+    "curves_more": "Measures of curves", "curves_changed": "Changing curves",
     "grids": "Grids of cells", "freeform": "Beside and along curves",
 }  # fmt: skip
 """Headings by the modules that declare natives."""
