@@ -89,8 +89,8 @@ def line(*ends: tuple[float, ...]) -> tuple[Any, ...]:
          [[(0, 0, 0), (1, 0, 0)]]),
         ("Delaunay Mesh", ([("point", 0, 0, 0), ("point", 1, 0, 5), ("point", 0, 1, 0)], XY),
          [([(0, 0, 0), (1, 0, 5), (0, 1, 0)], None)]),
-        ("Mesh Closest Point", (("point", 1, 0.5, 3), QUAD), [(1, 0.5, 0), 0, None]),
-        ("Mesh Closest Point", (("point", 5, 0.5, 0), QUAD), [(2, 0.5, 0), 0, None]),
+        ("Mesh Closest Point", (("point", 1, 0.5, 3), QUAD), [(1, 0.5, 0), 0]),
+        ("Mesh Closest Point", (("point", 5, 0.5, 0), QUAD), [(2, 0.5, 0), 0]),
     ],
     ids=lambda part: str(part)[:40],
 )  # fmt: skip

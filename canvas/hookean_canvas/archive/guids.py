@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from uuid import UUID
 
-from hookean_canvas.archive import native_guids
+from hookean_canvas.archive import native_guids, native_guids_more
 
 # ------------------------------------------------------------------------------------------------ script components
 # github.com/mcneel/rhinocodetests (Rhino 8 and 9 definitions), github.com/compas-dev/compas-actions.ghpython_components
@@ -183,7 +183,9 @@ RENAMED |= {UUID("a9a8ebd2-fff5-4c44-a8f5-739736d129ba"), UUID("079bd9bd-54a0-41
 
 def _table(*texts: str) -> dict[UUID, tuple[str, ...]]:
     lines = (line.split(" ", 1) for text in texts for line in text.split("\n") if line)
-    return {UUID(guid): tuple(re.split(r"(?<! )\|", names)) for guid, names in lines}  # "Curve | Curve" is one name
+    return {
+        UUID(guid): tuple(re.split(r"(?<! )\|(?!Many)", names)) for guid, names in lines
+    }  # "Curve | Curve", "One|Many"
 
 
 NAMES: dict[UUID, tuple[str, ...]] = {
@@ -210,7 +212,7 @@ NAMES: dict[UUID, tuple[str, ...]] = {
     DIGIT_SCROLLER: ("Digit Scroller",),
     CONTROL_KNOB: ("Control Knob",),
     GENE_POOL: ("Gene Pool",),
-} | _table(_SPECIAL, _PARAMETERS, native_guids.ALL)
+} | _table(_SPECIAL, _PARAMETERS, native_guids.ALL, native_guids_more.MORE)
 """Component and parameter ids with the names files have for them, the present one first."""
 PARAMETERS: dict[str, UUID] = {names[0]: guid for guid, names in reversed(_table(_PARAMETERS).items())}
 """The id of a floating parameter by its present name."""

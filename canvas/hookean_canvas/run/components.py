@@ -18,7 +18,7 @@ def native_for(node: Node) -> Native | None:
 
     Grasshopper's own objects are taken for older versions where name, and names of all inputs and outputs, agree.
     """
-    found = native_of(node.guid, node.name)
+    found = native_of(node.guid, node.name, node.plugin)
     if found is not None or node.plugin or node.floating:
         return found
     return next((one for one in NATIVES.values() if one.name == node.name and _alike(node, one)), None)

@@ -7,6 +7,7 @@ one function in the module of its subject, with its declaration (`declare`). Ids
 from __future__ import annotations
 
 from hookean_canvas.run.natives import (  # noqa: F401  each declares the natives of a subject
+    bending,
     chance,
     curves,
     curves_at,
@@ -20,9 +21,11 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     lists,
     logic,
     maths,
+    maths_more,
     measures,
     meetings,
     meshes,
+    meshes_edited,
     meshes_made,
     meshes_more,
     morphs,
@@ -31,11 +34,16 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     points_more,
     primitives,
     sets,
+    sets_more,
     subdivision,
     surfaces,
     surfaces_at,
+    surfaces_more,
+    texts,
     tools,
     transforms,
+    transforms_more,
+    trees_more,
     vectors,
 )
 from hookean_canvas.run.natives.declare import BY_NAME, NATIVES, PLUGINS, Input, Native, Output, Unfit, native_of

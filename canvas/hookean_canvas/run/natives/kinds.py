@@ -243,6 +243,8 @@ def _rectangle(value: Any) -> Any:
 
 
 def _geometry(value: Any) -> Any:
+    if isinstance(value, shapes.Group):
+        return value
     fits = type(value).__module__.startswith("rhino3dm") and not isinstance(
         value, (rhino3dm.Interval, rhino3dm.Transform)
     )
@@ -263,6 +265,7 @@ _CASTS: dict[str, Callable[[Any], Any]] = {
     "rectangle": _rectangle,
     "mesh": _mesh,
     "brep": _brep,
+    "faces": lambda value: value if isinstance(value, rhino3dm.Mesh) else _brep(value),
     "surface": _surface,
     "box": _box,
     "transform": _transform,

@@ -12,6 +12,7 @@ from hookean.discretize.pieces import bezier_pieces
 from hookean.errors import InputError
 from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.flat_faces import flat_mesh
 from hookean_canvas.run.natives.shapes import Array
 from hookean_canvas.run.rhino import rhino3dm
 
@@ -84,7 +85,9 @@ def _mesh(geometry: Any) -> tuple[Array, Any]:
     try:
         made = mesh_faces(geometry, FINE, FINE)
     except InputError as error:
-        raise Unfit(str(error)) from None
+        if not isinstance(geometry, rhino3dm.Brep) or "trimmed" not in str(error):
+            raise Unfit(str(error)) from None
+        return shapes.mesh_parts(flat_mesh(geometry, FINE))
     return made.vertices, made.faces
 
 

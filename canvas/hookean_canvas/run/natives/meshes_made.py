@@ -12,6 +12,7 @@ from hookean.discretize.meshing import mesh_surface as core_mesh_surface
 from hookean.errors import InputError
 from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.natives.declare import Unfit, bounded, native
+from hookean_canvas.run.natives.flat_faces import flat_mesh
 from hookean_canvas.run.natives.meshes import sides
 from hookean_canvas.run.natives.shapes import Array, Faces
 from hookean_canvas.run.rhino import rhino3dm
@@ -88,11 +89,23 @@ def mesh_sphere(frame: Any, radius: float, nu: int, nv: int) -> Any:
 
 
 @native("60e7defa-8b21-4ee1-99aa-a9223d6134ff", "Mesh Brep", "Mesh",
-        "Brep (B): brep; Settings (S): any optional", "Mesh (M)",
-        remark=f"{QUADS} by {QUADS} quads on each face, whatever the settings; Rhino makes another mesh")  # fmt: skip
+        "Brep (B): faces; Settings (S): any optional", "Mesh (M)",
+        remark=f"{QUADS} by {QUADS} quads on each face, or as many triangles where it is cut, whatever the settings; "
+               "Rhino makes another mesh")  # fmt: skip
 def mesh_brep(brep: Any, settings: Any) -> Any:
-    """The faces of a Brep as quads; trimmed faces by the mesh that the file has for them."""
-    return _of_core(lambda: mesh_faces(brep, QUADS, QUADS))
+    """The faces of a Brep as quads; trimmed ones by the mesh that the file has for them, or, if flat, as triangles.
+
+    A mesh stays as it is.
+    """
+    if isinstance(brep, rhino3dm.Mesh):
+        return brep
+    try:
+        made = mesh_faces(brep, QUADS, QUADS)
+    except InputError as error:
+        if not isinstance(brep, rhino3dm.Brep) or "trimmed" not in str(error):
+            raise Unfit(str(error)) from None
+        return flat_mesh(brep, QUADS)
+    return shapes.mesh(made.vertices, made.faces)
 
 
 @native("58cf422f-19f7-42f7-9619-fc198c51c657", "Mesh Surface", "Mesh UV",

@@ -111,14 +111,14 @@ def curve_frames(curve: Any, count: int) -> tuple[list[Any], list[float]]:
     return frames, at
 
 
-@native("", "Mesh UnifyNormals", "UnifyNormals", "Mesh (M): mesh", "Mesh (M)")
+@native("", "Mesh UnifyNormals", "UnifyNormals", "Mesh (M): mesh", "Mesh (M)", plugin=True)
 def unify_normals(mesh: Any) -> Any:
     """Faces turned to the direction of the first one of their part."""
     return unify_mesh(mesh)[0]
 
 
 @native("", "Mesh FromPoints", "FromPoints", "Points (P): point list; U Count (U): integer; V Count (V): integer",
-        "Mesh (M)")  # fmt: skip
+        "Mesh (M)", plugin=True)  # fmt: skip
 def mesh_from_points(places: list[Any], nu: int, nv: int) -> Any:
     """Quads between points in rows: V points in each of U rows."""
     if min(nu, nv) < 2 or nu * nv != len(places):

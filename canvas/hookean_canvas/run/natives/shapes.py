@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,13 @@ from hookean_canvas.run.rhino import rhino3dm
 
 Array = NDArray[np.float64]
 Faces = list[tuple[int, ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Geometry that is moved as one."""
+
+    members: tuple[Any, ...]
 
 
 def xyz(place: Any) -> Array:
@@ -134,7 +142,9 @@ def mesh_parts(made: Any) -> tuple[Array, Faces]:
 
 
 def transformed(geometry: Any, change: Any) -> Any:
-    """A copy of geometry after a transformation: also of points, lines, vectors and planes, which have no method."""
+    """A copy of geometry after a transformation; points, lines, vectors, planes and groups have no method for it."""
+    if isinstance(geometry, Group):
+        return Group(tuple(transformed(one, change) for one in geometry.members))
     if isinstance(geometry, (rhino3dm.Point3d, rhino3dm.Point)):
         place = geometry.Location if isinstance(geometry, rhino3dm.Point) else geometry
         return rhino3dm.Point3d(place.X, place.Y, place.Z).Transform(change)
