@@ -221,7 +221,8 @@ class Canvas:
             say("remark", native.remark)
         given: list[tuple[Input, Tree]] = []
         for port, of in inputs_of(node, native) or []:
-            tree = Tree() if port is None else self._cast(node, port, of.kind, self._given(node, port))
+            held = Tree.of(of.default) if port is None else self._given(node, port)
+            tree = self._cast(node, port or node.inputs[0], of.kind, held) if held else held
             if port is not None and not tree and not of.optional:
                 say("warning", f"Input parameter {port.nickname} failed to collect data")
                 return
