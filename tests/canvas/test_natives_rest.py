@@ -13,7 +13,7 @@ from canvas.native_values import made, near, plain
 from canvas.natives_table import XY
 from canvas.test_natives_more import BOX, SQUARE, circle, size
 from hookean.discretize import measures
-from hookean_canvas.run.natives import BY_NAME, PLUGINS, Unfit, shapes
+from hookean_canvas.run.natives import BY_NAME, PLUGINS, Unfit, as_kind, shapes
 from hookean_canvas.run.natives.flat_faces import filled
 from hookean_canvas.run.natives.texts import formatted
 from hookean_canvas.run.natives.trees_more import matches
@@ -278,8 +278,45 @@ def test_boxes_are_taken_apart_and_made() -> None:
     assert near(plain(at), (1, 1, 12)) and inside is False
     domains = [made(("domain", 0, 2)), made(("domain", 1, 4)), made(("domain", -1, 1))]
     assert near(plain(native("Domain Box")(made(XY), *domains)[0]), ((0, 1, -1), (2, 4, 1)))
-    with pytest.raises(Unfit, match="world's axes"):
-        native("Domain Box")(made(("plane", (0, 0, 0), (1, 1, 0), (-1, 1, 0))), *domains)
+
+
+def test_boxes_may_be_tilted() -> None:
+    """A box of 2 x 4 x 6 in a plane turned by 45 degrees has its corners, its volume and its mesh there."""
+    turned = made(("plane", (0, 0, 0), (1, 1, 0), (-1, 1, 0)))
+    (box,) = native("Center Box")(turned, 1.0, 2.0, 3.0)
+    corner = plain(native("Box Corners")(box)[2])
+    assert near(corner, ((1 - 2) * math.sqrt(0.5), (1 + 2) * math.sqrt(0.5), -3))
+    assert native("Volume")(box)[0] == pytest.approx(48.0)
+    mesh = native("Mesh Box")(box, 2, 2, 2)[0]
+    assert measures.area(shapes.mesh_parts(mesh)) == pytest.approx(2 * (8 + 24 + 12))
+    assert near(plain(native("Evaluate Box")(box, 0.5, 0.5, 0.5)[1]), (0, 0, 0))
+    again, _ = native("Bounding Box")(box.ToBrep(), turned)
+    assert near(shapes.box_axes(again)[2].tolist(), [2, 4, 6])
+    between = native("Box 2Pt")(made(("point", 0, 0, 0)), made(("point", 0, 2, 1)), turned)[0]
+    assert near(shapes.box_axes(between)[2].tolist(), [math.sqrt(2), math.sqrt(2), 1])
+    upright = native("Center Box")(made(("plane", (0, 0, 0), (0, 1, 0), (-1, 0, 0))), 1.0, 2.0, 3.0)[0]
+    assert near(plain(upright), ((-2, -1, -3), (2, 1, 3)))  # turned by a right angle it is along the world's axes
+
+
+def test_surfaces_are_extruded_to_solids_and_holes_are_filled() -> None:
+    flat = BY_NAME["Plane Surface"].run(made(XY), made(("domain", 0, 2)), made(("domain", 0, 3)))[0]
+    (solid,) = native("Extrude")(flat, made(("vector", 0, 0, 4)))
+    assert measures.volume(shapes.mesh_parts(solid)) == pytest.approx(24.0)
+    (tube,) = native("Extrude")(
+        made([(0, 0, 0), (2, 0, 0), (2, 3, 0), (0, 3, 0), (0, 0, 0)]), made(("vector", 0, 0, 4))
+    )
+    (closed,) = native("Cap Holes")(tube)
+    assert abs(measures.volume(shapes.mesh_parts(closed))) == pytest.approx(24.0)
+    box = rhino3dm.BoundingBox(0, 0, 0, 1, 1, 1).ToBrep()
+    assert native("Cap Holes")(box)[0] is box
+
+
+def test_closed_flat_curves_are_taken_for_faces() -> None:
+    assert native("Area")(as_kind("brep", made(SQUARE)))[0] == pytest.approx(16.0)
+    assert shapes.mesh_parts(as_kind("mesh", made(SQUARE)))[1] == [(0, 1, 2, 3)]
+    assert as_kind("surface", circle()).IsPlanar()
+    with pytest.raises(Unfit):
+        as_kind("mesh", made([(0, 0, 0), (1, 0, 0)]))
 
 
 def test_spheres_go_through_points() -> None:

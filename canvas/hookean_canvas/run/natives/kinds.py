@@ -21,7 +21,7 @@ _KINDS = {
     "Number": "number", "Integer": "integer", "Boolean": "boolean", "Text": "text", "Point": "point",
     "Vector": "vector", "Line": "line", "Curve": "curve", "Mesh": "mesh", "Data": "any", "Plane": "plane",
     "Domain": "domain", "Colour": "colour", "Circle": "curve", "Circular Arc": "curve", "Rectangle": "curve",
-    "Geometry": "geometry", "Brep": "brep", "Surface": "surface", "Box": "box", "Transform": "transform",
+    "Geometry": "geometry", "Brep": "brep", "Surface": "surface", "Box": "anybox", "Transform": "transform",
     "Mesh Face": "face", "Data Path": "path", "Shader": "any", "Domain²": "any", "File Path": "any", "Guid": "any",
     "Time": "any", "Complex": "any", "Matrix": "any", "Twisted Box": "any", "Mesher Settings": "any", "Group": "any",
     "Mesh Point": "any", "Culture": "any", "Field": "any", "Location": "any",
@@ -173,9 +173,15 @@ def _domain(value: Any) -> Any:
 
 
 def _mesh(value: Any) -> Any:
-    """A mesh, or that of the faces of a Brep or surface, as the component Mesh Brep makes it."""
+    """A mesh, or that of the faces of a Brep or surface, as Mesh Brep makes it, or of a closed polyline."""
     if isinstance(value, rhino3dm.Mesh):
         return value
+    if isinstance(value, rhino3dm.Curve):
+        corners = shapes.corners(value)
+        if corners is None or not value.IsClosed:
+            return None
+        if len(corners) in (4, 5):  # a triangle or a quad
+            return shapes.mesh(corners[:-1], [tuple(range(len(corners) - 1))])
     faces = _brep(value)
     if faces is None:
         return None
@@ -185,13 +191,19 @@ def _mesh(value: Any) -> Any:
 
 
 def _brep(value: Any) -> Any:
-    """A Brep, an extrusion or a surface: all have faces for the natives that take Breps."""
-    if isinstance(value, rhino3dm.BoundingBox):
+    """What has faces for the natives that take Breps: a Brep, an extrusion, a surface, a box, a closed flat curve."""
+    if isinstance(value, (rhino3dm.BoundingBox, shapes.TiltedBox)):
         return value.ToBrep()
+    if isinstance(value, rhino3dm.Curve) and value.IsClosed and value.IsPlanar():
+        from hookean_canvas.run.natives.surfaces import boundary_surfaces
+
+        return boundary_surfaces([value])[0]
     return value if isinstance(value, (rhino3dm.Brep, rhino3dm.Surface)) else None
 
 
 def _surface(value: Any) -> Any:
+    if isinstance(value, rhino3dm.Curve):
+        value = _brep(value)
     if isinstance(value, rhino3dm.Brep):
         return value.Faces[0] if len(value.Faces) == 1 else None
     return value if isinstance(value, rhino3dm.Surface) else None
@@ -243,7 +255,7 @@ def _rectangle(value: Any) -> Any:
 
 
 def _geometry(value: Any) -> Any:
-    if isinstance(value, shapes.Group):
+    if isinstance(value, (shapes.Group, shapes.TiltedBox)):
         return value
     fits = type(value).__module__.startswith("rhino3dm") and not isinstance(
         value, (rhino3dm.Interval, rhino3dm.Transform)
@@ -268,6 +280,7 @@ _CASTS: dict[str, Callable[[Any], Any]] = {
     "faces": lambda value: value if isinstance(value, rhino3dm.Mesh) else _brep(value),
     "surface": _surface,
     "box": _box,
+    "anybox": lambda value: value if isinstance(value, shapes.TiltedBox) else _box(value),
     "transform": _transform,
     "face": _face,
     "colour": _colour,

@@ -252,40 +252,35 @@ def brep_wireframe(brep: Any, density: int) -> list[Any]:
     return deconstruct_brep(brep)[1]
 
 
-@native("", "Deconstruct Box", "DeBox", "Box (B): box", "Plane (P); X (X); Y (Y); Z (Z)")
+@native("", "Deconstruct Box", "DeBox", "Box (B): anybox", "Plane (P); X (X); Y (Y); Z (Z)")
 def deconstruct_box(box: Any) -> tuple[Any, Any, Any, Any]:
     """The plane at the middle of a box, and its reach along the three axes."""
-    low, high = shapes.xyz(box.Min), shapes.xyz(box.Max)
-    half = 0.5 * (high - low)
-    sides = (rhino3dm.Interval(-float(one), float(one)) for one in half)
-    return (shapes.plane(low + half, (1, 0, 0), (0, 1, 0)), *sides)
+    low, along, size = shapes.box_axes(box)
+    sides = (rhino3dm.Interval(-0.5 * one, 0.5 * one) for one in size.tolist())
+    return (shapes.plane(low + (0.5 * size) @ along, along[0], along[1]), *sides)
 
 
 @native("", "Evaluate Box", "BoxEval",
-        "Box (B): box; U parameter (U): number = 0.5; V parameter (V): number = 0.5; W parameter (W): number = 0.5",
+        "Box (B): anybox; U parameter (U): number = 0.5; V parameter (V): number = 0.5; W parameter (W): number = 0.5",
         "Plane (Pl); Point (Pt); Include (I)")  # fmt: skip
 def evaluate_box(box: Any, u: float, v: float, w: float) -> tuple[Any, Any, bool]:
     """The point at parts of the sides of a box, the plane there, and whether it is in the box."""
-    low, high = shapes.xyz(box.Min), shapes.xyz(box.Max)
-    at = low + np.array([u, v, w]) * (high - low)
-    return shapes.plane(at, (1, 0, 0), (0, 1, 0)), shapes.point(at), all(0.0 <= one <= 1.0 for one in (u, v, w))
+    low, along, size = shapes.box_axes(box)
+    at = low + (np.array([u, v, w]) * size) @ along
+    return shapes.plane(at, along[0], along[1]), shapes.point(at), all(0.0 <= one <= 1.0 for one in (u, v, w))
 
 
 @native("", "Box Rectangle", "BoxRec", "Rectangle (R): rectangle; Height (H): domain", "Box (B)")
 def box_rectangle(outline: tuple[Any, float, float], height: Any) -> Any:
-    """The box over a rectangle between two heights, along the world's axes."""
+    """The box over a rectangle between two heights."""
     frame, x, y = outline
-    corners = shapes.in_plane(frame, [(0.0, 0.0, height.T0), (x, y, height.T1)])
-    if not np.allclose(np.sort(np.abs(np.array(shapes.axes(frame)[1:])), axis=1), [[0, 0, 1]] * 3):
-        raise Unfit("boxes are along the world's axes here")
-    return rhino3dm.BoundingBox(shapes.point(corners.min(axis=0)), shapes.point(corners.max(axis=0)))
+    return shapes.box_in(frame, (0.0, 0.0, height.T0), (x, y, height.T1))
 
 
 @native("", "Domain Box", "Box", "Base (B): plane; X (X): domain; Y (Y): domain; Z (Z): domain", "Box (B)")
 def domain_box(frame: Any, x: Any, y: Any, z: Any) -> Any:
-    """The box of three domains along the axes of a plane, which are the world's."""
-    return box_rectangle((shapes.plane(shapes.in_plane(frame, [(x.T0, y.T0)])[0], *map(shapes.xyz,
-                         (frame.XAxis, frame.YAxis))), x.T1 - x.T0, y.T1 - y.T0), z)  # fmt: skip
+    """The box of three domains along the axes of a plane."""
+    return shapes.box_in(frame, (x.T0, y.T0, z.T0), (x.T1, y.T1, z.T1))
 
 
 @native("", "Cone", "Cone", "Base (B): plane; Radius (R): number = 1.0; Length (L): number = 1.0",
