@@ -13,7 +13,7 @@ from canvas.native_values import near, plain
 from canvas.test_references import rails, shown
 from hookean.errors import InputError
 from hookean_canvas.archive import Chunk, Type
-from hookean_canvas.archive.parts import inputs, outputs
+from hookean_canvas.archive.parts import inputs, outputs, parts
 from hookean_canvas.definitions.write import Definition
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas
@@ -105,3 +105,25 @@ def test_disabled_objects_are_not_needed_nor_is_what_feeds_them() -> None:
     d.foreign("Strange Mesh").container.put("Locked", Type.BOOL, True)
     d.native("Length", curve=d.native("Line", start_point=d.point(0, 0, 0), end_point=d.point(1, 0, 0)))
     assert require_known(graph.of(d.archive())) == {}
+
+
+def test_what_rhino_8_lists_under_no_library_is_grasshoppers_own() -> None:
+    d = Kangaroo("own", "Own", "A native with the library that Rhino 8 writes for its own objects.")
+    d.panel("found", d.native("Negative", value=d.slider("x", 3, 0, 9)))
+    root = d.archive()
+    chunk = next(part.chunk for part in parts(root) if part.name == "Negative")
+    chunk.put("Lib", Type.GUID, UUID(int=0)).put("GUID", Type.GUID, UUID(int=7))
+    (node,) = (node for node in graph.of(root).nodes if node.name == "Negative")
+    assert not node.plugin and node.library == ""
+    assert Canvas(graph.of(root)).run(20.0).panels["found"].values_in_order() == [-3.0]
+
+
+@pytest.mark.parametrize(("engine", "level"), [(True, "warning"), (False, "error")])
+def test_a_stand_in_that_fails_is_an_error_only_where_an_engine_or_no_engine_needs_it(engine: bool, level: str) -> None:
+    """What only draws beside a form keeps no form from being found."""
+    d = Kangaroo("beside", "Beside", "A number divided by zero.")
+    d.native("Division", a=d.slider("A", 1, 0, 9), b=d.slider("B", 0, 0, 9))
+    if engine:
+        d.component("Engine")
+    messages = Canvas(graph.of(d.archive())).run(20.0).messages
+    assert [m.level for m in messages if m.text == "Division by zero"] == [level]

@@ -59,7 +59,7 @@ def test_settings_of_an_engine_say_fast_unless_they_speak_of_it_themselves() -> 
     ("name", "library", "sentence"),
     [
         ("MD Slider", None, "how files store its values is not published; put them on a panel instead"),
-        ("Patch", None, "it needs Rhino's kernel"),
+        ("Solid Union", None, "it needs Rhino's kernel"),
         ("C# Script", None, "its code is not Python"),
         ("PlanktonMesh", "PlanktonGh 0.4.1", "the plug-in PlanktonGh 0.4.1 has no stand-in"),
         ("Unheard Of", None, "has no stand-in"),

@@ -29,7 +29,7 @@ from hookean_canvas.run.natives.expressions import evaluated
 from hookean_canvas.run.natives.kinds import kind_of, over_unit_domain, radians
 from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.run.trees import ITEM, TREE, Run, Tree, modified, runs
-from hookean_canvas.run.unsupported import ENGINE, require_known
+from hookean_canvas.run.unsupported import ENGINE, needed, require_known
 from hookean_canvas.run.values import OWN, chosen, hurried
 
 stand_in: Any = untyped
@@ -65,6 +65,7 @@ class Canvas:
         self.graph = graph
         self._order = graph.ordered()
         self._aside = require_known(graph)
+        self._needed = needed(graph)
         self._document = stand_in.Document(path=str(graph.file) if graph.file else None, identity=str(graph.id))
         self._set = _settings(graph, settings or {})
         self._pressed = [node for node in _toggles(graph, "reset") if node.id not in self._set]
@@ -215,7 +216,8 @@ class Canvas:
 
     def _native(self, node: Node, native: Native) -> None:
         def say(level: str, text: str) -> None:
-            self._say(node, level, text)
+            """A stand-in may fail where Grasshopper's own would not; what no Engine needs is no error."""
+            self._say(node, level if level != "error" or node.id in self._needed else "warning", text)
 
         if native.remark:
             say("remark", native.remark)

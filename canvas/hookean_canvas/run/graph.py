@@ -18,6 +18,9 @@ from hookean_canvas.run.internalised import unreadable
 from hookean_canvas.run.stored import NOTHING, Unread, internalised_in, stored
 from hookean_canvas.run.trees import Tree, path_of
 
+NONE = UUID(int=0)
+"""The library of what Grasshopper itself brings, in files of Rhino 8."""
+
 
 @dataclass
 class Port:
@@ -182,7 +185,7 @@ def of(root: Chunk, where: str = "definition", refused: Mapping[bytes, str] = NO
             graph.groups.append(_group(part.container))
         elif part.guid != SCRIBBLE:
             node = _node(part.guid, part, part.container, UUID(int=number), refused)
-            node.library = libraries.get(part.chunk.value("Lib"), "")
+            node.library = libraries.get(part.chunk.value("Lib"), "") if node.plugin else ""
             graph.nodes.append(node)
             if part.id is None:
                 graph.damage.append(f"{told} has no InstanceGuid")
@@ -215,7 +218,7 @@ def _node(guid: UUID, part: Part, container: Chunk, instead: UUID, refused: Mapp
         outputs=outputs,
         bounds=bounds_of(container),
         locked=given(container, "Locked", False),
-        plugin=part.chunk.item("Lib") is not None,
+        plugin=part.chunk.value("Lib", default=NONE) != NONE,
     )
 
 

@@ -42,9 +42,11 @@ _CODE = "its code is not Python"
 _WHY = {
     _STORED: ("MD Slider", "Calendar", "Path Mapper"),
     _KERNEL: (
-        "Patch", "Sweep2", "Solid Union", "Solid Difference", "Solid Intersection", "Region Union",
-        "Region Difference", "Region Intersection", "Mesh Union", "Mesh Difference", "Mesh Intersection", "Split Brep",
-        "Trim Solid", "Fillet", "Fillet Edge", "Offset Surface", "Pipe Variable", "SubD from Mesh", "Quad Remesh",
+        "Solid Union", "Solid Difference", "Solid Intersection", "Region Union", "Region Difference",
+        "Region Intersection", "Mesh Union", "Mesh Difference", "Mesh Intersection", "Mesh Split", "Split Brep",
+        "Split Brep Multiple", "Surface Split", "Split with Brep", "Split with Breps", "Trim with Brep",
+        "Trim with Breps", "Trim Solid", "Boundary Volume", "Brep | Brep", "Cap Holes Ex", "Fillet", "Fillet Edge",
+        "Pipe Variable", "SubD from Mesh", "Quad Remesh", "Copy Trim", "Retrim", "Geodesic", "Text On Surface",
     ),
     _DOCUMENT: ("Geometry Pipeline", "Geometry Cache", "Image Sampler", "Import Image", "Object Details"),
     _CODE: ("C# Script", "VB Script"),
@@ -62,10 +64,10 @@ def require_known(graph: Graph) -> dict[UUID, str]:
     where = str(graph.file or graph.name)
     if graph.damage:
         raise InputError(where, f"the file is damaged: {'; '.join(graph.damage)}")
-    needed, aside = _needed(graph), {}
+    wanted, aside = needed(graph), {}
     counted: Counter[tuple[str, str]] = Counter()
     for node, what, why in _unknown(graph):
-        if node.id in needed:
+        if node.id in wanted:
             counted[what, why] += 1
         else:
             aside[node.id] = why
@@ -81,7 +83,7 @@ def unsupported(graph: Graph) -> Counter[tuple[str, str]]:
     return Counter((what, why) for _, what, why in _unknown(graph))
 
 
-def _needed(graph: Graph) -> set[UUID]:
+def needed(graph: Graph) -> set[UUID]:
     """The objects that an Engine's shape depends on, by their ids; all where there is no Engine.
 
     What an Engine carries along is only shown, and what a disabled object would take is not used.
@@ -92,12 +94,12 @@ def _needed(graph: Graph) -> set[UUID]:
     for start, _, end, port in graph.wires():
         if not (start.locked or end.locked or (end.name == ENGINE and port.name == CARRIED)):
             before.setdefault(end.id, []).append(start.id)
-    needed = set(waiting)
+    wanted = set(waiting)
     while waiting:
-        found = set(before.get(waiting.pop(), ())) - needed
-        needed |= found
+        found = set(before.get(waiting.pop(), ())) - wanted
+        wanted |= found
         waiting += found
-    return needed
+    return wanted
 
 
 def _unknown(graph: Graph) -> Iterator[tuple[Node, str, str]]:
