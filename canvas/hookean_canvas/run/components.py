@@ -67,13 +67,21 @@ def _named(ports: Sequence[Port], declared: Sequence[Any]) -> list[tuple[Port | 
     """Declared inputs or outputs with those of an object by their names, or else nicknames; None where one is left."""
     rest = list(ports)
     found: dict[int, Port] = {}
-    for same in (lambda of, port: of.name.lower() == port.name.lower(), lambda of, port: of.nickname == port.nickname):
+    for name in (_full, _short):
         for k, of in enumerate(declared):
-            port = next((p for p in rest if k not in found and same(of, p)), None)
+            port = next((p for p in rest if k not in found and name(p) == name(of)), None)
             if port is not None:
                 rest.remove(port)
                 found[k] = port
     return [(found.get(k), of) for k, of in enumerate(declared)] if not rest else None
+
+
+def _full(port: Any) -> str:
+    return str(port.name).lower()
+
+
+def _short(port: Any) -> str:
+    return str(port.nickname)
 
 
 def run_native(node: Node, native: Native, given: Sequence[tuple[Input, Tree]], say: Say) -> list[Tree]:

@@ -35,6 +35,7 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     primitives,
     sets,
     sets_more,
+    solids,
     subdivision,
     surfaces,
     surfaces_at,

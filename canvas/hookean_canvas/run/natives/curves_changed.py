@@ -118,7 +118,8 @@ def rebuild_curve(curve: Any, degree: int | None, count: int, tangents: bool) ->
 
 
 def _along(curve: Any, pieces: int) -> list[float]:
-    return np.linspace(0.0, arc_lengths.length(curve), pieces + 1).tolist()
+    lengths: list[float] = np.linspace(0.0, arc_lengths.length(curve), pieces + 1).tolist()
+    return lengths
 
 
 def fitted(rows: Array, count: int, degree: int) -> Any:

@@ -19,7 +19,7 @@ SUBJECTS = {
     "places": "Places and meetings", "morphs": "Morphs", "meshes_more": "More on meshes and solids",
     "texts": "Texts", "trees_more": "Trees by patterns of paths", "sets_more": "Sets and sequences",
     "maths_more": "Triangles, lists of numbers", "transforms_more": "Mappings, arrays, groups", "bending": "Bending",
-    "surfaces_more": "Making surfaces and boxes",
+    "surfaces_more": "Making surfaces and boxes", "solids": "Solids",
     "meshes_edited": "Changing meshes",
     "points_more": "Neighbours and coordinates", "planes": "Planes that are turned", "meetings": "Intersections",
     "curves_more": "Measures of curves", "curves_changed": "Changing curves",

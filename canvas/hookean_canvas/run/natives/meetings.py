@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from hookean_canvas.run.natives import shapes
@@ -212,7 +213,7 @@ def contour(shape: Any, start: Any, normal: Any, distance: float) -> list[list[A
     return [section(vertices, faces, frame) for frame in planes]
 
 
-def _welded(a: Array, b: Array, c: Array) -> tuple[Array, Array]:
+def _welded(a: Array, b: Array, c: Array) -> tuple[Array, NDArray[np.intp]]:
     """Vertices (n, 3) and triangles (t, 3) of corners, equal places made one."""
     rows = np.stack([a, b, c], axis=1).reshape(-1, 3)
     size = float(np.ptp(rows, axis=0).max(initial=0.0)) or 1.0
@@ -220,7 +221,7 @@ def _welded(a: Array, b: Array, c: Array) -> tuple[Array, Array]:
     return rows[first], which.reshape(-1, 3)
 
 
-def section(vertices: Array, triangles: Array, frame: Any) -> list[Any]:
+def section(vertices: Array, triangles: NDArray[np.intp], frame: Any) -> list[Any]:
     """Polylines in which a plane cuts triangles; a vertex on the plane counts as above it."""
     heights = shapes.coordinates(frame, vertices)[:, 2]
     heights[np.abs(heights) <= 1e-12 * max(float(np.abs(heights).max(initial=0.0)), 1e-300)] = 0.0

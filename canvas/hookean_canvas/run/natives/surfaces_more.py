@@ -249,7 +249,8 @@ def offset_surface(surface: Any, distance: float, retrim: bool) -> Any:
         remark="the edges alone, whatever the density")  # fmt: skip
 def brep_wireframe(brep: Any, density: int) -> list[Any]:
     """The edges of a Brep."""
-    return deconstruct_brep(brep)[1]
+    edges: list[Any] = deconstruct_brep(brep)[1]
+    return edges
 
 
 @native("", "Deconstruct Box", "DeBox", "Box (B): anybox", "Plane (P); X (X); Y (Y); Z (Z)")

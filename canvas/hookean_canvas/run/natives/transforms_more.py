@@ -232,7 +232,7 @@ def inverse_transform(change: Any) -> Any:
     rows = shapes._matrix(change)
     if abs(np.linalg.det(rows)) < 1e-300:
         raise Unfit("the transformation cannot be undone")
-    return _of_matrix(np.linalg.inv(rows))
+    return _of_matrix(np.asarray(np.linalg.inv(rows), dtype=np.float64))
 
 
 @native("874eebe7-835b-4f4f-9811-97e031c41597", "Group", "Group", "Objects (O): any list", "Group (G)")

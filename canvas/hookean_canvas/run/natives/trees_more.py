@@ -100,7 +100,8 @@ def _offset(text: str) -> tuple[Path, int]:
         "Wrap Items (Wi): boolean tree optional", "Item A (A): tree; Item B (B): tree")  # fmt: skip
 def relative_item(tree: Tree, offset: Tree, paths: Tree, items: Tree) -> tuple[Tree, Tree]:
     """Each item of a tree with the one at an offset of its path and number."""
-    return relative_items(tree, tree, offset, paths, items)
+    found: tuple[Tree, Tree] = relative_items(tree, tree, offset, paths, items)
+    return found
 
 
 @native("2653b135-4df1-4a6b-820c-55e2ad3bc1e0", "Relative Items", "RelItem2",
