@@ -16,6 +16,7 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     datatrees,
     edges,
     expressions,
+    fitted,
     freeform,
     grids,
     lists,
