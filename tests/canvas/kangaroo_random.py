@@ -12,6 +12,7 @@ from typing import Any
 from uuid import UUID
 
 from canvas.kangaroo_samples import Inputs, Kangaroo
+from hookean_canvas import archive
 from hookean_canvas.archive import Type
 from hookean_canvas.definitions.write import Made, Output, Wired
 
@@ -239,6 +240,64 @@ class Drawn(Kangaroo):
         parts = (one.partition("=") for one in inputs.split(";"))
         given: Inputs = [(title, _typed(value)) for title, _, value in parts]
         return self.kangaroo(name, given, outputs.split(","), guid=UUID(guid), classic=classic, **wires)
+
+
+class Varied(Drawn):
+    """A definition drawn from a seed, with objects between its shapes and its goals that real ones have: clusters,
+    groups, recorders, older versions of components, disabled objects, and objects that only show."""
+
+    def _shapes(self) -> None:
+        super()._shapes()
+        for key in ("mesh", "edges", "vertices", "corners", "ball", "circle", "load"):
+            if self.random.random() < 0.5:
+                way = self.random.choice((self._clustered, self._recorded, self._grouped, self._moved, self._older))
+                self.shapes[key] = way(key, self.shapes[key])
+        if self.random.random() < 0.5:
+            self.foreign("Strange Preview", ["G"], g=self.shapes["mesh"]).container.put("Locked", Type.BOOL, True)
+        if self.random.random() < 0.5:
+            self.native_like("Quick Graph", str(UUID(int=31)), ["Data"], "R", data=self.shapes["lengths"])
+
+    def _clustered(self, key: str, source: Any) -> Any:
+        """Through a cluster, some of them with another one in it."""
+        document = _handing(key, b"")
+        return self.cluster(
+            f"Cluster {key}", _handing(key, document) if self.random.random() < 0.5 else document, source
+        )
+
+    def _recorded(self, key: str, source: Any) -> Any:
+        made = self.parameter("Data", f"Recorder {key}", source=source)
+        made.guid = UUID(int=32)
+        made.container.put("Name", Type.STRING, "Data Recorder")
+        return made
+
+    def _grouped(self, key: str, source: Any) -> Any:
+        return self.native("Ungroup", group=self.native("Group", objects=source))
+
+    def _moved(self, key: str, source: Any) -> Any:
+        """There and back again, by new natives."""
+        if key == "load":
+            return source
+        motion = self.native("Unit X", factor=3.0)
+        there = self.native("Move", geometry=source, motion=motion)
+        back = self.native("Inverse Transform", transform=there["Transform"])
+        return self.native("Transform", geometry=there["Geometry"], transform=back)
+
+    def _older(self, key: str, source: Any) -> Any:
+        made = self.native("Flatten Tree", tree=source)
+        made.guid = UUID(int=33)
+        return made
+
+
+def _handing(key: str, nested: bytes) -> bytes:
+    """A cluster that hands on what it gets, through another one if there is one."""
+    inner = Kangaroo(f"cluster {key}", "Cluster", "It hands on what it gets.")
+    given = inner.parameter("Data", "In")
+    passed = inner.cluster("Inner", nested, given) if nested else inner.parameter("Data", "Held", source=given)
+    last = inner.parameter("Data", "Out", source=passed)
+    for made, side in ((given, "Input"), (last, "Output")):
+        made.container.items = [item for item in made.container.items if item.name != "Name"]
+        made.container.put("Name", Type.STRING, f"Cluster {side}")
+    return archive.to_bytes(inner.archive())
 
 
 def _typed(text: str) -> Any:

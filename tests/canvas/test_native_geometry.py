@@ -89,8 +89,8 @@ def line(*ends: tuple[float, ...]) -> tuple[Any, ...]:
          [[(0, 0, 0), (1, 0, 0)]]),
         ("Delaunay Mesh", ([("point", 0, 0, 0), ("point", 1, 0, 5), ("point", 0, 1, 0)], XY),
          [([(0, 0, 0), (1, 0, 5), (0, 1, 0)], None)]),
-        ("Mesh Closest Point", (("point", 1, 0.5, 3), QUAD), [(1, 0.5, 0), 0, None]),
-        ("Mesh Closest Point", (("point", 5, 0.5, 0), QUAD), [(2, 0.5, 0), 0, None]),
+        ("Mesh Closest Point", (("point", 1, 0.5, 3), QUAD), [(1, 0.5, 0), 0]),
+        ("Mesh Closest Point", (("point", 5, 0.5, 0), QUAD), [(2, 0.5, 0), 0]),
     ],
     ids=lambda part: str(part)[:40],
 )  # fmt: skip
@@ -138,14 +138,13 @@ def test_surfaces_of_straight_lines() -> None:
 
 
 def test_rotate_turns_counter_clockwise_about_a_plane_an_axis_and_a_point() -> None:
-    node = type("Node", (), {"container": type("Container", (), {"chunks": []})})()
     east, north = made(("point", 1, 0, 0)), (0, 1, 0)
     for name, rest in (
         ("Rotate", [made(XY)]),
         ("Rotate Axis", [made(line((0, 0, 0), (0, 0, 1)))]),
         ("Rotate 3D", [made(("point", 0, 0, 0)), made(("vector", 0, 0, 1))]),
     ):
-        assert near(plain(BY_NAME[name].run(east, math.pi / 2, *rest, node=node)[0]), north), name
+        assert near(plain(BY_NAME[name].run(east, math.pi / 2, *rest)[0]), north), name
 
 
 def test_circles_and_arcs_begin_at_their_start_angle() -> None:

@@ -181,3 +181,16 @@ def test_an_older_version_of_a_native_is_taken_as_the_present_one(plugin: bool) 
             Canvas(graph.of(root))
     else:
         assert Canvas(graph.of(root)).run().panels["result"].values_in_order() == [-3.0]
+
+
+def test_an_older_version_may_lack_an_input_and_have_others_in_another_order() -> None:
+    """Series by its count and its start alone: the step is 1."""
+    d = Kangaroo("fewer", "Fewer", "An older Series.")
+    count, start = d.slider("Count", 3, 0, 9), d.slider("Start", 5, 0, 9)
+    older = d.native_like("Series", str(UUID(int=7)), ["Count", "S"], "Series", count=count, s=start)
+    d.panel("result", older)
+    assert Canvas(graph.of(d.archive())).run().panels["result"].values_in_order() == [5.0, 6.0, 7.0]
+    strange = Kangaroo("strange", "Strange", "An input that the present one lacks.")
+    strange.panel("result", strange.native_like("Series", str(UUID(int=7)), ["Count", "Seed"], "Series"))
+    with pytest.raises(Exception, match="has no stand-in"):
+        Canvas(graph.of(strange.archive()))

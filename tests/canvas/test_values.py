@@ -58,8 +58,8 @@ def test_settings_of_an_engine_say_fast_unless_they_speak_of_it_themselves() -> 
 @pytest.mark.parametrize(
     ("name", "library", "sentence"),
     [
-        ("Graph Mapper", None, "how files store its values is not published; put them on a panel instead"),
-        ("Patch", None, "it needs Rhino's kernel"),
+        ("MD Slider", None, "how files store its values is not published; put them on a panel instead"),
+        ("Solid Union", None, "it needs Rhino's kernel"),
         ("C# Script", None, "its code is not Python"),
         ("PlanktonMesh", "PlanktonGh 0.4.1", "the plug-in PlanktonGh 0.4.1 has no stand-in"),
         ("Unheard Of", None, "has no stand-in"),

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from uuid import UUID
 
-from hookean_canvas.archive import native_guids
+from hookean_canvas.archive import native_guids, native_guids_more
 
 # ------------------------------------------------------------------------------------------------ script components
 # github.com/mcneel/rhinocodetests (Rhino 8 and 9 definitions), github.com/compas-dev/compas-actions.ghpython_components
@@ -37,15 +37,16 @@ CLUSTER = UUID("f31d8d7a-7536-4ac8-9c96-fde6ecda4d0a")
 HOPS = UUID("c69bb52c-88ba-4640-b69f-188d111029e8")
 TIMER = UUID("5a2b0735-ba98-4b7d-a7d3-c1dfc04475ad")
 PARAM_VIEWER = UUID("72a29b54-2e48-474b-a400-d2124c4edf79")
+GRAPH_MAPPER = UUID("bc984576-7aa6-491f-a91d-e444c33675a7")
+DIGIT_SCROLLER = UUID("33bcf975-a0b2-4b54-99fd-585c893b9e88")
+CONTROL_KNOB = UUID("bcac2747-348b-4edd-ae1f-77a782cebbdd")
+GENE_POOL = UUID("21553c44-ea62-475e-a8bb-62b2a3ee5ca5")  # public code that drives optimisers by it
 
 _SPECIAL = """
 9c53bac0-ba66-40bd-8154-ce9829b9db1a Colour Swatch
 6da9f120-3ad0-4b6e-9fe0-f8cde3a649b7 Gradient|Gradient Control
-bc984576-7aa6-491f-a91d-e444c33675a7 Graph Mapper
 318dacd7-9073-4ede-b043-a0c132eb77e0 MD Slider
 339c0ee1-cf11-444f-8e10-65c9150ea755 Colour Picker
-33bcf975-a0b2-4b54-99fd-585c893b9e88 Digit Scroller
-bcac2747-348b-4edd-ae1f-77a782cebbdd Control Knob
 51a2ede9-8f8c-4fdf-a375-999c2062eab7 Colour Wheel
 d69a3494-785b-4beb-969b-d2373f65abfd Image Sampler
 216bccd8-bf29-4d3c-b791-54c89a180db3 Image Resource
@@ -182,7 +183,9 @@ RENAMED |= {UUID("a9a8ebd2-fff5-4c44-a8f5-739736d129ba"), UUID("079bd9bd-54a0-41
 
 def _table(*texts: str) -> dict[UUID, tuple[str, ...]]:
     lines = (line.split(" ", 1) for text in texts for line in text.split("\n") if line)
-    return {UUID(guid): tuple(re.split(r"(?<! )\|", names)) for guid, names in lines}  # "Curve | Curve" is one name
+    return {
+        UUID(guid): tuple(re.split(r"(?<! )\|(?!Many)", names)) for guid, names in lines
+    }  # "Curve | Curve", "One|Many"
 
 
 NAMES: dict[UUID, tuple[str, ...]] = {
@@ -205,7 +208,11 @@ NAMES: dict[UUID, tuple[str, ...]] = {
     HOPS: ("Hops",),
     TIMER: ("Timer", "Trigger"),
     PARAM_VIEWER: ("Param Viewer",),
-} | _table(_SPECIAL, _PARAMETERS, native_guids.ALL)
+    GRAPH_MAPPER: ("Graph Mapper",),
+    DIGIT_SCROLLER: ("Digit Scroller",),
+    CONTROL_KNOB: ("Control Knob",),
+    GENE_POOL: ("Gene Pool",),
+} | _table(_SPECIAL, _PARAMETERS, native_guids.ALL, native_guids_more.MORE)
 """Component and parameter ids with the names files have for them, the present one first."""
 PARAMETERS: dict[str, UUID] = {names[0]: guid for guid, names in reversed(_table(_PARAMETERS).items())}
 """The id of a floating parameter by its present name."""

@@ -16,36 +16,37 @@ Say = Callable[[str, str], None]
 def native_for(node: Node) -> Native | None:
     """The native that stands in for an object; for an older version of one, with an id of its own, the present one.
 
-    Grasshopper's own objects are taken for older versions where name, and names of all inputs and outputs, agree.
+    Grasshopper's own objects are taken for older versions where the name agrees, and the present one has each of their
+    inputs and outputs by its name or nickname; what they lack has a default or is optional.
     """
-    found = native_of(node.guid, node.name)
+    found = native_of(node.guid, node.name, node.plugin)
     if found is not None or node.plugin or node.floating:
         return found
-    return next((one for one in NATIVES.values() if one.name == node.name and _alike(node, one)), None)
+    return next((one for one in NATIVES.values() if one.name == node.name and _older(node, one)), None)
 
 
-def _alike(node: Node, native: Native) -> bool:
-    sides: tuple[tuple[list[Port], Sequence[Any]], ...] = (
-        (node.inputs, native.inputs),
-        (node.outputs, native.outputs),
-    )
-    return all([p.name.lower() for p in ports] == [of.name.lower() for of in declared] for ports, declared in sides)
+def _older(node: Node, native: Native) -> bool:
+    inputs = _named(node.inputs, native.inputs)
+    spare = inputs is not None and all(port is not None or of.optional or of.default for port, of in inputs)
+    return spare and _named(node.outputs, native.outputs) is not None
 
 
 def inputs_of(node: Node, native: Native) -> list[tuple[Port | None, Input]] | None:
     """The declared inputs with those of the object; None where they do not belong together.
 
-    By their places where their numbers agree or a person may add some; else by their names, where those that the
-    object lacks are optional.
+    By their places where their numbers agree or a person may add some; else, and in older versions, by their names.
+    What the object lacks is optional, or in an older version has a default.
     """
     declared = list(native.inputs)
-    if native.more_inputs and len(node.inputs) >= len(declared) - 1:
+    known = node.guid == native.guid or _named(node.inputs, declared) is None
+    if known and native.more_inputs and len(node.inputs) >= len(declared) - 1:
         declared += declared[-1:] * (len(node.inputs) - len(declared))
         return list(zip(node.inputs, declared, strict=False))
-    if len(node.inputs) == len(declared):
+    if known and len(node.inputs) == len(declared):
         return list(zip(node.inputs, declared, strict=True))
     named = _named(node.inputs, declared)
-    if named is None or any(port is None and not of.optional for port, of in named):
+    older = node.guid != native.guid
+    if named is None or any(port is None and not (of.optional or older and of.default) for port, of in named):
         return None
     return named
 
@@ -56,20 +57,31 @@ def outputs_of(node: Node, native: Native) -> list[tuple[Port | None, Output]] |
     if native.more_outputs:
         declared += declared[-1:] * (len(node.outputs) - len(declared))
         return list(zip(node.outputs, declared, strict=False))
-    if len(node.outputs) == len(declared):
+    named = _named(node.outputs, declared)
+    if len(node.outputs) == len(declared) and (node.guid == native.guid or named is None):
         return list(zip(node.outputs, declared, strict=True))
-    return _named(node.outputs, declared)
+    return named
 
 
 def _named(ports: Sequence[Port], declared: Sequence[Any]) -> list[tuple[Port | None, Any]] | None:
+    """Declared inputs or outputs with those of an object by their names, or else nicknames; None where one is left."""
     rest = list(ports)
-    found: list[tuple[Port | None, Any]] = []
-    for of in declared:
-        port = next((p for p in rest if of.name.lower() == p.name.lower() or of.nickname == p.nickname), None)
-        if port is not None:
-            rest.remove(port)
-        found.append((port, of))
-    return found if not rest else None
+    found: dict[int, Port] = {}
+    for name in (_full, _short):
+        for k, of in enumerate(declared):
+            port = next((p for p in rest if k not in found and name(p) == name(of)), None)
+            if port is not None:
+                rest.remove(port)
+                found[k] = port
+    return [(found.get(k), of) for k, of in enumerate(declared)] if not rest else None
+
+
+def _full(port: Any) -> str:
+    return str(port.name).lower()
+
+
+def _short(port: Any) -> str:
+    return str(port.nickname)
 
 
 def run_native(node: Node, native: Native, given: Sequence[tuple[Input, Tree]], say: Say) -> list[Tree]:

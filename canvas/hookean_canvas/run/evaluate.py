@@ -19,15 +19,17 @@ from uuid import UUID
 import rhino3dm
 
 from hookean.errors import InputError
-from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, NUMBER_SLIDER, PANEL, VALUE_LIST
+from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, GRAPH_MAPPER, NUMBER_SLIDER, PANEL, VALUE_LIST
 from hookean_canvas.run import stand_in as untyped
 from hookean_canvas.run.components import inputs_of, native_for, outputs_of, run_native
 from hookean_canvas.run.graph import Graph, Node, Port
-from hookean_canvas.run.natives import INERT, PARAMETERS, Input, Native, Unfit, as_kind
+from hookean_canvas.run.mapping import mapper_of
+from hookean_canvas.run.natives import Input, Native, Unfit, as_kind, is_inert
 from hookean_canvas.run.natives.expressions import evaluated
+from hookean_canvas.run.natives.kinds import kind_of, over_unit_domain, radians
 from hookean_canvas.run.scripts import SCRIPTS, Script, code_of, handed, hinted, tree_of
 from hookean_canvas.run.trees import ITEM, TREE, Run, Tree, modified, runs
-from hookean_canvas.run.unsupported import ENGINE, require_known
+from hookean_canvas.run.unsupported import ENGINE, needed, require_known
 from hookean_canvas.run.values import OWN, chosen, hurried
 
 stand_in: Any = untyped
@@ -63,6 +65,7 @@ class Canvas:
         self.graph = graph
         self._order = graph.ordered()
         self._aside = require_known(graph)
+        self._needed = needed(graph)
         self._document = stand_in.Document(path=str(graph.file) if graph.file else None, identity=str(graph.id))
         self._set = _settings(graph, settings or {})
         self._pressed = [node for node in _toggles(graph, "reset") if node.id not in self._set]
@@ -168,9 +171,7 @@ class Canvas:
     def _evaluate(self, node: Node) -> None:
         for port in node.outputs:
             self._results[port.id] = Tree()
-        if node.locked:
-            return
-        if node.guid in INERT:
+        if node.locked or is_inert(node.guid, node.name, node.plugin):
             return
         if node.id in self._aside:
             self._say(node, "warning", f"left out, as no Engine needs it: {self._aside[node.id]}")
@@ -189,7 +190,11 @@ class Canvas:
         if not port.sources and port.data is not None:
             found.take(port.data)
         found = modified(found, port.mapping, port.reverse, port.simplify)
-        return self._expressed(node, port, found) if port.expression else found
+        if port.expression:
+            found = self._expressed(node, port, found)
+        if port.degrees:
+            found = self._converted(node, port, found, radians)
+        return found.each(over_unit_domain) if port.unit else found
 
     def _expressed(self, node: Node, port: Port, tree: Tree) -> Tree:
         """Each value x after the expression that a person has put on the input."""
@@ -204,17 +209,22 @@ class Canvas:
             own = Tree.of([value] if value is not None else OWN[node.guid](node))
             return self._expressed(node, port, own) if port.expression else own
         found = self._given(node, port)
-        return self._cast(node, port, PARAMETERS[node.guid][1], found) if node.guid in PARAMETERS else found
+        if node.guid == GRAPH_MAPPER and (mapped := mapper_of(node)) is not None:
+            return self._cast(node, port, "number", found).each(lambda x: None if x is None else mapped(x))
+        kind = kind_of(node.guid, "" if node.plugin else node.name)
+        return found if kind is None else self._cast(node, port, kind, found)
 
     def _native(self, node: Node, native: Native) -> None:
         def say(level: str, text: str) -> None:
-            self._say(node, level, text)
+            """A stand-in may fail where Grasshopper's own would not; what no Engine needs is no error."""
+            self._say(node, level if level != "error" or node.id in self._needed else "warning", text)
 
         if native.remark:
             say("remark", native.remark)
         given: list[tuple[Input, Tree]] = []
         for port, of in inputs_of(node, native) or []:
-            tree = Tree() if port is None else self._cast(node, port, of.kind, self._given(node, port))
+            held = Tree.of(of.default) if port is None else self._given(node, port)
+            tree = self._cast(node, port or node.inputs[0], of.kind, held) if held else held
             if port is not None and not tree and not of.optional:
                 say("warning", f"Input parameter {port.nickname} failed to collect data")
                 return
@@ -222,7 +232,8 @@ class Canvas:
         results = run_native(node, native, given, say)
         for (output, _), tree in zip(outputs_of(node, native) or [], results, strict=True):
             if output is not None:
-                self._results[output.id] = modified(tree, output.mapping, output.reverse, output.simplify)
+                found = modified(tree, output.mapping, output.reverse, output.simplify)
+                self._results[output.id] = found.each(over_unit_domain) if output.unit else found
 
     def _script(self, node: Node, script: Script) -> None:
         del script.component.messages[:]

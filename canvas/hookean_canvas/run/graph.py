@@ -18,10 +18,16 @@ from hookean_canvas.run.internalised import unreadable
 from hookean_canvas.run.stored import NOTHING, Unread, internalised_in, stored
 from hookean_canvas.run.trees import Tree, path_of
 
+NONE = UUID(int=0)
+"""The library of what Grasshopper itself brings, in files of Rhino 8."""
+
 
 @dataclass
 class Port:
-    """An input, an output, or a whole floating parameter. `sources` are ids of ports; `data` is persistent data."""
+    """An input, an output, or a whole floating parameter. `sources` are ids of ports; `data` is persistent data.
+
+    `unit`: curves and surfaces in it are given parameters from 0 to 1; `degrees`: its angles are in degrees.
+    """
 
     id: UUID
     name: str
@@ -36,6 +42,8 @@ class Port:
     data: Tree | None = None
     faint: bool = False
     expression: str = ""
+    unit: bool = False
+    degrees: bool = False
 
 
 @dataclass
@@ -177,7 +185,7 @@ def of(root: Chunk, where: str = "definition", refused: Mapping[bytes, str] = NO
             graph.groups.append(_group(part.container))
         elif part.guid != SCRIBBLE:
             node = _node(part.guid, part, part.container, UUID(int=number), refused)
-            node.library = libraries.get(part.chunk.value("Lib"), "")
+            node.library = libraries.get(part.chunk.value("Lib"), "") if node.plugin else ""
             graph.nodes.append(node)
             if part.id is None:
                 graph.damage.append(f"{told} has no InstanceGuid")
@@ -210,7 +218,7 @@ def _node(guid: UUID, part: Part, container: Chunk, instead: UUID, refused: Mapp
         outputs=outputs,
         bounds=bounds_of(container),
         locked=given(container, "Locked", False),
-        plugin=part.chunk.item("Lib") is not None,
+        plugin=part.chunk.value("Lib", default=NONE) != NONE,
     )
 
 
@@ -232,6 +240,8 @@ def port(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Port:
         data=_persistent(data, refused) if data is not None else None,
         faint=given(chunk, "WireDisplay", 0) != 0,
         expression=given(chunk, "InternalExpression", ""),
+        unit=given(chunk, "Reparameterize", False),
+        degrees=given(chunk, "UseDegrees", False),
     )
 
 

@@ -21,6 +21,7 @@ from hookean_canvas.run.rhino import rhino3dm
 
 stand_in: Any = untyped
 REFERS = "it refers to an object of a Rhino file; give the file with --rhino form.3dm, or internalise it in Grasshopper"
+REFERS_TO_PLACE = "it refers to a place on an object of a Rhino file; internalise it in Grasshopper"
 NOTHING: Mapping[bytes, str] = MappingProxyType({})
 
 
@@ -47,9 +48,9 @@ def stored(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Any:
     data = chunk.item("ON_Data")
     if data is not None and data.type is Type.BYTEARRAY:
         return _geometry(data.value, refused)
-    for inner in chunk.chunks:  # data of any kind: its type's name, and the value in a chunk of its own
+    for inner in chunk.chunks:  # data of any kind, and references of points, have a chunk of their own
         found = stored(inner, refused)
-        if not isinstance(found, Unread):
+        if not isinstance(found, Unread) or found.why:
             return found
     if not chunk.items and not chunk.chunks:
         return None
@@ -58,7 +59,8 @@ def stored(chunk: Chunk, refused: Mapping[bytes, str] = NOTHING) -> Any:
     names = [item.name for item in chunk.items]
     reference = chunk.value("RefID")
     if isinstance(reference, UUID):
-        return Unread(names, REFERS, reference)
+        whole = "object" in str(chunk.value("RefType", default="object"))
+        return Unread(names, REFERS, reference) if whole else Unread(names, REFERS_TO_PLACE)
     return Unread(names or [inner.name for inner in chunk.chunks], REFERS if "RefID" in names else "")
 
 

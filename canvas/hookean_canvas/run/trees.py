@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,6 +32,10 @@ class Tree(dict[Path, list[Any]]):
     def values_in_order(self) -> list[Any]:
         """All items, branch after branch."""
         return [value for path in self.paths for value in self[path]]
+
+    def each(self, change: Callable[[Any], Any]) -> Tree:
+        """The tree with each item changed by a function."""
+        return Tree({path: [change(value) for value in values] for path, values in self.branches()})
 
     def add(self, path: Path, values: Iterable[Any]) -> None:
         """Append to a branch, which is made where there is none."""

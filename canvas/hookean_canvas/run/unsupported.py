@@ -11,31 +11,42 @@ from hookean_canvas.archive import guids
 from hookean_canvas.run.clusters import why_closed
 from hookean_canvas.run.components import inputs_of, native_for, outputs_of
 from hookean_canvas.run.graph import Graph, Node
-from hookean_canvas.run.natives import INERT, PARAMETERS
+from hookean_canvas.run.mapping import UNKNOWN, mapper_of
+from hookean_canvas.run.natives import PARAMETERS, is_inert
 from hookean_canvas.run.natives.display import SWATCH
+from hookean_canvas.run.natives.kinds import kind_of
 from hookean_canvas.run.scripts import SCRIPTS, code_of
 from hookean_canvas.run.stored import Unread
 from hookean_canvas.run.trees import Tree
+from hookean_canvas.run.values import OWN
 
 VALUES = (
     guids.NUMBER_SLIDER, guids.BOOLEAN_TOGGLE, guids.PANEL, guids.VALUE_LIST, guids.BUTTON, guids.RELAY,
-    guids.PARAM_VIEWER, guids.TIMER, SWATCH,
+    guids.PARAM_VIEWER, guids.TIMER, guids.GENE_POOL, guids.DIGIT_SCROLLER, guids.CONTROL_KNOB, SWATCH,
 )  # fmt: skip
 """Objects that hold or pass on values, besides parameters."""
+OWN_NUMBER = (guids.GENE_POOL, guids.DIGIT_SCROLLER, guids.CONTROL_KNOB)
+"""Objects that hold numbers in a way that versions of Grasshopper may write differently."""
+PASSING = ("Data Recorder",)
+"""Objects that are known by their names and hand on what they get."""
 
 
 ENGINE = "Hookean Engine"
+CARRIED = "geometry_"
+"""The input of an Engine for what moves with the particles."""
 
 _STORED = "how files store its values is not published; put them on a panel instead"
 _KERNEL = "it needs Rhino's kernel; internalise what it gives in Grasshopper"
 _DOCUMENT = "it reads the open document of Rhino; internalise what it gives in Grasshopper"
 _CODE = "its code is not Python"
 _WHY = {
-    _STORED: ("Graph Mapper", "MD Slider", "Gene Pool", "Control Knob", "Digit Scroller", "Colour Picker"),
+    _STORED: ("MD Slider", "Calendar", "Path Mapper"),
     _KERNEL: (
-        "Patch", "Sweep2", "Solid Union", "Solid Difference", "Solid Intersection", "Region Union",
-        "Region Difference", "Region Intersection", "Mesh Union", "Mesh Difference", "Mesh Intersection", "Split Brep",
-        "Trim Solid", "Fillet", "Fillet Edge", "Offset Surface", "Pipe Variable", "SubD from Mesh", "Quad Remesh",
+        "Solid Union", "Solid Difference", "Solid Intersection", "Region Union", "Region Difference",
+        "Region Intersection", "Mesh Union", "Mesh Difference", "Mesh Intersection", "Mesh Split", "Split Brep",
+        "Split Brep Multiple", "Surface Split", "Split with Brep", "Split with Breps", "Trim with Brep",
+        "Trim with Breps", "Trim Solid", "Boundary Volume", "Brep | Brep", "Cap Holes Ex", "Fillet", "Fillet Edge",
+        "Pipe Variable", "SubD from Mesh", "Quad Remesh", "Copy Trim", "Retrim", "Geodesic", "Text On Surface",
     ),
     _DOCUMENT: ("Geometry Pipeline", "Geometry Cache", "Image Sampler", "Import Image", "Object Details"),
     _CODE: ("C# Script", "VB Script"),
@@ -53,10 +64,10 @@ def require_known(graph: Graph) -> dict[UUID, str]:
     where = str(graph.file or graph.name)
     if graph.damage:
         raise InputError(where, f"the file is damaged: {'; '.join(graph.damage)}")
-    needed, aside = _needed(graph), {}
+    wanted, aside = needed(graph), {}
     counted: Counter[tuple[str, str]] = Counter()
     for node, what, why in _unknown(graph):
-        if node.id in needed:
+        if node.id in wanted:
             counted[what, why] += 1
         else:
             aside[node.id] = why
@@ -72,27 +83,34 @@ def unsupported(graph: Graph) -> Counter[tuple[str, str]]:
     return Counter((what, why) for _, what, why in _unknown(graph))
 
 
-def _needed(graph: Graph) -> set[UUID]:
-    """The objects that an Engine's result depends on, by their ids; all where there is no Engine."""
-    waiting = [node.id for node in graph.nodes if node.name == ENGINE] or [node.id for node in graph.nodes]
+def needed(graph: Graph) -> set[UUID]:
+    """The objects that an Engine's shape depends on, by their ids; all where there is no Engine.
+
+    What an Engine carries along is only shown, and what a disabled object would take is not used.
+    """
+    running = [node.id for node in graph.nodes if not node.locked]
+    waiting = [node.id for node in graph.nodes if node.name == ENGINE and not node.locked] or running
     before: dict[UUID, list[UUID]] = {}
-    for start, _, end, _ in graph.wires():
-        before.setdefault(end.id, []).append(start.id)
-    needed = set(waiting)
+    for start, _, end, port in graph.wires():
+        if not (start.locked or end.locked or (end.name == ENGINE and port.name == CARRIED)):
+            before.setdefault(end.id, []).append(start.id)
+    wanted = set(waiting)
     while waiting:
-        found = set(before.get(waiting.pop(), ())) - needed
-        needed |= found
+        found = set(before.get(waiting.pop(), ())) - wanted
+        wanted |= found
         waiting += found
-    return needed
+    return wanted
 
 
 def _unknown(graph: Graph) -> Iterator[tuple[Node, str, str]]:
     """Each object or stored value that cannot be run: the object, what it is, and why."""
     for node in graph.nodes:
+        if node.locked:
+            continue
         why = _strange(node)
         if why:
             yield node, node.name, why
-        for port in node.inputs if not why and node.guid not in INERT else ():
+        for port in node.inputs if not why and not is_inert(node.guid, node.name, node.plugin) else ():
             odd = [value for value in (port.data or Tree()).values_in_order() if isinstance(value, Unread)]
             if not port.sources:
                 what = node.name if node.floating else f"{node.name}, {port.name or port.nickname}"
@@ -102,8 +120,12 @@ def _unknown(graph: Graph) -> Iterator[tuple[Node, str, str]]:
 
 def _strange(node: Node) -> str:
     """Why an object has no stand-in; empty where it has one."""
-    if node.guid in INERT:
+    if is_inert(node.guid, node.name, node.plugin):
         return ""
+    if node.guid == guids.GRAPH_MAPPER:
+        return "" if mapper_of(node) is not None else UNKNOWN
+    if node.guid in OWN_NUMBER and not node.inputs[0].sources and not OWN[node.guid](node):
+        return _STORED
     if node.guid in SCRIPTS:
         return "" if code_of(node) is not None else "its code is not Python"
     native = native_for(node)
@@ -112,6 +134,9 @@ def _strange(node: Node) -> str:
             return ""
         held, usual = (f"{len(one.inputs)} inputs and {len(one.outputs)} outputs" for one in (node, native))
         return f"it has {held}, not {usual}"
+    own = "" if node.plugin else node.name
+    if node.floating and (own in PASSING or kind_of(node.guid, own)):
+        return ""
     if node.guid in PARAMETERS or node.guid in VALUES:
         return "" if node.floating else "it has inputs or outputs of its own"
     if node.guid == guids.CLUSTER:

@@ -44,14 +44,26 @@ def perp_frame(curve: Any, t: float) -> Any:
     return shapes.plane(places[0], x, np.cross(tangents[0], x))
 
 
-@native("", "Horizontal Frames", "HFrames", "Curve (C): curve; Count (N): integer = 10", _FRAMES)
+@native(
+    "8d058945-ce47-4e7c-82af-3269295d7890",
+    "Horizontal Frames",
+    "HFrames",
+    "Curve (C): curve; Count (N): integer = 10",
+    _FRAMES,
+)
 def horizontal_frames(curve: Any, count: int) -> tuple[list[Any], list[float]]:
     """Horizontal planes at equal lengths of a curve, x along its direction in plan."""
     at = _at(curve, count)
     return [_level(place, t) for place, t in zip(*_along(curve, at), strict=True)], at
 
 
-@native("", "Horizontal Frame", "HFrame", "Curve (C): curve; Parameter (t): number", "Frame (F)")
+@native(
+    "c048ad76-ffcd-43b1-a007-4dd1b2373326",
+    "Horizontal Frame",
+    "HFrame",
+    "Curve (C): curve; Parameter (t): number",
+    "Frame (F)",
+)
 def horizontal_frame(curve: Any, t: float) -> Any:
     """The horizontal plane at a parameter of a curve, x along its direction in plan."""
     places, tangents = _along(curve, [t])
@@ -96,7 +108,7 @@ def _level(place: shapes.Array, tangent: shapes.Array) -> Any:
     return shapes.plane(place, x, np.cross([0.0, 0.0, 1.0], x))
 
 
-@native("", "Curve Closest Point", "Crv CP", "Point (P): point; Curve (C): curve",
+@native("2dc44b22-b1dd-460a-a704-6462d6e91096", "Curve Closest Point", "Crv CP", "Point (P): point; Curve (C): curve",
         "Point (P); Parameter (t); Distance (D)")  # fmt: skip
 def curve_closest_point(place: Any, curve: Any) -> tuple[Any, float, float]:
     """The point of a curve that is nearest to a point, its parameter, and the distance."""

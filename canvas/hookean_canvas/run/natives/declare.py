@@ -64,7 +64,7 @@ class Native:
     """A native component: `run` takes a value for each input, gives one for each output; `does` is what it copies.
 
     `more_inputs`, `more_outputs`: a person may add further ones like the last. With `sees` the function also gets the
-    object of the definition, as `node`, for what is stored there beside inputs.
+    object of the definition, as `node`, for what is stored there beside inputs. `foreign`: of a plug-in.
     """
 
     guid: UUID
@@ -79,6 +79,7 @@ class Native:
     more_outputs: bool = False
     sees: bool = False
     remark: str = ""
+    foreign: bool = False
 
 
 NATIVES: dict[UUID, Native] = {}
@@ -88,12 +89,18 @@ BY_NAME: dict[str, Native] = {}
 """The same by name; where two have one name, the first that was declared."""
 
 PLUGINS: dict[str, Native] = {}
-"""Components of plug-ins by their names, which are their own; their ids are not known here."""
+"""Components whose ids are not known here by their names: of plug-ins, and some of Grasshopper's own."""
 
 
-def native_of(guid: UUID, name: str) -> Native | None:
-    """The native that stands in for an object, by its id, or for a plug-in's by its name; None where there is none."""
-    return NATIVES.get(guid) or PLUGINS.get(name)
+def native_of(guid: UUID, name: str, plugin: bool) -> Native | None:
+    """The native that stands in for an object, by its id, else by its name; None where there is none.
+
+    `plugin`: whether the object is of a plug-in, which may give it the name of one of Grasshopper's own.
+    """
+    found = NATIVES.get(guid)
+    if found is None and name in PLUGINS and (PLUGINS[name].foreign or not plugin):
+        found = PLUGINS[name]
+    return found
 
 
 _INPUT = re.compile(r"(.+?) \((\S+)\): (\S+)(?: (list|tree))?( optional)?(?: = (.+))?")
@@ -103,11 +110,19 @@ _DOTS = "..."
 
 
 def native(
-    guid: str, name: str, nickname: str, inputs: str, outputs: str, sees: bool = False, remark: str = ""
+    guid: str,
+    name: str,
+    nickname: str,
+    inputs: str,
+    outputs: str,
+    sees: bool = False,
+    remark: str = "",
+    plugin: bool = False,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Declare a function as native component. `guid` may hold several ids, of versions with equal inputs, or none.
 
-    `remark` is what differs from Grasshopper; the run prints it with the component's messages.
+    `remark` is what differs from Grasshopper; the run prints it with the component's messages. `plugin`: it is one of a
+    plug-in, known by its name.
     """
 
     def declared(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -117,6 +132,7 @@ def native(
                 one, guids.name(one) or name, nickname, tuple(map(_input, ins)), tuple(map(_output, outs)),
                 _several(function, len(outs), outputs.endswith(_DOTS)), " ".join((function.__doc__ or "").split()),
                 function.__module__.rsplit(".", 1)[-1], inputs.endswith(_DOTS), outputs.endswith(_DOTS), sees, remark,
+                plugin,
             )  # fmt: skip
             if not guid:
                 PLUGINS[name] = made

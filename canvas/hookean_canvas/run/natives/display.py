@@ -1,4 +1,4 @@
-"""Natives that only show, or set how Rhino meshes: they have no effect, and what they feed gets no data."""
+"""Natives that only show or colour, or set how Rhino meshes: they have no effect, and what they feed gets no data."""
 
 from __future__ import annotations
 
@@ -33,6 +33,24 @@ a45d68b3-c299-4b17-bdae-7975f216cec6 Colour HSL
     )
 }
 """Components without effect, by their ids."""
+
+INERT_NAMES = frozenset(
+    """
+Bar Graph|Cloud Display|Clock|Colour CMYK|Colour LCH|Colour L*ab|Colour Picker|Colour Wheel|Colour XYZ|Context Bake
+Context Print|Curvature Graph|Data Output|Direction Display|Fitness Landscape|Galapagos|Perpendicular Display|Pie Chart
+Point Order|Quick Graph|Scalar Display|Sketch|Symbol (Advanced)|Symbol (Simple)|Symbol Display|Tensor Display
+Value Tracker
+""".strip()
+    .replace("\n", "|")
+    .split("|")
+)
+"""Components and objects of Grasshopper itself without effect, by their names."""
+
+
+def is_inert(guid: UUID, name: str, plugin: bool) -> bool:
+    """Whether an object has no effect, and gives no data."""
+    return guid in INERT or (not plugin and name in INERT_NAMES)
+
 
 SWATCH = next(guid for guid, names in guids.NAMES.items() if "Colour Swatch" in names)
 """A colour that a person has chosen."""

@@ -21,12 +21,19 @@ _KINDS = {
     "Number": "number", "Integer": "integer", "Boolean": "boolean", "Text": "text", "Point": "point",
     "Vector": "vector", "Line": "line", "Curve": "curve", "Mesh": "mesh", "Data": "any", "Plane": "plane",
     "Domain": "domain", "Colour": "colour", "Circle": "curve", "Circular Arc": "curve", "Rectangle": "curve",
-    "Geometry": "geometry", "Brep": "brep", "Surface": "surface", "Box": "box", "Transform": "transform",
+    "Geometry": "geometry", "Brep": "brep", "Surface": "surface", "Box": "anybox", "Transform": "transform",
     "Mesh Face": "face", "Data Path": "path", "Shader": "any", "Domain²": "any", "File Path": "any", "Guid": "any",
-    "Time": "any", "Complex": "any", "Matrix": "any", "Twisted Box": "any", "Mesher Settings": "any",
+    "Time": "any", "Complex": "any", "Matrix": "any", "Twisted Box": "any", "Mesher Settings": "any", "Group": "any",
+    "Mesh Point": "any", "Culture": "any", "Field": "any", "Location": "any",
 }  # fmt: skip
 PARAMETERS: dict[UUID, tuple[str, str]] = {guids.PARAMETERS[name]: (name, kind) for name, kind in _KINDS.items()}
 """Floating parameters: their names and the kind of values they hold."""
+
+
+def kind_of(guid: UUID, name: str) -> str | None:
+    """The kind of values of a floating parameter, by its id, or by its name where it is an older version of one."""
+    return PARAMETERS[guid][1] if guid in PARAMETERS else _KINDS.get(name)
+
 
 _NUMBERS = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _DOMAIN = re.compile(rf"\s*({_NUMBERS.pattern})\s+[tT][oO]\s+({_NUMBERS.pattern})\s*")
@@ -40,6 +47,29 @@ def as_kind(kind: str, value: Any) -> Any:
     if found is None:
         raise Unfit(f"Data conversion failed from {_described(value)} to {kind.capitalize()}")
     return found
+
+
+def radians(angle: Any) -> Any:
+    """An angle in degrees as radians; anything but a number stays."""
+    number = _number(angle) if isinstance(angle, (str, int, float)) else None
+    return angle if number is None else math.radians(number)
+
+
+def over_unit_domain(value: Any) -> Any:
+    """A curve or surface with parameters from 0 to 1, as a parameter that is reparameterized gives it."""
+    one = rhino3dm.Interval(0.0, 1.0)
+    if isinstance(value, rhino3dm.Line):
+        value = _curve(value)
+    if isinstance(value, rhino3dm.Curve):
+        value = value.Duplicate()
+        value.Domain = one
+    elif isinstance(value, rhino3dm.Brep) and len(value.Faces) == 1 and value.IsSurface:
+        value = value.Faces[0].UnderlyingSurface()
+    if isinstance(value, rhino3dm.Surface) and hasattr(value, "SetDomain"):
+        value = value.ToNurbsSurface() if isinstance(value, rhino3dm.BrepFace) else value.Duplicate()
+        for axis in (0, 1):
+            value.SetDomain(axis, one)
+    return value
 
 
 def _described(value: Any) -> str:
@@ -143,9 +173,15 @@ def _domain(value: Any) -> Any:
 
 
 def _mesh(value: Any) -> Any:
-    """A mesh, or that of the faces of a Brep or surface, as the component Mesh Brep makes it."""
+    """A mesh, or that of the faces of a Brep or surface, as Mesh Brep makes it, or of a closed polyline."""
     if isinstance(value, rhino3dm.Mesh):
         return value
+    if isinstance(value, rhino3dm.Curve):
+        corners = shapes.corners(value)
+        if corners is None or not value.IsClosed:
+            return None
+        if len(corners) in (4, 5):  # a triangle or a quad
+            return shapes.mesh(corners[:-1], [tuple(range(len(corners) - 1))])
     faces = _brep(value)
     if faces is None:
         return None
@@ -155,13 +191,19 @@ def _mesh(value: Any) -> Any:
 
 
 def _brep(value: Any) -> Any:
-    """A Brep, an extrusion or a surface: all have faces for the natives that take Breps."""
-    if isinstance(value, rhino3dm.BoundingBox):
+    """What has faces for the natives that take Breps: a Brep, an extrusion, a surface, a box, a closed flat curve."""
+    if isinstance(value, (rhino3dm.BoundingBox, shapes.TiltedBox)):
         return value.ToBrep()
+    if isinstance(value, rhino3dm.Curve) and value.IsClosed and value.IsPlanar():
+        from hookean_canvas.run.natives.surfaces import boundary_surfaces
+
+        return boundary_surfaces([value])[0]
     return value if isinstance(value, (rhino3dm.Brep, rhino3dm.Surface)) else None
 
 
 def _surface(value: Any) -> Any:
+    if isinstance(value, rhino3dm.Curve):
+        value = _brep(value)
     if isinstance(value, rhino3dm.Brep):
         return value.Faces[0] if len(value.Faces) == 1 else None
     return value if isinstance(value, rhino3dm.Surface) else None
@@ -213,6 +255,8 @@ def _rectangle(value: Any) -> Any:
 
 
 def _geometry(value: Any) -> Any:
+    if isinstance(value, (shapes.Group, shapes.TiltedBox)):
+        return value
     fits = type(value).__module__.startswith("rhino3dm") and not isinstance(
         value, (rhino3dm.Interval, rhino3dm.Transform)
     )
@@ -233,8 +277,10 @@ _CASTS: dict[str, Callable[[Any], Any]] = {
     "rectangle": _rectangle,
     "mesh": _mesh,
     "brep": _brep,
+    "faces": lambda value: value if isinstance(value, rhino3dm.Mesh) else _brep(value),
     "surface": _surface,
     "box": _box,
+    "anybox": lambda value: value if isinstance(value, shapes.TiltedBox) else _box(value),
     "transform": _transform,
     "face": _face,
     "colour": _colour,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
-from hookean_canvas.run.natives import INERT, NATIVES, PARAMETERS, PLUGINS
+from hookean_canvas.run.natives import INERT, INERT_NAMES, NATIVES, PARAMETERS, PLUGINS
 
 START = "<!-- natives, made by hookean_canvas.run.natives.listing -->"
 END = "<!-- end of natives -->"
@@ -17,6 +17,13 @@ SUBJECTS = {
     "curves_at": "Along curves", "surfaces_at": "On surfaces", "sets": "Sets", "tools": "Tools of Kangaroo",
     "chance": "By chance", "edges": "Edges and control points",
     "places": "Places and meetings", "morphs": "Morphs", "meshes_more": "More on meshes and solids",
+    "texts": "Texts", "trees_more": "Trees by patterns of paths", "sets_more": "Sets and sequences",
+    "maths_more": "Triangles, lists of numbers", "transforms_more": "Mappings, arrays, groups", "bending": "Bending",
+    "surfaces_more": "Making surfaces and boxes", "solids": "Solids",
+    "fitted": "Fitting",
+    "meshes_edited": "Changing meshes",
+    "points_more": "Neighbours and coordinates", "planes": "Planes that are turned", "meetings": "Intersections",
+    "curves_more": "Measures of curves", "curves_changed": "Changing curves",
     "grids": "Grids of cells", "freeform": "Beside and along curves",
 }  # fmt: skip
 """Headings by the modules that declare natives."""
@@ -30,7 +37,7 @@ def listing() -> str:
         for subject, heading in SUBJECTS.items()
     }
     rows["Parameters"] = [name for name, _ in PARAMETERS.values()]
-    rows["Without effect"] = list(dict.fromkeys(INERT.values()))
+    rows["Without effect"] = list(dict.fromkeys([*INERT.values(), *sorted(INERT_NAMES)]))
     differ = sorted({f"{native.name}: {native.remark}" for native in natives if native.remark})
     lines = [_wrapped(f"- **{heading}**: {', '.join(names)}.") for heading, names in rows.items()]
     return "\n".join([*lines, "", "What differs from Grasshopper:", "", *(_wrapped(f"- {line}.") for line in differ)])

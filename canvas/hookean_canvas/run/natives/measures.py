@@ -12,6 +12,7 @@ from hookean.discretize.pieces import bezier_pieces
 from hookean.errors import InputError
 from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.natives.declare import Unfit, native
+from hookean_canvas.run.natives.flat_faces import flat_mesh
 from hookean_canvas.run.natives.shapes import Array
 from hookean_canvas.run.rhino import rhino3dm
 
@@ -77,14 +78,16 @@ def volume(geometry: Any) -> tuple[float, Any]:
 def _mesh(geometry: Any) -> tuple[Array, Any]:
     if isinstance(geometry, rhino3dm.Mesh):
         return shapes.mesh_parts(geometry)
-    if isinstance(geometry, rhino3dm.BoundingBox):
+    if isinstance(geometry, (rhino3dm.BoundingBox, shapes.TiltedBox)):
         geometry = geometry.ToBrep()
     if not isinstance(geometry, (rhino3dm.Brep, rhino3dm.Surface)):
         raise Unfit(f"a {type(geometry).__name__} is not measured here")
     try:
         made = mesh_faces(geometry, FINE, FINE)
     except InputError as error:
-        raise Unfit(str(error)) from None
+        if not isinstance(geometry, rhino3dm.Brep) or "trimmed" not in str(error):
+            raise Unfit(str(error)) from None
+        return shapes.mesh_parts(flat_mesh(geometry, FINE))
     return made.vertices, made.faces
 
 
@@ -100,41 +103,38 @@ def _triangles(vertices: Array, faces: Any) -> tuple[Array, Array, Array]:
     return a, b, c
 
 
-def _aligned(frame: Any) -> None:
-    """Unfit for a plane that is not parallel to the world's XY plane, with its axes."""
-    if frame is not None and not np.allclose(shapes.axes(frame)[1:3], np.eye(3)[:2]):
-        raise Unfit("boxes are along the world's axes here; use a plane with these axes")
-
-
 @native("0bb3d234-9097-45db-9998-621639c87d3b", "Bounding Box", "BBox",
         "Content (C): geometry; Plane (P): plane optional", "Box (B); Box (B)")  # fmt: skip
 def bounding_box(geometry: Any, frame: Any) -> tuple[Any, Any]:
-    """The box along the world's axes round geometry."""
-    _aligned(frame)
+    """The box along the axes of a plane, or the world's, round geometry."""
     if isinstance(geometry, (rhino3dm.Point3d, rhino3dm.Point)):
         raise Unfit("a point has no box")
+    if isinstance(geometry, shapes.TiltedBox):
+        geometry = geometry.ToBrep()
     if isinstance(geometry, rhino3dm.Line):
         geometry = rhino3dm.LineCurve(geometry.From, geometry.To)
+    if frame is not None and not isinstance(geometry, rhino3dm.BoundingBox):
+        world = shapes.plane((0, 0, 0), (1, 0, 0), (0, 1, 0))
+        geometry = shapes.transformed(geometry, rhino3dm.Transform.PlaneToPlane(frame, world))
     box = geometry if isinstance(geometry, rhino3dm.BoundingBox) else geometry.GetBoundingBox()
+    if frame is not None and not isinstance(geometry, rhino3dm.BoundingBox):
+        box = shapes.box_in(frame, shapes.xyz(box.Min), shapes.xyz(box.Max))
     return box, box
 
 
 @native("2a43ef96-8f87-4892-8b94-237a47e8d3cf", "Box 2Pt", "Box",
         "Point A (A): point; Point B (B): point; Plane (P): plane optional", "Box (B)")  # fmt: skip
 def box_between(a: Any, b: Any, frame: Any) -> Any:
-    """The box between two opposite corners."""
-    _aligned(frame)
-    corners = shapes.rows([a, b])
-    return rhino3dm.BoundingBox(shapes.point(corners.min(axis=0)), shapes.point(corners.max(axis=0)))
+    """The box between two opposite corners, along the axes of a plane or the world's."""
+    axes = frame if frame is not None else shapes.plane((0, 0, 0), (1, 0, 0), (0, 1, 0))
+    return shapes.box_in(axes, *shapes.coordinates(axes, shapes.rows([a, b])))
 
 
 @native("28061aae-04fb-4cb5-ac45-16f3b66bc0a4", "Center Box", "Box",
         "Base (B): plane; X (X): number = 1.0; Y (Y): number = 1.0; Z (Z): number = 1.0", "Box (B)")  # fmt: skip
 def centre_box(frame: Any, x: float, y: float, z: float) -> Any:
     """The box that reaches a distance to both sides of the origin of a plane."""
-    _aligned(frame)
-    origin, reach = shapes.xyz(frame.Origin), np.abs([x, y, z])
-    return rhino3dm.BoundingBox(shapes.point(origin - reach), shapes.point(origin + reach))
+    return shapes.box_in(frame, (-x, -y, -z), (x, y, z))
 
 
 @native(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -292,17 +293,25 @@ def disjoint_mesh(mesh: Any) -> list[Any]:
     return found
 
 
+@dataclass(frozen=True)
+class MeshPlace:
+    """A mesh parameter: a face and a point on it."""
+
+    face: int
+    place: tuple[float, ...]
+
+
 @native("a559fee2-4b76-4370-8042-c7440cd75049", "Mesh Closest Point", "MeshCP",
         f"Point (P): point; {_MESH}", "Point (P); Index (I); Parameter (P)")  # fmt: skip
 def mesh_closest_point(place: Any, mesh: Any) -> tuple[Any, int, Any]:
-    """The nearest point of a mesh, and the number of its face; mesh parameters are null."""
+    """The nearest point of a mesh, the number of its face, and both as a mesh parameter."""
     vertices, faces = shapes.mesh_parts(mesh)
     if not faces:
         raise Unfit("the mesh has no faces")
     rows = [((face[0], face[k], face[k + 1]), n) for n, face in enumerate(faces) for k in range(1, len(face) - 1)]
     near = _nearest(vertices[[row for row, _ in rows]], shapes.xyz(place))
     k = int(np.linalg.norm(near - shapes.xyz(place), axis=1).argmin())
-    return shapes.point(near[k]), rows[k][1], None
+    return shapes.point(near[k]), rows[k][1], MeshPlace(rows[k][1], tuple(near[k].tolist()))
 
 
 def _nearest(triangles: Array, place: Array) -> Array:

@@ -12,6 +12,7 @@ from hookean.discretize.meshing import mesh_surface as core_mesh_surface
 from hookean.errors import InputError
 from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.natives.declare import Unfit, bounded, native
+from hookean_canvas.run.natives.flat_faces import flat_mesh
 from hookean_canvas.run.natives.meshes import sides
 from hookean_canvas.run.natives.shapes import Array, Faces
 from hookean_canvas.run.rhino import rhino3dm
@@ -43,14 +44,14 @@ def _grid(nx: int, ny: int) -> tuple[Array, Faces]:
 
 
 @native("2696bd14-3fb5-4750-827f-86df6c31d664", "Mesh Box", "MBox",
-        "Base (B): box; X Count (X): integer = 10; Y Count (Y): integer = 10; Z Count (Z): integer = 10",
-        "Mesh (M)", remark="boxes are those along the world's axes")  # fmt: skip
+        "Base (B): anybox; X Count (X): integer = 10; Y Count (Y): integer = 10; Z Count (Z): integer = 10",
+        "Mesh (M)")  # fmt: skip
 def mesh_box(box: Any, nx: int, ny: int, nz: int) -> Any:
     """Equal quads on the six sides of a box, normals outwards; the sides do not share vertices."""
     if min(nx, ny, nz) < 1:
         raise Unfit("counts must be at least 1")
     bounded(2 * (nx * ny + ny * nz + nz * nx))
-    low, size = shapes.xyz(box.Min), shapes.xyz(box.Max) - shapes.xyz(box.Min)
+    low, along, size = shapes.box_axes(box)
     count = (nx, ny, nz)
     vertices: list[Array] = []
     faces: Faces = []
@@ -61,7 +62,7 @@ def mesh_box(box: Any, nx: int, ny: int, nz: int) -> Any:
             places = np.zeros((len(local), 3))
             places[:, u], places[:, v], places[:, axis] = local[:, 0], local[:, 1], float(far)
             start = sum(map(len, vertices))
-            vertices.append(low + places * size)
+            vertices.append(low + (places * size) @ along)
             faces += [tuple(i + start for i in (quad if far else quad[::-1])) for quad in quads]
     return shapes.mesh(np.concatenate(vertices), faces)
 
@@ -88,11 +89,23 @@ def mesh_sphere(frame: Any, radius: float, nu: int, nv: int) -> Any:
 
 
 @native("60e7defa-8b21-4ee1-99aa-a9223d6134ff", "Mesh Brep", "Mesh",
-        "Brep (B): brep; Settings (S): any optional", "Mesh (M)",
-        remark=f"{QUADS} by {QUADS} quads on each face, whatever the settings; Rhino makes another mesh")  # fmt: skip
+        "Brep (B): faces; Settings (S): any optional", "Mesh (M)",
+        remark=f"{QUADS} by {QUADS} quads on each face, or as many triangles where it is cut, whatever the settings; "
+               "Rhino makes another mesh")  # fmt: skip
 def mesh_brep(brep: Any, settings: Any) -> Any:
-    """The faces of a Brep as quads; trimmed faces by the mesh that the file has for them."""
-    return _of_core(lambda: mesh_faces(brep, QUADS, QUADS))
+    """The faces of a Brep as quads; trimmed ones by the mesh that the file has for them, or, if flat, as triangles.
+
+    A mesh stays as it is.
+    """
+    if isinstance(brep, rhino3dm.Mesh):
+        return brep
+    try:
+        made = mesh_faces(brep, *_counts(brep))
+    except InputError as error:
+        if not isinstance(brep, rhino3dm.Brep) or "trimmed" not in str(error):
+            raise Unfit(str(error)) from None
+        return flat_mesh(brep, QUADS)
+    return shapes.mesh(made.vertices, made.faces)
 
 
 @native("58cf422f-19f7-42f7-9619-fc198c51c657", "Mesh Surface", "Mesh UV",
@@ -103,6 +116,20 @@ def mesh_surface(surface: Any, nu: int, nv: int, overhang: bool, equalize: bool)
     """Quads at even steps over a surface."""
     bounded(nu * nv)
     return _of_core(lambda: core_mesh_surface(surface, nu, nv))
+
+
+def _counts(brep: Any) -> tuple[int, int]:
+    """Quads each way: on one surface of straight pieces so many that each corner is one of theirs."""
+    face = brep.Faces[0] if isinstance(brep, rhino3dm.Brep) and len(brep.Faces) == 1 else brep
+    if not isinstance(face, rhino3dm.Surface):
+        return QUADS, QUADS
+    spans = [face.SpanCount(k) if face.Degree(k) == 1 else 1 for k in (0, 1)]
+    u, v = (one * max(math.ceil(QUADS / one), 1) for one in spans)
+    return (u, v) if u * v <= MOST_QUADS else (QUADS, QUADS)
+
+
+MOST_QUADS = 10_000
+"""Quads of one face, however many pieces it has."""
 
 
 def _of_core(work: Any) -> Any:

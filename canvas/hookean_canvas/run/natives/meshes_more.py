@@ -74,14 +74,14 @@ def _inside(mesh: Any, place: shapes.Array, strict: bool) -> bool:
     return abs(2.0 * float(np.arctan2(turned, below).sum())) > 2.0 * math.pi
 
 
-@native("a10e8cdf-7c7a-4aac-aa70-ddb7010ab231", "Box Corners", "Box Corners", "Box (B): box",
+@native("a10e8cdf-7c7a-4aac-aa70-ddb7010ab231", "Box Corners", "Box Corners", "Box (B): anybox",
         "Corner A (A); Corner B (B); Corner C (C); Corner D (D); Corner E (E); Corner F (F); Corner G (G); "
         "Corner H (H)")  # fmt: skip
 def box_corners(box: Any) -> tuple[Any, ...]:
     """The corners of a box: four below, counter-clockwise from the least, then those over them."""
-    low, high = shapes.xyz(box.Min), shapes.xyz(box.Max)
-    plan = ((low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1]))
-    return tuple(shapes.point((x, y, z)) for z in (low[2], high[2]) for x, y in plan)
+    low, along, size = shapes.box_axes(box)
+    plan = ((0, 0), (1, 0), (1, 1), (0, 1))
+    return tuple(shapes.point(low + (np.array([x, y, z]) * size) @ along) for z in (0, 1) for x, y in plan)
 
 
 @native("0373008a-80ee-45be-887d-ab5a244afc29", "Cylinder", "Cyl",
@@ -111,14 +111,14 @@ def curve_frames(curve: Any, count: int) -> tuple[list[Any], list[float]]:
     return frames, at
 
 
-@native("", "Mesh UnifyNormals", "UnifyNormals", "Mesh (M): mesh", "Mesh (M)")
+@native("", "Mesh UnifyNormals", "UnifyNormals", "Mesh (M): mesh", "Mesh (M)", plugin=True)
 def unify_normals(mesh: Any) -> Any:
     """Faces turned to the direction of the first one of their part."""
     return unify_mesh(mesh)[0]
 
 
 @native("", "Mesh FromPoints", "FromPoints", "Points (P): point list; U Count (U): integer; V Count (V): integer",
-        "Mesh (M)")  # fmt: skip
+        "Mesh (M)", plugin=True)  # fmt: skip
 def mesh_from_points(places: list[Any], nu: int, nv: int) -> Any:
     """Quads between points in rows: V points in each of U rows."""
     if min(nu, nv) < 2 or nu * nv != len(places):

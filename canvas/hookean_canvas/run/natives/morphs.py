@@ -45,7 +45,7 @@ def surface_box(surface: Any, domain: Any, height: float) -> TwistedBox:
 
 
 @native("d8940ff0-dd4a-4e74-9361-54df537b50db", "Box Morph", "Morph",
-        "Geometry (G): geometry; Reference (R): box; Target (T): any", "Geometry (G)",
+        "Geometry (G): geometry; Reference (R): anybox; Target (T): any", "Geometry (G)",
         remark=_BY_POINTS)  # fmt: skip
 def box_morph(geometry: Any, reference: Any, target: Any) -> Any:
     """Geometry bent from a box into another, which may be twisted."""
@@ -54,7 +54,7 @@ def box_morph(geometry: Any, reference: Any, target: Any) -> Any:
 
 
 @native("5889b68f-fd88-4032-860f-869fb69654dd", "Surface Morph", "SrfMorph",
-        "Geometry (G): geometry; Reference (R): box; Surface (S): surface; U Domain (U): domain; "
+        "Geometry (G): geometry; Reference (R): anybox; Surface (S): surface; U Domain (U): domain; "
         "V Domain (V): domain; W Domain (W): domain", "Geometry (G)",
         remark=_BY_POINTS)  # fmt: skip
 def surface_morph(geometry: Any, reference: Any, surface: Any, u: Any, v: Any, w: Any) -> Any:
@@ -87,9 +87,8 @@ def _straight(box: Any) -> TwistedBox:
 
 def _parts(box: Any, places: Array) -> Array:
     """Coordinates in a box, 0 at its least corner and 1 at the greatest; of a flat box 0 across it."""
-    low, high = shapes.xyz(box.Min), shapes.xyz(box.Max)
-    size = high - low
-    return np.where(size > 0.0, (places - low) / np.where(size > 0.0, size, 1.0), 0.0)
+    low, along, size = shapes.box_axes(box)
+    return np.where(size > 0.0, (places - low) @ along.T / np.where(size > 0.0, size, 1.0), 0.0)
 
 
 def _bent(geometry: Any, change: Any) -> Any:

@@ -37,7 +37,7 @@ def set_difference(first: Values, second: Values) -> Values:
     return [value for value in _different(first) if not _holds(second, value)]
 
 
-@native("", "Set Intersection", "SInter", f"{_TWO} ...", "Union (U): list")
+@native("82f19c48-9e73-43a4-ae6c-3a8368099b08", "Set Intersection", "SInter", f"{_TWO} ...", "Union (U): list")
 def set_intersection(first: Values, *others: Values) -> Values:
     """The different items that are in all sets."""
     return [value for value in _different(first) if all(_holds(other, value) for other in others)]

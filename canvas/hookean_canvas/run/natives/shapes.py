@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,48 @@ from hookean_canvas.run.rhino import rhino3dm
 
 Array = NDArray[np.float64]
 Faces = list[tuple[int, ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Geometry that is moved as one."""
+
+    members: tuple[Any, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class TiltedBox:
+    """A box along the axes of a plane at its least corner, which are not the world's; `size` along them."""
+
+    frame: Any
+    size: tuple[float, float, float]
+
+    def ToBrep(self) -> Any:
+        """The six faces."""
+        found = rhino3dm.BoundingBox(0.0, 0.0, 0.0, *self.size).ToBrep()
+        found.Transform(rhino3dm.Transform.PlaneToPlane(plane((0, 0, 0), (1, 0, 0), (0, 1, 0)), self.frame))
+        return found
+
+
+def box_in(frame: Any, low: ArrayLike, high: ArrayLike) -> Any:
+    """The box between two corners in the coordinates of a plane: a BoundingBox along the world's axes, or tilted."""
+    ends = np.sort(np.array([low, high], dtype=float), axis=0)
+    three = axes(frame)[1:]
+    if np.allclose(np.abs(three).max(axis=1), 1.0, rtol=0.0, atol=1e-12):
+        corners = in_plane(frame, ends)
+        return rhino3dm.BoundingBox(point(corners.min(axis=0)), point(corners.max(axis=0)))
+    start = plane(in_plane(frame, ends[:1])[0], three[0], three[1])
+    a, b, c = (ends[1] - ends[0]).tolist()
+    return TiltedBox(start, (a, b, c))
+
+
+def box_axes(box: Any) -> tuple[Array, Array, Array]:
+    """The least corner of a box, its unit axes (rows), and its size along them."""
+    if isinstance(box, TiltedBox):
+        origin, *three = axes(box.frame)
+        return origin, np.array(three), np.array(box.size)
+    low = xyz(box.Min)
+    return low, np.eye(3), xyz(box.Max) - low
 
 
 def xyz(place: Any) -> Array:
@@ -134,7 +177,13 @@ def mesh_parts(made: Any) -> tuple[Array, Faces]:
 
 
 def transformed(geometry: Any, change: Any) -> Any:
-    """A copy of geometry after a transformation: also of points, lines, vectors and planes, which have no method."""
+    """A copy of geometry after a transformation; points, lines, vectors, planes and groups have no method for it."""
+    if isinstance(geometry, TiltedBox):
+        return transformed(geometry.ToBrep(), change)
+    if isinstance(geometry, rhino3dm.BoundingBox):
+        return transformed(geometry.ToBrep(), change)
+    if isinstance(geometry, Group):
+        return Group(tuple(transformed(one, change) for one in geometry.members))
     if isinstance(geometry, (rhino3dm.Point3d, rhino3dm.Point)):
         place = geometry.Location if isinstance(geometry, rhino3dm.Point) else geometry
         return rhino3dm.Point3d(place.X, place.Y, place.Z).Transform(change)

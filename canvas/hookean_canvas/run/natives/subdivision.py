@@ -18,20 +18,22 @@ _INPUTS = "Mesh/Polylines (M/P): mesh; Level (L): integer = 1; Smooth Naked Edge
 _REMARK = "naked edges: 0 fixed, 1 smooth, 2 smooth with fixed corners"
 
 
-@native("", "Weaverbird's Catmull-Clark Subdivision", "wbCatmullClark", _INPUTS, "Output Mesh (O)", remark=_REMARK)
+@native("", "Weaverbird's Catmull-Clark Subdivision", "wbCatmullClark", _INPUTS, "Output Mesh (O)",
+        remark=_REMARK, plugin=True)  # fmt: skip
 def catmull_clark_mesh(mesh: Any, level: int, naked: int) -> Any:
     """Quads that tend to a smooth surface."""
     return _subdivided(mesh, level, naked, catmull_clark)
 
 
-@native("", "Weaverbird's Loop Subdivision", "wbLoop", _INPUTS, "Output Mesh (O)", remark=_REMARK)
+@native("", "Weaverbird's Loop Subdivision", "wbLoop", _INPUTS, "Output Mesh (O)",
+        remark=_REMARK, plugin=True)  # fmt: skip
 def loop_mesh(mesh: Any, level: int, naked: int) -> Any:
     """Triangles that tend to a smooth surface."""
     return _subdivided(mesh, level, naked, loop)
 
 
 @native("", "Weaverbird's Join Meshes and Weld", "wbJoin", "Meshes (M+): mesh list; Weld (W): boolean = True",
-        "Mesh (M)")  # fmt: skip
+        "Mesh (M)", plugin=True)  # fmt: skip
 def join_meshes(meshes: list[Any], weld: bool) -> Any:
     """Meshes as one, and vertices in one place made one if wanted."""
     return combined(meshes) if weld else mesh_join(meshes)

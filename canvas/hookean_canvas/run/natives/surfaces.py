@@ -38,7 +38,7 @@ def divide_surface(surface: Any, nu: int, nv: int) -> tuple[list[list[Any]], ...
 def deconstruct_brep(brep: Any) -> tuple[list[Any], list[Any], list[Any]]:
     """The faces, the edges and the vertices of a Brep."""
     whole = brep if isinstance(brep, rhino3dm.Brep) else rhino3dm.Brep.CreateFromSurface(brep)
-    if hasattr(brep, "ToBrep"):
+    if hasattr(brep, "ProfileCount"):
         whole = brep.ToBrep(True)
     faces = [whole.Faces[i].DuplicateFace(False) for i in range(len(whole.Faces))]
     edges = [whole.Edges[i].ToNurbsCurve() for i in range(len(whole.Edges))]
@@ -92,15 +92,6 @@ def loft(curves: list[Any], options: Any) -> list[Any]:
     if len(given) < 2:
         raise Unfit("two curves or more are needed")
     return [ruled_surface(a, b) for a, b in pairwise(given)]
-
-
-@native("962034e9-cc27-4394-afc4-5c16e3447cf9", "Extrude", "Extr",
-        "Base (B): curve; Direction (D): vector", "Extrusion (E)", remark="curves alone are extruded")  # fmt: skip
-def extrude(base: Any, direction: Any) -> Any:
-    """The surface that a curve leaves on its way along a vector."""
-    moved = base.ToNurbsCurve()
-    moved.Translate(direction)
-    return ruled_surface(base, moved)
 
 
 @native("c277f778-6fdf-4890-8f78-347efb23c406", "Pipe", "Pipe",

@@ -25,30 +25,24 @@ def move(geometry: Any, motion: Any) -> tuple[Any, Any]:
 
 
 @native("b7798b74-037e-4f0c-8ac7-dc1043d093e0", "Rotate", "Rotate",
-        f"{_GEOMETRY}; Angle (A): number; Plane (P): plane", _OUT, sees=True)  # fmt: skip
-def rotate(geometry: Any, angle: float, frame: Any, node: Any) -> tuple[Any, Any]:
+        f"{_GEOMETRY}; Angle (A): number; Plane (P): plane", _OUT)  # fmt: skip
+def rotate(geometry: Any, angle: float, frame: Any) -> tuple[Any, Any]:
     """Geometry turned about the z axis of a plane, counter-clockwise by radians."""
-    return _changed(geometry, rhino3dm.Transform.Rotation(_radians(angle, node), frame.ZAxis, frame.Origin))
+    return _changed(geometry, rhino3dm.Transform.Rotation(angle, frame.ZAxis, frame.Origin))
 
 
 @native("3ac8e589-37f5-477d-aa61-6699702c5728", "Rotate Axis", "RotAx",
-        f"{_GEOMETRY}; Angle (A): number; Axis (X): line", _OUT, sees=True)  # fmt: skip
-def rotate_axis(geometry: Any, angle: float, axis: Any, node: Any) -> tuple[Any, Any]:
+        f"{_GEOMETRY}; Angle (A): number; Axis (X): line", _OUT)  # fmt: skip
+def rotate_axis(geometry: Any, angle: float, axis: Any) -> tuple[Any, Any]:
     """Geometry turned about a line by radians."""
-    return _changed(geometry, rhino3dm.Transform.Rotation(_radians(angle, node), _direction(axis), axis.From))
+    return _changed(geometry, rhino3dm.Transform.Rotation(angle, _direction(axis), axis.From))
 
 
 @native("3dfb9a77-6e05-4016-9f20-94f78607d672", "Rotate 3D", "Rot3D",
-        f"{_GEOMETRY}; Angle (A): number; Center (C): point; Axis (X): vector", _OUT, sees=True)  # fmt: skip
-def rotate_about(geometry: Any, angle: float, centre: Any, axis: Any, node: Any) -> tuple[Any, Any]:
+        f"{_GEOMETRY}; Angle (A): number; Center (C): point; Axis (X): vector", _OUT)  # fmt: skip
+def rotate_about(geometry: Any, angle: float, centre: Any, axis: Any) -> tuple[Any, Any]:
     """Geometry turned about an axis through a point by radians."""
-    return _changed(geometry, rhino3dm.Transform.Rotation(_radians(angle, node), axis, centre))
-
-
-def _radians(angle: float, node: Any) -> float:
-    """The angle in radians: an input that a person has switched to degrees has that stored."""
-    chunk = next((one for one in node.container.chunks if one.name == "param_input" and one.index == 1), None)
-    return math.radians(angle) if chunk is not None and chunk.value("UseDegrees", default=False) is True else angle
+    return _changed(geometry, rhino3dm.Transform.Rotation(angle, axis, centre))
 
 
 def _direction(line: Any) -> Any:
