@@ -31,10 +31,10 @@ from hookean.linear.sparse_factors import supernodal
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-SOFT = 1e-8  # part of the largest stiffness that makes a system quasi-definite
 LEFT, IMPROVED = 1e-9, 12  # part of the right side that may be left, and in how many improvements
 SLOWER = 0.3  # part that an improvement leaves, after which another is no use
 ROUGH = 1e-4  # part of the right side that a step may leave at all
+LASTING = 1  # of WAYS: one that is slower is not begun with
 DENSE = 40  # entries of an unknown in the system, above which it is not eliminated
 
 
@@ -98,8 +98,7 @@ class Linearised:
             format="csc",
         )
         right = np.concatenate([-np.sqrt(damping) * r, np.zeros(system.shape[0] - k)])
-        signs = np.repeat([-1.0, 1.0, -1.0, 1.0], [k, m, m, thick.shape[1]])
-        solved = _solved(system, signs * (SOFT * float(np.abs(tangent.data).max(initial=0.0))), right, self.orders)
+        solved = _solved(system, right, self.orders)
         if solved is None:
             return None
         both = np.concatenate([solved[:k], solved[k + m : k + 2 * m]])
@@ -152,27 +151,43 @@ def _means(centred: list[bool], counts: list[int]) -> tuple[Any, Any]:
     return means, (means > 0.0).astype(np.float64).T.tocsr()
 
 
-def _solved(system: Any, soft: Floats, right: Floats, orders: Orders) -> Floats | None:
-    """The solution of a symmetric system: by factors with pivots that keep its pattern, or where these fail with `soft`
-    on its diagonal, so that it has factors in any order (Vanderbei 1995), or by those of SciPy, each improved. None if
-    all leave too much of the right side: then it is singular."""
-    from scipy.sparse import diags
-    from scipy.sparse.linalg import splu
-
-    ways: list[Callable[[], Any]] = [lambda: splu(system)]
-    if supernodal() is not None:
-        ways = [lambda: orders.factor(system), lambda: orders.factor(system + diags(soft)), *ways]
+def _solved(system: Any, right: Floats, orders: Orders) -> Floats | None:
+    """The solution of a symmetric system with zeros on its diagonal, improved: by the first of some kinds of factors
+    that leaves little of the right side, begun with the kind that did so last. None if all leave more: it is
+    singular."""
     size = np.linalg.norm(right)
-    for way in ways:
+    for way in sorted(range(len(WAYS)), key=lambda number: number != orders.way):
         try:
-            factor = way()
+            factor = WAYS[way](system, orders)
         except RuntimeError:  # singular
             continue
-        if factor is not None:
-            found, left = _improved(system, factor, right)
-            if left <= ROUGH * size:
-                return found
+        if factor is None:
+            continue
+        found, left = _improved(system, factor, right)
+        if left <= ROUGH * size:
+            orders.way = min(way, LASTING)
+            return found
     return None
+
+
+def _in_order(system: Any, orders: Orders) -> Any:
+    """Symmetric factors, of half the size, with pivots near the diagonal alone; None where these are 0."""
+    return orders.factor(system) if supernodal() is not None else None
+
+
+def _matched(system: Any, _: Orders) -> Any:
+    """Factors with rows matched so that the diagonal is large, within blocks of columns."""
+    return supernodal().analyze(system, path="lu", threads=1).factor(system.data) if supernodal() is not None else None
+
+
+def _pivoted(system: Any, _: Orders) -> Any:
+    """SciPy's factors, with any pivots."""
+    from scipy.sparse.linalg import splu
+
+    return splu(system)
+
+
+WAYS: tuple[Callable[[Any, Orders], Any], ...] = (_in_order, _matched, _pivoted)
 
 
 def _improved(system: Any, factor: Any, right: Floats) -> tuple[Floats, float]:
