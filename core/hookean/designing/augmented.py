@@ -32,6 +32,7 @@ Floats = NDArray[np.float64]
 
 FIRST, MOST = 10.0, 1e9  # the first penalty m, and the largest
 RISE, NEARER = 10.0, 0.25  # of the penalty, and the part of what was missed that a round has to come down to
+HARDLY, HEAVY, STUCK = 0.9, 1e3, 2  # rounds that leave more of what is missed, from this penalty on, end the search
 ROUNDS = 40
 INNER = 300  # steps of one round
 MET = 0.1 * LIMIT  # what may be missed at the end
@@ -116,7 +117,7 @@ def augmented(search: Search, taken: int = 0) -> tuple[int, DesignStatus]:
     settings = search.problem.settings
     y = np.clip(search.best[2], *search.edges)
     round_ = Penalised(search, abs(search.objective(y)) or 1.0)
-    before, tolerance = np.inf, max(1e-4, settings.tolerance)
+    before, tolerance, stuck = np.inf, max(1e-4, settings.tolerance), 0
     for _ in range(ROUNDS):
         if taken >= settings.max_iterations:
             return taken, DesignStatus.MAX_ITERATIONS
@@ -133,6 +134,9 @@ def augmented(search: Search, taken: int = 0) -> tuple[int, DesignStatus]:
             if round_.penalty >= MOST:
                 break
             round_.penalty *= RISE
+        stuck = stuck + 1 if missed > HARDLY * before and round_.penalty > HEAVY else 0
+        if stuck >= STUCK:
+            break
         before, tolerance = missed, max(0.1 * tolerance, settings.tolerance)
     if search.best[0] > 0.0:
         taken += nearer(search)
