@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.sparse import bmat, csc_matrix
 
+from hookean import Scene, relax
 from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.factors import Orders
 from hookean.designing.linearised import _solved
@@ -174,6 +175,18 @@ def test_one_gradient_of_a_large_net_needs_no_factors(rest: float) -> None:
     assert found._factor is None  # it was not needed
     factored = gradients(Equilibrium(system, state, found.result), unknowns, quantities, weights)
     assert own == pytest.approx(factored, abs=1e-8 * np.abs(factored).max())
+
+
+def test_a_shape_for_one_gradient_takes_no_longer_than_a_relaxation() -> None:
+    """A residual that rounding does not allow costs a solver many steps; exact steps from 1e-8 need none of them. The
+    shape is that of a search, to rounding: 1e-14 of the size by the condition of the tangent, about 1e4."""
+    scene = net(56, 30.0)
+    scene["forces"][0]["rest_length"] = 0.8
+    system, other = compile(Scene.read(scene)), compile(Scene.read(scene))
+    found, exact = settle(system, system.start(), once=True), settle(other, other.start())
+    assert found.result.iterations <= relax(Scene.read({**scene, "settings": {"tolerance": 1e-8}})).iterations
+    assert found.result.iterations < exact.result.iterations
+    assert np.abs(found.x - exact.x).max() <= 1e-10 * system.size
 
 
 def mesh(m: int, force: dict[str, Any]) -> dict[str, Any]:
