@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import hookean
+from hookean.designing.augmented import Penalised
 from hookean.designing.problem import Problem
 from hookean.designing.search import LIMITS, Search, chosen, design
 from hookean.errors import InputError
@@ -74,6 +75,25 @@ def test_the_method_is_chosen_by_the_number_of_limits() -> None:
     assert [chosen(Search(Problem.read(each))) for each in (few, many)] == ["slsqp", "augmented_lagrangian"]
     with pytest.raises(InputError, match="augmented_lagrangian needs constraints"):
         design({**problem, "settings": {"method": "augmented_lagrangian"}})
+
+
+def test_goals_that_are_minimised_have_roots() -> None:
+    """Squares of the roots of the load paths of all links add up to the whole, but for 1e-6 of the first, at all
+    densities; so their slope is that of the objective, by an adjoint of its own. Force densities may be of
+    either sign: with those the method is that of few limits."""
+    problem = limited(9)
+    search = Search(Problem.read(problem))
+    round_, rng = Penalised(search, 1.0), np.random.default_rng(4)
+    assert round_.roots.possible and chosen(search) == "augmented_lagrangian"
+    round_.low[:], round_.high[:] = -np.inf, np.inf  # no limits
+    first = search.objective(np.zeros(search.unknowns.count))
+    for _ in range(3):
+        y = rng.uniform(-0.3, 1.0, search.unknowns.count)
+        r = round_.residuals(y)
+        assert r @ r == pytest.approx(search.objective(y) + 1e-6 * first, rel=1e-12)
+        assert 2.0 * round_.linearised(y).transposed(r) == pytest.approx(search.gradient(y), rel=1e-7, abs=1e-9 * first)
+    shape = {"kind": "force_density", "force": "net"}
+    assert chosen(Search(Problem.read({**problem, "goals": [shape]}))) == "slsqp"
 
 
 def test_limits_that_contradict_one_another_are_infeasible() -> None:

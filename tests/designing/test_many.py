@@ -6,8 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.sparse import bmat, csc_matrix
 
+from hookean import Scene, relax
 from hookean.designing.equilibrium import Equilibrium, settle
+from hookean.designing.factors import Orders
+from hookean.designing.linearised import _solved
 from hookean.designing.problem import Problem
 from hookean.designing.search import Search, design
 from hookean.designing.sensitivity import gradients
@@ -108,6 +112,50 @@ def test_springs_with_rest_lengths_reach_a_form_that_others_gave() -> None:
     assert np.abs(found.result.particles[inside, 2] - wanted).max() <= 1e-6 * np.abs(wanted).max()
 
 
+def test_an_unknown_without_end_gets_there_by_factors() -> None:
+    """Weights on strings of rest length 0 hang by P / k. One is wanted at its support, k without end; that of the other
+    is at most 2: the objective is 1/4 in the limit. Each step may double k, so that P² / k² falls below 1e-8 of that in
+    log2(2e4) = 15 steps and some; and the search stops there."""
+    strings = [
+        {"kind": "springs", "name": name, "particles": [pair], "stiffness": 1.0, "rest_length": 0.0}
+        for name, pair in (("soft", [0, 1]), ("kept", [2, 3]))
+    ]
+    problem = {
+        "scene": {
+            "particles": [[0, 0, 0], [0, 0, -1], [1, 0, 0], [1, 0, -1]],
+            "forces": [*strings, {"kind": "unary", "particles": [1, 3], "vector": [0, 0, -1]}],
+            "anchors": [{"particles": [0, 2]}],
+        },
+        "variables": [
+            {"force": "soft", "field": "stiffness"},
+            {"force": "kept", "field": "stiffness", "upper": 2.0},
+        ],
+        "goals": [{"kind": "position", "particles": [1, 3], "axes": "z", "target": 0.0}],
+        "settings": {"method": "levenberg_marquardt", "tolerance": 1e-8},
+    }
+    found = design(problem)
+    assert found.status == "converged" and found.iterations <= 30
+    assert 0.25 <= found.objective <= 0.25 * (1.0 + 1e-8)
+
+
+@pytest.mark.parametrize("free", [True, False])
+def test_systems_without_pivots_in_order_are_solved_and_singular_ones_refused(free: bool) -> None:
+    """Zeros on the diagonal, where factors in order have no pivots: by pivots or by SciPy's factors to 1e-9. A singular
+    one with a right side out of its range leaves most of it in every way: no step."""
+    rng = np.random.default_rng(2)
+    k = csc_matrix(rng.normal(size=(30, 30)))
+    if not free:
+        k = csc_matrix(k.toarray() @ np.diag(np.append(np.ones(29), 0.0)))
+    system = bmat([[None, k], [k.T, None]], format="csc")
+    right = rng.normal(size=60)
+    found = _solved(system, right, Orders())
+    if not free:
+        assert found is None
+        return
+    assert found is not None
+    assert np.linalg.norm(system @ found - right) <= 1e-9 * np.linalg.norm(right)
+
+
 @pytest.mark.parametrize("rest", [0.0, 0.8])
 def test_one_gradient_of_a_large_net_needs_no_factors(rest: float) -> None:
     """By conjugate gradients to 1e-12 of the right side, as the forward solve has them: times the tangent's condition,
@@ -127,6 +175,18 @@ def test_one_gradient_of_a_large_net_needs_no_factors(rest: float) -> None:
     assert found._factor is None  # it was not needed
     factored = gradients(Equilibrium(system, state, found.result), unknowns, quantities, weights)
     assert own == pytest.approx(factored, abs=1e-8 * np.abs(factored).max())
+
+
+def test_a_shape_for_one_gradient_takes_no_longer_than_a_relaxation() -> None:
+    """A residual that rounding does not allow costs a solver many steps; exact steps from 1e-8 need none of them. The
+    shape is that of a search, to rounding: 1e-14 of the size by the condition of the tangent, about 1e4."""
+    scene = net(56, 30.0)
+    scene["forces"][0]["rest_length"] = 0.8
+    system, other = compile(Scene.read(scene)), compile(Scene.read(scene))
+    found, exact = settle(system, system.start(), once=True), settle(other, other.start())
+    assert found.result.iterations <= relax(Scene.read({**scene, "settings": {"tolerance": 1e-8}})).iterations
+    assert found.result.iterations < exact.result.iterations
+    assert np.abs(found.x - exact.x).max() <= 1e-10 * system.size
 
 
 def mesh(m: int, force: dict[str, Any]) -> dict[str, Any]:

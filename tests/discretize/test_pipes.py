@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean import InputError
+from hookean import InputError, Scene, relax
 from hookean.discretize import (
     align_quads,
     area,
@@ -213,6 +213,45 @@ def test_lines_of_a_reciprocal_figure_balance() -> None:
     lines, q = reciprocal_diagram(grid(4, 4))
     assert q == pytest.approx(np.ones(len(q)), abs=1e-9)
     assert np.unique(np.round(lines.reshape(-1, 3), 6), axis=0).shape == (16, 3)
+
+
+def test_the_figure_of_a_net_in_plan_has_its_thrusts() -> None:
+    """A net of random force densities hangs by its rim under vertical loads. Seen from above, forces balance at inner
+    vertices without the loads: polygons of the figure close, lines are at a right angle to the edges in plan, and each
+    is as long as its edge's horizontal thrust, q times the length in plan, to 1e-6 of rounding and equilibrium."""
+    rng = np.random.default_rng(6)
+    mesh = grid(6, 5)
+    naked = {tuple(sorted(pair)) for pair in naked_edges(mesh).tolist()}
+    pairs = np.array([pair for pair in edges(mesh).tolist() if tuple(sorted(pair)) not in naked])
+    rim, q = np.unique(naked_edges(mesh)), rng.uniform(0.5, 2.0, len(pairs))
+    inside = np.setdiff1d(np.arange(len(mesh.vertices)), rim)
+    springs = {"kind": "springs", "name": "net", "particles": pairs, "stiffness": q, "rest_length": 0.0}
+    load = {"kind": "unary", "particles": inside, "vector": [0, 0, -1]}
+    scene = {"particles": mesh.vertices, "forces": [springs, load], "anchors": [{"particles": rim}]}
+    result = relax(Scene.read({**scene, "settings": {"tolerance": 1e-10}}))
+    own, x = result.force("net"), result.particles
+    shape = Mesh(x, mesh.faces)
+    order = rng.permutation(len(pairs))
+    flip = np.where(rng.random(len(pairs))[:, None] < 0.5, pairs, pairs[:, ::-1])[order]
+    lines, found = reciprocal_diagram(shape, flip, (own["force"] / own["length"])[order], direction=[0, 0, 1])
+    assert found == pytest.approx(q, rel=1e-9)
+    along, across = x[pairs[:, 1]] - x[pairs[:, 0]], lines[:, 1] - lines[:, 0]
+    thrust = q * np.hypot(along[:, 0], along[:, 1])
+    assert np.linalg.norm(across, axis=1) == pytest.approx(thrust, rel=1e-6)
+    assert np.abs(across[:, 2]).max() < 1e-12
+    assert np.abs((along * across).sum(axis=1)).max() < 1e-6
+    for vertex in inside:
+        sign = (pairs[:, 0] == vertex).astype(float) - (pairs[:, 1] == vertex)
+        assert np.abs(sign @ across).max() < 1e-6
+    with pytest.raises(InputError, match="across the loads"):
+        reciprocal_diagram(shape, pairs, rng.uniform(0.5, 2.0, len(pairs)), direction=[0, 0, 1])
+    with pytest.raises(InputError, match="is no edge of the mesh") as error:
+        reciprocal_diagram(shape, [*pairs[:3].tolist(), [0, 20]], 1.0, direction=[0, 0, 1])
+    assert error.value.faults[0].pointer == "pairs/3"
+    with pytest.raises(InputError, match="give 49 numbers"):
+        reciprocal_diagram(shape, pairs, [1.0, 2.0], direction=[0, 0, 1])
+    with pytest.raises(InputError, match="three numbers that are not all 0"):
+        reciprocal_diagram(shape, pairs, q, direction=[0, 0, 0])
 
 
 def test_a_net_that_nothing_balances_has_no_figure() -> None:

@@ -17,7 +17,14 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = sorted(
-    page for page in [DOCS / "start.md", DOCS / "analysis.md", *DOCS.glob("tutorials/*.md"), *DOCS.glob("how-to/*.md")]
+    page
+    for page in [
+        DOCS / "start.md",
+        DOCS / "analysis.md",
+        DOCS / "design.md",
+        *DOCS.glob("tutorials/*.md"),
+        *DOCS.glob("how-to/*.md"),
+    ]
 )
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\s*^```text\n(.*?)^```)?", re.S | re.M)
 

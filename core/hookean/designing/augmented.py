@@ -2,9 +2,9 @@
 multipliers from it.
 
 With values c of constraints in parts of their size and d(c) what they miss of their limits, each round minimises
-f + m/2 |d(c + l / m)|² between bounds, then l = m d(c + l / m). Where all goals have targets that is a sum of squares,
-solved by Levenberg and Marquardt's sparse steps; else by L-BFGS-B, with one adjoint solve for goals and constraints
-together. m rises where a round has not brought constraints nearer.
+f + m/2 |d(c + l / m)|² between bounds, then l = m d(c + l / m). Where all goals have targets, or are sums of parts that
+are at least 0, that is a sum of squares, solved by Levenberg and Marquardt's sparse steps; else by L-BFGS-B, with one
+adjoint solve for goals and constraints together. m rises where a round has not brought constraints nearer.
 Source: Nocedal and Wright, Numerical Optimization, 2006, chapter 17; Birgin and Martinez, 2014.
 """
 
@@ -21,6 +21,7 @@ from hookean.designing.feasible import nearer
 from hookean.designing.levenberg import levenberg
 from hookean.designing.limits import LIMIT
 from hookean.designing.linearised import Linearised
+from hookean.designing.roots import Roots
 from hookean.designing.sensitivity import gradients
 
 if TYPE_CHECKING:
@@ -31,9 +32,11 @@ Floats = NDArray[np.float64]
 
 FIRST, MOST = 10.0, 1e9  # the first penalty m, and the largest
 RISE, NEARER = 10.0, 0.25  # of the penalty, and the part of what was missed that a round has to come down to
+HARDLY, HEAVY, STUCK = 0.9, 1e3, 2  # rounds that leave more of what is missed, from this penalty on, end the search
 ROUNDS = 40
 INNER = 300  # steps of one round
 MET = 0.1 * LIMIT  # what may be missed at the end
+FAR = 1e3  # times what residuals are: those where there is no equilibrium
 SETTLED = 1e-2  # part of the multipliers by which they change at the end
 
 
@@ -50,6 +53,7 @@ class Penalised:
         self.quantities = [(c.quantity, f"/constraints/{i}") for i, c in enumerate(search.problem.constraints)]
         self.aims = SimpleNamespace(size=search.aims.size / np.sqrt(size))
         self.problem: Any = search.problem
+        self.roots = Roots(search.aims, search.first)
 
     def _own(self, found: Equilibrium) -> Floats:
         return np.concatenate(self.search.aims.constraint_values(found))
@@ -88,10 +92,14 @@ class Penalised:
         return np.nan_to_num(found_by * search.scale)
 
     def residuals(self, y: Floats) -> Floats:
-        """The same as residuals whose squares are summed, where all goals have targets."""
-        goals, found = self.search.residuals(y), self.at(y)
+        """The same as residuals whose squares are summed, where goals have roots."""
+        found = self.at(y)
+        self.search.note(y)
+        goals = self.roots.residuals(found)
+        if not (found.converged and np.isfinite(goals).all()):
+            goals = np.full(len(goals), FAR * (1.0 + np.sqrt(abs(self.search.best[1]))))
         missed = np.sqrt(0.5 * self.penalty) * self._beyond(found, 1.0)
-        far = 1e3 * (1.0 + float(np.abs(goals).max(initial=0.0)))
+        far = FAR * (1.0 + float(np.abs(goals).max(initial=0.0)))
         missed = missed if found.converged and np.isfinite(missed).all() else np.full(len(missed), far)
         return np.concatenate([goals / np.sqrt(self.size), missed])
 
@@ -99,8 +107,8 @@ class Penalised:
         """Their derivatives, as sparse parts."""
         search, found = self.search, self.at(y)
         pushed = np.where(self._beyond(found, 1.0) != 0.0, np.sqrt(0.5 * self.penalty) / self.sizes, 0.0)
-        weights = np.concatenate([search.aims.weights(found) / np.sqrt(self.size), pushed])
-        parts = search.aims.quantities() + self.quantities
+        weights = np.concatenate([self.roots.weights(found) / np.sqrt(self.size), pushed])
+        parts = self.roots.quantities + self.quantities
         return Linearised(found, search.unknowns, parts, weights, search.scale, search.orders)
 
 
@@ -109,14 +117,13 @@ def augmented(search: Search, taken: int = 0) -> tuple[int, DesignStatus]:
     settings = search.problem.settings
     y = np.clip(search.best[2], *search.edges)
     round_ = Penalised(search, abs(search.objective(y)) or 1.0)
-    squares = all(goal.aimed for goal in search.problem.goals)
-    before, tolerance = np.inf, max(1e-4, settings.tolerance)
+    before, tolerance, stuck = np.inf, max(1e-4, settings.tolerance), 0
     for _ in range(ROUNDS):
         if taken >= settings.max_iterations:
             return taken, DesignStatus.MAX_ITERATIONS
         own = settings.replaced(tolerance=tolerance, max_iterations=INNER)
         round_.problem = search.problem.replaced(settings=own)
-        y = (_squares if squares else _smooth)(round_, y)
+        y = (_squares if round_.roots.possible else _smooth)(round_, y)
         taken += 1
         search.check_end()
         missed = round_.missed(y)
@@ -127,6 +134,9 @@ def augmented(search: Search, taken: int = 0) -> tuple[int, DesignStatus]:
             if round_.penalty >= MOST:
                 break
             round_.penalty *= RISE
+        stuck = stuck + 1 if missed > HARDLY * before and round_.penalty > HEAVY else 0
+        if stuck >= STUCK:
+            break
         before, tolerance = missed, max(0.1 * tolerance, settings.tolerance)
     if search.best[0] > 0.0:
         taken += nearer(search)

@@ -29,6 +29,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 TIGHT = 1e-11  # residual [-] to which shapes are brought
+NEAR = 1e-8  # residual [-] from which exact steps are tried first
 SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
 SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the same
 NOTHING = 1e-15  # part of the diagonal: entries of the tangent that are rounding
@@ -205,18 +206,23 @@ def follow(before: Equilibrium) -> Equilibrium | None:
 
 
 def settle(system: System, state: State, orders: Orders | None = None, *, once: bool = False) -> Equilibrium:
-    """Bring a state to rest with the scene's solver, and to the last digit by exact steps; `once`: see Equilibrium."""
+    """Bring a state to rest with the scene's solver, and to the last digit by exact steps; `once`: see Equilibrium,
+    and such steps begin earlier if they lead there."""
     before = [memory.copy() for memory in state.memory]
-    result, method = _relaxed(system, state)
-    found = _polished(Equilibrium(system, state, result, orders, once=once, method=method))
+    for residual in (NEAR, TIGHT) if once else (TIGHT,):
+        result, method = _relaxed(system, state, residual)
+        found = Equilibrium(system, state, result, orders, once=once, method=method)
+        found, part = _polished(found)
+        if part * result.residual <= max(TIGHT, ROUNDING * result.rounding_floor):
+            break
     found.yielded = _yielded(system, state, before)
     return found
 
 
-def _relaxed(system: System, state: State) -> tuple[Result, Solver]:
-    """The result of a run to a tight tolerance, and the solver with what it ended with."""
+def _relaxed(system: System, state: State, residual: float = TIGHT) -> tuple[Result, Solver]:
+    """The result of a run to a small residual [-], and the solver with what it ended with."""
     settings = system.scene.settings
-    tight = settings.replaced(tolerance=min(settings.tolerance, TIGHT), position_tolerance=None)
+    tight = settings.replaced(tolerance=min(settings.tolerance, residual), position_tolerance=None)
     system.scene = system.scene.replaced(settings=tight)
     method = solver(settings.solver)
     result = relax_state(system, state, method)
@@ -235,11 +241,12 @@ def _yielded(system: System, state: State, before: list[Floats]) -> list[str]:
     return found
 
 
-def _polished(found: Equilibrium) -> Equilibrium:
-    """Exact steps, while each leaves less out of balance; one is enough where it is slight, for the next is its
-    square."""
+def _polished(found: Equilibrium) -> tuple[Equilibrium, float]:
+    """Exact steps, while each leaves less out of balance, and the part that they leave; one is enough where it is
+    slight, for the next is its square."""
     system, state, once, result = found.system, found.state, found.once, found.result
     left = _left(system, state)
+    first = float(lengths(left).max(initial=0.0))
     rounding = once and result.residual <= ROUNDING * result.rounding_floor  # nothing is left that a step would meet
     for _ in range(0 if rounding else POLISH):
         step = found.solve(left.ravel(), left=ROUGH).reshape(-1, 3)
@@ -261,7 +268,7 @@ def _polished(found: Equilibrium) -> Equilibrium:
             if not once:
                 found.take_factor(before)
     result.particles = state.x.copy()
-    return found
+    return found, float(lengths(left).max(initial=0.0)) / first if first > 0.0 else 0.0
 
 
 def _left(system: System, state: State) -> Floats:

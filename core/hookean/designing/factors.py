@@ -20,10 +20,12 @@ Ints = NDArray[np.int64]
 
 
 class Orders:
-    """Orders of elimination that earlier factors had, for matrices of the same pattern."""
+    """Orders of elimination that earlier factors had, for matrices of the same pattern. `way`: which kind of factors
+    the last system of a step had."""
 
     def __init__(self) -> None:
         self._kept: list[Factors] = []
+        self.way = 0
 
     def factor(self, matrix: Any) -> Factor | None:
         """A symmetric matrix in factors; None where it is singular."""

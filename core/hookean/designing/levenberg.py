@@ -1,9 +1,11 @@
 """Least squares of many unknowns and many goals with bounds: damped Gauss-Newton steps, cut at the bounds.
 
 Unknowns at a bound that would leave it are held there; those that a step brings to one are put on it and the others'
-step is worked out again. Damping falls while the linear model is right and rises where it is not.
+step is worked out again. Damping falls while the linear model is right and rises where it is not; it is that of changes
+in parts of the unknowns, so that one which grows without end gets there by factors.
 Source: Kanzow, Yamashita and Fukushima, "Levenberg-Marquardt methods with strong local convergence properties for
-solving nonlinear equations with convex constraints", 2004.
+solving nonlinear equations with convex constraints", 2004; Moré, "The Levenberg-Marquardt algorithm", 1978 (sizes, and
+the fall that the model expects).
 """
 
 from __future__ import annotations
@@ -21,7 +23,11 @@ Bools = NDArray[np.bool_]
 
 START = 1e-3  # of the mean square slope: the first damping
 LEAST, MOST = 1e-14, 1e16  # of it
-BOLD, GENTLE = 0.01, 0.3  # falls of the damping: after steps that were right at once, and after others
+REFUSED = 4.0  # rise of the damping after a step that leads nowhere
+FALLS = ((0.95, 0.003), (0.8, 0.2), (0.5, 0.6), (0.25, 1.0))  # of it, where more than this part of a fall came
+RISE = 2.0  # of it where less does
+TRUE = 0.25  # part of what is expected: the linear model holds
+SLOW = 2  # steps one after another that lower the objective by no more than the tolerance
 PASSES = 4  # of one step, each with more unknowns held at bounds
 ROUNDING = 1e-15  # of the targets: residuals below are nothing
 
@@ -59,7 +65,7 @@ def levenberg(search: Squared, lower: Floats, upper: Floats, start: Floats | Non
     """Search from zero or a start between bounds."""
     settings = search.problem.settings
     y = np.clip(np.zeros(search.unknowns.count) if start is None else start, lower, upper)
-    r, factor, unit = search.residuals(y), 1.0, 0.0
+    r, factor, unit, slow = search.residuals(y), 1.0, 0.0, 0
     nothing = (settings.tolerance * 1e-2 * search.aims.size) ** 2
     for iteration in range(settings.max_iterations):
         cost = float(r @ r)
@@ -72,47 +78,59 @@ def levenberg(search: Squared, lower: Floats, upper: Floats, start: Floats | Non
         if not reach > ROUNDING * cost:
             return Ended(iteration, DesignStatus.CONVERGED, y)
         unit = unit or START * float(slope @ slope) / cost
-        found, first = None, factor
+        from_here, found = From(model, r, slope, y, held, (lower, upper)), None
         while found is None and factor <= MOST:
-            found = _better(search, model, r, y, unit * factor, held, (lower, upper))
+            found = _better(search, from_here, unit * factor)
             if found is None:
-                factor *= 10.0
+                factor *= REFUSED
         if found is None:
             return Ended(iteration, DesignStatus.CONVERGED, y)  # no step of any length leads further
-        new, r_new, quality = found
-        fall = BOLD if factor == first else GENTLE  # in a long valley each bold fall costs steps that are refused
-        factor = max(factor * (fall if quality > 0.7 else GENTLE if quality > 0.25 else 2.0), LEAST)
+        new, r_new, came = found
+        factor = max(factor * next((fall for least, fall in FALLS if came > least), RISE), LEAST)
         fell, moved = cost - float(r_new @ r_new), float(np.abs(new - y).max(initial=0.0))
         y, r = new, r_new
-        if fell <= settings.tolerance * cost and quality > 0.25 and moved <= np.sqrt(settings.tolerance):
+        slow = slow + 1 if fell <= settings.tolerance * cost and came > TRUE else 0
+        if slow >= SLOW or (slow and moved <= np.sqrt(settings.tolerance)):
             return Ended(iteration + 1, DesignStatus.CONVERGED, y)
     return Ended(settings.max_iterations, DesignStatus.MAX_ITERATIONS, y)
 
 
-def _better(
-    search: Squared, model: Linearised, r: Floats, y: Floats, damping: float, held: Bools, bounds: tuple[Floats, Floats]
-) -> tuple[Floats, Floats, float] | None:
-    """A step that lowers the objective: new unknowns, residuals, and the fall by that of the linear model."""
-    new = _cut_step(model, r, y, damping, held, bounds)
-    if new is None or np.array_equal(new, y):
+class From(NamedTuple):
+    """Where a step begins: derivatives, residuals, their slope, unknowns, those that are held, and bounds."""
+
+    model: Linearised
+    r: Floats
+    slope: Floats
+    y: Floats
+    held: Bools
+    bounds: tuple[Floats, Floats]
+
+    @property
+    def sizes(self) -> Floats:
+        """Sizes (u,) of the unknowns, at least their scale."""
+        return np.maximum(1.0, np.abs(self.y))
+
+
+def _better(search: Squared, at: From, damping: float) -> tuple[Floats, Floats, float] | None:
+    """A step that lowers the objective: new unknowns, residuals, and the fall by that of the linear model, -g . s +
+    m |s|² of a damped step s along the slope g."""
+    new = _cut_step(at, damping)
+    if new is None or np.array_equal(new, at.y):
         return None
-    now, cost = search.residuals(new), float(r @ r)
-    slope = model.transposed(r)
-    expected = -float(slope @ (new - y))  # at least half of the fall of the model along a step of Gauss and Newton
-    fell = cost - float(now @ now)
+    now, step = search.residuals(new), new - at.y
+    expected = damping * float(((step / at.sizes) ** 2).sum()) - float(at.slope @ step)
+    fell = float(at.r @ at.r) - float(now @ now)
     if not search.at(new).converged or not fell > 0.0:
         return None
     return new, now, fell / max(expected, np.finfo(float).tiny)
 
 
-def _cut_step(
-    model: Linearised, r: Floats, y: Floats, damping: float, held: Bools, bounds: tuple[Floats, Floats]
-) -> Floats | None:
-    lower, upper = bounds
-    free, new = ~held, y
+def _cut_step(at: From, damping: float) -> Floats | None:
+    model, r, y, (lower, upper) = at.model, at.r, at.y, at.bounds
+    free, new = ~at.held, y
     shift = np.zeros(len(y))
     for _ in range(PASSES):
-        step = model.step(r + model.forward(shift) if shift.any() else r, damping, free)
+        step = model.step(r + model.forward(shift) if shift.any() else r, damping, free, at.sizes)
         if step is None:
             return None
         new = y + shift + step

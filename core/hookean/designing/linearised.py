@@ -15,6 +15,7 @@ chapter 16 (2006).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -30,8 +31,10 @@ from hookean.linear.sparse_factors import supernodal
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-SOFT = 1e-8  # part of the largest stiffness that makes a system quasi-definite
 LEFT, IMPROVED = 1e-9, 12  # part of the right side that may be left, and in how many improvements
+SLOWER = 0.3  # part that an improvement leaves, after which another is no use
+ROUGH = 1e-4  # part of the right side that a step may leave at all
+LASTING = 1  # of WAYS: one that is slower is not begun with
 DENSE = 40  # entries of an unknown in the system, above which it is not eliminated
 
 
@@ -72,12 +75,14 @@ class Linearised:
         found = self.direct @ change + self.goals @ self.found.factor.solve(self.pushes @ change)
         return np.asarray(self.weights * (found - self.spread @ (self.means @ found)))
 
-    def step(self, r: Floats, damping: float, free: Bools) -> Floats | None:
-        """The damped step (u,) of the free unknowns for residuals r (k,), None if it has none."""
-        from scipy.sparse import bmat, identity, vstack
+    def step(self, r: Floats, damping: float, free: Bools, sizes: Floats | None = None) -> Floats | None:
+        """The damped step (u,) of the free unknowns for residuals r (k,), None if it has none. Changes are damped in
+        parts of the `sizes` (u,) of the unknowns."""
+        from scipy.sparse import bmat, diags, identity, vstack
 
         goals, tangent, direct, pushes = self._with_means
-        spread = vstack([direct, -pushes]).tocsc()[:, np.flatnonzero(free)]
+        by = np.ones(len(free)) if sizes is None else sizes
+        spread = (vstack([direct, -pushes]) @ diags(by)).tocsc()[:, np.flatnonzero(free)]
         wide = np.diff(spread.indptr) > DENSE
         thin, thick = spread[:, np.flatnonzero(~wide)], spread[:, np.flatnonzero(wide)]
         squares = -(thin @ thin.T).tocsr()
@@ -93,13 +98,13 @@ class Linearised:
             format="csc",
         )
         right = np.concatenate([-np.sqrt(damping) * r, np.zeros(system.shape[0] - k)])
-        signs = np.repeat([-1.0, 1.0, -1.0, 1.0], [k, m, m, thick.shape[1]])
-        solved = _solved(system, signs * (SOFT * float(np.abs(tangent.data).max(initial=0.0))), right, self.orders)
+        solved = _solved(system, right, self.orders)
         if solved is None:
             return None
         both = np.concatenate([solved[:k], solved[k + m : k + 2 * m]])
         step = np.zeros(len(free))
         step[np.flatnonzero(free)] = -(spread.T @ both) / np.sqrt(damping)
+        step *= by
         return step if np.isfinite(step).all() else None
 
     @cached_property
@@ -146,21 +151,56 @@ def _means(centred: list[bool], counts: list[int]) -> tuple[Any, Any]:
     return means, (means > 0.0).astype(np.float64).T.tocsr()
 
 
-def _solved(system: Any, soft: Floats, right: Floats, orders: Orders) -> Floats | None:
-    """The solution of a symmetric system that has factors in any order once `soft` is on its diagonal (Vanderbei
-    1995): by these, improved until nothing is left of it, else by factors with pivots. None if it is singular."""
-    from scipy.sparse import diags
+def _solved(system: Any, right: Floats, orders: Orders) -> Floats | None:
+    """The solution of a symmetric system with zeros on its diagonal, improved: by the first of some kinds of factors
+    that leaves little of the right side, begun with the kind that did so last. None if all leave more: it is
+    singular."""
+    size = np.linalg.norm(right)
+    for way in sorted(range(len(WAYS)), key=lambda number: number != orders.way):
+        try:
+            factor = WAYS[way](system, orders)
+        except RuntimeError:  # singular
+            continue
+        if factor is None:
+            continue
+        found, left = _improved(system, factor, right)
+        if left <= ROUGH * size:
+            orders.way = min(way, LASTING)
+            return found
+    return None
+
+
+def _in_order(system: Any, orders: Orders) -> Any:
+    """Symmetric factors, of half the size, with pivots near the diagonal alone; None where these are 0."""
+    return orders.factor(system) if supernodal() is not None else None
+
+
+def _matched(system: Any, _: Orders) -> Any:
+    """Factors with rows matched so that the diagonal is large, within blocks of columns."""
+    return supernodal().analyze(system, path="lu", threads=1).factor(system.data) if supernodal() is not None else None
+
+
+def _pivoted(system: Any, _: Orders) -> Any:
+    """SciPy's factors, with any pivots."""
     from scipy.sparse.linalg import splu
 
-    factor = orders.factor(system + diags(soft)) if supernodal() is not None else None
-    if factor is not None:
-        found, left = np.zeros(len(right)), right
-        for _ in range(IMPROVED):
-            found = found + factor.solve(left)
-            left = right - system @ found
-            if not np.linalg.norm(left) > LEFT * np.linalg.norm(right):
-                return found
-    try:
-        return np.asarray(splu(system).solve(right))
-    except RuntimeError:  # singular
-        return None
+    return splu(system)
+
+
+WAYS: tuple[Callable[[Any, Orders], Any], ...] = (_in_order, _matched, _pivoted)
+
+
+def _improved(system: Any, factor: Any, right: Floats) -> tuple[Floats, float]:
+    """A solution, improved while that helps, and what it leaves of the right side."""
+    size = last = float(np.linalg.norm(right))
+    found, left = np.zeros(len(right)), right
+    for _ in range(IMPROVED):
+        new = found + factor.solve(left)
+        over = right - system @ new
+        now = float(np.linalg.norm(over))
+        if not now < last:
+            break
+        found, left, slower, last = new, over, now > SLOWER * last, now
+        if now <= LEFT * size or slower:
+            break
+    return found, last

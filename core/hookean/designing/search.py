@@ -33,7 +33,7 @@ from hookean.system.system import System, compile
 Floats = NDArray[np.float64]
 EDGE = 1e6  # of its size: no search goes further
 FAR = 1e3  # of its size: an unknown there that is no minimum has no end
-LIMITS = 100  # values of constraints, and four times as many of goals without targets, above which SLSQP takes long
+LIMITS = 100  # values of constraints, four times as many where goals have no roots, above which SLSQP takes long
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
@@ -253,7 +253,8 @@ def chosen(search: Search) -> str:
     if wanted == "auto":
         if problem.constraints:
             limits = sum(len(low) for low, _ in search.aims.limits)
-            return "augmented_lagrangian" if limits > (LIMITS if aimed else 4 * LIMITS) else "slsqp"
+            roots = all(goal.aimed or goal.quantity.positive is not None for goal in problem.goals)
+            return "augmented_lagrangian" if limits > (LIMITS if roots else 4 * LIMITS) else "slsqp"
         if not aimed:
             return "l-bfgs-b"
         values = len(search.aims.weights(search.first))

@@ -47,6 +47,11 @@ class Quantity(Model):
         """Whether values are less their mean; `slopes` are of the values themselves, so that they stay sparse."""
         return False
 
+    @property
+    def positive(self) -> Quantity | None:
+        """The same as parts that are at least 0 at any shape and add up to it; None if it has none."""
+        return None
+
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """Their derivatives, before the mean is taken from them where they are `centred`."""
         raise TypeError(f"{type(self).__name__} does not define slopes()")

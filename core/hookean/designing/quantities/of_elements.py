@@ -142,6 +142,11 @@ class Length(OfElements):
     def _column(self, outputs: dict[str, str], pointer: str) -> str:
         return "length"
 
+    @property
+    def positive(self) -> Quantity | None:
+        """Each length."""
+        return None if self.equal or self.smooth else self.replaced(total=False)
+
     def _ends(self, found: Equilibrium, pointer: str) -> Ints:
         index = Measured(found, self.force, pointer).index
         if index.shape[1] != 2:
@@ -188,6 +193,11 @@ class LoadPath(OfElements):
     kind: Literal["load_path"] = "load_path"
     total: bool = Field(default=True, description="The sum of the values")
     unit: ClassVar[str] = "force length"
+
+    @property
+    def positive(self) -> Quantity | None:
+        """That of each element."""
+        return None if self.equal or self.smooth else self.replaced(total=False)
 
     def _whole(self, found: Equilibrium, pointer: str) -> Floats:
         force, length = Force(force=self.force)._whole(found, pointer), Length(force=self.force)._whole(found, pointer)
