@@ -56,15 +56,15 @@ def test_cases_and_their_envelope_are_those_of_the_core(home: Home) -> None:
     assert scene.load_cases["wind"].factor == 2.0 and scene.load_cases["wind"].forces == ("wind load",)
     here = hookean.load_cases(scene)
     for i, case in enumerate(here.cases.values()):
-        moved = [xyz(vector) for vector in branches(found["displacements"])["{%d}" % i]]
+        moved = [xyz(vector) for vector in branches(found["displacements"])[f"{{{i}}}"]]
         np.testing.assert_allclose(moved, case.displacements, atol=1e-9)
-        assert branches(found["forces"])["{%d;0}" % i] == pytest.approx(case.result.force("rope")["force"], rel=1e-9)
-        pulls = [xyz(vector) for vector in branches(found["reactions"])["{%d}" % i]]
+        assert branches(found["forces"])[f"{{{i};0}}"] == pytest.approx(case.result.force("rope")["force"], rel=1e-9)
+        pulls = [xyz(vector) for vector in branches(found["reactions"])[f"{{{i}}}"]]
         np.testing.assert_allclose(pulls, case.result.reactions["force"], atol=1e-7)
     at = found["extremes"].index("rope.force")
     largest = here.envelope.forces[0]["columns"]["force"]
-    assert branches(found["largest"])["{%d}" % at] == pytest.approx(largest.largest, rel=1e-9)
-    assert set(branches(found["largest_cases"])["{%d}" % at]) == {"ULS"}
+    assert branches(found["largest"])[f"{{{at}}}"] == pytest.approx(largest.largest, rel=1e-9)
+    assert set(branches(found["largest_cases"])[f"{{{at}}}"]) == {"ULS"}
     assert found["extremes"][0] == "displacement" and found["extremes"][-1] == "reaction"
     assert xyz(found["form"][0]) == pytest.approx(here.form.particles[2], abs=1e-9)
     assert found["slack"] == [0, 0, 0] and found["report"][0].startswith("snow: In equilibrium")
