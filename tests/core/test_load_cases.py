@@ -372,6 +372,7 @@ def faces(load: Any) -> list[list[int]]:
         ({"combinations": {"ULS": {"fog": 1.0}}}, "/combinations/ULS/fog: no load case is called 'fog'"),
         ({"combinations": {"snow": {"snow": 1.0}}}, "a load case has this name, too"),
         ({"stages": {"freeze": {"net": {}}}}, "/stages/freeze/net: no force is called 'net'"),
+        ({"stages": {"freeze": {"snow load": {}}}}, "'snow load' names no springs or lines of constant tension"),
         ({"stages": {"films": {"cable": {"warp_stiffness": 1.0}}}}, "/stages/films/cable: no film is called 'cable'"),
         ({"stages": {"films": {"cable": {}}}}, "/stages/films/cable: its stiffness is missing"),
     ],

@@ -14,6 +14,7 @@ from uuid import NAMESPACE_URL, UUID, uuid5
 
 from hookean.errors import InputError
 from hookean_canvas.archive import guids
+from hookean_canvas.components import icons
 
 HINTS = tuple(guids.HINTS)
 """Type hints by the names a bundle's metadata uses."""
@@ -94,12 +95,13 @@ def read_all(place: Path | None = None) -> list[Bundle]:
 def read(place: Path | str) -> Bundle:
     """One bundle, by its folder or by the name of a shipped one; raises InputError with its fault."""
     place = folder() / place if isinstance(place, str) and "/" not in place else Path(place)
-    missing = [name for name in FILES if not (place / name).is_file()]
+    drawn = not (place / "icon.png").is_file() and icons.known(place.name)  # until `components/generate.py` writes it
+    missing = [name for name in FILES if not (place / name).is_file() and not (drawn and name == "icon.png")]
     if missing:
         raise InputError(
             place.name, f"is not a complete bundle: {', '.join(missing)} missing; it needs {', '.join(FILES)}."
         )
-    icon = (place / "icon.png").read_bytes()
+    icon = icons.png(place.name) if drawn else (place / "icon.png").read_bytes()
     if icon[:8] != b"\x89PNG\r\n\x1a\n" or icon[16:24] != bytes((0, 0, 0, 24, 0, 0, 0, 24)):
         raise InputError(
             f"{place.name}/icon.png", "is not a PNG of 24 x 24 pixels; `components/generate.py` draws one."

@@ -15,6 +15,11 @@ from hookean_canvas.components.pen import SIZE, Pen
 DRAWINGS = icon_drawings.DRAWINGS | force_drawings.DRAWINGS | tool_drawings.DRAWINGS
 
 
+def known(name: str) -> bool:
+    """Whether the component `name` has a drawing of its own."""
+    return re.sub("[^a-z0-9]", "", name.lower()) in DRAWINGS
+
+
 def png(name: str) -> bytes:
     """The icon of the component `name` as PNG; an unknown one gets a force's arrow and its letters."""
     pen = Pen()

@@ -26,6 +26,27 @@ def combine_clean(pen: Pen) -> None:
     pen_dots(pen, ((12.0, 4.0), (12.0, 12.0), (12.0, 20.0)), ORANGE, 2.4)
 
 
+def load_case(pen: Pen) -> None:
+    for x in (5.0, 12.0, 19.0):
+        pen.arrow((x, 3.0), (x, 13.5), width=1.8, head=4.6)
+    pen.line(*bent((2.5, 15.0), (12.0, 21.5), (21.5, 15.0)), width=2.0)
+
+
+def combination(pen: Pen) -> None:
+    for y, colour in ((6.0, BLUE), (18.0, ORANGE)):
+        pen.arrow((3.0, y), (13.0, 12.0), width=1.6, head=4.0)
+        pen.dot((3.6, y), 2.2, colour)
+    pen.line((13.0, 12.0), (21.0, 12.0), width=2.2)
+    pen.line((17.0, 8.0), (17.0, 16.0), width=2.2)
+
+
+def load_cases(pen: Pen) -> None:
+    for depth, colour in ((10.0, PALE), (15.0, BLUE), (21.0, ORANGE)):
+        pen.line(*bent((2.5, 5.0), (12.0, 2.0 * depth - 5.0), (21.5, 5.0)), colour=colour, width=1.7)
+    for x in (2.5, 21.5):
+        pen.dot((x, 5.0), 2.2, INK)
+
+
 def refine(pen: Pen) -> None:
     pen.line((12.0, 3.0), (12.0, 21.0), colour=ORANGE, width=1.8)
     pen.line((3.0, 12.0), (21.0, 12.0), colour=ORANGE, width=1.8)
@@ -233,7 +254,7 @@ DRAWINGS: dict[str, Callable[[Pen], None]] = {
         *(fold_angle, vertex_neighbours, mesh_map, split_at_corners, remesh, counter, sequence, trail),
         *(interconnect_points, bipartite, moebius_transformation, pipes, align_quads, turn_quads, strips),
         *(unroll_strips, reciprocal_diagram, live_film),
-        *(variables, goals, constraints, design),
+        *(variables, goals, constraints, design, load_case, combination, load_cases),
     )
 }
 """Drawings by the name of the bundle, in small letters without blanks."""

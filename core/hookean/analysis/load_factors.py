@@ -10,6 +10,7 @@ import numpy as np
 from hookean.errors import InputError
 from hookean.forces import Force
 from hookean.forces.springs import Springs
+from hookean.values.columns import LARGEST
 
 
 def magnitudes(cls: type[Force]) -> list[str]:
@@ -31,6 +32,9 @@ def scaled(load: Force, factor: float) -> Force:
         given = getattr(load, name)
         if given is not None:
             changed[name] = factor * (np.asarray(given) if isinstance(given, np.ndarray) else float(given))
+            if not np.abs(changed[name]).max(initial=0.0) <= LARGEST:
+                said = f"{name} of {load.name or load.kind_name} times {factor:g} is larger than the limit, {LARGEST:g}"
+                raise InputError("/load_cases", said)
     if getattr(load, "material", None) is not None:
         changed["factor"] = factor * getattr(load, "factor", 1.0)
     return load.replaced(**changed)

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from hookean.forces import KINDS
 from hookean.forces.cloth import one_way
-from hookean.values.columns import Directions, Lines, Model, Positives, fault
+from hookean.values.columns import LARGEST, Directions, Lines, Model, Positives, fault
 from hookean.values.fields import Field, Maybe, Named
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class LoadCase(Model):
     temperature: dict[str, float] = Field(
         default={}, description="Change of temperature [K] by the name (or kind) of springs, beams, membranes"
     )
-    factor: float = Field(default=1.0, description="Factor on these loads and changes [-]")
+    factor: float = Field(default=1.0, ge=-1e12, le=1e12, description="Factor on these loads and changes [-]")
 
     @model_validator(mode="after")
     def _some(self) -> LoadCase:
@@ -144,6 +144,10 @@ def check(scene: Scene) -> None:
         if not named(scene, name):
             known = [f.name or f.kind_name for f in scene.forces]
             raise fault(f"no force is called {name!r}; {_listed(known)}", f"/stages/freeze/{_escaped(name)}")
+        if not any(scene.forces[number].kind_name in LINES for number in named(scene, name)):
+            known = [f.name or f.kind_name for f in scene.forces if f.kind_name in LINES]
+            said = f"{name!r} names no springs or lines of constant tension; {_listed(known)}"
+            raise fault(said, f"/stages/freeze/{_escaped(name)}")
     films = [f.name or f.kind_name for f in scene.forces if KINDS[f.kind_name].is_film]
     for name in scene.stages.films if scene.stages is not None else ():
         found = named(scene, name)
@@ -153,6 +157,9 @@ def check(scene: Scene) -> None:
 
 def _check_combination(scene: Scene, name: str, factors: Mapping[str, Any]) -> None:
     pointer = f"/combinations/{_escaped(name)}"
+    for key, factor in factors.items():
+        if not abs(factor) <= LARGEST:
+            raise fault(f"{factor:g} is larger than the limit, {LARGEST:g}", f"{pointer}/{_escaped(key)}")
     if name in scene.load_cases:
         raise fault("a load case has this name, too; rename one of them", pointer)
     for key in factors:

@@ -270,7 +270,7 @@ def judge(  # type: ignore[no-untyped-def]
         noise = ROUNDING * (w[i] * reach[i] + largest + weight)
         if size > part[0] or (np.isnan(size) and not np.isnan(part[0])):
             part[0], part[1] = size, i
-        if (size > noise and size > part[2]) or np.isnan(size):
+        if (size > noise and size > part[2]) or not size < np.inf:  # rounding of what has no value excuses nothing
             part[2] = size
         part[3] = max(part[3], noise)
         if weight > 0.0:
