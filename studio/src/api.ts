@@ -26,7 +26,8 @@ export async function ask(path: string, options: RequestInit = {}): Promise<Resp
   try {
     answer = await fetch(path, { credentials: "same-origin", ...options });
   } catch {
-    throw new Refused(0, "The service does not answer. If it has ended, start it with hookean studio, then repeat this.", "unreachable");
+    const sentence = "The service does not answer. If it has ended, start it with hookean studio, then repeat this.";
+    throw new Refused(0, sentence, "unreachable");
   }
   if (answer.ok) return answer;
   const problem = (await answer.json().catch(() => ({}))) as Record<string, unknown>;
