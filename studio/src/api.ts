@@ -1,6 +1,6 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
 import type { Action, Anchor, Choices, Draft, Example, Family, Kind, Parameters, Patch, Result } from "./model";
-import type { Scene, Shared, Store, Summary, Topology } from "./model";
+import type { Scene, Shared, Store, Summary, SurfaceRead, Topology } from "./model";
 
 /** What the service refused, in its own words; status 0: it could not be reached. */
 export class Refused extends Error {
@@ -54,6 +54,11 @@ export const topology = (key: string) => read<Topology>(`${at(key)}/topology`);
 export const anchors = async (key: string) => (await read<{ anchors: Anchor[] }>(`${at(key)}/anchors`)).anchors;
 export const scene = (key: string) => read<Scene>(`${at(key)}/scene`);
 export const result = (key: string) => read<Result>(`${at(key)}/state`);
+
+/** The surface of the present shape; `step` null: a round one. */
+export const surface = (key: string, step: number | null, drops: number) =>
+  read<SurfaceRead>(`${at(key)}/surface?drops=${drops}${step === null ? "" : `&step=${step}`}`);
+
 export const act = (key: string, action: Action) => ask(`${at(key)}/${action}`, { method: "POST" });
 export const forget = (key: string) => ask(at(key), { method: "DELETE" });
 

@@ -12,6 +12,7 @@ from hookean.discretize.duplicates import _checked
 from hookean.discretize.mapping import Closest
 from hookean.discretize.meshes import as_mesh, boundary, triangles
 from hookean.errors import InputError
+from hookean.values.mesh import Mesh
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -71,8 +72,9 @@ def water_lines(mesh: Any, points: ArrayLike | None = None, count: int = 200) ->
     the drop stays, in a hollow or on a level face.
 
     In a triangle a drop runs against the gradient of its height, along an edge between two triangles that both slope
-    towards it, and from a vertex in the steepest of all directions. The ways are exact for the flat triangles; quads
-    are cut along their shorter diagonals.
+    towards it, from a vertex in the steepest of all directions, and across a level face to a corner with a lower
+    neighbour. The ways are exact for the flat triangles; quads are cut along the diagonal whose middle is lower, so
+    that no cut is a dam.
 
     - `points`: Where drops fall (k, 3) [length]; each starts on the closest triangle. Default: on the middles of
       `count` triangles at most, evenly chosen from all.
@@ -81,7 +83,7 @@ def water_lines(mesh: Any, points: ArrayLike | None = None, count: int = 200) ->
     Source: de Berg et al., Trekking in the Alps without freezing or getting tired, 1997 (trickle paths).
     """
     m = as_mesh(mesh)
-    t = triangles(m)
+    t = _undammed(m)
     if not len(t):
         if points is not None and len(np.asarray(points)):
             raise InputError("mesh", "it has no faces; give a mesh with faces")
@@ -95,6 +97,21 @@ def water_lines(mesh: Any, points: ArrayLike | None = None, count: int = 200) ->
     slopes = _Slopes(m.vertices, t, boundary(m)[0])
     ways = [slopes.way(int(first), start) for first, start in zip(chosen, starts, strict=True)]
     return WaterLines([np.array(line) for line, _ in ways], np.array([stays for _, stays in ways], bool))
+
+
+def _undammed(mesh: Mesh) -> Index:
+    """Triangles (t, 3) of a mesh, quads cut along the diagonal with the lower middle; of equals along the shorter."""
+    a, b, c, d = mesh.faces.T
+    z = mesh.vertices[:, 2]
+    one, other = z[a] + z[c], z[b] + z[d]
+    quad = c != d
+    size = np.abs(z).max(initial=0.0)
+    turned = np.where(quad & (other < one - 1e-12 * size), 1, 0)
+    level = quad & (np.abs(other - one) <= 1e-12 * size)
+    rolled = np.take_along_axis(mesh.faces, (np.arange(4) + turned[:, None]) % 4, axis=1)
+    a, b, c, d = rolled[quad & ~level].T
+    cut = np.stack([np.stack([a, b, c], 1), np.stack([a, c, d], 1)], 1).reshape(-1, 3)
+    return np.concatenate([mesh.faces[~quad, :3], cut, triangles(Mesh(mesh.vertices, mesh.faces[level]))])
 
 
 def _round_step(step: float) -> float:
@@ -149,29 +166,35 @@ class _Slopes:
 
     def way(self, triangle: int, start: Array) -> tuple[list[Array], bool]:
         """Points of the way of a drop, and whether it stays on the surface."""
-        line = [np.asarray(start, float)]
-        for _ in range(10 * len(self.t) + 100):  # each step goes down
-            step = self._across(triangle, line[-1])
-            if step is None:
-                return line, True
-            point, corner, edge = step
-            line.append(point)
-            following: int | None = None
-            if corner is None:
-                following, corner = self._over(triangle, edge)
-                if following is None and corner is None:
-                    stays = len(self.of_edge[edge]) > 1  # a level valley
-                    return line, stays
-            while corner is not None:
+        line, corner = [np.asarray(start, float)], None
+        for _ in range(10 * len(self.t) + 100):  # steps go down
+            if corner is not None:
                 if not np.array_equal(line[-1], self.x[corner]):
                     line.append(self.x[corner])
                 if corner in self.naked:
                     return line, False
-                following, corner = self._from(corner)
+                _, following, corner = self._from(corner)
                 if following is None and corner is None:
                     return line, True
-            assert following is not None
-            triangle = following
+                triangle = triangle if following is None else following
+                continue
+            step = self._across(triangle, line[-1])
+            if step is None:
+                corner = self._outlet(self.t[triangle].tolist())
+            else:
+                point, corner, edge = step
+                line.append(point)
+                if corner is not None:
+                    continue
+                following, corner = self._over(triangle, edge)
+                if following is not None:
+                    triangle = following
+                    continue
+                if len(self.of_edge[edge]) == 1:
+                    return line, False
+                corner = self._outlet(list(edge)) if corner is None else corner
+            if corner is None:
+                return line, True
         return line, True
 
     def _across(self, triangle: int, point: Array) -> tuple[Array, int | None, tuple[int, int]] | None:
@@ -203,21 +226,26 @@ class _Slopes:
         one, other = (float(self.x[corner, 2]) for corner in edge)
         return None, None if one == other else edge[one > other]
 
-    def _from(self, corner: int) -> tuple[int | None, int | None]:
-        """The triangle or the corner into or to which water runs from a corner, whichever is steepest; neither in a
-        hollow."""
-        best, found = 0.0, (None, None)
+    def _from(self, corner: int) -> tuple[float, int | None, int | None]:
+        """The triangle or the corner into or to which water runs from a corner, whichever is steepest, and the sine of
+        that slope; 0 and neither in a hollow."""
+        best, into, to = NEAR, None, None
         z = self.x[corner]
         for triangle in self.of_vertex[corner]:
             corners = self.t[triangle].tolist()
-            into = [self.change[triangle, k] for k in range(3) if corners[k] != corner]
-            if min(into) > 0.0 and self.steep[triangle] > max(best, NEAR):
-                best, found = float(self.steep[triangle]), (triangle, None)
+            opens = min(self.change[triangle, k] for k in range(3) if corners[k] != corner) > 0.0
+            if opens and self.steep[triangle] > best:
+                best, into, to = float(self.steep[triangle]), triangle, None
             for other in corners:
                 apart = self.x[other] - z
-                if other != corner and apart[2] < 0.0 and -apart[2] > best * np.linalg.norm(apart):
-                    best, found = float(-apart[2] / np.linalg.norm(apart)), (None, other)
-        return found
+                if -apart[2] > best * np.linalg.norm(apart):
+                    best, into, to = float(-apart[2] / np.linalg.norm(apart)), None, other
+        return best if into is not None or to is not None else 0.0, into, to
+
+    def _outlet(self, corners: list[int]) -> int | None:
+        """Of the corners of a level face or edge the one from which water runs on most steeply; None where it stays."""
+        slopes = [self._from(corner)[0] for corner in corners]
+        return corners[int(np.argmax(slopes))] if max(slopes) > 0.0 else None
 
 
 def _edge(one: int, other: int) -> tuple[int, int]:

@@ -34,8 +34,9 @@ def curvature(mesh: Any) -> tuple[Array, Array]:
     a sphere whose normals point outwards, and 0 on soap films without pressure. Gaussian curvature K = 1/(r1 r2) is
     negative where the surface is a saddle, 0 where it can be unrolled. With A the mixed area of a vertex,
     H = n . sum of (cot a + cot b) (p - q) / (4 A) over its edges, with the normal n along the sum of the vector areas
-    around, K = (2 pi - sum of angles) / A; a quad is the mean of its two cuts into triangles. nan at vertices on the boundary or without faces. The error falls with the size of the
-    faces where these are regular; where they are not, single values scatter.
+    around, K = (2 pi - sum of angles) / A; a quad is the mean of its two cuts into triangles. nan at vertices on the
+    boundary or without faces. The error falls with the size of the faces where these are regular; where they are not,
+    single values scatter.
 
     Source: Meyer, Desbrun, Schroeder and Barr, Discrete differential-geometry operators for triangulated 2-manifolds,
     2003.

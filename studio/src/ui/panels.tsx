@@ -11,6 +11,7 @@ import { SeePanel } from "./see";
 import { Selected } from "./selected";
 import { Shape } from "./shape";
 import type { Studio } from "./studio";
+import { SurfacePanel } from "./surface";
 import { Tables } from "./tables";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
@@ -31,6 +32,9 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="See">
         <SeePanel studio={studio} />
+      </Panel>
+      <Panel name="Surface" isClosed>
+        <SurfacePanel studio={studio} />
       </Panel>
       <Panel name="Charts">
         <Charts studio={studio} />

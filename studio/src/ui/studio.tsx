@@ -14,6 +14,7 @@ import { Readings } from "./readings";
 import { Rested } from "./rested";
 import { sharing } from "./sharing";
 import { Stage } from "./stage";
+import { Surfacing } from "./surfacing";
 import { dark, remember, remembered } from "./theme";
 import { calledOf } from "./words";
 
@@ -28,6 +29,7 @@ export interface Studio {
   readings: Readings;
   rested: Rested;
   design: Designing;
+  surfacing: Surfacing;
   /** The variant on a canvas of its own; null for none. */
   beside: Signal<Variant | null>;
 }
@@ -48,14 +50,14 @@ export function SessionPage({ name }: { name: string }) {
     const readings = new Readings(session, chosen);
     const rested = new Rested(session);
     const design = new Designing(session);
-    setStudio({ session, options: chosen, view: signal(null), readings, rested, design, beside: signal(null) });
+    const surfacing = new Surfacing(session, chosen);
+    const read = { readings, rested, design, surfacing };
+    setStudio({ session, options: chosen, view: signal(null), beside: signal(null), ...read });
     const stop = sharing(session, chosen);
     return () => {
       stop();
       forgets.forEach((forget) => forget());
-      readings.dispose();
-      rested.dispose();
-      design.dispose();
+      Object.values(read).forEach((one) => one.dispose());
       session.close();
     };
   }, [name]);
