@@ -13,6 +13,7 @@ import { Shape } from "./shape";
 import type { Studio } from "./studio";
 import { SurfacePanel } from "./surface";
 import { Tables } from "./tables";
+import { Timeline } from "./timeline";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
   return (
@@ -38,6 +39,9 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="Charts">
         <Charts studio={studio} />
+      </Panel>
+      <Panel name="Time" isClosed>
+        <Timeline studio={studio} title={title} />
       </Panel>
       <Panel name="Tables" isClosed>
         <Tables studio={studio} />

@@ -7,6 +7,7 @@ import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
 import { Designing } from "./designing";
+import { Film } from "./film";
 import { keepGroups, keptGroups } from "./kept";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
@@ -14,6 +15,7 @@ import { Readings } from "./readings";
 import { Rested } from "./rested";
 import { sharing } from "./sharing";
 import { Stage } from "./stage";
+import { Traced } from "./traced";
 import { Surfacing } from "./surfacing";
 import { dark, remember, remembered } from "./theme";
 import { calledOf } from "./words";
@@ -30,6 +32,8 @@ export interface Studio {
   rested: Rested;
   design: Designing;
   surfacing: Surfacing;
+  film: Film;
+  traced: Traced;
   /** The variant on a canvas of its own; null for none. */
   beside: Signal<Variant | null>;
 }
@@ -51,7 +55,9 @@ export function SessionPage({ name }: { name: string }) {
     const rested = new Rested(session);
     const design = new Designing(session);
     const surfacing = new Surfacing(session, chosen);
-    const read = { readings, rested, design, surfacing };
+    const film = new Film(session, chosen);
+    const traced = new Traced(session, chosen, film);
+    const read = { readings, rested, design, surfacing, film, traced };
     setStudio({ session, options: chosen, view: signal(null), beside: signal(null), ...read });
     const stop = sharing(session, chosen);
     return () => {

@@ -314,7 +314,6 @@ class Drawing implements View {
       effect(() => {
         void options.still.value;
         this.outdated = true;
-        this.scale.forget();
         this.ask();
       }),
       effect(() => {
