@@ -1,5 +1,7 @@
 // What is beside the canvas, or below it where the screen is narrow.
 import type { ComponentChildren } from "preact";
+import { Cases } from "./cases";
+import { namesOf } from "./casing";
 import { Charts } from "./charts";
 import { Compare } from "./compare";
 import { Design } from "./design";
@@ -34,6 +36,11 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       <Panel name="See">
         <SeePanel studio={studio} />
       </Panel>
+      {namesOf(studio.session.scene.value).length > 0 && (
+        <Panel name="Load cases">
+          <Cases studio={studio} />
+        </Panel>
+      )}
       <Panel name="Surface" isClosed>
         <SurfacePanel studio={studio} />
       </Panel>

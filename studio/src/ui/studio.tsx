@@ -6,6 +6,7 @@ import type { Variant } from "../variants";
 import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
+import { Casing } from "./casing";
 import { Designing } from "./designing";
 import { Film } from "./film";
 import { keepGroups, keptGroups } from "./kept";
@@ -34,6 +35,7 @@ export interface Studio {
   surfacing: Surfacing;
   film: Film;
   traced: Traced;
+  casing: Casing;
   /** The variant on a canvas of its own; null for none. */
   beside: Signal<Variant | null>;
 }
@@ -57,7 +59,8 @@ export function SessionPage({ name }: { name: string }) {
     const surfacing = new Surfacing(session, chosen);
     const film = new Film(session, chosen);
     const traced = new Traced(session, chosen, film);
-    const read = { readings, rested, design, surfacing, film, traced };
+    const casing = new Casing(session, chosen);
+    const read = { readings, rested, design, surfacing, film, traced, casing };
     setStudio({ session, options: chosen, view: signal(null), beside: signal(null), ...read });
     const stop = sharing(session, chosen);
     return () => {
