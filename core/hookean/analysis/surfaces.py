@@ -50,8 +50,9 @@ class Surface:
         far = self.displacement
         lines = [f"moved by up to {far.max():.4g} {unit}, at particle {int(far.argmax())}"] if len(far) else []
         if np.isfinite(self.slope).any():
-            at = int(np.nanargmin(self.slope))
-            lines.append(f"slope from {self.slope[at]:.4g} degrees, at particle {at}, to {np.nanmax(self.slope):.4g}")
+            angles = self.slope.round(6)  # without rounding of float64
+            at = int(np.nanargmin(angles))
+            lines.append(f"slope from {angles[at]:.4g} degrees, at particle {at}, to {np.nanmax(angles):.4g}")
         lines.append(f"{len(np.unique(self.heights.heights))} height lines, {self.heights.step:g} {unit} apart")
         return [*lines, f"{len(self.water.lines)} drops of water, of which {int(self.water.stays.sum())} stay"]
 

@@ -144,6 +144,8 @@ export interface Kept {
   scale?: Scale;
   groups?: Groups;
   layers: Partial<Record<Layer, boolean>>;
+  /** A design problem of it. */
+  design?: unknown;
 }
 
 /** A particle in the hand, and where it was taken from [length]. */
