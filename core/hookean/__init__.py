@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from hookean.analysis.load_path import load_path as load_path
     from hookean.analysis.mechanisms import Mechanisms as Mechanisms
     from hookean.analysis.mechanisms import mechanisms as mechanisms
+    from hookean.analysis.surfaces import Surface as Surface
+    from hookean.analysis.surfaces import surface as surface
     from hookean.designing.answer import Design as Design
     from hookean.designing.exploring import Exploration as Exploration
     from hookean.designing.exploring import explore as explore
@@ -210,6 +212,8 @@ _HOMES = {
     "load_path": "analysis.load_path",
     "Mechanisms": "analysis.mechanisms",
     "mechanisms": "analysis.mechanisms",
+    "Surface": "analysis.surfaces",
+    "surface": "analysis.surfaces",
     "open": "files.save",
     "picture": "pictures.picture",
     "relax": "running.run",
@@ -320,6 +324,7 @@ __all__ = [
     "Status",
     "Stream",
     "Support",
+    "Surface",
     "TangentIncircles",
     "TangentialSmooth",
     "Thrust",
@@ -352,6 +357,7 @@ __all__ = [
     "sensitivity",
     "show",
     "simulate",
+    "surface",
 ]
 
 

@@ -42,7 +42,7 @@ from hookean_server.routes import (
     recipes,
     relax,
 )
-from hookean_server.sessions import frames, shown
+from hookean_server.sessions import frames, shown, surfaces
 from hookean_server.sessions import routes as session_routes
 from hookean_server.sessions.manager import Manager
 from hookean_server.settings import Settings
@@ -107,6 +107,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         page,
         session_routes,
         shown,
+        surfaces,
         frames,
         job_routes,
     )

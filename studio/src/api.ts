@@ -1,6 +1,6 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
 import type { Action, Anchor, Choices, Draft, Example, Family, Kind, Parameters, Patch, Result } from "./model";
-import type { Scene, Shared, Store, Summary, Topology } from "./model";
+import type { Scene, Shared, Store, Summary, SurfaceRead, Topology } from "./model";
 
 /** What the service refused, in its own words; status 0: it could not be reached. */
 export class Refused extends Error {
@@ -26,7 +26,8 @@ export async function ask(path: string, options: RequestInit = {}): Promise<Resp
   try {
     answer = await fetch(path, { credentials: "same-origin", ...options });
   } catch {
-    throw new Refused(0, "The service does not answer; check that it is running.", "unreachable");
+    const sentence = "The service does not answer. If it has ended, start it with hookean studio, then repeat this.";
+    throw new Refused(0, sentence, "unreachable");
   }
   if (answer.ok) return answer;
   const problem = (await answer.json().catch(() => ({}))) as Record<string, unknown>;
@@ -53,6 +54,11 @@ export const topology = (key: string) => read<Topology>(`${at(key)}/topology`);
 export const anchors = async (key: string) => (await read<{ anchors: Anchor[] }>(`${at(key)}/anchors`)).anchors;
 export const scene = (key: string) => read<Scene>(`${at(key)}/scene`);
 export const result = (key: string) => read<Result>(`${at(key)}/state`);
+
+/** The surface of the present shape; `step` null: a round one. */
+export const surface = (key: string, step: number | null, drops: number) =>
+  read<SurfaceRead>(`${at(key)}/surface?drops=${drops}${step === null ? "" : `&step=${step}`}`);
+
 export const act = (key: string, action: Action) => ask(`${at(key)}/${action}`, { method: "POST" });
 export const forget = (key: string) => ask(at(key), { method: "DELETE" });
 

@@ -112,6 +112,21 @@ export interface Result {
   units: Units;
 }
 
+/** What is read off the surface of a shape. Numbers at particles are null where they are undefined. */
+export interface SurfaceRead {
+  /** From the start [length] */
+  displacement: (number | null)[];
+  /** [degrees] */
+  slope: (number | null)[];
+  /** [1/length] */
+  mean_curvature: (number | null)[];
+  /** [1/length^2] */
+  gaussian_curvature: (number | null)[];
+  heights: { step: number; pieces: [Point, Point][]; heights: number[] };
+  /** Ways of drops, and whether each stays on the surface. */
+  water: { lines: Point[][]; stays: boolean[] };
+}
+
 /** An edit of a running session; all of it lands or nothing. */
 export interface Patch {
   pin?: { particles: number[]; targets?: Point[]; axes?: string }[];

@@ -38,12 +38,15 @@ export const ownOf = (label: string) => label.split(SEPARATOR).slice(1).join(SEP
 export const labelOf = (label: string, name: string) => `${baseOf(label)}${SEPARATOR}${name}`;
 
 /** The force of each spring of the topology, tension + [force]. */
-export function springForces({ topology, result }: Variant): Float32Array {
+export const springForces = ({ topology, result }: Variant) => springColumn(result.forces, topology, "force");
+
+/** A column of the forces of a result, for each spring of the topology; NaN where there is none. */
+export function springColumn(forces: Record<string, unknown>[], topology: Topology, column: string): Float32Array {
   const next = new Map<number, number>();
   return Float32Array.from(topology.spring_forces, (number) => {
     const place = next.get(number) ?? 0;
     next.set(number, place + 1);
-    return (result.forces[number]?.["force"] as number[] | undefined)?.[place] ?? NaN;
+    return (forces[number]?.[column] as (number | null)[] | undefined)?.[place] ?? NaN;
   });
 }
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
+import hookean
 from serving import CABLE, HANG
 
 from .conftest import Served, problem
@@ -53,6 +54,20 @@ def test_what_is_picked_and_colours_are_kept_apart_and_change_no_model(session: 
 def test_an_invalid_view_is_refused_with_its_place(session: httpx.Client, given: dict[str, object], pointer: str):
     answer = session.patch(f"{KEY}/view", json=given)
     assert problem(answer, 422, "invalid-input")["errors"][0]["pointer"] == pointer
+
+
+def test_the_surface_is_that_of_the_core(session: httpx.Client) -> None:
+    """Of a session that was not run yet: slope and height lines of its mesh, and no drops but those asked for."""
+    scene = hookean.family("saddle", rise=2.0, across=6, along=6)
+    assert session.put(KEY, content=scene.canonical, headers={"content-type": "application/json"}).status_code == 200
+    truth = hookean.surface(hookean.Simulation(scene), 0.25, 7)
+    assert session.get(f"{KEY}/surface", params={"step": 0.25, "drops": 7}).json() == truth.to_dict()
+    answer = session.get(f"{KEY}/surface")
+    assert answer.json()["water"]["lines"] == []
+    tag = {"if-none-match": answer.headers["etag"]}
+    assert session.get(f"{KEY}/surface", headers=tag).status_code == 304
+    found = problem(session.get(f"{KEY}/surface", params={"step": 1e-9}), 422, "invalid-input")
+    assert "at most 1000 levels" in found["detail"]
 
 
 def test_edits_are_listed_with_the_revisions_they_led_to(session: httpx.Client) -> None:

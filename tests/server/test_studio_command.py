@@ -84,6 +84,13 @@ def test_a_file_is_shown_by_a_service_that_runs(home: Home, tmp_path: Path) -> N
         other = home.command("studio", str(file), "--no-browser").stdout.strip()
         assert parse_qs(urlsplit(other).fragment)["s"] != [key]
         assert len(client.get("/v1/sessions").json()["sessions"]) == 2
+    file = tmp_path / "empty.3dm"
+    file.write_bytes(b"")
+    refused = home.command("studio", str(file), "--no-browser")
+    assert refused.returncode == 2 and not refused.stdout
+    assert re.fullmatch(
+        r"hookean: empty\.3dm: the file is empty .*; save it again .* or choose another file\n", refused.stderr
+    )
 
 
 def test_it_starts_the_service_and_opens_a_browser(home: Home, tmp_path: Path) -> None:

@@ -65,6 +65,10 @@ if TYPE_CHECKING:
     from hookean.discretize.subdivision import diagonalize as diagonalize
     from hookean.discretize.subdivision import refine as refine
     from hookean.discretize.subdivision import refine_strips as refine_strips
+    from hookean.discretize.surface_lines import height_lines as height_lines
+    from hookean.discretize.surface_lines import water_lines as water_lines
+    from hookean.discretize.surface_scalars import curvature as curvature
+    from hookean.discretize.surface_scalars import slope as slope
     from hookean.discretize.warpweft import threads as threads
     from hookean.discretize.warpweft import warp_weft as warp_weft
 
@@ -90,6 +94,8 @@ _NAMES = {
     "remeshing": "remesh",
     "ladders": "align_quads strips turn_quads unroll_strips",
     "subdivision": "diagonalize refine refine_strips",
+    "surface_lines": "height_lines water_lines",
+    "surface_scalars": "curvature slope",
     "warpweft": "threads warp_weft",
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}

@@ -153,7 +153,7 @@ def _free(place: Path) -> bool:
 
 def refuse(sentence: str) -> int:
     """Print why something failed; returns the exit code."""
-    print(sentence, file=sys.stderr, flush=True)
+    print(f"hookean: {sentence}", file=sys.stderr, flush=True)
     return 2
 
 

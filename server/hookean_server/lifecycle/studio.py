@@ -183,7 +183,8 @@ def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
     address = f"/v1/sessions/{key}?label={quote(file.name[:200])}"
     status, value = request(found, "PUT", address, body, kind)
     if status not in (200, 201):
-        raise Refused(f"{file.name}: {re.sub(r'^/file:? ?', '', str(value.get('detail')))}")
+        said = re.sub(r"^/file:? ?", "", str(value.get("detail")))
+        raise Refused(f"{file.name}{' ' if said.startswith('has ') else ': '}{said}")
     return key, [str(note) for note in value.get("warnings", [])]
 
 

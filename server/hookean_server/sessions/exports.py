@@ -36,14 +36,18 @@ FORMATS = {
 def export(
     simulation: Simulation, form: str, arrays: str, view: dict[str, Any] | None = None
 ) -> tuple[str, bytes, list[str]]:
-    """Media type, bytes, and sentences on what is not in them. `form` is one of FORMATS, or scene, topology or
-    anchors; `view` is kept in a .hookean file."""
+    """Media type, bytes, and sentences on what is not in them. `form` is one of FORMATS, or scene, topology, anchors or
+    surface; `view` is kept in a .hookean file, and of a surface it has the options."""
     if form == "scene":
         return "application/json", simulation.edited_scene().canonical.encode(), []
     if form == "topology":
         return "application/json", answers.dump(topology(simulation), arrays), []
     if form == "anchors":
         return "application/json", answers.dump({"anchors": anchors(simulation)}, arrays), []
+    if form == "surface":
+        from hookean.analysis.surfaces import surface
+
+        return "application/json", answers.dump(surface(simulation, **(view or {})).to_dict(), arrays), []
     if form == "hookean":
         return FORMATS[form], project.write(project.Project(simulation, view or {})), []
     if form == "3dm":

@@ -119,14 +119,23 @@ class _Client:
                     return
                 value = _message(message.get("text"))
                 if "ack" in value:
-                    self.on_their_way = [n for n in self.on_their_way if n > value["ack"]]
-                    self.room.set()
+                    self._received(value["ack"])
                 else:
                     await orders.put(value)
         except Problem as problem:
             self.code, self.reason = 1003, problem.detail
         finally:
             worker.cancel()
+
+    def _received(self, number: int) -> None:
+        """A frame was received, and all before it. Numbers begin again with each process of the session, so frames are
+        found by their order, not by how large their numbers are."""
+        sent = self.on_their_way
+        if number in sent:
+            self.on_their_way = sent[len(sent) - sent[::-1].index(number) :]
+        else:
+            self.on_their_way = [n for n in sent if n > number]
+        self.room.set()
 
     async def _obey(self, orders: asyncio.Queue[dict[str, Any]]) -> None:
         while True:

@@ -95,7 +95,7 @@ async def listing(request: Request) -> dict[str, Any]:
 async def read(request: Request, key: Key, when: When) -> Response:
     """Revision, iteration, time, residual, status and the sentence on it."""
     live = manager(request).find(key)
-    return _unless_same(_answer(live), when)
+    return unless_same(_answer(live), when)
 
 
 @router.delete("/v1/sessions/{key}", status_code=204, summary="Delete a session", responses=openapi.problems(live=True))
@@ -228,10 +228,10 @@ async def _exported(
     tag = f'"{live.topology}"' if form == "topology" else live.etag(head)
     headers = {"etag": tag, "cache-control": "no-cache", **claimed.warned(head["notes"])}
     answer = Response(data, media_type=FORMATS.get(form, "application/json"), headers=headers)
-    return _unless_same(answer, when)
+    return unless_same(answer, when)
 
 
-def _unless_same(answer: Response, when: Conditions) -> Response:
+def unless_same(answer: Response, when: Conditions) -> Response:
     """The answer, or 304 where the client has it."""
     if not when.same(answer.headers["etag"]):
         return answer

@@ -183,7 +183,9 @@ def parts(path: Path, content_type: str, beside: str = "recipe") -> tuple[bytes,
             "/", "the body is not a multipart form; send it as multipart/form-data with a boundary"
         ) from None
     if found.get("file") == b"":
-        raise InputError("/file", "the file is empty; send a file with content")
+        raise InputError(
+            "/file", "the file is empty (0 bytes); save it again in the program that it is from, or choose another file"
+        )
     if "file" not in found:
         raise InputError("/file", "the form needs a part named file with the file in it")
     text = found.get(beside)

@@ -3,6 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import type { Units } from "../model";
 import type { Session } from "../session";
+import { PickedCharts } from "./pickedcharts";
 import { Recording, type Sample } from "./recording";
 import type { Studio } from "./studio";
 import { dark } from "./theme";
@@ -25,12 +26,14 @@ const LINES: Line[] = [
   { name: "Total energy", of: "total", unit: energy },
 ];
 
-export function Charts({ studio: { session } }: { studio: Studio }) {
+export function Charts({ studio }: { studio: Studio }) {
+  const { session } = studio;
   const recording = useRef<Recording | null>(null);
   recording.current ??= new Recording(session);
   useEffect(() => recording.current!.begin(), []);
   return (
     <div class="charts">
+      <PickedCharts studio={studio} />
       {LINES.map((line) => (
         <Chart key={line.of} line={line} session={session} recording={recording.current!} />
       ))}
@@ -101,9 +104,9 @@ function Newest({ line, session, recording }: Shown) {
   );
 }
 
-const HEIGHT = 40;
+export const HEIGHT = 40;
 
-function plotted(line: Line, place: HTMLElement): uPlot {
+export function plotted(line: { log?: boolean; whole?: boolean }, place: HTMLElement): uPlot {
   const { color, borderBottomColor } = getComputedStyle(place);
   return new uPlot(
     {
@@ -113,7 +116,7 @@ function plotted(line: Line, place: HTMLElement): uPlot {
       legend: { show: false },
       cursor: { show: false },
       scales: {
-        x: { time: false, range: (_, __, last) => [last - 60, last] },
+        x: { time: false, range: (_, first, last) => [line.whole ? first : last - 60, Math.max(last, first + 1e-3)] },
         y: line.log ? { distr: 3 } : { range: (_, low, high) => apart(low, high) },
       },
       axes: [

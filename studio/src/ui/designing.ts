@@ -64,8 +64,7 @@ export class Designing {
   constructor(private readonly session: Session) {
     this.problem = signal<Kept>(remembered<Kept>(kept(session.key), { variables: [], goals: [], constraints: [] }));
     this.forget = effect(() => {
-      const { variables, goals, constraints } = this.problem.value;
-      if (variables.length + goals.length + constraints.length) remember(kept(session.key), this.problem.value);
+      if (isAny(this.problem.value)) remember(kept(session.key), this.problem.value);
       else localStorage.removeItem(kept(session.key));
     });
   }
@@ -187,6 +186,18 @@ export class Designing {
     if (!answer || this.of !== unknowns(problem)) return null;
     return answer.variables.flatMap(({ value }) => [value].flat(2));
   }
+}
+
+/** Whether there is anything in a problem. */
+export const isAny = ({ variables, goals, constraints }: Kept) =>
+  variables.length + goals.length + constraints.length > 0;
+
+/** Give the page of a session the problem that a file kept, if it is one. */
+export function keepDesign(key: string, design: unknown): void {
+  const told = design as Partial<Kept> | null | undefined;
+  const parts = [told?.variables, told?.goals, told?.constraints];
+  if (parts.every((part) => Array.isArray(part) && part.every((one) => typeof one === "object" && one !== null)))
+    remember(kept(key), told);
 }
 
 const unknowns = ({ scene, variables }: Problem) =>

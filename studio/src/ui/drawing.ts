@@ -61,7 +61,7 @@ export async function picture(view: View, captions: Captions, isDark: boolean, w
 
 const [LINE, RAMP, LEFT] = [20, 160, 16];
 
-function caption(
+export function caption(
   pen: OffscreenCanvasRenderingContext2D,
   { title, legend, arrows }: Captions,
   isDark: boolean,

@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
+import { keepDesign } from "./designing";
 import { keepView, viewOf } from "../view/kept";
 import { quiet, refuse, tell } from "./notices";
 import { go, met } from "./place";
@@ -20,7 +21,9 @@ async function openFile(file: File): Promise<void> {
   try {
     if (/\.3dm$/i.test(file.name) && (await drafted(file))) return;
     const made = await api.open(file);
-    keepView(made.key, await viewOf(file));
+    const view = await viewOf(file);
+    keepView(made.key, view);
+    keepDesign(made.key, view?.design);
     go(made.key);
     const warnings = made.warnings ?? [];
     if (warnings.length) tell(`${file.name} is open. Notes on the file:`, warnings);

@@ -107,7 +107,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
       .replace(/[^\w.-]+/g, "-")
       .replace(/^-+|-+$/g, "") || "session";
   const exported = async (format: api.Format) => {
-    const kept = view.value && format === "hookean" ? fitting(view.value.kept()) : null;
+    const kept = view.value && format === "hookean" ? fitting(view.value.kept(), studio.design.problem.value) : null;
     const made = await api.exported(session.key, format, kept?.view);
     return { ...made, notes: [...made.notes, ...(kept?.notes ?? [])] };
   };

@@ -1,5 +1,7 @@
 // What is beside the canvas, or below it where the screen is narrow.
 import type { ComponentChildren } from "preact";
+import { Cases } from "./cases";
+import { namesOf } from "./casing";
 import { Charts } from "./charts";
 import { Compare } from "./compare";
 import { Design } from "./design";
@@ -11,7 +13,9 @@ import { SeePanel } from "./see";
 import { Selected } from "./selected";
 import { Shape } from "./shape";
 import type { Studio } from "./studio";
+import { SurfacePanel } from "./surface";
 import { Tables } from "./tables";
+import { Timeline } from "./timeline";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
   return (
@@ -32,8 +36,19 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       <Panel name="See">
         <SeePanel studio={studio} />
       </Panel>
+      {namesOf(studio.session.scene.value).length > 0 && (
+        <Panel name="Load cases">
+          <Cases studio={studio} />
+        </Panel>
+      )}
+      <Panel name="Surface" isClosed>
+        <SurfacePanel studio={studio} />
+      </Panel>
       <Panel name="Charts">
         <Charts studio={studio} />
+      </Panel>
+      <Panel name="Time" isClosed>
+        <Timeline studio={studio} title={title} />
       </Panel>
       <Panel name="Tables" isClosed>
         <Tables studio={studio} />

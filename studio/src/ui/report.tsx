@@ -22,12 +22,15 @@ export function Report({ studio }: { studio: Studio }) {
 
 const LOST = {
   silent: "Playing, but no update for 2 s; showing the last received values.",
-  lost: "Connection to the service lost; retrying. Showing the last received values.",
-  gone: "This session was deleted; showing the last received values.",
+  lost:
+    "Connection to the service lost; retrying. If it has ended, start it with hookean studio: this page then " +
+    "continues. Showing the last received values.",
+  gone: "This session was deleted; showing the last received values. Choose another one under All sessions.",
   broken: "Reload the page.",
 };
 
-const NONE = "Unknown session: it was deleted, or the link belongs to another service.";
+const NONE =
+  "Unknown session: it was deleted, or the link belongs to another service. Choose another one under All sessions.";
 
 function Lost({ studio: { session } }: { studio: Studio }) {
   const connection = session.connection.value;

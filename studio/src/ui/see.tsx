@@ -120,11 +120,13 @@ export function LegendBox({ studio: { view, session, options } }: { studio: Stud
   const colours = palette(dark.value);
   const stale = session.connection.value !== "live";
   const variant = options.ghost.value;
-  if (!legend && !load && !reaction && !variant) return null;
+  const faces = view.value?.faces.value;
+  if (!legend && !faces && !load && !reaction && !variant) return null;
   return (
     <div class={stale ? "legend stale" : "legend"} role="group" aria-label="Legend">
       {variant && <Overlaid name={variant.name} own={legend?.colours ?? [colours.plain]} colour={colours.variant} />}
       {legend && <Ramp legend={legend} mark={() => (options.marked.value = view.value?.beyond() ?? [])} />}
+      {faces && <Ramp legend={faces} mark={() => (options.marked.value = view.value?.facesBeyond() ?? [])} />}
       {loads && load > 0 && <Arrow name="Load" size={load} unit={force} colour={colours.load} />}
       {reactions && reaction > 0 && <Arrow name="Reaction" size={reaction} unit={force} colour={colours.reaction} />}
     </div>
@@ -156,7 +158,7 @@ function Ramp({ legend: { title, unit, low, high, beyond, equal, colours }, mark
         <span>{said(high, 3)}</span>
       </p>
       {beyond > 0 && (
-        <button type="button" class="small" title="Mark the springs whose values lie beyond the scale" onClick={mark}>
+        <button type="button" class="small" title="Mark what has values beyond the scale" onClick={mark}>
           {counted(beyond, "value")} beyond
         </button>
       )}

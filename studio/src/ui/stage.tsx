@@ -10,6 +10,7 @@ import { Report } from "./report";
 import { LegendBox, Looks } from "./see";
 import { Selecting } from "./selecting";
 import { Solving } from "./solving";
+import { StillBar } from "./still";
 import type { Studio } from "./studio";
 
 export function Stage({ studio }: { studio: Studio }) {
@@ -64,6 +65,7 @@ export function Stage({ studio }: { studio: Studio }) {
         <Looks studio={studio} />
         <LegendBox studio={studio} />
         <Readout studio={studio} />
+        <StillBar studio={studio} />
       </div>
       <Solving session={studio.session} />
       <Report studio={studio} />

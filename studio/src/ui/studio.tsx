@@ -6,7 +6,9 @@ import type { Variant } from "../variants";
 import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
+import { Casing } from "./casing";
 import { Designing } from "./designing";
+import { Film } from "./film";
 import { keepGroups, keptGroups } from "./kept";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
@@ -14,6 +16,8 @@ import { Readings } from "./readings";
 import { Rested } from "./rested";
 import { sharing } from "./sharing";
 import { Stage } from "./stage";
+import { Traced } from "./traced";
+import { Surfacing } from "./surfacing";
 import { dark, remember, remembered } from "./theme";
 import { calledOf } from "./words";
 
@@ -28,6 +32,10 @@ export interface Studio {
   readings: Readings;
   rested: Rested;
   design: Designing;
+  surfacing: Surfacing;
+  film: Film;
+  traced: Traced;
+  casing: Casing;
   /** The variant on a canvas of its own; null for none. */
   beside: Signal<Variant | null>;
 }
@@ -48,14 +56,17 @@ export function SessionPage({ name }: { name: string }) {
     const readings = new Readings(session, chosen);
     const rested = new Rested(session);
     const design = new Designing(session);
-    setStudio({ session, options: chosen, view: signal(null), readings, rested, design, beside: signal(null) });
+    const surfacing = new Surfacing(session, chosen);
+    const film = new Film(session, chosen);
+    const traced = new Traced(session, chosen, film);
+    const casing = new Casing(session, chosen);
+    const read = { readings, rested, design, surfacing, film, traced, casing };
+    setStudio({ session, options: chosen, view: signal(null), beside: signal(null), ...read });
     const stop = sharing(session, chosen);
     return () => {
       stop();
       forgets.forEach((forget) => forget());
-      readings.dispose();
-      rested.dispose();
-      design.dispose();
+      Object.values(read).forEach((one) => one.dispose());
       session.close();
     };
   }, [name]);

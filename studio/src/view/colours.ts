@@ -21,6 +21,8 @@ export interface Palette {
   accent: string;
   /** A variant over the form. */
   variant: string;
+  /** Ways of water. */
+  water: string;
   warning: string;
   cold: string[];
   middle: string;
@@ -41,6 +43,7 @@ const LIGHT: Palette = {
   guide: "#8a6d1f",
   accent: "#e08a00",
   variant: "#00857a",
+  water: "#1666c0",
   warning: "#d6186b",
   cold: ["#06306e", "#1f66b0", "#5ea2d6", "#a9c9e2"],
   middle: "#d3d3d3",
@@ -62,6 +65,7 @@ const DARK: Palette = {
   guide: "#d6b656",
   accent: "#ffb84d",
   variant: "#3fd9c8",
+  water: "#6db4ff",
   warning: "#ff6fae",
   cold: ["#cfe6ff", "#86c0ff", "#4d94e6", "#3d6fa8"],
   middle: "#6a737c",

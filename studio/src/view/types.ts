@@ -1,5 +1,6 @@
 // What the view shows and receives: signals that panels set and the view follows, and what it gives back.
 import { type Signal, signal } from "@preact/signals";
+import type { Frame } from "../frame";
 import type { Point } from "../model";
 import type { Place } from "./camera";
 import type { Dress } from "./picture";
@@ -43,6 +44,26 @@ export interface Shadow {
   ends: Int32Array;
 }
 
+/** Lines on the surface: of equal height, or ways of water that runs off or stays. */
+export interface Sketch {
+  kind: "height" | "runs" | "stays";
+  /** x y z of their points [length], and pairs of these. */
+  positions: Float32Array;
+  ends: Int32Array;
+}
+
+/** What is read off the surface: colours of its faces by numbers at their particles, NaN for none, and lines. */
+export interface Painted {
+  colours: { title: string; unit: string; values: Float32Array } | null;
+  lines: Sketch[];
+}
+
+/** A shape that is shown in the place of the present one, and what it is, in a sentence. */
+export interface Still {
+  frame: Frame;
+  said: string;
+}
+
 /** Which number a colour stands for. */
 export interface Legend {
   /** Force or strain. */
@@ -80,6 +101,10 @@ export interface Options {
   given: Signal<Given | null>;
   /** A variant that is drawn over the form. */
   ghost: Signal<Shadow | null>;
+  /** What is shown on the surface. */
+  painted: Signal<Painted | null>;
+  /** A moment of a recording, or a load case; null: the present shape. */
+  still: Signal<Still | null>;
   dark: Signal<boolean>;
 }
 
@@ -106,6 +131,8 @@ export const options = (): Options => ({
   restLengths: signal<Float32Array | null>(null),
   given: signal<Given | null>(null),
   ghost: signal<Shadow | null>(null),
+  painted: signal<Painted | null>(null),
+  still: signal<Still | null>(null),
   dark: signal(false),
 });
 
@@ -117,6 +144,8 @@ export interface Kept {
   scale?: Scale;
   groups?: Groups;
   layers: Partial<Record<Layer, boolean>>;
+  /** A design problem of it. */
+  design?: unknown;
 }
 
 /** A particle in the hand, and where it was taken from [length]. */
@@ -128,6 +157,8 @@ export interface Dragged {
 export interface View {
   readonly dragged: Signal<Dragged | null>;
   readonly legend: Signal<Legend | null>;
+  /** The scale of coloured faces. */
+  readonly faces: Signal<Legend | null>;
   /** The longest arrows of loads and of reactions [force]; 0 for none. */
   readonly arrows: Signal<{ load: number; reaction: number }>;
   /** What the keyboard has just done, in a sentence, to be read out. */
@@ -145,6 +176,10 @@ export interface View {
   inside(line: { x: number; y: number }[]): number[];
   /** Particles of the springs whose values lie beyond the scale. */
   beyond(): number[];
+  /** Particles of faces whose values lie beyond their scale. */
+  facesBeyond(): number[];
+  /** Draw now, in full quality: the canvas can be read until this task ends. */
+  render(): void;
   /** How it is looked at now: what a saved model keeps. */
   kept(): Kept;
   /** From where it is looked at. */

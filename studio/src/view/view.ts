@@ -20,6 +20,7 @@ import { type Dress, Picture } from "./picture";
 import { Scaling } from "./scaling";
 import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
+import { Surface } from "./surface";
 import { Triad } from "./triad";
 import type { Dragged, Kept, Legend, Look, Options, Picked, View } from "./types";
 
@@ -32,6 +33,7 @@ export function createView(canvas: HTMLCanvasElement, session: Session, options:
 
 class Drawing implements View {
   readonly legend = signal<Legend | null>(null);
+  readonly faces = signal<Legend | null>(null);
   readonly arrows = signal({ load: 0, reaction: 0 });
   readonly announcement = signal("");
   readonly away = signal(false);
@@ -44,6 +46,7 @@ class Drawing implements View {
   private readonly guide: Guide;
   private readonly guides: Guides;
   private readonly ghost: Ghost;
+  private readonly surface: Surface;
   private readonly watchers = new Set<() => void>();
   private readonly triad: Triad;
   private readonly hand: Hand;
@@ -80,6 +83,7 @@ class Drawing implements View {
     this.guide = new Guide(this.stage);
     this.guides = new Guides(this.stage);
     this.ghost = new Ghost(this.stage);
+    this.surface = new Surface(this.stage);
     this.triad = new Triad(this.stage);
     this.hand = new Hand(this.handles());
     const say = (sentence: string) => (this.announcement.value = sentence);
@@ -137,6 +141,14 @@ class Drawing implements View {
     return this.scale.beyond(this.numbers(this.drawn)).flatMap((i) => [ends[2 * i]!, ends[2 * i + 1]!]);
   }
 
+  facesBeyond(): number[] {
+    return this.surface.beyond();
+  }
+
+  render(): void {
+    this.draw(true);
+  }
+
   kept(): Kept {
     const { colouring, scale, groups, layers } = this.options;
     const eye = numbers(this.eye.place);
@@ -172,8 +184,8 @@ class Drawing implements View {
     clearTimeout(this.counting);
     clearTimeout(this.pacing);
     this.undo.reverse().forEach((undo) => undo());
-    const { hand, keys, guide, guides, ghost, triad, highlights } = this;
-    for (const part of [hand, keys, guide, guides, ghost, triad, highlights]) part.dispose();
+    const { hand, keys, guide, guides, ghost, surface, triad, highlights } = this;
+    for (const part of [hand, keys, guide, guides, ghost, surface, triad, highlights]) part.dispose();
     this.eye.dispose();
     this.picture.dispose();
     this.stage.dispose();
@@ -189,6 +201,8 @@ class Drawing implements View {
     picture.hold(session.anchors.peek());
     picture.know(options.restLengths.peek());
     this.ghost.put(options.ghost.peek(), true);
+    this.surface.build(picture.form);
+    this.surface.put(options.painted.peek());
     this.drawn = null;
     this.scale.forget();
     this.dressed = 0;
@@ -235,6 +249,7 @@ class Drawing implements View {
   }
 
   private takes(particle: number): boolean {
+    if (this.options.still.peek()) return false; // what is not of now cannot be moved
     const picked = this.options.picked.value;
     const alone = this.picture.dotted(this.eye.pixel(this.stage.height));
     return alone || this.picture.held.has(particle) || (picked?.kind === "particle" && picked.index === particle);
@@ -288,10 +303,22 @@ class Drawing implements View {
         picture.given = isGiven ? (options.given.value?.values ?? null) : null;
         this.outdated = true;
         this.scale.choose(options.scale.value);
+        if (options.colouring.value === "plain") this.legend.value = null;
         this.ask();
       }),
       effect(() => {
         this.ghost.put(options.ghost.value);
+        this.dressed = 0;
+        this.ask();
+      }),
+      effect(() => {
+        void options.still.value;
+        this.outdated = true;
+        this.ask();
+      }),
+      effect(() => {
+        this.surface.put(options.painted.value);
+        this.faces.value = this.surface.legend(options.dark.value);
         this.dressed = 0;
         this.ask();
       }),
@@ -362,10 +389,13 @@ class Drawing implements View {
 
   /** Draw what is newest; whether that was possible. */
   private draw(finely: boolean): boolean {
-    const { frame, picture, stage, eye } = this;
+    const { picture, stage, eye } = this;
+    const still = this.options.still.peek()?.frame;
+    const frame = still ?? this.frame;
     if (!frame || frame.positions.length !== 3 * (picture.form?.particles ?? -1)) return false;
     // an edit is acknowledged and its first frame is on its way
-    if (frame.revision < stats.revisionAcknowledged || stage.renderer.getContext().isContextLost()) return false;
+    const isPast = !still && frame.revision < stats.revisionAcknowledged;
+    if (isPast || stage.renderer.getContext().isContextLost()) return false;
     const isOther = this.drawn !== frame;
     if (isOther || this.outdated) this.upload(frame);
     const began = performance.now();
@@ -377,7 +407,7 @@ class Drawing implements View {
     this.triad.place(eye);
     picture.rough(!finely && stage.pace.rough);
     stage.draw(eye.camera, finely);
-    this.counted(frame);
+    if (!still) this.counted(frame);
     return true;
   }
 
@@ -465,6 +495,7 @@ class Drawing implements View {
     this.guides.put(this.session.scene.value, picture.size);
     this.guides.dress(options.dark.value, options.layers.value.guides, picture.size);
     this.ghost.dress(options.dark.value);
+    this.surface.dress(options.dark.value);
     this.highlights.dress(options.dark.value);
     this.triad.dress(options.dark.value);
   }

@@ -113,10 +113,10 @@ def by_convention(drawing: Drawing, given: Mapping[str, Any]) -> tuple[Built, st
     nothing = ""
     if not reading.elastic:
         why = next((f"; {item.label}: {why}" for item, why in reading.left.items()), "")
+        where = f" on layers {listed(layers_of(drawing.items))}" if drawing.items else ""
         nothing = (
-            f"has nothing to relax ({count(len(drawing.items), 'visible object')} on layers "
-            f"{listed(layers_of(drawing.items))}{why}); put curves or meshes on a layer named springs, cables or "
-            "membrane, or give a recipe"
+            f"has nothing to relax ({count(len(drawing.items), 'visible object')}{where}{why}); put curves or meshes "
+            "on a layer named springs, cables or membrane, or give a recipe"
         )
         reading.left.update({i: f"cannot be {roles[i]} without springs" for i in roles if i not in reading.left})
         reading.forces.clear()

@@ -1,0 +1,15 @@
+// Over the canvas while another shape than the present one is shown: what it is, and the way back.
+import type { Studio } from "./studio";
+
+export function StillBar({ studio: { options, film } }: { studio: Studio }) {
+  const still = options.still.value;
+  if (!still) return null;
+  return (
+    <div class="still" role="group" aria-label="Shown shape">
+      <span>{still.said}</span>
+      <button type="button" class="small" title="Show the present shape" onClick={() => film.leave()}>
+        Back to now
+      </button>
+    </div>
+  );
+}
