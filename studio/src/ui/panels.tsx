@@ -1,5 +1,7 @@
 // What is beside the canvas, or below it where the screen is narrow.
 import type { ComponentChildren } from "preact";
+import { useRef } from "preact/hooks";
+import { DrawPanel } from "../drawing/drawpanel";
 import { Charts } from "./charts";
 import { Compare } from "./compare";
 import { Design } from "./design";
@@ -14,12 +16,18 @@ import type { Studio } from "./studio";
 import { Tables } from "./tables";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
+  // who begins with an empty page draws, also after the first corner
+  const isBlank = useRef(false);
+  isBlank.current ||= studio.session.topology.value?.particles === 0;
   return (
     <aside class="panels" aria-label="Panels">
       <Panel name="Picked">
         <PickedPanel studio={studio} />
         <Selected studio={studio} />
         <Measure studio={studio} />
+      </Panel>
+      <Panel name="Draw" isClosed={!isBlank.current} isOpen={isBlank.current}>
+        <DrawPanel studio={studio} />
       </Panel>
       {studio.session.scene.value?.family && (
         <Panel name="Shape">
@@ -54,13 +62,14 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
 interface Told {
   name: string;
   isClosed?: boolean;
+  isOpen?: boolean;
   children: ComponentChildren;
 }
 
-function Panel({ name, isClosed = false, children }: Told) {
+function Panel({ name, isClosed = false, isOpen = false, children }: Told) {
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
-    <details class="panel" open={(!narrow && !isClosed) || ["Picked", "Shape", "Forces"].includes(name)}>
+    <details class="panel" open={isOpen || (!narrow && !isClosed) || ["Picked", "Shape", "Forces"].includes(name)}>
       <summary>
         <h2>{name}</h2>
       </summary>

@@ -1,6 +1,7 @@
 // The canvas, and the messages over it.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { expose } from "../automation";
+import { PenView } from "../drawing/penview";
 import { createView } from "../view/view";
 import { BesideCanvas } from "./beside";
 import { dark } from "./theme";
@@ -61,6 +62,7 @@ export function Stage({ studio }: { studio: Studio }) {
         <BesideCanvas studio={studio} />
         <Labels studio={studio} />
         <Selecting studio={studio} />
+        <PenView studio={studio} />
         <Looks studio={studio} />
         <LegendBox studio={studio} />
         <Readout studio={studio} />

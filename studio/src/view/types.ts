@@ -1,5 +1,6 @@
 // What the view shows and receives: signals that panels set and the view follows, and what it gives back.
 import { type Signal, signal } from "@preact/signals";
+import type { PerspectiveCamera } from "three";
 import type { Point } from "../model";
 import type { Place } from "./camera";
 import type { Dress } from "./picture";
@@ -12,8 +13,8 @@ export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "re
 /** What is picked. */
 export type Picked = { kind: "particle" | "spring"; index: number } | null;
 
-/** What a drag on the canvas does: as ever, or select particles. */
-export type Tool = "none" | "box" | "lasso";
+/** What a drag on the canvas does: as ever, or select particles; or a click draws. */
+export type Tool = "none" | "box" | "lasso" | "draw";
 
 /** Particles by the name of a group. */
 export type Groups = Record<string, number[]>;
@@ -80,7 +81,27 @@ export interface Options {
   given: Signal<Given | null>;
   /** A variant that is drawn over the form. */
   ghost: Signal<Shadow | null>;
+  /** CSS colours of groups, by their names. */
+  groupColours: Signal<Record<string, string>>;
+  /** The plane in which corners are drawn; null: not shown. */
+  working: Signal<Sheet | null>;
+  /** A plane beyond which nothing of the form is shown. */
+  section: Signal<Section | null>;
   dark: Signal<boolean>;
+}
+
+/** The plane across an axis at a coordinate [length], with a grid of this step. */
+export interface Sheet {
+  axis: "x" | "y" | "z";
+  at: number;
+  step: number;
+}
+
+/** The plane across an axis at a coordinate [length]; shown is what is below, or above if `isTurned`. */
+export interface Section {
+  axis: "x" | "y" | "z";
+  at: number;
+  isTurned: boolean;
 }
 
 export const options = (): Options => ({
@@ -106,6 +127,9 @@ export const options = (): Options => ({
   restLengths: signal<Float32Array | null>(null),
   given: signal<Given | null>(null),
   ghost: signal<Shadow | null>(null),
+  groupColours: signal<Record<string, string>>({}),
+  working: signal<Sheet | null>(null),
+  section: signal<Section | null>(null),
   dark: signal(false),
 });
 
@@ -116,6 +140,9 @@ export interface Kept {
   colouring: Colouring;
   scale?: Scale;
   groups?: Groups;
+  groupColours?: Record<string, string>;
+  /** How the file that it was made from was read, and what that is called. */
+  recipe?: { file: string; text: string };
   layers: Partial<Record<Layer, boolean>>;
 }
 
@@ -156,6 +183,7 @@ export interface View {
   dressing(): Dress;
   /** What is seen now, in full quality. */
   png(): Promise<Blob>;
+  readonly camera: PerspectiveCamera;
   /** Where a particle is drawn [CSS pixels of the page]; null behind the eye. */
   project(particle: number): { x: number; y: number } | null;
   /** What is drawn: x y z of each particle [length]. */

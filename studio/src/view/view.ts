@@ -1,6 +1,6 @@
 // The view of a session: what is on the canvas. A picture is drawn only when something has changed.
 import { effect, signal } from "@preact/signals";
-import { Vector3 } from "three";
+import { type PerspectiveCamera, Vector3 } from "three";
 import type { Frame } from "../frame";
 import type { Scene } from "../model";
 import type { Session } from "../session";
@@ -15,11 +15,13 @@ import { Guides } from "./guides";
 import { Highlights } from "./highlights";
 import { Keys } from "./keys";
 import { numbers, remember, remembered } from "./memory";
+import { Overlays } from "./overlays";
 import { Picker } from "./picking";
 import { type Dress, Picture } from "./picture";
 import { Scaling } from "./scaling";
 import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
+import { blank } from "../drawing/blank";
 import { Triad } from "./triad";
 import type { Dragged, Kept, Legend, Look, Options, Picked, View } from "./types";
 
@@ -44,6 +46,7 @@ class Drawing implements View {
   private readonly guide: Guide;
   private readonly guides: Guides;
   private readonly ghost: Ghost;
+  private readonly overlays: Overlays;
   private readonly watchers = new Set<() => void>();
   private readonly triad: Triad;
   private readonly hand: Hand;
@@ -81,11 +84,16 @@ class Drawing implements View {
     this.guides = new Guides(this.stage);
     this.ghost = new Ghost(this.stage);
     this.triad = new Triad(this.stage);
+    this.overlays = new Overlays(this.stage, options, session, this.picture, this.ask);
     this.hand = new Hand(this.handles());
     const say = (sentence: string) => (this.announcement.value = sentence);
     this.keys = new Keys({ ...this.handles(), eye: this.eye, fit: () => this.fit(), say });
     this.watchCanvas();
     this.watchSession();
+  }
+
+  get camera(): PerspectiveCamera {
+    return this.eye.camera;
   }
 
   fit(): void {
@@ -138,9 +146,10 @@ class Drawing implements View {
   }
 
   kept(): Kept {
-    const { colouring, scale, groups, layers } = this.options;
-    const eye = numbers(this.eye.place);
-    return { eye, colouring: colouring.value, scale: scale.value, groups: groups.value, layers: layers.value };
+    const { colouring, scale, groups, groupColours, layers } = this.options;
+    const [eye, colours] = [numbers(this.eye.place), groupColours.value];
+    const seen = { eye, colouring: colouring.value, scale: scale.value, groups: groups.value, layers: layers.value };
+    return Object.keys(colours).length ? { ...seen, groupColours: colours } : seen;
   }
 
   async png(): Promise<Blob> {
@@ -172,8 +181,8 @@ class Drawing implements View {
     clearTimeout(this.counting);
     clearTimeout(this.pacing);
     this.undo.reverse().forEach((undo) => undo());
-    const { hand, keys, guide, guides, ghost, triad, highlights } = this;
-    for (const part of [hand, keys, guide, guides, ghost, triad, highlights]) part.dispose();
+    const { hand, keys, guide, guides, ghost, triad, highlights, overlays } = this;
+    for (const part of [hand, keys, guide, guides, ghost, triad, highlights, overlays]) part.dispose();
     this.eye.dispose();
     this.picture.dispose();
     this.stage.dispose();
@@ -386,7 +395,7 @@ class Drawing implements View {
     this.fitted = true;
     const place = this.untouched ? null : remembered(this.session.key);
     if (place) this.eye.put(place);
-    else this.eye.first(this.picture.body(frame));
+    else this.eye.first(frame.positions.length ? this.picture.body(frame) : blank(this.session.summary.value?.units));
     this.untouched = place === null;
     this.dress();
   }
