@@ -122,8 +122,8 @@ def _put(simulation: Simulation, arrays: dict[str, NDArray[Any]]) -> None:
 
 def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
     """Make an edit: `{"undo": true}`, `redo`, `reset`; `{"rebuild": {...}}` with parameters of the scene's family,
-    `{"units": {...}}` with other units of the same numbers, `{"draw": {...}}` with what is drawn or deleted, or a patch,
-    all with or without a `gesture`.
+    `{"units": {...}}` with other units of the same numbers, `{"draw": {...}}` with what is drawn or deleted, or a
+    patch, all with or without a `gesture`.
 
     Returns it as it can be made again exactly, and what it sets in words: an edit of the same gesture that sets the
     same replaces it in the store; "" for one that nothing replaces.

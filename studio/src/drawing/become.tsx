@@ -39,7 +39,7 @@ export function usual(kind: string, units: Units): Record<string, string> {
 /** The force, without its place; a sentence where a field is wrong; null for nothing. */
 export function forceOf(of: Of, chosen: Chosen): SceneForce | string | null {
   const kind = kinds.value?.get(chosen.kind);
-  if (!kind) return of === "faces" ? null : null;
+  if (!kind) return null;
   const values = valuesOf(fieldsOf(kind), chosen.typed);
   if (typeof values === "string") return values;
   const name = chosen.name.trim() || `drawn ${of}`;
@@ -60,7 +60,7 @@ export function Become({ of, chosen, units }: Told) {
   const kind = kinds.value?.get(name);
   const what = of === "lines" ? "Lines" : "Faces";
   return (
-    <div role="group" aria-label={`What ${of} become`} class="become">
+    <div role="group" aria-label={`Drawn ${of}`} class="become">
       <label class="field" title={kind?.summary ?? "Particles alone, without a force; forces can be added later"}>
         <span>{what} become</span>
         <select
@@ -79,7 +79,7 @@ export function Become({ of, chosen, units }: Told) {
           ))}
         </select>
       </label>
-      <label class="field" title="What is drawn under one name and with the same values is one force">
+      <label class="field wide" title="What is drawn under one name and with the same values is one force">
         <span>Name</span>
         <input
           type="text"

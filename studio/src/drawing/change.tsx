@@ -5,6 +5,7 @@ import { refuse, tell } from "../ui/notices";
 import { NumberField } from "../ui/number";
 import type { Studio } from "../ui/studio";
 import { counted } from "../ui/words";
+import { naked } from "../view/sets";
 import type { Pen } from "./pen";
 
 interface Chosen {
@@ -37,22 +38,6 @@ export function chosenOf({ options }: Studio, topology: Topology): Chosen {
 const key = (a: number, b: number) => (a < b ? `${a} ${b}` : `${b} ${a}`);
 
 const distinct = (edges: [number, number][]) => [...new Map(edges.map((edge) => [key(...edge), edge])).values()];
-
-/** Edges of meshes at which there is one face alone. */
-export function naked({ meshes }: Topology): [number, number][] {
-  const seen = new Map<string, { edge: [number, number]; count: number }>();
-  for (const { faces } of Object.values(meshes)) {
-    for (const face of faces) {
-      const corners = [...new Set(face)];
-      corners.forEach((a, i) => {
-        const edge: [number, number] = [a, corners[(i + 1) % corners.length]!];
-        const found = seen.get(key(...edge)) ?? { edge, count: 0 };
-        seen.set(key(...edge), { edge, count: found.count + 1 });
-      });
-    }
-  }
-  return [...seen.values()].filter(({ count }) => count === 1).map(({ edge }) => edge);
-}
 
 export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
   const { session, options } = studio;
@@ -93,7 +78,7 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
       <summary>Change what is selected</summary>
       <p class="note" role="status">
         {several(particles.length, "particle")}, {several(springs.length, "spring")} and {several(count, "face")} selected.
-        Select by a click, or below "Select several".
+        Click one, or select more under Picked.
       </p>
       <div class="row">
         <NumberField

@@ -37,6 +37,10 @@ export function DrawPanel({ studio }: { studio: Studio }) {
   }, [units.length, units.force]);
   pen.lines = () => forceOf("lines", lines.value);
   pen.faces = () => forceOf("faces", faces.value);
+  const isBlank = session.topology.value?.particles === 0;
+  useEffect(() => {
+    if (isBlank) options.tool.value = "draw";
+  }, [isBlank]);
   const isOn = options.tool.value === "draw";
   const choose = (mode: Mode) => {
     const isSame = isOn && pen.mode.value === mode;
@@ -81,8 +85,8 @@ function Typed({ pen, unit }: { pen: Pen; unit: string }) {
   };
   return (
     <form class="typed" onSubmit={put}>
-      <label class="field" title="x y z of the next corner; @ before them: from the last corner. Enter puts it">
-        <span>Next corner</span>
+      <label class="field wide" title="x y z of the next corner; @ before them: from the last corner. Enter puts it">
+        <span>Next corner [{unit}]</span>
         <input
           id="next-corner"
           type="text"
@@ -95,7 +99,6 @@ function Typed({ pen, unit }: { pen: Pen; unit: string }) {
             if (event.key === "Escape") pen.end();
           }}
         />
-        <span class="unit">{unit}</span>
       </label>
       {pen.fault.value && (
         <p class="fault" role="alert">
@@ -136,7 +139,7 @@ function Plane({ pen, unit }: { pen: Pen; unit: string }) {
           ))}
         </select>
       </label>
-      <div class="row">
+      <div class="row pair">
         <NumberField
           name={`Working plane at ${working.axis}`}
           seen={`At ${working.axis}`}

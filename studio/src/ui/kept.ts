@@ -14,6 +14,15 @@ export function keepGroups(key: string, groups: Groups): void {
   else localStorage.removeItem(name(key));
 }
 
+const coloured = (key: string) => `hookean-group-colours-${key}`;
+
+export const keptColours = (key: string) => remembered<Record<string, string>>(coloured(key), {});
+
+export function keepColours(key: string, colours: Record<string, string>): void {
+  if (Object.keys(colours).length) remember(coloured(key), colours);
+  else localStorage.removeItem(coloured(key));
+}
+
 /** The view as a file keeps it, and a sentence on groups that do not fit into it. */
 export function fitting(view: Kept): { view: Kept; notes: string[] } {
   if (JSON.stringify(view).length <= LONGEST) return { view, notes: [] };

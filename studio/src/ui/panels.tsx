@@ -9,11 +9,13 @@ import { Forces } from "./forces";
 import { Measure } from "./measure";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
+import { SectionChoice } from "./section";
 import { SeePanel } from "./see";
 import { Selected } from "./selected";
 import { Shape } from "./shape";
 import type { Studio } from "./studio";
 import { Tables } from "./tables";
+import { TagsChoice } from "./tags";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
   // who begins with an empty page draws, also after the first corner
@@ -39,6 +41,8 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="See">
         <SeePanel studio={studio} />
+        <TagsChoice studio={studio} />
+        <SectionChoice studio={studio} />
       </Panel>
       <Panel name="Charts">
         <Charts studio={studio} />

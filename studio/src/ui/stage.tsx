@@ -12,6 +12,7 @@ import { LegendBox, Looks } from "./see";
 import { Selecting } from "./selecting";
 import { Solving } from "./solving";
 import type { Studio } from "./studio";
+import { TagLabels } from "./tags";
 
 export function Stage({ studio }: { studio: Studio }) {
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -61,6 +62,7 @@ export function Stage({ studio }: { studio: Studio }) {
         )}
         <BesideCanvas studio={studio} />
         <Labels studio={studio} />
+        <TagLabels studio={studio} />
         <Selecting studio={studio} />
         <PenView studio={studio} />
         <Looks studio={studio} />

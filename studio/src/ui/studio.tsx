@@ -7,7 +7,7 @@ import { takeUp } from "../view/kept";
 import { type Options, options, type View } from "../view/types";
 import { Bar } from "./bar";
 import { Designing } from "./designing";
-import { keepGroups, keptGroups } from "./kept";
+import { keepColours, keepGroups, keptColours, keptGroups } from "./kept";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
 import { Readings } from "./readings";
@@ -38,12 +38,13 @@ export function SessionPage({ name }: { name: string }) {
     const session = new Session(name);
     const chosen = options();
     chosen.layers.value = { ...chosen.layers.value, ...remembered(LAYERS, {}) };
-    chosen.groups.value = keptGroups(name);
+    [chosen.groups.value, chosen.groupColours.value] = [keptGroups(name), keptColours(name)];
     takeUp(name, chosen);
     chosen.dark.value = dark.peek();
     const forgets = [
       effect(() => remember(LAYERS, chosen.layers.value)),
       effect(() => keepGroups(name, chosen.groups.value)),
+      effect(() => keepColours(name, chosen.groupColours.value)),
     ];
     const readings = new Readings(session, chosen);
     const rested = new Rested(session);

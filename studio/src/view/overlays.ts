@@ -83,7 +83,7 @@ export class Overlays {
     const { groups, groupColours } = this.options;
     const coloured = Object.entries(groups.value).filter(([name]) => groupColours.value[name]);
     while (this.marks.length < coloured.length) {
-      const marks = new Marks(this.stage.common, "disc", 8, true);
+      const marks = new Marks(this.stage.common, "disc", 8);
       this.stage.group.add(marks.points);
       this.marks.push(marks);
     }

@@ -85,10 +85,15 @@ export interface Options {
   groupColours: Signal<Record<string, string>>;
   /** The plane in which corners are drawn; null: not shown. */
   working: Signal<Sheet | null>;
+  /** What is written beside the form. */
+  tags: Signal<Tags>;
   /** A plane beyond which nothing of the form is shown. */
   section: Signal<Section | null>;
   dark: Signal<boolean>;
 }
+
+/** Nothing; names of anchors, groups and forces; or numbers of springs. */
+export type Tags = "none" | "names" | "forces" | "lengths";
 
 /** The plane across an axis at a coordinate [length], with a grid of this step. */
 export interface Sheet {
@@ -129,6 +134,7 @@ export const options = (): Options => ({
   ghost: signal<Shadow | null>(null),
   groupColours: signal<Record<string, string>>({}),
   working: signal<Sheet | null>(null),
+  tags: signal<Tags>("none"),
   section: signal<Section | null>(null),
   dark: signal(false),
 });
@@ -186,6 +192,8 @@ export interface View {
   readonly camera: PerspectiveCamera;
   /** Where a particle is drawn [CSS pixels of the page]; null behind the eye. */
   project(particle: number): { x: number; y: number } | null;
+  /** Where a point is drawn [CSS pixels of the page]; null behind the eye. */
+  spot(point: ArrayLike<number>): { x: number; y: number } | null;
   /** What is drawn: x y z of each particle [length]. */
   particles(): Float32Array;
   dispose(): void;

@@ -163,8 +163,12 @@ class Drawing implements View {
   project(particle: number): { x: number; y: number } | null {
     const positions = this.particles();
     if (!(particle >= 0 && 3 * particle + 2 < positions.length)) return null;
+    return this.spot(positions.subarray(3 * particle, 3 * particle + 3));
+  }
+
+  spot(point: ArrayLike<number>): { x: number; y: number } | null {
     this.eye.camera.updateMatrixWorld();
-    const at = new Vector3().fromArray(positions, 3 * particle).applyMatrix4(this.eye.camera.matrixWorldInverse);
+    const at = new Vector3(point[0], point[1], point[2]).applyMatrix4(this.eye.camera.matrixWorldInverse);
     if (at.z >= 0) return null;
     at.applyMatrix4(this.eye.camera.projectionMatrix);
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
@@ -395,7 +399,7 @@ class Drawing implements View {
     this.fitted = true;
     const place = this.untouched ? null : remembered(this.session.key);
     if (place) this.eye.put(place);
-    else this.eye.first(frame.positions.length ? this.picture.body(frame) : blank(this.session.summary.value?.units));
+    else this.eye.first(this.body(frame));
     this.untouched = place === null;
     this.dress();
   }
@@ -427,12 +431,13 @@ class Drawing implements View {
     if (this.hand.led) this.untouched = false;
     if (!this.untouched || this.following || this.eye.holds(frame.positions)) return;
     this.following = true;
-    this.eye.fit(this.picture.body(frame));
+    this.eye.fit(this.body(frame));
   }
 
-  /** All that is to be seen, with a variant that is drawn over it. */
+  /** All that is to be seen, with a variant that is drawn over it; of a page with a corner or two its sheet. */
   private body(frame: Frame): ArrayLike<number> {
-    const own = this.picture.body(frame);
+    const few = frame.positions.length < 9;
+    const own = few ? [...blank(this.session.summary.peek()?.units), ...frame.positions] : this.picture.body(frame);
     const other = this.options.ghost.peek()?.positions;
     return other ? [...Array.from(own), ...other] : own;
   }

@@ -7,6 +7,7 @@ quad becomes four and a triangle four; a neighbour that is not divided gets tria
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -111,7 +112,7 @@ def _divided(force: Force, rows: Ints, inner: list[list[int]], pointer: str) -> 
     pairs: list[list[int]] = []
     for (a, b), between in zip(rows.tolist(), inner, strict=True):
         through = [a, *(between if a < b else between[::-1]), b]
-        pairs += [list(pair) for pair in zip(through, through[1:], strict=False)]
+        pairs += [list(pair) for pair in pairwise(through)]
     pieces = np.array([len(between) + 1 for between in inner])
     source = np.repeat(np.arange(len(rows)), pieces)
     values: dict[str, Any] = {name: column[source] for name, column in columns(force, len(rows)).items()}
