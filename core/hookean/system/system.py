@@ -278,8 +278,8 @@ def hold(state: State, anchor: Held, slots: Slots) -> None:
 
 
 def compile(scene: Scene, *, empty: bool = False) -> System:
-    """Compile a scene; raises InputError if its parts are inconsistent, it is not a Scene, or it has no particles, unless
-    it may be `empty`, as one that is about to be drawn."""
+    """Compile a scene; raises InputError if its parts are inconsistent, it is not a Scene, or it has no particles,
+    unless it may be `empty`, as one that is about to be drawn."""
     if not isinstance(scene, Scene):
         said = f"a Scene is expected, not a {type(scene).__name__}; make one with hookean.Scene.read(...)"
         raise InputError("scene", said)

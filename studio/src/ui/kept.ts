@@ -4,7 +4,7 @@ import { remember, remembered } from "./theme";
 
 const name = (key: string) => `hookean-groups-${key}`;
 /** Characters of a view that the service takes. */
-const LONGEST = 3600;
+const LONGEST = 12_000;
 
 export const keptGroups = (key: string) => remembered<Groups>(name(key), {});
 
@@ -23,10 +23,28 @@ export function keepColours(key: string, colours: Record<string, string>): void 
   else localStorage.removeItem(coloured(key));
 }
 
-/** The view as a file keeps it, and a sentence on groups that do not fit into it. */
+/** How the file that a session was made from was read. */
+export interface Recipe {
+  /** What that file is called. */
+  file: string;
+  text: string;
+}
+
+const recipes = (key: string) => `hookean-recipe-${key}`;
+
+/** The recipe of a session as this browser keeps it; null for none. */
+export const keptRecipe = (key: string) => remembered<Recipe | null>(recipes(key), null);
+
+export const keepRecipe = (key: string, recipe: Recipe) => remember(recipes(key), recipe);
+
+/** The view as a file keeps it, and sentences on groups or a recipe that do not fit into it. */
 export function fitting(view: Kept): { view: Kept; notes: string[] } {
-  if (JSON.stringify(view).length <= LONGEST) return { view, notes: [] };
-  const { groups, ...rest } = view;
+  const fits = (some: Kept) => JSON.stringify(some).length <= LONGEST;
+  if (fits(view)) return { view, notes: [] };
+  const { recipe, ...bare } = view;
+  const notes = recipe ? ["The recipe is too long for the file; save it by itself."] : [];
+  if (fits(bare)) return { view: bare, notes };
+  const { groups, ...rest } = bare;
   const lost = Object.keys(groups ?? {}).join(", ");
-  return { view: rest, notes: [`The groups ${lost} are too large for the file; this browser keeps them.`] };
+  return { view: rest, notes: [...notes, `The groups ${lost} are too large for the file; this browser keeps them.`] };
 }

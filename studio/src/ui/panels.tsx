@@ -9,6 +9,7 @@ import { Forces } from "./forces";
 import { Measure } from "./measure";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
+import { RecipeKept } from "./recipe";
 import { SectionChoice } from "./section";
 import { SeePanel } from "./see";
 import { Selected } from "./selected";
@@ -58,6 +59,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="Out">
         <OutPanel studio={studio} title={title} />
+        <RecipeKept studio={studio} />
       </Panel>
     </aside>
   );
