@@ -17,14 +17,13 @@ from numpy.typing import NDArray
 
 from hookean.errors import InputError
 from hookean.files.drawn import WELD, Drawn
-from hookean.files.recipe.drawing import UNIT_NAMES
+from hookean.files.recipe.drawing import UNIT_NAMES, UNSTATED
 from hookean.files.rhino.geometry import build
 from hookean.files.rhino.model import Layer, Model, Object
 from hookean.values.mesh import Mesh
 from hookean.values.units import METRES
 
 BLACK = (0, 0, 0, 255)
-UNSTATED = "not stated"
 SUFFIXES = (".obj", ".json")
 
 
