@@ -102,12 +102,12 @@ export async function open(file: File, recipe = ""): Promise<Summary & { warning
   return (await answer.json()) as Summary;
 }
 
-/** The layers of a .3dm file with a role for each, by guess or by choice. */
+/** The layers of a .3dm, OBJ or COMPAS file with a role for each, by guess or by choice. */
 export async function draft(file: File, choices?: Choices): Promise<Draft> {
   const body = new FormData();
   body.append("file", file, file.name);
   if (choices) body.append("choices", JSON.stringify(choices));
-  return (await (await ask("/v1/recipes/3dm", { method: "POST", body })).json()) as Draft;
+  return (await (await ask("/v1/recipes", { method: "POST", body })).json()) as Draft;
 }
 
 export type Format = "hookean" | "scene" | "3dm" | "obj" | "compas" | "csv" | "npz";

@@ -9,6 +9,8 @@ export interface Hookean {
   stats: Stats;
   /** Where a particle is drawn [CSS pixels of the page]; null behind the eye. */
   project: View["project"];
+  /** Where a point is drawn [CSS pixels of the page]; null behind the eye. */
+  spot: View["spot"];
   /** What is drawn: x y z of each particle [length]. */
   particles: View["particles"];
 }
@@ -25,6 +27,7 @@ export function expose(session: Session, view: View): () => void {
     key: session.key,
     stats,
     project: (particle) => view.project(particle),
+    spot: (point) => view.spot(point),
     particles: () => view.particles(),
   };
   window.hookean = made;

@@ -140,10 +140,21 @@ export interface Patch {
   remove?: (string | number)[];
   /** Alone: other parameters of the family that it was made from. */
   rebuild?: Parameters;
+  /** Alone: what is drawn or deleted. */
+  draw?: Draw;
   /** Alone: other units of the same numbers. */
   units?: Partial<Units>;
   /** Edits of one gesture are taken back as one. */
   gesture?: string;
+}
+
+/** What is drawn or deleted in one edit: one of these. Springs by number, faces by number or by their particles. */
+export interface Draw {
+  /** New particles, whose numbers follow the others, with faces and forces on old and new ones. */
+  add?: { points?: Point[]; faces?: Record<string, number[][]>; forces?: SceneForce[] };
+  divide?: { springs?: number[]; faces?: Record<string, number[]>; pieces?: number };
+  extrude?: { edges: [number, number][]; by: Point; mesh?: string };
+  delete?: { particles?: number[]; springs?: number[]; faces?: Record<string, number[]> };
 }
 
 /** What programs and pages share about a session beside its model. */

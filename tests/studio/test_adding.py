@@ -45,6 +45,7 @@ def test_loads_and_self_weight_are_added_to_any_scene(tab: Studio, scene: str):
         tab.page.get_by_label("File to open").set_input_files(
             {"name": "net.obj", "mimeType": "model/obj", "buffer": SQUARE}
         )
+        tab.press("Make the model")
         tab.drawing()
     else:
         tab.service.put(f"add-{scene}", {"lines": CABLE, "mesh": net(4)}[scene])

@@ -159,6 +159,7 @@ def test_an_obj_and_a_scene_are_opened_from_a_file(studio: Studio, tmp_path: Pat
     square = tmp_path / "square.obj"
     square.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
     studio.page.get_by_label("File to open").set_input_files(square)
+    studio.press("Make the model")
     studio.drawing()
     assert len(studio.particles()) == 4
     scene = tmp_path / "cable.json"

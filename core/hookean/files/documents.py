@@ -53,10 +53,30 @@ def plain(value: Any) -> Plain:
     return _drawn([value], why, alone=True)
 
 
+def drawn(value: Any) -> Drawn | None:
+    """What COMPAS documents alone hold, as drawn; None for a scene, or a document in which hookean stored one.
+    InputError as `plain`."""
+    if isinstance(value, list):
+        return _taken_together(value)
+    if not compas_json.is_document(value):
+        plain(value)
+        return None
+    if compas_write.stored(value, compas_json.read(value))[0] is not None:
+        return None
+    return _taken_together([value], alone=True)
+
+
 def _drawn(entries: list[Any], why: tuple[str, ...] = (), *, alone: bool = False) -> Plain:
     """Documents as drawn."""
     # what draws loads rhino3dm, which scenes need not
-    from hookean.files.drawn import Drawn, tables_of
+    from hookean.files.drawn import tables_of
+
+    scene, warnings, unheld = tables_of(_taken_together(entries, alone=alone))
+    return Plain(scene, warnings=(*why, *warnings), unheld=unheld)
+
+
+def _taken_together(entries: list[Any], *, alone: bool = False) -> Drawn:
+    from hookean.files.drawn import Drawn
     from hookean.files.recipe.select import count, listed
 
     found = Drawn()
@@ -69,8 +89,7 @@ def _drawn(entries: list[Any], why: tuple[str, ...] = (), *, alone: bool = False
             _add(found, compas_json.read(entry, pointer), entry, pointer, other)
     if other:
         found.warnings.append(f"not read from the file: {count(len(other), 'document')} of {listed(other)}")
-    scene, warnings, unheld = tables_of(found)
-    return Plain(scene, warnings=(*why, *warnings), unheld=unheld)
+    return found
 
 
 def _add(drawn: Drawn, document: Document, entry: Any, pointer: str, other: list[str]) -> None:

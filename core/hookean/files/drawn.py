@@ -27,13 +27,14 @@ WELD = (1e-3, 1e-5)  # what is nearer than this, in m and as part of the size, i
 
 @dataclass
 class Drawn:
-    """Meshes, lines `(m, 2, 3)` and points `(n, 3)` by the names they had (may be ""), in `unit`; `warnings`: what of
-    the file was not read."""
+    """Meshes, lines `(m, 2, 3)` and points `(n, 3)` by the names they had (may be ""), in `unit`, which the file states
+    (`stated`) or not; `warnings`: what of the file was not read."""
 
     meshes: list[tuple[str, Mesh]] = field(default_factory=list)
     lines: list[tuple[str, Floats]] = field(default_factory=list)
     points: list[tuple[str, Floats]] = field(default_factory=list)
     unit: str = "m"
+    stated: bool = False
     warnings: list[str] = field(default_factory=list)
 
 

@@ -74,7 +74,7 @@ class _Reading:
     points: list[list[float]] = field(default_factory=list)
     elements: dict[str, list[_Element]] = field(default_factory=lambda: {"f": [], "l": [], "p": []})
     name: str = ""
-    unit: str = "m"
+    unit: str = ""
     left: dict[str, None] = field(default_factory=dict)
     cut: int = 0
     flat: int = 0
@@ -123,7 +123,7 @@ class _Reading:
             if max(element.corners) >= len(points):
                 said = f"vertex {max(element.corners) + 1} does not exist; there are {len(points)}, counted from 1"
                 raise _fault(element.line, said)
-        found = Drawn(unit=self.unit)
+        found = Drawn(unit=self.unit or "m", stated=bool(self.unit))
         for name, elements in _by_name(self.elements["f"]):
             faces = [face for element in elements for face in self._faces(element, points)]
             if faces:

@@ -91,7 +91,8 @@ def read(data: bytes, name: str = "", recipe: Recipe | None = None, *, called: s
         kind = reader(data, name)
     if recipe is not None and not kind.recipes:
         raise InputError(
-            called or "/recipe", f"is {kind.name}, which does not support a recipe; recipes are for .3dm files"
+            called or "/recipe",
+            f"is {kind.name}, which does not support a recipe; recipes are for .3dm, .obj and COMPAS files",
         )
     return kind.read(data, called, recipe)
 
@@ -160,7 +161,30 @@ def _stored(model: Model, called: str) -> Source:
     return source
 
 
+def _by_recipe(data: bytes, called: str, suffix: str, recipe: Recipe) -> Source:
+    """A file of another program by a recipe; results are not written back into it."""
+    from hookean.files.recipe.foreign import drawn_in, model_of, without_recipe
+    from hookean.files.recipe.recipe import understand
+    from hookean.scene.text import parse_tables
+
+    tables = parse_tables(recipe[0], recipe[1] or "recipe")
+    with about(called):
+        drawn = drawn_in(data, f"file{suffix}")
+    if drawn is None:
+        raise without_recipe(suffix)
+    model = model_of(drawn, called or "the file")
+    with about(recipe[1], called):
+        understood = understand(model, tables)
+    found = understood.built.drawing
+    warnings = (*model.warnings, *understood.notes)
+    return Source(
+        understood.built.scene, understood.lines, unit=found.unit, warnings=warnings, nothing=understood.nothing
+    )
+
+
 def _obj(data: bytes, called: str, recipe: Recipe | None) -> Source:
+    if recipe is not None:
+        return _by_recipe(data, called, ".obj", recipe)
     from hookean.files import obj_read
     from hookean.files.drawn import tables_of
     from hookean.scene.scene import Scene
@@ -172,6 +196,8 @@ def _obj(data: bytes, called: str, recipe: Recipe | None) -> Source:
 
 
 def _json(data: bytes, called: str, recipe: Recipe | None) -> Source:
+    if recipe is not None:
+        return _by_recipe(data, called, ".json", recipe)
     from hookean.files.documents import plain
     from hookean.scene.scene import Scene
     from hookean.scene.text import parse
@@ -237,8 +263,9 @@ READERS = (
         ".obj",
         lambda begins: any(line.split(b" ")[0] in (b"v", b"vn", b"o", b"g", b"mtllib") for line in begins.splitlines()),
         _obj,
+        recipes=True,
     ),
-    Reader("a JSON file", ".json", lambda begins: begins.startswith((b"{", b"[")), _json),
+    Reader("a JSON file", ".json", lambda begins: begins.startswith((b"{", b"[")), _json, recipes=True),
     Reader(
         "a saved simulation",
         ".npz",

@@ -170,6 +170,9 @@ class Force(Model):
     # columns of a result with their unit: length, force, moment, angle or none
     outputs: ClassVar[dict[str, str]] = {}
 
+    # where a line of it is divided into n pieces, columns are multiplied by n to these powers; None: it is not divided
+    pieces: ClassVar[dict[str, int] | None] = None
+
     variant: ClassVar[bool] = False  # no kind of its own, but what some forces of a kind compile to (`compiled_as`)
 
     kernel: ClassVar[Callable[..., float] | None] = None

@@ -74,6 +74,7 @@ class ConstantTension(LineForce):
     )
 
     formula: ClassVar[str] = "E = T l; T (l²/e + e)/2 below e"
+    pieces: ClassVar[dict[str, int] | None] = {}
     linear: ClassVar[str] = "tension"
     sharp: ClassVar[str] = "tension"
     kernel: ClassVar[Any] = staticmethod(constant_tension_kernel)

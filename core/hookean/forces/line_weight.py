@@ -85,6 +85,7 @@ class LineWeight(LineForce):
     )
 
     formula: ClassVar[str] = "f = q l g/2"
+    pieces: ClassVar[dict[str, int] | None] = {}
     linear: ClassVar[str] = "weight"
     role: ClassVar[Literal["internal", "load", "support"]] = "load"
     conservative: ClassVar[bool] = False

@@ -270,6 +270,10 @@ class Springs(Force):
     formula: ClassVar[str] = "E = k (l - L0)²/2"
     arity: ClassVar[int] = 2
     linear: ClassVar[str] = "stiffness"
+    pieces: ClassVar[dict[str, int] | None] = {
+        **dict.fromkeys(("stiffness", "damping"), 1),
+        **dict.fromkeys(("rest_length", "upper_cutoff", "lower_cutoff", "yield_extension"), -1),
+    }
     steady: ClassVar[str] = "stiffness"  # across it is k (1 - L0 / l), which is less
     damped: ClassVar[bool] = True
     remembers: ClassVar[bool] = True

@@ -17,7 +17,8 @@ from hookean.system.system import Held, System
 from hookean.system.wiring import Wiring
 
 LONGEST = 100  # edits that can be taken back
-SYSTEMS = 10  # and the systems among them, which are large
+SYSTEMS = 10  # and the systems among them, where these are large
+LARGE = 20_000  # particles in all systems that are kept, up to which they are not
 
 
 @dataclass(frozen=True)
@@ -87,10 +88,14 @@ class History:
         if not gesture or gesture != self.gesture:
             self.before.append(setup)
             del self.before[:-LONGEST]
-            while len({id(one.system) for one in self.before}) > SYSTEMS:
+            while self._too_large():
                 del self.before[0]
         self.gesture = gesture
         self.after.clear()
+
+    def _too_large(self) -> bool:
+        systems = {id(one.system): one.system for one in self.before}
+        return len(systems) > SYSTEMS and sum(system.slots.count for system in systems.values()) > LARGE
 
     def undo(self, now: Setup) -> Setup:
         """What is to be put back to undo the last edit; raises InputError if there is no edit."""

@@ -7,7 +7,7 @@ import zipfile
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,11 @@ from numpy.typing import NDArray
 from hookean.errors import InputError
 from hookean.running.result import Status
 from hookean.scene.scene import Scene
+from hookean.system.state import State
 from hookean.system.system import Held, System
+
+if TYPE_CHECKING:
+    from hookean.running.simulation import Simulation, Source
 
 UNREADABLE = (
     OSError, KeyError, ValueError, IndexError, TypeError, EOFError, NotImplementedError, zipfile.BadZipFile, zlib.error
@@ -52,6 +56,25 @@ def read(path: str | Path | IO[bytes]) -> Saved:
     finished = bool(arrays.pop("finished", False))
     scene = Scene.read(str(arrays.pop("scene")))
     return Saved(scene, script, finished, Status(str(arrays.pop("status"))), arrays)
+
+
+def loaded(cls: type[Simulation], path: str | Path | IO[bytes], stream: Source | None) -> Simulation:
+    """The simulation of a file that `write` wrote, of the class `cls`; InputError where the file is not one."""
+    try:
+        saved = read(path)
+        found = cls(saved.scene, saved.script, stream)
+        found.system.held = anchors_of(saved.arrays, found.system)
+        found.system.brace()
+        found.take_up(State.of(saved.arrays), saved.status)
+    except InputError as error:
+        if stream is not None or error.pointer == "/drives":
+            raise
+        raise no_simulation(path) from None
+    except UNREADABLE:
+        raise no_simulation(path) from None
+    if found._playing is not None:
+        found._playing.finished = saved.finished  # what patches moved after its end stays moved
+    return found
 
 
 def opened(path: str | Path | IO[bytes], mode: str) -> contextlib.AbstractContextManager[IO[bytes]]:

@@ -11,13 +11,15 @@ import numpy as np
 
 from hookean.errors import InputError
 from hookean.running import saving
+from hookean.running.drawing.draw import drawn
+from hookean.running.drawing.edits import Draw
 from hookean.running.following import followed
 from hookean.running.frame import Frame, framed
 from hookean.running.history import Before, History, Setup
 from hookean.running.patch import Patch, apply
 from hookean.running.result import Result, Status, gather, kinetic
 from hookean.running.run import Progress, relax_state
-from hookean.running.saving import UNREADABLE, Saved, anchors_of, no_simulation
+from hookean.running.saving import Saved
 from hookean.running.script import Playing, Script
 from hookean.running.stream import Stream
 from hookean.running.watch import Watch, seldom
@@ -45,7 +47,7 @@ class Simulation:
     def __init__(
         self, scene: Scene, script: Script | Mapping[str, Any] | str | None = None, stream: Source | None = None
     ) -> None:
-        self.system = compile(scene)
+        self.system = compile(scene, empty=True)
         self._playing: Playing | None = None
         if script is not None or stream is not None:
             self._playing = Playing(Script.read({} if script is None else script), stream, self.system)
@@ -281,9 +283,18 @@ class Simulation:
     def replace(self, scene: Scene, *, gesture: str = "") -> int:
         """Go on with another scene; returns the new revision. Particles that start where one of this scene starts are
         where that one is now. InputError for a scene that is not valid, and where a script is played."""
+        return self._succeeded(lambda: self._follow(compile(scene)), gesture)
+
+    def draw(self, edit: Draw | Mapping[str, Any], *, gesture: str = "") -> int:
+        """Add particles, faces and forces, divide or extrude them, or delete them (see `drawing.edits.Draw`); returns
+        the new revision. InputError names what does not fit, and nothing has changed then."""
+        read = Draw.read(edit)
+        return self._succeeded(lambda: self._put_on(*drawn(self.system, self.state, read)), gesture)
+
+    def _succeeded(self, change: Callable[[], None], gesture: str) -> int:
         if self._playing is not None:
             raise InputError("", "a script refers to particles and forces by number; replace the scene without one")
-        before = self._changed(lambda: self._follow(compile(scene)))
+        before = self._changed(change)
         self.history.note(before.setup, gesture)
         return self.state.revision
 
@@ -305,7 +316,10 @@ class Simulation:
     def _follow(self, system: System) -> None:
         """Go on with another system, from where the particles are."""
         if system is not self.system:
-            self.system, self.state = system, followed(self.system, self.state, system)
+            self._put_on(system, followed(self.system, self.state, system))
+
+    def _put_on(self, system: System, state: State) -> None:
+        self.system, self.state = system, state
 
     def revert(self) -> None:
         """Put everything back to before the last edit, undo, redo or reset, as if it had never been made."""
@@ -379,21 +393,7 @@ class Simulation:
     def load(cls, path: str | Path | IO[bytes], stream: Source | None = None) -> Simulation:
         """The simulation that `save` wrote; it goes on bit for bit, with its stream given again from the first row.
         InputError where the file is not one."""
-        try:
-            saved = saving.read(path)
-            loaded = cls(saved.scene, saved.script, stream)
-            loaded.system.held = anchors_of(saved.arrays, loaded.system)
-            loaded.system.brace()
-            loaded.take_up(State.of(saved.arrays), saved.status)
-        except InputError as error:
-            if stream is not None or error.pointer == "/drives":
-                raise
-            raise no_simulation(path) from None
-        except UNREADABLE:
-            raise no_simulation(path) from None
-        if loaded._playing is not None:
-            loaded._playing.finished = saved.finished  # what patches moved after its end stays moved
-        return loaded
+        return saving.loaded(cls, path, stream)
 
     def reset(self) -> None:
         """Back to the start positions; anchors keep the particles they were given, and their present targets, or

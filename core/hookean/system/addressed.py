@@ -30,10 +30,10 @@ def addressed(system: System, scene: Scene, particles: Ints, *, points: bool = T
     start = system.x[particles.ravel()]
     if points and np.array_equal(system.places.meet(start), particles.ravel()):
         return scene, {"points": start}
-    return _numbered(system, scene), {"particles": particles}
+    return numbered(system, scene), {"particles": particles}
 
 
-def _numbered(system: System, scene: Scene) -> Scene:
+def numbered(system: System, scene: Scene) -> Scene:
     """The same scene with all particles of the system given: its coordinates weld onto those they welded to before."""
     n = system.slots.count
     changed: dict[str, Any] = {"particles": system.points}

@@ -277,13 +277,14 @@ def hold(state: State, anchor: Held, slots: Slots) -> None:
         values[particles] = there if whole else np.where(held, there, values[particles])
 
 
-def compile(scene: Scene) -> System:
-    """Compile a scene; raises InputError if its parts are inconsistent, or it is not a Scene."""
+def compile(scene: Scene, *, empty: bool = False) -> System:
+    """Compile a scene; raises InputError if its parts are inconsistent, it is not a Scene, or it has no particles,
+    unless it may be `empty`, as one that is about to be drawn."""
     if not isinstance(scene, Scene):
         said = f"a Scene is expected, not a {type(scene).__name__}; make one with hookean.Scene.read(...)"
         raise InputError("scene", said)
     welded = Welded(scene)
-    if not len(welded.x):
+    if not len(welded.x) and not empty:
         raise InputError("/particles", "the scene has no particles; give particles, or a force with lines or a mesh")
     later = case_loads(scene)
     given = [(i, force) for i, force in enumerate(scene.forces) if i not in later]

@@ -285,6 +285,11 @@ SCHEMAS["Edit"] = {
             "description": "Forces by name or number",
         },
         "rebuild": {"type": "object", "description": "Alone: parameters of the family that the model was made from"},
+        "draw": {
+            "type": "object",
+            "description": "Alone: exactly one of `add` (points, faces, forces), `divide` (springs, faces, pieces), "
+            "`extrude` (edges, by, mesh) and `delete` (particles, springs, faces); see `Simulation.draw`",
+        },
         "units": {"type": "object", "description": "Alone: other units of the same numbers"},
         "gesture": {"type": "string", "maxLength": 80, "description": "Edits of one gesture are undone as one"},
     },

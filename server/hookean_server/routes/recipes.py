@@ -1,4 +1,4 @@
-"""Recipes: a draft of one for a .3dm file, by what is on its layers."""
+"""Recipes: a draft of one for a file, by what is on its layers, or under the names of its objects."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _ROLE = {
 }
 SCHEMAS["RecipeDraft"] = {
     "type": "object",
-    "description": "What is on the layers of a .3dm file, a role for each, and the recipe of these roles",
+    "description": "What is on the layers of a file, a role for each, and the recipe of these roles",
     "properties": {
         "name": _TEXT,
         "unit": {**_TEXT, "description": "Unit of length of the file"},
@@ -80,7 +80,11 @@ _CHOICES = (
 _FORM: dict[str, Any] = {
     "type": "object",
     "properties": {
-        "file": {"type": "string", "format": "binary", "description": "The .3dm file"},
+        "file": {
+            "type": "string",
+            "format": "binary",
+            "description": "The file: .3dm, .obj, or .json with COMPAS documents",
+        },
         "choices": {**_TEXT, "description": _CHOICES},
     },
     "required": ["file"],
@@ -100,3 +104,15 @@ async def recipe(request: Request) -> Response:
     the recipe for `POST /v1/sessions` and `POST /v1/relax/3dm`. A recipe that cannot be solved is answered with its
     `fault`."""
     return await compute_upload(request, "recipe", {})
+
+
+@router.post(
+    "/v1/recipes",
+    summary="Draft a recipe for a file",
+    responses=problems(_SUCCESS, computed=True),
+    openapi_extra=_TAKES,
+)
+async def recipe_of_any(request: Request) -> Response:
+    """As `POST /v1/recipes/3dm`, also for .obj files, by their objects and groups, and for .json files with COMPAS
+    documents, by their names. A file that holds a whole model has no rows."""
+    return await compute_upload(request, "recipe", {"any": True})

@@ -25,7 +25,11 @@ from hookean.system.two_ended import spring_forces
 from hookean_server.sessions.wire import Shown
 
 EDITS = ("undo", "redo", "reset")
-REPLACES: dict[str, dict[str, Any]] = {"rebuild": {"rise": 4}, "units": {"length": "mm"}}
+REPLACES: dict[str, dict[str, Any]] = {
+    "rebuild": {"rise": 4},
+    "units": {"length": "mm"},
+    "draw": {"delete": {"particles": [3]}},
+}
 """Edits that lead to another scene, with an example of each."""
 
 
@@ -118,7 +122,8 @@ def _put(simulation: Simulation, arrays: dict[str, NDArray[Any]]) -> None:
 
 def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
     """Make an edit: `{"undo": true}`, `redo`, `reset`; `{"rebuild": {...}}` with parameters of the scene's family,
-    `{"units": {...}}` with other units of the same numbers, or a patch, all with or without a `gesture`.
+    `{"units": {...}}` with other units of the same numbers, `{"draw": {...}}` with what is drawn or deleted, or a
+    patch, all with or without a `gesture`.
 
     Returns it as it can be made again exactly, and what it sets in words: an edit of the same gesture that sets the
     same replaces it in the store; "" for one that nothing replaces.
@@ -137,7 +142,7 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
     for name in REPLACES:
         if name in value:
             _replace(simulation, name, value, gesture)
-            sets = json.dumps([name, gesture, sorted(value[name])]) if gesture else ""
+            sets = json.dumps([name, gesture, sorted(value[name])]) if gesture and name != "draw" else ""
             return json.dumps({**value, "gesture": gesture} if gesture else value).encode(), sets
     patch = Patch.read(value)
     pins = []
@@ -154,12 +159,18 @@ def make(simulation: Simulation, body: bytes) -> tuple[bytes, str]:
 
 
 def _replace(simulation: Simulation, name: str, value: dict[str, Any], gesture: str) -> None:
-    """Give the family of the scene other parameters, or its numbers other units."""
+    """Give the family of the scene other parameters, or its numbers other units, or draw."""
     given = value[name]
     if set(value) != {name} or not isinstance(given, dict):
         raise InputError(f"/{name}", f"must be the only key, with an object: {json.dumps({name: REPLACES[name]})}")
     if name == "rebuild":
         simulation.rebuild(given, gesture=gesture)
+        return
+    if name == "draw":
+        try:
+            simulation.draw(given, gesture=gesture)
+        except InputError as error:
+            raise InputError(f"/draw{error.pointer}", error.sentence) from None
         return
     scene = simulation.edited_scene()
     try:

@@ -189,7 +189,9 @@ async def state(
     when: When,
     form: Annotated[Literal["json", "npz", "hookean", "3dm", "obj", "compas", "csv"], Query(alias="format")] = "json",
     arrays: Arrays = "list",
-    view: Annotated[str, Query(max_length=4000, description="Of `hookean`: how it is looked at, a JSON object")] = "{}",
+    view: Annotated[
+        str, Query(max_length=16_000, description="Of `hookean`: how it is looked at, a JSON object")
+    ] = "{}",
 ) -> Response:
     """A result as JSON; or a file: .hookean with scene, state and view, .npz of Simulation.save, .3dm, .obj,
     COMPAS Mesh or Graph, CSV with a row for each element and each reaction, units in its first line. Files of .hookean,

@@ -107,8 +107,10 @@ def geometry_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) 
 
 def recipe_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) -> Done:
     """The rows of an uploaded .3dm file with a role for each, and the recipe of these roles; options as `relax_upload`.
-    The form has a part `file`, and may have a part `choices` (JSON). Raises InputError naming the part."""
-    from hookean.files.recipe.draft import draft
+    The form has a part `file`, and may have a part `choices` (JSON). With `options["any"]` files of other programs are
+    read, too; those that hold a whole model have no rows. Raises InputError naming the part."""
+    from hookean.files.recipe.draft import draft, undrafted
+    from hookean.files.recipe.foreign import SUFFIXES, model_in
     from hookean.files.rhino.read import parse as parse_model
     from hookean.scene.text import parse
 
@@ -117,14 +119,18 @@ def recipe_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) ->
     clock.lap("decode")
     try:
         given = None if choices is None else parse(choices)
-        with limited(options["read_seconds"]):
-            model = parse_model(data, name or "the file").model
     except InputError as error:
-        raise InputError("/choices" if error.pointer.startswith("/") else "/file", error.sentence) from None
+        raise InputError("/choices", error.sentence) from None
+    foreign = options.get("any") and Path(name).suffix.lower() in SUFFIXES
+    try:
+        with limited(options["read_seconds"]):
+            model = model_in(data, name) if foreign else parse_model(data, name or "the file").model
+    except InputError as error:
+        raise InputError(_pointer(error.pointer, None) if foreign else "/file", error.sentence) from None
     clock.lap("read")
     try:
         with limited(options["read_seconds"]):
-            found = draft(model, given).to_dict()
+            found = undrafted(Path(name).name) if model is None else draft(model, given).to_dict()
     except InputError as error:
         if not error.pointer.startswith("/"):
             raise InputError("/file", str(error)) from None

@@ -12,7 +12,8 @@ const ROLES: [string, string][] = [
   ["internal", "Between particles"],
   ["support", "Supports and guides"],
 ];
-const PLACES = ["particles", "points", "lines", "mesh", "name"];
+/** Fields that say where a force acts. */
+export const PLACES = ["particles", "points", "lines", "mesh", "name"];
 
 export function AddForce({ studio }: { studio: Studio }) {
   const { session, options } = studio;
@@ -130,7 +131,8 @@ interface Typed {
   put: (text: string) => void;
 }
 
-function Input({ field, value, put }: Typed) {
+/** A field of a force, typed as text or chosen. */
+export function Input({ field, value, put }: Typed) {
   const choices = field.choices ?? (field.type === "yes or no" ? ["true", "false"] : null);
   if (choices)
     return (
@@ -155,7 +157,7 @@ function Input({ field, value, put }: Typed) {
 }
 
 /** What was typed, as the schema has it; a sentence where it is not. */
-function valuesOf(fields: Field[], typed: Record<string, string>): Record<string, unknown> | string {
+export function valuesOf(fields: Field[], typed: Record<string, string>): Record<string, unknown> | string {
   const found: Record<string, unknown> = {};
   for (const field of fields) {
     const text = (typed[field.name] ?? "").trim();

@@ -3,6 +3,9 @@ import { useSignal } from "@preact/signals";
 import type { Studio } from "./studio";
 import { counted } from "./words";
 
+/** Colours that people who are colour-blind tell apart; source: Okabe and Ito, Color universal design, 2008. */
+const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+
 interface Told {
   studio: Studio;
   chosen: number[];
@@ -12,15 +15,24 @@ interface Told {
 export function Groups({ studio: { options }, chosen, choose }: Told) {
   const name = useSignal("");
   const groups = options.groups.value;
+  const paint = (called: string, colour: string) =>
+    (options.groupColours.value = { ...options.groupColours.value, [called]: colour });
   const keep = (event: Event) => {
     event.preventDefault();
     const called = name.value.trim().slice(0, 80);
     if (!called || !chosen.length) return;
     options.groups.value = { ...groups, [called]: chosen };
+    const taken = Object.values(options.groupColours.value);
+    const free = COLOURS.find((one) => !taken.includes(one)) ?? COLOURS[taken.length % COLOURS.length]!;
+    paint(called, options.groupColours.value[called] ?? free);
     name.value = "";
   };
-  const forget = (called: string) =>
-    (options.groups.value = Object.fromEntries(Object.entries(groups).filter(([other]) => other !== called)));
+  const forget = (called: string) => {
+    const without = <T,>(all: Record<string, T>) =>
+      Object.fromEntries(Object.entries(all).filter(([other]) => other !== called));
+    options.groups.value = without(groups);
+    options.groupColours.value = without(options.groupColours.value);
+  };
   return (
     <>
       <form class="row" onSubmit={keep}>
@@ -38,7 +50,15 @@ export function Groups({ studio: { options }, chosen, choose }: Told) {
       <ul aria-label="Groups" class="groups">
         {Object.entries(groups).map(([called, particles]) => (
           <li key={called} class="row">
-            <button type="button" class="small" onClick={() => choose(particles)}>
+            <input
+              type="color"
+              class="swatch"
+              aria-label={`Colour of the group ${called}`}
+              title="Rings of this colour mark the particles of the group"
+              value={options.groupColours.value[called] ?? COLOURS[0]}
+              onInput={(event) => paint(called, event.currentTarget.value)}
+            />
+            <button type="button" class="small" title="Select the group" onClick={() => choose(particles)}>
               {called}
             </button>
             <span class="faint">{counted(particles.length, "particle")}</span>

@@ -20,14 +20,15 @@ export function New() {
   useEffect(() => {
     knowFamilies().catch(met);
   }, []);
-  const family = families.value?.find(({ name }) => name === chosen.value);
-  if (!family) return null;
+  if (!families.value) return null;
+  const family = families.value.find(({ name }) => name === chosen.value);
+  const summary = family?.summary ?? "An empty page: draw points, lines and faces by clicks, and choose what they become.";
   const make = async (event: Event) => {
     event.preventDefault();
     busy.value = true;
     try {
-      const scene = await api.familyScene(family.name, units.value, typed.value);
-      go((await api.create(scene, family.title)).key);
+      const scene = family ? await api.familyScene(family.name, units.value, typed.value) : { units: units.value };
+      go((await api.create(scene, family?.title ?? "Drawing")).key);
     } catch (error) {
       met(error);
       refuse(error, "The model was not made. ");
@@ -45,17 +46,18 @@ export function New() {
           <select
             aria-label="Shape"
             value={chosen.value}
-            title={family.summary}
+            title={summary}
             onChange={(event) => ([chosen.value, typed.value] = [event.currentTarget.value, {}])}
           >
-            {families.value!.map(({ name, title }) => (
+            <option value="">Empty page</option>
+            {families.value.map(({ name, title }) => (
               <option key={name} value={name}>
                 {title}
               </option>
             ))}
           </select>
         </label>
-        <p class="note">{family.summary}</p>
+        <p class="note">{summary}</p>
         {(["length", "force"] as const).map((which) => (
           <Choice
             key={which}
@@ -65,7 +67,7 @@ export function New() {
             done={(value) => (units.value = { ...units.value, [which]: value })}
           />
         ))}
-        {family.parameters.map((field) => {
+        {family?.parameters.map((field) => {
           const { seen, ...told } = seenOf(field, units.value);
           const value = typed.value[field.name] ?? (field.default as number | string);
           const key = `${family.name} ${field.name}`;
@@ -79,7 +81,7 @@ export function New() {
           );
         })}
         <button type="submit" disabled={busy.value}>
-          Make the {family.title.toLowerCase()}
+          Make the {family?.title.toLowerCase() ?? "empty page"}
         </button>
       </form>
     </details>

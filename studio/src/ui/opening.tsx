@@ -4,6 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
 import { keepDesign } from "./designing";
 import { keepView, viewOf } from "../view/kept";
+import { keepRecipe } from "./kept";
 import { quiet, refuse, tell } from "./notices";
 import { go, met } from "./place";
 import { drafted } from "./sheetstate";
@@ -14,16 +15,17 @@ export const opening = signal("");
 
 const KINDS = ".3dm,.obj,.json,.npz,.hookean";
 
-/** Open a file as a new session and go there; a Rhino model gets its roles in the import sheet first. */
+/** Open a file as a new session and go there; what is drawn in a file gets its roles in the import sheet first. */
 async function openFile(file: File): Promise<void> {
   opening.value = file.name;
   quiet();
   try {
-    if (/\.3dm$/i.test(file.name) && (await drafted(file))) return;
+    if (/\.(3dm|obj|json)$/i.test(file.name) && (await drafted(file))) return;
     const made = await api.open(file);
     const view = await viewOf(file);
     keepView(made.key, view);
     keepDesign(made.key, view?.design);
+    if (view?.recipe) keepRecipe(made.key, view.recipe);
     go(made.key);
     const warnings = made.warnings ?? [];
     if (warnings.length) tell(`${file.name} is open. Notes on the file:`, warnings);

@@ -7,7 +7,7 @@ import type { View } from "../view/types";
 import { picture, svg } from "./drawing";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
-import { fitting } from "./kept";
+import { fitting, keptRecipe } from "./kept";
 import type { Studio } from "./studio";
 import { dark } from "./theme";
 import { said } from "./words";
@@ -107,7 +107,9 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
       .replace(/[^\w.-]+/g, "-")
       .replace(/^-+|-+$/g, "") || "session";
   const exported = async (format: api.Format) => {
-    const kept = view.value && format === "hookean" ? fitting(view.value.kept(), studio.design.problem.value) : null;
+    const recipe = keptRecipe(session.key);
+    const seen = view.value && format === "hookean" ? { ...view.value.kept(), ...(recipe && { recipe }) } : null;
+    const kept = seen && fitting(seen, studio.design.problem.value);
     const made = await api.exported(session.key, format, kept?.view);
     return { ...made, notes: [...made.notes, ...(kept?.notes ?? [])] };
   };

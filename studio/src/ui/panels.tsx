@@ -2,6 +2,8 @@
 import type { ComponentChildren } from "preact";
 import { Cases } from "./cases";
 import { namesOf } from "./casing";
+import { useRef } from "preact/hooks";
+import { DrawPanel } from "../drawing/drawpanel";
 import { Charts } from "./charts";
 import { Compare } from "./compare";
 import { Design } from "./design";
@@ -9,6 +11,8 @@ import { Forces } from "./forces";
 import { Measure } from "./measure";
 import { OutPanel } from "./out";
 import { PickedPanel } from "./picked";
+import { RecipeKept } from "./recipe";
+import { SectionChoice } from "./section";
 import { SeePanel } from "./see";
 import { Selected } from "./selected";
 import { Shape } from "./shape";
@@ -16,14 +20,21 @@ import type { Studio } from "./studio";
 import { SurfacePanel } from "./surface";
 import { Tables } from "./tables";
 import { Timeline } from "./timeline";
+import { TagsChoice } from "./tags";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
+  // who begins with an empty page draws, also after the first corner
+  const isBlank = useRef(false);
+  isBlank.current ||= studio.session.topology.value?.particles === 0;
   return (
     <aside class="panels" aria-label="Panels">
       <Panel name="Picked">
         <PickedPanel studio={studio} />
         <Selected studio={studio} />
         <Measure studio={studio} />
+      </Panel>
+      <Panel name="Draw" isClosed={!isBlank.current} isOpen={isBlank.current}>
+        <DrawPanel studio={studio} />
       </Panel>
       {studio.session.scene.value?.family && (
         <Panel name="Shape">
@@ -35,6 +46,8 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="See">
         <SeePanel studio={studio} />
+        <TagsChoice studio={studio} />
+        <SectionChoice studio={studio} />
       </Panel>
       {namesOf(studio.session.scene.value).length > 0 && (
         <Panel name="Load cases">
@@ -61,6 +74,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       </Panel>
       <Panel name="Out">
         <OutPanel studio={studio} title={title} />
+        <RecipeKept studio={studio} />
       </Panel>
     </aside>
   );
@@ -69,13 +83,14 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
 interface Told {
   name: string;
   isClosed?: boolean;
+  isOpen?: boolean;
   children: ComponentChildren;
 }
 
-function Panel({ name, isClosed = false, children }: Told) {
+function Panel({ name, isClosed = false, isOpen = false, children }: Told) {
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
-    <details class="panel" open={(!narrow && !isClosed) || ["Picked", "Shape", "Forces"].includes(name)}>
+    <details class="panel" open={isOpen || (!narrow && !isClosed) || ["Picked", "Shape", "Forces"].includes(name)}>
       <summary>
         <h2>{name}</h2>
       </summary>

@@ -1,7 +1,7 @@
 // Several particles at once: found by a box, a lasso, a row of springs or a range of forces; held, moved, named.
 import { useSignal } from "@preact/signals";
 import type { Anchor, Point, Scene, Topology } from "../model";
-import { between, endsOf, row } from "../view/sets";
+import { between, endsOf, rim, row } from "../view/sets";
 import type { Tool } from "../view/types";
 import { kinds } from "./catalogue";
 import { Choice } from "./choice";
@@ -27,6 +27,7 @@ export function Selected({ studio }: { studio: Studio }) {
   const all = Array.from({ length: topology.particles }, (_, i) => i);
   const known = new Set(chosen);
   const picked = options.picked.value;
+  const around = picked?.kind === "particle" ? [picked.index] : chosen;
   const along = () => {
     if (picked?.kind === "spring") choose(endsOf(topology.springs, row(topology, picked.index)));
   };
@@ -52,6 +53,12 @@ export function Selected({ studio }: { studio: Studio }) {
           </button>
         ))}
         {button("Row", "All springs that go on straight from the picked one", along, picked?.kind === "spring")}
+        {button(
+          "Edge loop",
+          "All along the edge of the mesh on which the picked or a selected particle lies",
+          () => choose(rim(topology, around)),
+          around.length > 0,
+        )}
         {button("All", "All particles", () => choose(all))}
         {button("Invert", "Those that are not selected", () => choose(all.filter((one) => !known.has(one))))}
         {button("None", "Nothing", () => choose([]), chosen.length > 0)}

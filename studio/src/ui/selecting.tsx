@@ -8,7 +8,7 @@ const APART = 4;
 export function Selecting({ studio: { options, view } }: { studio: Studio }) {
   const line = useSignal<Place[]>([]);
   const tool = options.tool.value;
-  if (tool === "none") return null;
+  if (tool !== "box" && tool !== "lasso") return null;
   const place = (event: PointerEvent): Place => {
     const { left, top } = (event.currentTarget as Element).getBoundingClientRect();
     return { x: event.clientX - left, y: event.clientY - top };

@@ -1,13 +1,15 @@
-// The import sheet: what each layer and object of a Rhino model is, before it is opened as a session.
+// The import sheet: what each layer and object of a file is, before it is opened as a session.
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
 import type { Draft } from "../model";
 import { Choice } from "./choice";
 import { FORCES, LENGTHS } from "./new";
+import { keepRecipe } from "./kept";
 import { tell } from "./notices";
 import { NumberField } from "./number";
 import { go, met } from "./place";
+import { compact, saveRecipe } from "./recipe";
 import { SheetRow } from "./sheetrow";
 import { busy, chooseUnits, chooseWeld, close, draft, edited } from "./sheetstate";
 import { file, recipe, refused, undo, undoable } from "./sheetstate";
@@ -45,6 +47,7 @@ function Foot({ found, shown }: { found: Draft; shown: File }) {
     making.value = true;
     try {
       const made = await api.open(shown, recipe.value);
+      keepRecipe(made.key, { file: shown.name, text: compact(recipe.value) });
       close();
       go(made.key);
       const warnings = made.warnings ?? [];
@@ -179,13 +182,7 @@ const sentence = (text: string) => plain(text).replace(/^[a-z]/, (first) => firs
 
 /** The recipe of the roles: it may be changed by hand, and saved for the command line. */
 function Recipe({ name }: { name: string }) {
-  const save = () => {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([recipe.value], { type: "application/json" }));
-    link.download = name.replace(/\.3dm$/i, "-recipe.json");
-    link.click();
-    URL.revokeObjectURL(link.href);
-  };
+  const save = () => saveRecipe(name, recipe.value);
   return (
     <details>
       <summary>Recipe</summary>

@@ -134,9 +134,12 @@ function RoleMenu({ name, own, done, ...told }: Told & { name: string; own?: boo
 }
 
 function Fields({ of, values, done, ...told }: Told & { of: string; values: Values; done: (values: Values) => void }) {
+  // meshes keep their faces
+  const isMesh = /^[\d,]+ Mesh\w*$/.test(told.row.kinds);
+  const fields = (roleOf(told)?.fields ?? []).filter(({ name }) => !isMesh || !name.startsWith("divide"));
   return (
     <div class="values">
-      {roleOf(told)?.fields.map((field) => {
+      {fields.map((field) => {
         const { seen, ...more } = seenOf(field, told.draft.units);
         const value = values[field.name];
         const name = `${seen} of ${of}`;

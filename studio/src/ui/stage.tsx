@@ -1,6 +1,7 @@
 // The canvas, and the messages over it.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { expose } from "../automation";
+import { PenView } from "../drawing/penview";
 import { createView } from "../view/view";
 import { BesideCanvas } from "./beside";
 import { dark } from "./theme";
@@ -12,6 +13,7 @@ import { Selecting } from "./selecting";
 import { Solving } from "./solving";
 import { StillBar } from "./still";
 import type { Studio } from "./studio";
+import { TagLabels } from "./tags";
 
 export function Stage({ studio }: { studio: Studio }) {
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -61,7 +63,9 @@ export function Stage({ studio }: { studio: Studio }) {
         )}
         <BesideCanvas studio={studio} />
         <Labels studio={studio} />
+        <TagLabels studio={studio} />
         <Selecting studio={studio} />
+        <PenView studio={studio} />
         <Looks studio={studio} />
         <LegendBox studio={studio} />
         <Readout studio={studio} />

@@ -9,7 +9,7 @@ import { Bar } from "./bar";
 import { Casing } from "./casing";
 import { Designing } from "./designing";
 import { Film } from "./film";
-import { keepGroups, keptGroups } from "./kept";
+import { keepColours, keepGroups, keptColours, keptGroups } from "./kept";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
 import { Readings } from "./readings";
@@ -46,12 +46,13 @@ export function SessionPage({ name }: { name: string }) {
     const session = new Session(name);
     const chosen = options();
     chosen.layers.value = { ...chosen.layers.value, ...remembered(LAYERS, {}) };
-    chosen.groups.value = keptGroups(name);
+    [chosen.groups.value, chosen.groupColours.value] = [keptGroups(name), keptColours(name)];
     takeUp(name, chosen);
     chosen.dark.value = dark.peek();
     const forgets = [
       effect(() => remember(LAYERS, chosen.layers.value)),
       effect(() => keepGroups(name, chosen.groups.value)),
+      effect(() => keepColours(name, chosen.groupColours.value)),
     ];
     const readings = new Readings(session, chosen);
     const rested = new Rested(session);

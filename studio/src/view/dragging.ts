@@ -86,6 +86,7 @@ export class Hand {
   private readonly down = (event: PointerEvent): void => {
     this.view.canvas.focus({ preventScroll: true });
     if (this.press) this.release();
+    if (this.view.options.tool.value === "draw") return;
     if (event.button !== 0 || !event.isPrimary || event.ctrlKey || event.metaKey || event.shiftKey) return;
     const reach = event.pointerType === "touch" ? FINGER : MOUSE;
     const { x, y } = this.within(event);

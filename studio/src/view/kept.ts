@@ -40,5 +40,6 @@ export function takeUp(key: string, options: Options): void {
   if (["force", "strain", "plain"].includes(view.colouring)) options.colouring.value = view.colouring;
   if (view.scale && ["auto", "even", "log"].includes(view.scale.kind)) options.scale.value = view.scale;
   if (view.groups) options.groups.value = view.groups;
+  if (view.groupColours) options.groupColours.value = view.groupColours;
   options.layers.value = { ...options.layers.value, ...view.layers };
 }

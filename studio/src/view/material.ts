@@ -1,5 +1,5 @@
 // What all that is drawn shares: where particles are, how large the picture is, and how a shader reads both.
-import { DoubleSide, GLSL3, type IUniform, RawShaderMaterial, Vector2, Vector3 } from "three";
+import { DoubleSide, GLSL3, type IUniform, RawShaderMaterial, Vector2, Vector3, Vector4 } from "three";
 import { WIDTH } from "./columns";
 
 /** Uniforms of all shaders; one object, so that setting a value sets it everywhere. */
@@ -11,6 +11,8 @@ export interface Common {
   /** Of the picture [CSS pixels], and how many pixels of the picture each has. */
   size: IUniform<Vector2>;
   ratio: IUniform<number>;
+  /** A plane in the eye's space beyond which nothing of the form is drawn; of no normal for none. */
+  cut: IUniform<Vector4>;
 }
 
 export const common = (): Common => ({
@@ -18,6 +20,7 @@ export const common = (): Common => ({
   centre: { value: new Vector3() },
   size: { value: new Vector2(1, 1) },
   ratio: { value: 1 },
+  cut: { value: new Vector4() },
 });
 
 const HEAD = `precision highp float;
@@ -45,6 +48,21 @@ vec4 drawn(vec3 p, float nearer) {
 }
 `;
 
+// whether a fragment lies beyond the section, by its depth
+const CUT = `
+uniform highp mat4 projectionMatrix;
+uniform highp vec2 size;
+uniform highp float ratio;
+uniform vec4 cut;
+bool beyond() {
+  if (cut.xyz == vec3(0)) return false;
+  vec3 p = vec3(gl_FragCoord.xy / (size * ratio), gl_FragCoord.z) * 2.0 - 1.0;
+  float z = -projectionMatrix[3][2] / (p.z + projectionMatrix[2][2]);
+  vec2 at = -z * p.xy / vec2(projectionMatrix[0][0], projectionMatrix[1][1]);
+  return dot(cut, vec4(at, z, 1.0)) > 0.0;
+}
+`;
+
 export interface Look {
   vertex: string;
   fragment: string;
@@ -57,14 +75,22 @@ export interface Look {
 
 /** A material of these shaders. They know `particle(i)`, `seen`, `drawn`, and what Common has. */
 export function material(shared: Common, look: Look): RawShaderMaterial {
+  // what lies on top of all, such as what is picked, is seen beyond the section, too
+  const isCut = look.vertex.includes("particle(") && (look.depthTest ?? true);
   return new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: HEAD + SHARED + look.vertex,
-    fragmentShader: `${HEAD}out vec4 colour;\n${look.fragment}`,
+    fragmentShader: `${HEAD}out vec4 colour;\n${isCut ? cutting(look.fragment) : look.fragment}`,
     uniforms: { ...shared, ...look.uniforms },
     side: DoubleSide,
     transparent: look.soft ?? false,
     depthTest: look.depthTest ?? true,
     depthWrite: look.depthWrite ?? !(look.soft ?? false),
   });
+}
+
+function cutting(fragment: string): string {
+  const bare = fragment.replace(/uniform float ([^;]*), ratio([^;]*);/, "uniform float $1$2;");
+  const main = "void main() {";
+  return CUT + bare.replace("uniform float ratio;", "").replace(main, `${main}\n  if (beyond()) discard;`);
 }

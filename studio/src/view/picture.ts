@@ -246,7 +246,7 @@ export class Picture {
   private marks(dress: Dress, colours: Palette, gap: number): void {
     const { dots, anchors, partial, form } = this;
     const ink = channels(colours.ink);
-    dots.points.visible = dress.layers.particles && this.dotted(dress.pixel);
+    dots.points.visible = dress.layers.particles && form!.particles > 0 && this.dotted(dress.pixel);
     dots.style.diameter.value =
       form!.springs.length || form!.triangles.length
         ? clamp(0.2 * gap, 3.5, 8)

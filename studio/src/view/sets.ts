@@ -72,3 +72,39 @@ export function between(forces: Float32Array, low: number | null, high: number |
 /** The particles at the ends of springs, each once, in ascending order. */
 export const endsOf = (springs: Topology["springs"], chosen: number[]) =>
   [...new Set(chosen.flatMap((spring) => springs[spring] ?? []))].sort((a, b) => a - b);
+
+/** Edges of meshes at which there is one face alone. */
+export function naked({ meshes }: Pick<Topology, "meshes">): [number, number][] {
+  const seen = new Map<string, { edge: [number, number]; count: number }>();
+  for (const { faces } of Object.values(meshes)) {
+    for (const face of faces) {
+      const corners = [...new Set(face)];
+      corners.forEach((a, i) => {
+        const edge: [number, number] = [a, corners[(i + 1) % corners.length]!];
+        const name = [...edge].sort((one, other) => one - other).join(" ");
+        const found = seen.get(name) ?? { edge, count: 0 };
+        seen.set(name, { edge, count: found.count + 1 });
+      });
+    }
+  }
+  return [...seen.values()].filter(({ count }) => count === 1).map(({ edge }) => edge);
+}
+
+/** The particles along the edges of meshes that hang together with some particles on an edge, in ascending order. */
+export function rim(topology: Pick<Topology, "meshes">, from: number[]): number[] {
+  const next = new Map<number, number[]>();
+  for (const [a, b] of naked(topology)) {
+    next.set(a, [...(next.get(a) ?? []), b]);
+    next.set(b, [...(next.get(b) ?? []), a]);
+  }
+  const found = new Set(from.filter((particle) => next.has(particle)));
+  const waiting = [...found];
+  for (let one = waiting.pop(); one !== undefined; one = waiting.pop()) {
+    for (const other of next.get(one) ?? []) {
+      if (found.has(other)) continue;
+      found.add(other);
+      waiting.push(other);
+    }
+  }
+  return [...found].sort((a, b) => a - b);
+}

@@ -7,6 +7,7 @@ import {
   LinearSRGBColorSpace,
   LineSegments,
   Mesh,
+  Plane,
   Points,
   RawShaderMaterial,
   Scene,
@@ -26,6 +27,7 @@ const LEVELS = [
 ];
 const SLOW = 36;
 const QUICK = 20;
+const NO_PLANE = new Plane();
 
 /** Chooses how finely to draw while something moves, from how long pictures take. */
 export class Pace {
@@ -68,6 +70,8 @@ export class Stage {
   readonly group = new Group();
   readonly common: Common = common();
   readonly pace = new Pace();
+  /** Beyond this plane nothing of the form is drawn; null: all of it is. */
+  section: Plane | null = null;
   /** [CSS pixels] */
   width = 1;
   height = 1;
@@ -111,6 +115,7 @@ export class Stage {
     if (canvas.width !== columns || canvas.height !== rows) renderer.setSize(this.width, this.height, false);
     this.common.size.value.set(this.width, this.height);
     this.common.ratio.value = wanted;
+    this.cut(camera);
     if (!smooth) {
       renderer.render(this.scene, camera);
       return;
@@ -128,6 +133,7 @@ export class Stage {
     const target = new WebGLRenderTarget(columns, rows, { samples: SAMPLES });
     this.common.size.value.set(this.width, this.height);
     this.common.ratio.value = ratio;
+    this.cut(camera);
     this.into(target, camera);
     const pixels = new Uint8ClampedArray(4 * columns * rows);
     this.renderer.readRenderTargetPixels(target, 0, 0, columns, rows, pixels);
@@ -156,6 +162,13 @@ export class Stage {
         for (const { value } of Object.values(material.uniforms)) if (value instanceof Texture) value.dispose();
       });
     }
+  }
+
+  private cut(camera: Camera): void {
+    camera.updateMatrixWorld();
+    const { normal, constant } = new Plane().copy(this.section ?? NO_PLANE).applyMatrix4(camera.matrixWorldInverse);
+    if (this.section) this.common.cut.value.set(normal.x, normal.y, normal.z, constant);
+    else this.common.cut.value.set(0, 0, 0, 0);
   }
 
   private into(target: WebGLRenderTarget, camera: Camera): void {

@@ -1,6 +1,7 @@
 // What the view shows and receives: signals that panels set and the view follows, and what it gives back.
 import { type Signal, signal } from "@preact/signals";
 import type { Frame } from "../frame";
+import type { PerspectiveCamera } from "three";
 import type { Point } from "../model";
 import type { Place } from "./camera";
 import type { Dress } from "./picture";
@@ -13,8 +14,8 @@ export type Layer = "mesh" | "springs" | "particles" | "anchors" | "loads" | "re
 /** What is picked. */
 export type Picked = { kind: "particle" | "spring"; index: number } | null;
 
-/** What a drag on the canvas does: as ever, or select particles. */
-export type Tool = "none" | "box" | "lasso";
+/** What a drag on the canvas does: as ever, or select particles; or a click draws. */
+export type Tool = "none" | "box" | "lasso" | "draw";
 
 /** Particles by the name of a group. */
 export type Groups = Record<string, number[]>;
@@ -105,7 +106,32 @@ export interface Options {
   painted: Signal<Painted | null>;
   /** A moment of a recording, or a load case; null: the present shape. */
   still: Signal<Still | null>;
+  /** CSS colours of groups, by their names. */
+  groupColours: Signal<Record<string, string>>;
+  /** The plane in which corners are drawn; null: not shown. */
+  working: Signal<Sheet | null>;
+  /** What is written beside the form. */
+  tags: Signal<Tags>;
+  /** A plane beyond which nothing of the form is shown. */
+  section: Signal<Section | null>;
   dark: Signal<boolean>;
+}
+
+/** Nothing; names of anchors, groups and forces; or numbers of springs. */
+export type Tags = "none" | "names" | "forces" | "lengths";
+
+/** The plane across an axis at a coordinate [length], with a grid of this step. */
+export interface Sheet {
+  axis: "x" | "y" | "z";
+  at: number;
+  step: number;
+}
+
+/** The plane across an axis at a coordinate [length]; shown is what is below, or above if `isTurned`. */
+export interface Section {
+  axis: "x" | "y" | "z";
+  at: number;
+  isTurned: boolean;
 }
 
 export const options = (): Options => ({
@@ -133,6 +159,10 @@ export const options = (): Options => ({
   ghost: signal<Shadow | null>(null),
   painted: signal<Painted | null>(null),
   still: signal<Still | null>(null),
+  groupColours: signal<Record<string, string>>({}),
+  working: signal<Sheet | null>(null),
+  tags: signal<Tags>("none"),
+  section: signal<Section | null>(null),
   dark: signal(false),
 });
 
@@ -143,6 +173,9 @@ export interface Kept {
   colouring: Colouring;
   scale?: Scale;
   groups?: Groups;
+  groupColours?: Record<string, string>;
+  /** How the file that it was made from was read, and what that is called. */
+  recipe?: { file: string; text: string };
   layers: Partial<Record<Layer, boolean>>;
   /** A design problem of it. */
   design?: unknown;
@@ -191,8 +224,11 @@ export interface View {
   dressing(): Dress;
   /** What is seen now, in full quality. */
   png(): Promise<Blob>;
+  readonly camera: PerspectiveCamera;
   /** Where a particle is drawn [CSS pixels of the page]; null behind the eye. */
   project(particle: number): { x: number; y: number } | null;
+  /** Where a point is drawn [CSS pixels of the page]; null behind the eye. */
+  spot(point: ArrayLike<number>): { x: number; y: number } | null;
   /** What is drawn: x y z of each particle [length]. */
   particles(): Float32Array;
   dispose(): void;

@@ -1,6 +1,6 @@
 // The view of a session: what is on the canvas. A picture is drawn only when something has changed.
 import { effect, signal } from "@preact/signals";
-import { Vector3 } from "three";
+import { type PerspectiveCamera, Vector3 } from "three";
 import type { Frame } from "../frame";
 import type { Scene } from "../model";
 import type { Session } from "../session";
@@ -15,12 +15,14 @@ import { Guides } from "./guides";
 import { Highlights } from "./highlights";
 import { Keys } from "./keys";
 import { numbers, remember, remembered } from "./memory";
+import { Overlays } from "./overlays";
 import { Picker } from "./picking";
 import { type Dress, Picture } from "./picture";
 import { Scaling } from "./scaling";
 import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
 import { Surface } from "./surface";
+import { blank } from "../drawing/blank";
 import { Triad } from "./triad";
 import type { Dragged, Kept, Legend, Look, Options, Picked, View } from "./types";
 
@@ -47,6 +49,7 @@ class Drawing implements View {
   private readonly guides: Guides;
   private readonly ghost: Ghost;
   private readonly surface: Surface;
+  private readonly overlays: Overlays;
   private readonly watchers = new Set<() => void>();
   private readonly triad: Triad;
   private readonly hand: Hand;
@@ -85,11 +88,16 @@ class Drawing implements View {
     this.ghost = new Ghost(this.stage);
     this.surface = new Surface(this.stage);
     this.triad = new Triad(this.stage);
+    this.overlays = new Overlays(this.stage, options, session, this.picture, this.ask);
     this.hand = new Hand(this.handles());
     const say = (sentence: string) => (this.announcement.value = sentence);
     this.keys = new Keys({ ...this.handles(), eye: this.eye, fit: () => this.fit(), say });
     this.watchCanvas();
     this.watchSession();
+  }
+
+  get camera(): PerspectiveCamera {
+    return this.eye.camera;
   }
 
   fit(): void {
@@ -150,9 +158,10 @@ class Drawing implements View {
   }
 
   kept(): Kept {
-    const { colouring, scale, groups, layers } = this.options;
-    const eye = numbers(this.eye.place);
-    return { eye, colouring: colouring.value, scale: scale.value, groups: groups.value, layers: layers.value };
+    const { colouring, scale, groups, groupColours, layers } = this.options;
+    const [eye, colours] = [numbers(this.eye.place), groupColours.value];
+    const seen = { eye, colouring: colouring.value, scale: scale.value, groups: groups.value, layers: layers.value };
+    return Object.keys(colours).length ? { ...seen, groupColours: colours } : seen;
   }
 
   async png(): Promise<Blob> {
@@ -166,8 +175,12 @@ class Drawing implements View {
   project(particle: number): { x: number; y: number } | null {
     const positions = this.particles();
     if (!(particle >= 0 && 3 * particle + 2 < positions.length)) return null;
+    return this.spot(positions.subarray(3 * particle, 3 * particle + 3));
+  }
+
+  spot(point: ArrayLike<number>): { x: number; y: number } | null {
     this.eye.camera.updateMatrixWorld();
-    const at = new Vector3().fromArray(positions, 3 * particle).applyMatrix4(this.eye.camera.matrixWorldInverse);
+    const at = new Vector3(point[0], point[1], point[2]).applyMatrix4(this.eye.camera.matrixWorldInverse);
     if (at.z >= 0) return null;
     at.applyMatrix4(this.eye.camera.projectionMatrix);
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
@@ -184,8 +197,9 @@ class Drawing implements View {
     clearTimeout(this.counting);
     clearTimeout(this.pacing);
     this.undo.reverse().forEach((undo) => undo());
-    const { hand, keys, guide, guides, ghost, surface, triad, highlights } = this;
-    for (const part of [hand, keys, guide, guides, ghost, surface, triad, highlights]) part.dispose();
+    const { hand, keys, guide, guides, ghost, surface, triad, highlights, overlays } = this;
+    const parts = [hand, keys, guide, guides, ghost, surface, triad, highlights, overlays];
+    for (const part of parts) part.dispose();
     this.eye.dispose();
     this.picture.dispose();
     this.stage.dispose();
@@ -416,7 +430,7 @@ class Drawing implements View {
     this.fitted = true;
     const place = this.untouched ? null : remembered(this.session.key);
     if (place) this.eye.put(place);
-    else this.eye.first(this.picture.body(frame));
+    else this.eye.first(this.body(frame));
     this.untouched = place === null;
     this.dress();
   }
@@ -448,12 +462,13 @@ class Drawing implements View {
     if (this.hand.led) this.untouched = false;
     if (!this.untouched || this.following || this.eye.holds(frame.positions)) return;
     this.following = true;
-    this.eye.fit(this.picture.body(frame));
+    this.eye.fit(this.body(frame));
   }
 
-  /** All that is to be seen, with a variant that is drawn over it. */
+  /** All that is to be seen, with a variant that is drawn over it; of a page with a corner or two its sheet. */
   private body(frame: Frame): ArrayLike<number> {
-    const own = this.picture.body(frame);
+    const few = frame.positions.length < 9;
+    const own = few ? [...blank(this.session.summary.peek()?.units), ...frame.positions] : this.picture.body(frame);
     const other = this.options.ghost.peek()?.positions;
     return other ? [...Array.from(own), ...other] : own;
   }

@@ -14,6 +14,7 @@ from hookean.files.recipe.curves import Placed, lying_on, pulled
 from hookean.files.recipe.drawing import Drawing, Item
 from hookean.files.recipe.select import Term, count, is_selector, listed, select, terms
 from hookean.files.recipe.shapes import Shape, Split
+from hookean.files.recipe.snapping import reach_of, snapped
 from hookean.scene.scene import Scene
 
 PLACE_FIELDS = ("points", "lines", "mesh")
@@ -76,6 +77,9 @@ class _Builder:
         scene = dict(self.recipe)
         scene["units"] = self.drawing.units
         tables = {group: self._tables(group) for group in ("forces", "anchors", "geometry")}
+        reach = {i: reach_of(t, f"/anchors/{i}") for i, t in enumerate(tables["anchors"]) if "snap" in t}
+        for table in tables["anchors"]:
+            table.pop("snap", None)
         for group, given in tables.items():
             for i, table in enumerate(given):
                 self._remember(table, f"/{group}/{i}")
@@ -89,7 +93,7 @@ class _Builder:
         if isinstance(self.recipe.get("meshes", {}), Mapping):  # else the scene refuses it
             scene["meshes"] = {**self.literal, **made}
         return Built(
-            scene=Scene.read(scene),
+            scene=snapped(Scene.read(scene), reach),
             drawing=self.drawing,
             forces=[shape for _, shape in placed["forces"]],
             anchors=[shape for _, shape in placed["anchors"]],

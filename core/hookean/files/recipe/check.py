@@ -18,7 +18,7 @@ FIELDS_MEANT = {
     "surface": "mesh", "surfaces": "mesh", "brep": "mesh", "meshes": "mesh", "curve": "lines", "curves": "lines",
     "load": "vector", "force": "vector", "division": "divide", "k": "stiffness",
 }  # fmt: skip
-ADDED = ("divide", "divide_u", "divide_v", "on", "curve_divide")
+ADDED = ("divide", "divide_u", "divide_v", "on", "curve_divide", "snap")
 """Fields that recipes have beyond those of a scene."""
 TEXTS = ("name", "kind", "points", "lines", "mesh", "curve", "on", "edges", "axes", "rotations", "anchor")
 

@@ -28,7 +28,9 @@ from hookean.files.recipe.notes import notes
 from hookean.files.recipe.roles import ROLES, converted, role_names, usable
 from hookean.files.recipe.rows import Entry, Row, fill, guess, own, rows_of
 from hookean.files.recipe.select import count
+from hookean.files.recipe.snapping import Floats, distances
 from hookean.files.rhino.model import Model
+from hookean.scene.scene import Scene
 from hookean.values.columns import Model as Described
 from hookean.values.fields import Field
 from hookean.values.units import Units
@@ -103,6 +105,12 @@ class Draft:
             "particles": self.particles,
             "held": self.held,
         }
+
+
+def undrafted(name: str) -> dict[str, Any]:
+    """A draft as plain values for a file that holds a whole model and needs no recipe: it has no rows."""
+    nothing: dict[str, Any] = {"rows": [], "roles": [], "recipe": {}, "notes": [], "particles": 0, "held": 0}
+    return {**nothing, "name": name, "units": Units().model_dump(), "fault": ""}
 
 
 def _plain(row: Row) -> dict[str, Any]:
@@ -270,10 +278,27 @@ def _count(found: Draft, built: Built, sources: Mapping[str, list[int]], element
         force, shape = built.scene.forces[number], built.forces[number]
         if force.kind_name == "membrane":
             sums[row]["face of membrane"] += 0 if shape is None or shape.faces is None else len(shape.faces)
-        else:
+        elif force.kind_name != "shell":  # its faces are those of its membrane
             sums[row]["load" if force.kind_name == "unary" else "spring"] += elements[number]
     for number, row in enumerate(sources["anchors"]):
         shape = built.anchors[number]
         sums[row]["held point"] += 0 if shape is None else len(shape.array)
     for made, counted in zip(found.rows, sums, strict=True):
         made.becomes = [count(number, what, MANY.get(what, "")) for what, number in counted.items()]
+    for number, row in enumerate(sources["anchors"]):
+        if (shape := built.anchors[number]) is not None and len(shape.array):
+            found.rows[row].becomes += _apart(found, built.scene, shape.array, found.recipe["anchors"][number])
+
+
+def _apart(found: Draft, scene: Scene, points: Floats, table: Mapping[str, Any]) -> list[str]:
+    """How far anchors are from the nearest particles, where they do not meet these."""
+    far = distances(scene, points)
+    unit, reach = found.drawing.units.length, float(table.get("snap", 0.0))
+    moved = far[(far > found.weld_tolerance) & (far <= reach)]
+    beside = far[(far > found.weld_tolerance) & (far > reach)]
+    said = []
+    if len(moved):
+        said.append(f"{len(moved)} of them moved to the nearest particle, by {moved.max():.3g} {unit} at most")
+    if len(beside):
+        said.append(f"{len(beside)} of them {beside.min():.3g} {unit} or more from the nearest particle; raise snap")
+    return said

@@ -28,6 +28,8 @@ UNIT_NAMES = {
 """hookean's unit for each Rhino unit system it shares."""
 
 NO_LAYER = "(no layer)"
+UNSTATED = "not stated"
+"""The unit system of a model whose file states none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +145,8 @@ def _units(model: Model, given: Any) -> tuple[Units, float, str, str]:
 
         found = first_fault(error)
         raise InputError(f"/units{found.pointer}", found.sentence) from None
+    if model.unit == UNSTATED:
+        return units, 1.0, units.length, f"the file states no unit: its numbers are read as {units.length}"
     if model.metres is None:
         said = f"the unit system of the file ({model.unit}) is unknown: its numbers are read as {units.length}"
         return units, 1.0, units.length, said

@@ -1,4 +1,5 @@
-"""Recipes: how to relax what a .3dm file holds. A recipe is a scene in TOML or JSON with selectors for coordinates.
+"""Recipes: how to relax what a .3dm file holds, an OBJ file by its groups, or COMPAS documents by their names. A recipe
+is a scene in TOML or JSON with selectors for coordinates.
 
     units = {length = "m", force = "kN"}        # of every number here; without it the file's length, N, s
 
@@ -34,6 +35,7 @@ stands for anything inside a name. Several are joined by commas or in a list.
   other curve of the selector and no line of a force meets; `vertices:`, `inner:` of curves and meshes; `naked:`,
   `corners:` of meshes and surfaces. How one table divides an object holds for all tables without another one, and so
   does the user text `divide` of the object.
+* `snap = 0.2` of an anchor moves its points to the nearest particle, where that is no farther [length].
 * `on = "layer:beams"` keeps the points that lie on these curves. `pull_to_curve` selects its `curve`; bent ones with
   `curve_divide = N`; of several each pulls the points nearest to it.
 * `warp_lines` of a membrane: lines and polylines, curves with the user text `divide`.
@@ -109,7 +111,7 @@ def _lines(seen: Drawing, built: Built, said: str) -> list[str]:
     units, model = built.scene.units, seen.model
     version = model.version // 10 if model.version >= 50 else model.version
     lines = [
-        f"{model.name}: Rhino {version} file, read by {said}",
+        f"{model.name}: {f'Rhino {version} file' if version else 'file'}, read by {said}",
         f"units: {units.length}, {units.force}, {units.time}; {seen.said}",
         f"points within {built.scene.weld_tolerance:.6g} {units.length} become one particle",
         _counts(seen),

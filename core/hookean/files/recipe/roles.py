@@ -42,10 +42,16 @@ Load = Annotated[
 Force = Annotated[float, Field(ge=-LARGEST, le=LARGEST, description="Load on each point in this direction [force]")]
 PerWidth = Annotated[float, Field(gt=0, le=LARGEST, description="Stiffness per width [force/length]")]
 Prestress = Annotated[float, Field(ge=0, le=LARGEST, description="Stress in every direction, as drawn [force/length]")]
+Bending = Annotated[float, Field(ge=0, le=LARGEST, description="Plate bending stiffness D [force length]")]
 Ends = Annotated[Literal["nothing", "loose ends", "ends"], Field(description="What of it is held in place [-]")]
 Rim = Annotated[Literal["nothing", "edges", "corners", "all"], Field(description="What of it is held in place [-]")]
 Axes = Annotated[
     Literal["xyz", "xy", "xz", "yz", "x", "y", "z"], Field(description="The directions in which it is held [-]")
+]
+
+
+Snap = Annotated[
+    float, Field(ge=0, le=LARGEST, description="Moved to the nearest particle within this distance [length]")
 ]
 
 
@@ -222,16 +228,35 @@ class MembraneRole(Surface):
         return _elastic(self, item, {"kind": "membrane", "warp_stiffness": self.stiffness, "prestress": stress}, units)
 
 
+class ShellRole(Surface):
+    """Surfaces as thin shells."""
+
+    role, elastic = "shell", True
+    summary = "A thin elastic shell: stiff in its surface and against bending, without stress as drawn"
+    stiffness: PerWidth = 600e3
+    bending: Bending = 500.0
+    held: Rim = "nothing"
+    load: Load = 0.0
+
+    def parts(self, item: Item, units: Units) -> list[Part]:
+        """A membrane without prestress and its bending, a load and what is held."""
+        sheet = _elastic(self, item, {"kind": "membrane", "warp_stiffness": self.stiffness}, units)
+        name = f"bending {item.layer.replace('::', ' ') or self.role}"
+        table = {"kind": "shell", "name": name, "strength": self.bending, **self.divided(item)}
+        return [sheet[0], Part("forces", table, "mesh"), *sheet[1:]]
+
+
 class HeldPoints(Role):
     """Points as anchors."""
 
     role, family = "anchors", "points"
     summary = "Held in place"
     axes: Axes = "xyz"
+    snap: Snap = 0.0
 
     def parts(self, item: Item, units: Units) -> list[Part]:
         """An anchor at the point."""
-        return [Part("anchors", _held(item, self.axes), "points")]
+        return [Part("anchors", {**_held(item, self.axes), **_snap(self.snap)}, "points")]
 
 
 class HeldCurves(Role):
@@ -242,6 +267,7 @@ class HeldCurves(Role):
     axes: Axes = "xyz"
     at: Literal["vertices", "ends"] = Field(default="vertices", description="The points of it that are held [-]")
     divide: Pieces = 0
+    snap: Snap = 0.0
 
     def split(self, item: Item) -> Split | None:
         """How it divides a curve."""
@@ -249,7 +275,9 @@ class HeldCurves(Role):
 
     def parts(self, item: Item, units: Units) -> list[Part]:
         """An anchor at points of the curve."""
-        return [Part("anchors", {**_held(item, self.axes), **self.divided(item)}, "points", self.at)]
+        return [
+            Part("anchors", {**_held(item, self.axes), **self.divided(item), **_snap(self.snap)}, "points", self.at)
+        ]
 
 
 class HeldSurfaces(Surface):
@@ -328,7 +356,7 @@ class CarriedSurfaces(Surface):
 ROLES: dict[tuple[str, str], type[Role]] = {
     (role.family, role.role): role
     for role in (
-        *(SpringRole, CableRole, NetRole, MembraneRole, HeldPoints, HeldCurves, HeldSurfaces),
+        *(SpringRole, CableRole, NetRole, MembraneRole, ShellRole, HeldPoints, HeldCurves, HeldSurfaces),
         *(LoadedPoints, LoadedCurves, CarriedPoints, CarriedCurves, CarriedSurfaces),
     )
 }
@@ -359,6 +387,10 @@ def told(role: type[Role], item: Item, units: Units) -> dict[str, Any]:
         along = shapes.direction(item) if role.family == "curves" else None
         found |= dict(zip("xyz", vector_of(item, along), strict=True))
     return converted(role, found, SI, units)
+
+
+def _snap(reach: float) -> dict[str, Any]:
+    return {"snap": reach} if reach else {}
 
 
 def _held(item: Item, axes: str) -> dict[str, Any]:
