@@ -23,7 +23,7 @@ run: .venv/run
 # compiled tests and the documentation; types are checked beside it, and what is wrong with them is printed at the end
 test: .venv/test
 	$(STYLE)
-	@{ nice $(BIN)/mypy && nice $(BIN)/python hatch_build.py check; } >.venv/types.log 2>&1 & types=$$!; \
+	@{ nice -n 5 $(BIN)/mypy && $(BIN)/python hatch_build.py check; } >.venv/types.log 2>&1 & types=$$!; \
 	$(BIN)/python hatch_build.py site >/dev/null 2>&1 & site=$$!; \
 	$(BIN)/python -m pytest --collect-only -q >/dev/null 2>&1; wait $$site; \
 	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 30; tests=$$?; \
