@@ -15,6 +15,7 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
+import forking
 import hookean
 from hookean import Scene, cli
 from hookean.commands import relax as command
@@ -54,13 +55,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def run(*arguments: str) -> Result:
     """The command in this process; an exception that gets out fails the test."""
     return CliRunner().invoke(cli.app, list(arguments), catch_exceptions=False)
-
-
-def process(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """The command as a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-m", "hookean.cli", *arguments], cwd=cwd, capture_output=True, text=True, timeout=HANG
-    )
 
 
 def names(folder: Path) -> list[str]:
@@ -501,13 +495,15 @@ def test_help_starts_light() -> None:
     assert done.stdout.rstrip().endswith("loaded: []"), done.stdout[-200:] + done.stderr
 
 
-def test_processes_answer_with_their_codes(folder: Path) -> None:
-    good = process("relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml", cwd=folder)
+def test_processes_answer_with_their_codes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The command as a process of its own."""
+    monkeypatch.chdir(folder)
+    good = forking.run(forking.COMMAND, "relax", "cable.3dm", "-o", "out.3dm", "-r", "recipe.toml")
     assert (good.returncode, good.stderr) == (0, "")
-    bad = process("relax", "missing.3dm", "-o", "no.3dm", cwd=folder)
+    bad = forking.run(forking.COMMAND, "relax", "missing.3dm", "-o", "no.3dm")
     assert bad.returncode == 2 and bad.stderr == "hookean: missing.3dm: no such file; check the path.\n"
     first = (folder / "out.3dm").read_bytes()
-    process("relax", "out.3dm", "-o", "again.3dm", "-r", "recipe.toml", cwd=folder)
+    forking.run(forking.COMMAND, "relax", "out.3dm", "-o", "again.3dm", "-r", "recipe.toml")
     assert (folder / "again.3dm").read_bytes() == first
 
 

@@ -36,16 +36,29 @@ def build(tree: Path, target: str, into: Path, **environment: str) -> Path:
 
 
 @pytest.fixture(scope="module")
-def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The sdist of this tree, unpacked."""
+def packed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The sdist of this tree."""
     if not (ROOT / "studio").is_dir():
         pytest.skip("there are no sources of the page here")
+    return build(ROOT, "sdist", tmp_path_factory.mktemp("packed"))
+
+
+@pytest.fixture(scope="module")
+def sdist(packed: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same, unpacked."""
     folder = tmp_path_factory.mktemp("sdist")
-    with tarfile.open(build(ROOT, "sdist", folder / "packed")) as packed:
+    with tarfile.open(packed) as archive:
         safely = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}  # not before Python 3.11.4
-        packed.extractall(folder, **safely)
-    [tree] = (path for path in folder.iterdir() if path.name != "packed")
+        archive.extractall(folder, **safely)
+    [tree] = folder.iterdir()
     return tree
+
+
+@pytest.fixture(scope="module")
+def wheel(sdist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A wheel of the sdist, with neither node nor npm on the path and no registry."""
+    nothing = {"PATH": str(sdist / "none"), "npm_config_registry": "http://127.0.0.1:9", "PYTHONPATH": ""}
+    return build(sdist, "wheel", tmp_path_factory.mktemp("wheel"), TZ="UTC", **nothing)
 
 
 def test_an_sdist_carries_the_page_and_its_sources(sdist: Path):
@@ -57,30 +70,31 @@ def test_an_sdist_carries_the_page_and_its_sources(sdist: Path):
     assert not [name for name in names if "node_modules" in name or name.endswith(".map")]
 
 
-def test_a_wheel_of_the_sdist_needs_no_node(sdist: Path, tmp_path: Path):
-    """Neither node nor npm on the path, no registry; page and documentation are those of the sdist, byte for byte."""
-    nothing = {"PATH": str(tmp_path), "npm_config_registry": "http://127.0.0.1:9", "PYTHONPATH": ""}
-    wheel = zipfile.ZipFile(build(sdist, "wheel", tmp_path / "wheel", **nothing))
-    page = {name.removeprefix(PAGE): wheel.read(name) for name in wheel.namelist() if name.startswith(PAGE)}
+def test_a_wheel_of_the_sdist_needs_no_node(sdist: Path, wheel: Path):
+    """Its page and documentation are those of the sdist, byte for byte."""
+    with zipfile.ZipFile(wheel) as archive:
+        held = {name: archive.read(name) for name in archive.namelist()}
+    page = {name.removeprefix(PAGE): data for name, data in held.items() if name.startswith(PAGE)}
     for place in (PAGE, SITE):
         folder = sdist / "server" / place
-        packed = {name.removeprefix(place): wheel.read(name) for name in wheel.namelist() if name.startswith(place)}
+        packed = {name.removeprefix(place): data for name, data in held.items() if name.startswith(place)}
         assert packed == {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
     for path in re.findall(rb'(?:src|href)="/page/(.*?)"', page["index.html"]):
         assert path.decode() in page
-    assert not [name for name in wheel.namelist() if "node_modules" in name or name.startswith("studio")]
+    assert not [name for name in held if "node_modules" in name or name.startswith("studio")]
 
 
-def test_packages_are_accepted_by_an_index_and_build_the_same_bytes_twice(sdist: Path, tmp_path: Path):
+def test_packages_are_accepted_by_an_index_and_build_the_same_bytes_twice(
+    packed: Path, sdist: Path, wheel: Path, tmp_path: Path
+):
     """`twine check --strict`; names and times inside archives do not depend on when or where they are built."""
-    zones = {"wheel": ("UTC", "Asia/Tokyo"), "sdist": ("UTC", "Asia/Tokyo") if SOAK else ("UTC",)}
-    twice = {
-        target: [build(sdist, target, tmp_path / f"{target}-{i}", TZ=zone) for i, zone in enumerate(zones[target])]
-        for target in zones
-    }
-    for one, *again in twice.values():
-        assert all(one.name == other.name and one.read_bytes() == other.read_bytes() for other in again)
-    command = [sys.executable, "-m", "twine", "check", "--strict", *(str(one) for one, *_ in twice.values())]
+    twice = [(wheel, build(sdist, "wheel", tmp_path / "wheel", TZ="Asia/Tokyo"))]
+    if SOAK:
+        one, other = (build(sdist, "sdist", tmp_path / zone, TZ=zone) for zone in ("UTC", "EST5EDT"))
+        twice.append((one, other))
+    for one, other in twice:
+        assert one.name == other.name and one.read_bytes() == other.read_bytes()
+    command = [sys.executable, "-m", "twine", "check", "--strict", str(packed), str(wheel)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+
+import forking
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -46,28 +46,28 @@ def test_the_curl_line_sends_the_same_scene():
     json.loads(body)
 
 
-def test_the_file_line_writes_what_it_says(tmp_path):
+def test_the_file_line_writes_what_it_says(tmp_path, monkeypatch):
     """The command as printed, run in the project's folder with its outputs in another; exit code 0."""
     words = shlex.split(block("sh", "hookean relax"))
     assert words[0] == "hookean"
     for option in ("-o", "--picture", "--csv"):
         place = words.index(option) + 1
         words[place] = str(tmp_path / Path(words[place]).name)
-    command = [sys.executable, "-m", "hookean.cli", *words[1:]]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    monkeypatch.chdir(ROOT)
+    done = forking.run(forking.COMMAND, *words[1:])
     assert done.returncode == 0, done.stderr
     for name in ("membrane.3dm", "membrane.png", "membrane.csv"):
         assert (tmp_path / name).stat().st_size > 1000
 
 
-def test_the_line_of_a_run_in_motion_writes_what_it_says(tmp_path):
+def test_the_line_of_a_run_in_motion_writes_what_it_says(tmp_path, monkeypatch):
     """The command as printed, with its outputs in a folder that is not there yet; a row for each frame."""
     words = shlex.split(block("sh", "hookean simulate"))
     for option in ("--picture", "--csv"):
         place = words.index(option) + 1
         words[place] = str(tmp_path / words[place])
-    command = [sys.executable, "-m", "hookean.cli", *words[1:]]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    monkeypatch.chdir(ROOT)
+    done = forking.run(forking.COMMAND, *words[1:])
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out" / "frames.csv").read_text(encoding="utf-8").count("\n") > 10
     assert (tmp_path / "out" / "motion.png").stat().st_size > 1000

@@ -104,6 +104,7 @@ def test_mypy_without_plugins_accepts_the_docs_and_finds_mistakes(blocks: Path) 
     assert told == wanted, found.stdout + found.stderr
 
 
+@pytest.mark.soak
 def test_pyright_accepts_the_docs(blocks: Path) -> None:
     """The standard rules; no mistake on any page."""
     pages = map(str, blocks.glob("page_*.py"))

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import forking
 from hookean import atomic_write
 from hookean.atomic_write import put
 from hookean.errors import InputError
@@ -42,7 +43,7 @@ def test_a_link_to_nowhere_is_refused_by_its_name(tmp_path: Path) -> None:
     assert link.is_symlink()
 
 
-def test_outputs_of_the_command_line_keep_links(tmp_path: Path) -> None:
+def test_outputs_of_the_command_line_keep_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """-o, --report and --csv of `hookean relax`."""
     (tmp_path / "scene.json").write_text(SCENE)
     (tmp_path / "real").mkdir()
@@ -50,9 +51,9 @@ def test_outputs_of_the_command_line_keep_links(tmp_path: Path) -> None:
     for name in names:
         (tmp_path / "real" / name).write_text("before")
         (tmp_path / name).symlink_to(tmp_path / "real" / name)
-    line = [sys.executable, "-m", "hookean.cli", "relax", "scene.json", "-o", names[0]]
-    line += ["--report", names[1], "--csv", names[2]]
-    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    monkeypatch.chdir(tmp_path)
+    words = ["relax", "scene.json", "-o", names[0], "--report", names[1], "--csv", names[2]]
+    done = forking.run(forking.COMMAND, *words)
     assert done.returncode == 0, done.stderr
     for name in names:
         assert (tmp_path / name).is_symlink() and (tmp_path / "real" / name).read_text() != "before"

@@ -21,7 +21,7 @@ FRAME = 4 * (3 * SIDE**2 + 2 * SIDE * (SIDE - 1) + 3 * 4)
 KEPT = 20 * FRAME if SOAK else 1.5e6
 """Bytes that a life may grow by: for code that is compiled while it runs (1.6 MB by the hundredth drag, nothing after),
 a minute of charts and the text of a scene on its way (1.4 MB). A drag has some 25 frames: one in a hundred, in
-a short life three in four, left behind are more."""
+a short life three in five, left behind are more."""
 
 CONTEXTS = """() => {
     window.contexts = 0;
