@@ -156,6 +156,30 @@ def push_packed(x, indices, crowd, parameters, f) -> None:  # type: ignore[no-un
         f[end, 3] += sums[i, 3]
 
 
+@device
+def add_spheres(indices, start, order, sums, counts, stiffness, f, w) -> None:  # type: ignore[no-untyped-def]
+    """Add what spheres feel to their particles: forces, and lumped stiffness by how often they count."""
+    for n in range(order.shape[0]):
+        i = np.uint64(n)
+        a = np.uint64(indices[np.uint64(start + int(order[i])), 0])
+        w[a] += stiffness * (1.0 + counts[i])
+        f[a, 0] += sums[i, 0]
+        f[a, 1] += sums[i, 1]
+        f[a, 2] += sums[i, 2]
+
+
+@device
+def add_capsules(indices, start, order, here, stiffness, f, w) -> None:  # type: ignore[no-untyped-def]
+    """The same of capsules, for both ends."""
+    for i in range(order.shape[0]):
+        e = start + int(order[i])
+        for end in range(indices.shape[1]):
+            a = indices[e, end]
+            w[a] += stiffness * (1.0 + here[i, 15])
+            for c in range(3):
+                f[a, c] += here[i, 8 + 3 * end + c]
+
+
 def collide_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
     if parameters.shape[1] == PACKED:
         for n in range(parameters.shape[0]):
@@ -171,13 +195,10 @@ def collide_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-
         short = listed(x, indices, parameters, start, here, sums, counts, order, room, skin)
         energy += push_all(parameters, start, here, sums, counts, order, short, room, skin)
         stiffness = 2.0 * parameters[start, STIFFNESS]
-        for i in range(stop - start):
-            e, often = start + int(order[i]), counts[i] if here.shape[1] == HERE else here[i, 15]
-            for end in range(indices.shape[1]):
-                a = indices[e, end]
-                w[a] += stiffness * (1.0 + often)
-                for c in range(3):
-                    f[a, c] += sums[i, c] if here.shape[1] == HERE else here[i, 8 + 3 * end + c]
+        if here.shape[1] == HERE:
+            add_spheres(indices, start, order, sums, counts, stiffness, f, w)
+        else:
+            add_capsules(indices, start, order, here, stiffness, f, w)
     return energy
 
 

@@ -258,22 +258,31 @@ def farther(here: Any, seen: Any, i: Any, moved: Any) -> Any:
 def as_seen(here: Any, parameters: Any, start: Any, order: Any, seen: Any, most: Any) -> Any:
     """Give capsules their radii; whether all elements have those, and the groups, that they had when the list was made,
     and no capsule has moved by more than the root of `most`."""
-    spheres, same = here.shape[1] == HERE, most >= 0.0
+    same = most >= 0.0
+    if here.shape[1] == HERE:
+        return same and known(parameters, start, order, seen)
     for i in range(here.shape[0]):
         e = start + int(order[i])
-        if not spheres:
-            here[i, 7] = parameters[e, RADIUS]
-            here[i, 3] += here[i, 7]
-        if not same:
-            continue
-        if not spheres:
+        here[i, 7] = parameters[e, RADIUS]
+        here[i, 3] += here[i, 7]
+        if same:
             moved = 0.0
             for c in range(3):
                 moved += (here[i, c] - seen[i, c]) ** 2
             same = farther(here, seen, i, moved) <= most
-        known = seen[i, 3] if spheres else seen[i, SEEN + 3]
-        same = same and parameters[e, RADIUS] == known and parameters[e, GROUP] == seen[i, 4]
+            same = same and parameters[e, RADIUS] == seen[i, SEEN + 3] and parameters[e, GROUP] == seen[i, 4]
     return same
+
+
+@device
+def known(parameters: Any, start: Any, order: Any, seen: Any) -> Any:
+    """Whether all spheres have the radii and groups that they had when the list was made."""
+    other = 0
+    for n in range(order.shape[0]):
+        i = np.uint64(n)
+        e = np.uint64(start + int(order[i]))
+        other |= 0 if parameters[e, RADIUS] == seen[i, 3] and parameters[e, GROUP] == seen[i, 4] else 1
+    return other == 0
 
 
 @device
