@@ -83,3 +83,15 @@ def test_the_nearest_point_of_a_polyline_and_its_lengths_are_had_at_once() -> No
     assert run is not None and straight(shapes.polyline([(0, 0, 0), (1, 0, 0)]).ToNurbsCurve()) is None
     found = [run.nearest(np.array(at, dtype=float)) for at in ((1.5, 3, 0), (5, 0.25, 0), (-9, 0, 0))]
     assert near([*found, *run.at_lengths([0.5, 2.5])], [2.0, 1.25, 0.0, 0.25, 1.5])
+
+
+def test_a_mesh_is_read_once_for_a_component_and_again_for_the_next() -> None:
+    mesh = shapes.mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    with shapes.kept([mesh, None, 3.0]):
+        first, faces = shapes.mesh_parts(mesh)
+        first += 9.0
+        faces.clear()
+        mesh.Transform(rhino3dm.Transform.Translation(5.0, 5.0, 5.0))
+        again, whole = shapes.mesh_parts(mesh)
+        assert near(again[0].tolist(), [0, 0, 0]) and whole == [(0, 1, 2)]
+    assert near(shapes.mesh_parts(mesh)[0][0].tolist(), [5, 5, 5])
