@@ -127,3 +127,18 @@ def test_a_stand_in_that_fails_is_an_error_only_where_an_engine_or_no_engine_nee
         d.component("Engine")
     messages = Canvas(graph.of(d.archive())).run(20.0).messages
     assert [m.level for m in messages if m.text == "Division by zero"] == [level]
+
+
+def test_what_only_draws_is_evaluated_once_after_the_last_solution(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A toggle that resets makes two solutions; what a script takes is needed in both, what is behind it is not."""
+    d = Kangaroo("late", "Late", "A sum into an Engine, and one that nothing takes.")
+    reset = d.toggle("Reset", False)
+    taken = d.native("Addition", a=reset, b=d.slider("B", 1, 0, 9))
+    d.component("Engine", reset=reset, forces=taken)
+    d.panel("shown", d.native("Addition", a=taken, b=d.slider("C", 2, 0, 9)))
+    canvas, counted = Canvas(graph.of(d.archive())), []
+    evaluate = canvas._evaluate
+    monkeypatch.setattr(canvas, "_evaluate", lambda node: (counted.append(node.label), evaluate(node)))
+    outcome = canvas.run(20.0)
+    assert counted.count("A+B") == 3 and counted.count("shown") == 1, counted
+    assert outcome.panels["shown"].values_in_order() == [3.0]

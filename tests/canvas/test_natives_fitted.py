@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from canvas.native_values import called as run
 from canvas.native_values import near, plain
 from hookean_canvas.run.natives import BY_NAME, Unfit, shapes
+from hookean_canvas.run.natives.along import straight
+from hookean_canvas.run.rhino import rhino3dm
 
 RING = [("point", 3, 0, 1), ("point", 0, 3, 1), ("point", -3, 0, 1), ("point", 0, -3, 1)]
 GUIDE = ("line", (0, 0, 0), (1, 0, 0))
@@ -57,3 +60,38 @@ def test_a_quarter_of_a_circle_is_a_curve_of_weights_and_knots() -> None:
     assert near(run("Nurbs Curve PWK", corner, [1.0, HALF, 1.0], [0.0, 0.0, 1.0, 1.0])[1], math.pi / 2)
     with pytest.raises(Unfit, match="as many weights as points"):
         run("Nurbs Curve PWK", corner, [1.0], [0.0, 0.0, 1.0, 1.0])
+
+
+@pytest.mark.parametrize("kind", ["polyline", "nurbs", "uneven"])
+def test_a_line_that_crosses_itself_is_divided_in_order(kind: str) -> None:
+    """Both points at the crossing are on their own parts, also where a point is sought by samples."""
+    corners = [(-1, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, -1, 0)]
+    curve = shapes.polyline(corners)
+    if kind != "polyline":
+        curve = curve.ToNurbsCurve()
+    if kind == "uneven":
+        curve.Domain = rhino3dm.Interval(0.0, 40.0)
+    scale = 10.0 if kind == "uneven" else 1.0
+    places, _, at = BY_NAME["Divide Curve"].run(curve, 6, False)
+    wanted = [(-1, 0, 0), (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 0), (0, -1, 0)]
+    assert near([plain(one) for one in places], wanted)
+    assert near(at, [t * scale for t in (0, 0.5, 1, 2, 3, 3.5, 4)])
+
+
+def test_the_nearest_point_of_a_polyline_and_its_lengths_are_had_at_once() -> None:
+    run = straight(shapes.polyline([(0, 0, 0), (2, 0, 0), (2, 1, 0)]))
+    assert run is not None and straight(shapes.polyline([(0, 0, 0), (1, 0, 0)]).ToNurbsCurve()) is None
+    found = [run.nearest(np.array(at, dtype=float)) for at in ((1.5, 3, 0), (5, 0.25, 0), (-9, 0, 0))]
+    assert near([*found, *run.at_lengths([0.5, 2.5])], [2.0, 1.25, 0.0, 0.25, 1.5])
+
+
+def test_a_mesh_is_read_once_for_a_component_and_again_for_the_next() -> None:
+    mesh = shapes.mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    with shapes.kept([mesh, None, 3.0]):
+        first, faces = shapes.mesh_parts(mesh)
+        first += 9.0
+        faces.clear()
+        mesh.Transform(rhino3dm.Transform.Translation(5.0, 5.0, 5.0))
+        again, whole = shapes.mesh_parts(mesh)
+        assert near(again[0].tolist(), [0, 0, 0]) and whole == [(0, 1, 2)]
+    assert near(shapes.mesh_parts(mesh)[0][0].tolist(), [5, 5, 5])

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from hookean_canvas.run.graph import Node, Port
-from hookean_canvas.run.natives import NATIVES, Native, Unfit, native_of
+from hookean_canvas.run.natives import NATIVES, Native, Unfit, native_of, shapes
 from hookean_canvas.run.natives.declare import BRANCHES, Input, Output
 from hookean_canvas.run.trees import ITEM, LIST, TREE, Path, Run, Tree, runs
 
@@ -86,6 +86,11 @@ def _short(port: Any) -> str:
 
 def run_native(node: Node, native: Native, given: Sequence[tuple[Input, Tree]], say: Say) -> list[Tree]:
     """Trees for the declared outputs; `given` has the data of each declared input."""
+    with shapes.kept(value for _, tree in given for value in tree.values_in_order()):
+        return _run_native(node, native, given, say)
+
+
+def _run_native(node: Node, native: Native, given: Sequence[tuple[Input, Tree]], say: Say) -> list[Tree]:
     outputs = outputs_of(node, native) or []
     results = [Tree() for _ in outputs]
     accesses = [of.access for of, _ in given]

@@ -77,6 +77,8 @@ class Canvas:
         self._messages: dict[UUID, list[Message]] = {}
         self._scripts: dict[UUID, Script] = {}
         self._solutions = 0
+        self._last = _behind_scripts(graph)
+        self._postponed: set[UUID] = set()
         with _standing():
             for node in graph.nodes:
                 code = code_of(node) if node.guid in SCRIPTS else None
@@ -93,6 +95,10 @@ class Canvas:
                 for node in self._pressed:
                     self._set[node.id] = bool(state)
                 at_rest = self._settle(None if self._solutions == 0 else self._pressed, until, solutions)
+            for node in self._order:
+                if node.id in self._postponed:
+                    self._evaluate(node)
+            self._postponed.clear()
         messages = [message for node in self._order for message in self._messages.get(node.id, [])]
         panels: dict[str, Tree] = {}
         for node in self._order:
@@ -164,11 +170,13 @@ class Canvas:
                     stale.add(key)
                     waiting.append(key)
         for node in self._order:
-            if node.id in stale:
-                self._messages[node.id] = []
+            if node.id in stale and node.id in self._last:
+                self._postponed.add(node.id)
+            elif node.id in stale:
                 self._evaluate(node)
 
     def _evaluate(self, node: Node) -> None:
+        self._messages[node.id] = []
         for port in node.outputs:
             self._results[port.id] = Tree()
         if node.locked or is_inert(node.guid, node.name, node.plugin):
@@ -287,6 +295,20 @@ class Canvas:
 
     def _say(self, node: Node, level: str, text: str) -> None:
         self._messages[node.id].append(Message(node.label, level, text))
+
+
+def _behind_scripts(graph: Graph) -> set[UUID]:
+    """The objects that no script depends on, by their ids: what they give is wanted after the last solution only."""
+    before: dict[UUID, list[UUID]] = {}
+    for start, _, end, _ in graph.wires():
+        before.setdefault(end.id, []).append(start.id)
+    waiting = [node.id for node in graph.nodes if node.guid in SCRIPTS]
+    needed_by_scripts = set(waiting)
+    while waiting:
+        found = set(before.get(waiting.pop(), ())) - needed_by_scripts
+        needed_by_scripts |= found
+        waiting += found
+    return {node.id for node in graph.nodes} - needed_by_scripts
 
 
 class _standing:

@@ -10,6 +10,8 @@ import numpy as np
 
 from hookean.discretize import curves as arc_lengths
 from hookean_canvas.run.natives import shapes
+from hookean_canvas.run.natives.along import divided, straight
+from hookean_canvas.run.natives.along import length as measured
 from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
@@ -27,7 +29,7 @@ def end_points(curve: Any) -> tuple[Any, Any]:
 @native("c75b62fa-0a33-4da7-a5bd-03fd0068fd93", "Length", "Len", _CURVE, "Length (L)")
 def length(curve: Any) -> float:
     """The length of a curve."""
-    return arc_lengths.length(curve)
+    return measured(curve)
 
 
 @native("ccc7b468-e743-4049-891f-299432545898", "Curve Middle", "MidPt", _CURVE, "Midpoint (M)")
@@ -44,9 +46,7 @@ def divide_curve(curve: Any, count: int, kinks: bool) -> tuple[list[Any], list[A
     if count < 1:
         raise Unfit("Count must be at least 1")
     bounded(count)
-    at = [_parameter(curve, place) for place in arc_lengths.divide(curve, count)]
-    domain = curve.Domain
-    at[0], at[-1] = domain.T0, domain.T1
+    at, domain = divided(curve, count), curve.Domain
     if curve.IsClosed:
         del at[-1]
     if kinks:
@@ -61,7 +61,7 @@ def divide_distance(curve: Any, apart: float) -> tuple[list[Any], list[Any], lis
     """Points along a curve with equal straight distances from each other, the first at its start."""
     if apart <= 0.0:
         raise Unfit("Distance must be above 0")
-    bounded(arc_lengths.length(curve) / apart)
+    bounded(measured(curve) / apart)
     domain = curve.Domain
     samples = np.linspace(domain.T0, domain.T1, 4001)
     places = shapes.rows(curve.PointAt(float(t)) for t in samples)
@@ -87,8 +87,8 @@ def divide_length(curve: Any, step: float) -> tuple[list[Any], list[Any], list[f
     """Points along a curve at a preset length from each other, the first at its start."""
     if step <= 0.0:
         raise Unfit("Length must be above 0")
-    bounded(arc_lengths.length(curve) / step)
-    count = math.floor(arc_lengths.length(curve) / step * (1.0 + 1e-12))
+    bounded(measured(curve) / step)
+    count = math.floor(measured(curve) / step * (1.0 + 1e-12))
     at = [curve.Domain.T0] + [_at_length(curve, step * i) for i in range(1, count + 1)]
     return _evaluated(curve, at)
 
@@ -98,7 +98,7 @@ def divide_length(curve: Any, step: float) -> tuple[list[Any], list[Any], list[f
         "Point (P); Tangent (T); Parameter (t)")  # fmt: skip
 def evaluate_length(curve: Any, along: float, normalized: bool) -> tuple[Any, Any, float]:
     """The point of a curve at a length from its start, or with Normalized at a part of its length."""
-    t = _at_length(curve, along * arc_lengths.length(curve) if normalized else along)
+    t = _at_length(curve, along * measured(curve) if normalized else along)
     return curve.PointAt(t), curve.TangentAt(t), t
 
 
@@ -117,32 +117,18 @@ def _evaluated(curve: Any, at: list[float]) -> tuple[list[Any], list[Any], list[
     return [curve.PointAt(t) for t in at], [curve.TangentAt(t) for t in at], at
 
 
-def _parameter(curve: Any, place: shapes.Array) -> float:
-    """The parameter of a point on a curve: the nearest of many samples, refined between its neighbours."""
-    from scipy.optimize import minimize_scalar
-
-    domain = curve.Domain
-    samples = np.linspace(domain.T0, domain.T1, 401)
-    apart = [float(np.linalg.norm(shapes.xyz(curve.PointAt(float(t))) - place)) for t in samples]
-    k = int(np.argmin(apart))
-    low, high = float(samples[max(k - 1, 0)]), float(samples[min(k + 1, 400)])
-    found = minimize_scalar(
-        lambda t: float(np.sum((shapes.xyz(curve.PointAt(float(t))) - place) ** 2)),
-        bounds=(low, high), method="bounded", options={"xatol": 1e-13 * (domain.T1 - domain.T0)},
-    )  # fmt: skip
-    return float(found.x)
-
-
 def _at_length(curve: Any, along: float) -> float:
     """The parameter at a length from the start."""
     from scipy.optimize import brentq
 
     domain = curve.Domain
-    whole = arc_lengths.length(curve)
+    run, whole = straight(curve), measured(curve)
     if along <= 0.0:
         return float(domain.T0)
     if along >= whole * (1.0 - 1e-14):
         return float(domain.T1)
+    if run is not None:
+        return run.at_lengths([along])[0]
     return float(brentq(lambda t: _upto(curve, t) - along, domain.T0, domain.T1, xtol=1e-14 * abs(domain.T1) + 1e-300))
 
 
@@ -150,7 +136,7 @@ def _upto(curve: Any, t: float) -> float:
     domain = curve.Domain
     if t <= domain.T0:
         return 0.0
-    return arc_lengths.length(curve if t >= domain.T1 else curve.Trim(domain.T0, t))
+    return measured(curve if t >= domain.T1 else curve.Trim(domain.T0, t))
 
 
 @native("afb96615-c59a-45c9-9cac-e27acb1c7ca0", "Explode", "Explode",

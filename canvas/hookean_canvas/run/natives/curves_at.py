@@ -10,7 +10,7 @@ import numpy as np
 
 from hookean.discretize import curves as arc_lengths
 from hookean_canvas.run.natives import shapes
-from hookean_canvas.run.natives.curves import _parameter
+from hookean_canvas.run.natives.along import divided, straight
 from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
@@ -75,8 +75,7 @@ def _at(curve: Any, count: int) -> list[float]:
     if count < 1:
         raise Unfit("Count must be at least 1")
     bounded(count)
-    at = [_parameter(curve, place) for place in arc_lengths.divide(curve, count)]
-    at[0], at[-1] = curve.Domain.T0, curve.Domain.T1
+    at = divided(curve, count)
     return at[:-1] if curve.IsClosed else at
 
 
@@ -120,6 +119,10 @@ def curve_closest_point(place: Any, curve: Any) -> tuple[Any, float, float]:
 def nearest(curve: Any, place: shapes.Array) -> float:
     """The parameter of the point of a curve that is nearest to a place."""
     from scipy.optimize import minimize_scalar
+
+    run = straight(curve)
+    if run is not None:
+        return run.nearest(place)
 
     def distance(t: float) -> float:
         return float(np.linalg.norm(shapes.xyz(curve.PointAt(t)) - place))

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from hookean.discretize import catenary as chains
-from hookean.discretize import curves as arc_lengths
 from hookean_canvas.run.natives import shapes
+from hookean_canvas.run.natives.along import length as measured
 from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.rhino import rhino3dm
 
@@ -198,7 +198,7 @@ def _nurbs(places: shapes.Array, knots: shapes.Array, degree: int) -> Any:
 
 
 def _measured(curve: Any) -> tuple[Any, float, Any]:
-    return curve, arc_lengths.length(curve), curve.Domain
+    return curve, measured(curve), curve.Domain
 
 
 @native("275671d4-3e87-40bd-8aff-8e6a5fdbb892", "Catenary", "Cat",

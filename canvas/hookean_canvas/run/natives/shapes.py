@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -170,10 +171,27 @@ def mesh(vertices: ArrayLike, faces: Iterable[Sequence[int]]) -> Any:
     return made
 
 
+_kept: dict[int, list[Any]] = {}
+"""Meshes by their ids, each with its vertices and faces once they are read."""
+
+
+@contextmanager
+def kept(geometry: Iterable[Any]) -> Iterator[None]:
+    """As long as this lasts the meshes of some geometry are read once; they must not be changed."""
+    _kept.update((id(one), [one]) for one in geometry if isinstance(one, rhino3dm.Mesh))
+    try:
+        yield
+    finally:
+        _kept.clear()
+
+
 def mesh_parts(made: Any) -> tuple[Array, Faces]:
     """Vertices `(n, 3)` and faces of 3 or 4 vertices."""
-    faces = [tuple(map(int, made.Faces[i])) for i in range(len(made.Faces))]
-    return rows(made.Vertices.ToPoint3dArray()), [face[:3] if face[2] == face[3] else face for face in faces]
+    known = _kept.get(id(made), [made])
+    if len(known) == 1:
+        faces = [tuple(map(int, made.Faces[i])) for i in range(len(made.Faces))]
+        known += [rows(made.Vertices.ToPoint3dArray()), [f[:3] if f[2] == f[3] else f for f in faces]]
+    return known[1].copy(), list(known[2])
 
 
 def transformed(geometry: Any, change: Any) -> Any:
