@@ -15,6 +15,8 @@ from laws.cases import scene_of
 FLAT = ("damping", "upper_cutoff", "lower_cutoff", "cutoff", "plasticity", "yield_extension", "limit", "sticky")
 """Columns that change nothing at rest, or at a jump alone; yielding is switched off."""
 
+FLEEING = {"power_law"}  # the nearer, the more it repels: a soft hold lets go
+
 
 def columns(force: Force) -> list[str]:
     """The columns of a force that are numbers and that an equilibrium depends on smoothly."""
@@ -35,7 +37,7 @@ def held(kind: str, seed: int) -> dict[str, Any]:
     force = force.model_copy(update={"name": "it", **elastic})
     scene = scene_of(force, x)
     system = compile(scene)
-    firm = 3.0 if type(force).conservative else 30.0  # what has no energy swirls out of a soft hold
+    firm = 3.0 if type(force).conservative and kind not in FLEEING else 30.0  # what has no energy swirls out of a hold
     stiffness = firm * float(system.evaluate(system.start())[1].max(initial=0.0)) or 1.0
     reach = float(np.ptp(x, axis=0).max()) or 1.0
     particles = list(range(len(x)))

@@ -274,6 +274,31 @@ def test_a_goal_beyond_the_bounds_sits_at_the_bound() -> None:
     assert found.goals[0]["gains"] == {"string.rest_length": pytest.approx(gain, rel=TOLERANCE)}
 
 
+def test_a_start_at_a_bound_is_left() -> None:
+    """Both links of a string begin as long as they may be. Links of 0.9 of that have the forces that are asked for, so
+    that the search gets there, to 1e-8 of their squares."""
+    scene = a_string()
+    at = {"force": "string", "field": "rest_length", "lower": 0.5, "upper": 1.0}
+    links = [0, 1]
+    short = hookean.relax(hookean.Scene.read(a_string(0.9))).force("string")["force"][links]
+    goals = [{"kind": "force", "force": "string", "elements": links, "target": short.tolist()}]
+    found = design({"scene": scene, "variables": [at], "goals": goals})
+    assert found.method == "least_squares" and found.status == "converged"
+    assert found.objective <= 1e-8 * float(short @ short)
+
+
+def a_string(rest: float = 1.0) -> dict[str, Any]:
+    """A weight between supports 2 apart, on links of a rest length."""
+    return {
+        "particles": [[-1, 0, 0], [0, 0, -0.2], [1, 0, 0]],
+        "forces": [
+            {"kind": "springs", "name": "string", "particles": [[0, 1], [1, 2]], "stiffness": 100, "rest_length": rest},
+            {"kind": "unary", "particles": [1], "vector": [0, 0, -5]},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+    }
+
+
 def test_the_caller_may_stop_it() -> None:
     """A search that is cancelled returns its best shape so far."""
     count = iter(range(100))

@@ -47,8 +47,11 @@ def _least_squares(search: Search) -> Ended:
     if not wide.all():  # what cannot vary is left out
         upper = np.where(wide, upper, lower + AT_BOUND)
     start = np.clip(np.zeros(search.unknowns.count), lower, upper)
+    # the first steps are as long as the start is from 0; SciPy moves it off its bounds by 1e-10, which is no length
+    off = 1.0 if ((start <= lower) | (start >= upper)).any() else 0.0
     found = least_squares(
-        search.residuals, start, search.slopes, bounds=(lower, upper), method="trf",
+        lambda z: search.residuals(z - off), start + off, lambda z: search.slopes(z - off),
+        bounds=(lower + off, upper + off), method="trf",
         ftol=settings.tolerance, xtol=settings.tolerance, gtol=settings.tolerance * 1e-4,
         max_nfev=settings.max_iterations,
     )  # fmt: skip
