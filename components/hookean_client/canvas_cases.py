@@ -170,6 +170,8 @@ def _envelope(made, envelope):
         title = entry["name"] or entry["kind"]
         found += [("%s.%s" % (title, name), entry["columns"][name]) for name in sorted(entry["columns"])]
     found.append(("reaction", envelope["reactions"]["force"]))
+    if "moment" in envelope["reactions"]:
+        found.append(("reaction.moment", envelope["reactions"]["moment"]))
     made.extremes = [title for title, _ in found]
     made.largest, made.smallest = (_rows([one[name] for _, one in found]) for name in ("largest", "smallest"))
     made.largest_cases = _rows([one["largest_case"] for _, one in found])
