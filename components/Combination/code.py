@@ -6,6 +6,6 @@ are in no load case. Connect combination to Load Cases; the cases need no other 
 sum of factor x load case
 """
 
-from hookean_client import canvas_cases
+from hookean_client import canvas_case_items
 
-combination = canvas_cases.combination(ghenv, _cases, _factors_, prestress_, permanent_, name_)
+combination = canvas_case_items.combination(ghenv, _cases, _factors_, prestress_, permanent_, name_)

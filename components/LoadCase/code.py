@@ -6,6 +6,6 @@ for factors on several of them; the loads need no other wire.
 factor x (loads, change of temperature)
 """
 
-from hookean_client import canvas_cases
+from hookean_client import canvas_case_items
 
-case = canvas_cases.load_case(ghenv, _loads, _factor_, heated_, degrees_, name_)
+case = canvas_case_items.load_case(ghenv, _loads, _factor_, heated_, degrees_, name_)

@@ -1,20 +1,22 @@
-"""The components of load cases: loads of a case, factors of a combination, and the form under all of them.
+"""The form under load cases and combinations, which travel as text (see `canvas_case_items`).
 
-Cases and combinations travel as text. The service finds the form, freezes it and solves each case from there; the same
-question is asked once. For Python 2.7 to 3.13.
+The service finds the form, freezes it and solves each case from there; the same question is asked once. For Python 2.7
+to 3.13.
 """
 
 import json
 
-from . import canvas, canvas_engine, canvas_sweep
 from . import canvas_geometry as geometry
 from . import canvas_link as link
 from . import canvas_scene as compose
-from . import canvas_tools as tools
-from .canvas_design import _name, _number, _text
-from .canvas_geometry import TEXT, Unfit, listed, matched
+from . import canvas_setup as setup
+from . import canvas_words as words
+from .canvas_ask import ask, digest
+from .canvas_geometry import Unfit, listed, missing
+from .canvas_items import text
+from .canvas_packed import packed
+from .canvas_values import flag
 
-PRESTRESS, PERMANENT = "prestress", "permanent"
 PATH = "/v1/analysis/load-cases"
 
 
@@ -25,89 +27,23 @@ class Outputs(object):
     extremes = largest = largest_cases = smallest = scene = report = None
 
 
-# texts
-
-
-def load_case(ghenv, loads, factor, heated, degrees, name):
-    """A load case as text: its loads and changes of temperature, by the names of their forces."""
-
-    def work():
-        given = listed(loads)
-        warm = [str(_name(item)) for item in listed(heated)]
-        changes = [geometry.number(item) for item in listed(degrees)]
-        if not given and not warm:
-            raise compose.missing("_loads is missing; connect the outputs of load components, or give their names")
-        if bool(warm) != bool(changes):
-            raise Unfit("heated and degrees belong together; connect both")
-        own = {"forces": [str(_name(item)) for item in given]}
-        if warm:
-            own["temperature"] = dict(zip(*matched(warm, changes)))
-        if listed(factor):
-            own["factor"] = _number(factor, "factor")
-        return _item(ghenv, "load_case", name, own, given)
-
-    return canvas._told(ghenv, work)
-
-
-def combination(ghenv, cases, factors, prestress, permanent, name):
-    """A combination as text: factors on cases, on the prestress of the form and on loads in no case."""
-
-    def work():
-        names, numbers = [_called(item) for item in listed(cases)], [geometry.number(n) for n in listed(factors)]
-        if not names and not listed(prestress) and not listed(permanent):
-            raise compose.missing("_cases is missing; connect the outputs of Load Case, or give their names")
-        if len(numbers) not in (0, 1, len(names)):
-            said = "factors: %d for %d cases; give one for all, or one for each"
-            raise Unfit(said % (len(numbers), len(names)))
-        own = dict(zip(names, (numbers or [1.0]) * (len(names) if len(numbers) < 2 else 1)))
-        for title, given in ((PRESTRESS, prestress), (PERMANENT, permanent)):
-            if listed(given):
-                own[title] = _number(given, title)
-        carried = [item for item in listed(cases) if _is_text(item)]
-        return _item(ghenv, "combination", name, {"factors": own}, carried)
-
-    return canvas._told(ghenv, work)
-
-
-def _item(ghenv, kind, name, own, carried):
-    """The text of a case or combination; `carried` are texts of what it names, so that they need no other wire."""
-    source = canvas.source(ghenv)
-    title = _text(name) or source["title"]
-    parts = [str(item) for item in carried if _is_text(item)]
-    return compose.text({"kind": kind, "source": source, "name": title, "value": own, "parts": parts})
-
-
-def _is_text(item):
-    return isinstance(item, TEXT) and '"kind"' in item
-
-
-def _called(item):
-    """The name of a case: of its text, or the name itself."""
-    if _is_text(item):
-        return compose.read([item], "load_case", "cases")[0]["name"]
-    return str(item).strip()
-
-
-# the form under its cases
-
-
 def cases(ghenv, forces, anchors, settings, rides, given, combinations, stages, chosen, run):
     """One solution of the component: its outputs."""
     made = Outputs()
-    read = canvas._told(
+    read = words.told(
         ghenv, lambda: _wanted(ghenv, forces, anchors, settings, rides, given, combinations, stages, chosen)
     )
     if read is None:
-        canvas.note(ghenv, "")
+        words.note(ghenv, "")
         return made
-    made.scene = compose.text(read.body["scene"])
-    if not tools.flag(run, True):
-        canvas.note(ghenv, "off")
+    made.scene = text(read.body["scene"])
+    if not flag(run, True):
+        words.note(ghenv, "off")
         return made
-    signature = canvas._digest(made.scene + compose.text(read.body["cases"]))
-    answer = canvas.ask(ghenv, ("cases",), signature, read.ask)
+    signature = digest(made.scene + text(read.body["cases"]))
+    answer = ask(ghenv, ("cases",), signature, read.ask)
     if answer is not None:
-        canvas._told(ghenv, lambda: _show(ghenv, made, read, answer))
+        words.told(ghenv, lambda: _show(ghenv, made, read, answer))
     return made
 
 
@@ -130,29 +66,26 @@ class Wanted(object):
 def _wanted(ghenv, forces, anchors, settings, rides, given, combinations, stages, chosen):
     texts = [str(item) for item in listed(forces)]
     if not texts:
-        raise compose.missing("_forces is missing; connect the outputs of force components")
+        raise missing("_forces is missing; connect the outputs of force components")
     mixed = compose.read(listed(combinations), "combination", "combinations")
     case_texts = [str(item) for item in listed(given)] + [part for one in mixed for part in one["parts"]]
     found = compose.read(_once(case_texts), "load_case", "_cases")
     if not found:
-        raise compose.missing("_cases is missing; connect the outputs of Load Case")
+        raise missing("_cases is missing; connect the outputs of Load Case")
     texts = _once(texts + [part for one in found for part in one["parts"]])
     read = compose.read(texts, None, "_forces")
-    held = [
-        dict(one, home=one["point"], target=one["target"] or one["point"])
-        for one in canvas_engine._anchors(ghenv, anchors)
-    ]
+    held = [dict(one, home=one["point"], target=one["target"] or one["point"]) for one in setup.anchors(ghenv, anchors)]
     setting = compose.read(settings, "settings", "settings_")[-1:]
     carried = [compose.ride(item) for _, items in geometry.branches(rides) for item in items if item is not None]
-    unit = canvas_engine._length_unit()
+    unit = geometry.length_unit()
     scene = compose.compose(read, held, setting[0] if setting else None, [entry for entry, _ in carried], unit)
     scene["load_cases"] = _by_name(found, "load case")
     scene["combinations"] = {n: one["factors"] for n, one in _by_name(mixed, "combination").items()}
     if listed(stages):
         scene["stages"] = _stages(listed(stages)[0])
-    names = [_text([item]) for item in listed(chosen)] or None
-    body = {"scene": link.packed(scene), "cases": names}
-    return Wanted(body, [make for _, make in carried], lambda said: canvas_engine.placed(read, held, said))
+    names = [str(item).strip() for item in listed(chosen)] or None
+    body = {"scene": packed(scene), "cases": names}
+    return Wanted(body, [make for _, make in carried], lambda said: setup.placed(read, held, said))
 
 
 def _once(texts):
@@ -190,7 +123,7 @@ def _show(ghenv, made, wanted, answer):
     made.statuses = [one["result"]["status"] for one in ones]
     made.particles = _rows([[geometry.to_point(p) for p in one["result"]["particles"]] for one in ones])
     made.displacements = _rows([[geometry.to_vector(d) for d in one["displacements"]] for one in ones])
-    made.reactions = _rows([canvas_sweep._shown(one["result"]["reactions"]["force"]) for one in ones])
+    made.reactions = _rows([_shown(one["result"]["reactions"]["force"]) for one in ones])
     made.slack = [sum(len(part["elements"]) for part in one["slack"]) for one in ones]
     made.forces = _columns(ones, ("force", "moment", "largest"))
     made.utilisation = _columns(ones, ("utilisation",))
@@ -205,10 +138,14 @@ def _show(ghenv, made, wanted, answer):
     for one in ones:
         made.report.append("%s: %s" % (one["name"], one["result"]["message"]))
         if one["result"]["status"] != "converged":
-            canvas.warning(ghenv, "%s: %s" % (one["name"], one["result"]["message"]))
+            words.warning(ghenv, "%s: %s" % (one["name"], one["result"]["message"]))
     for sentence in form["report"]["warnings"] + [entry["message"] + "." for entry in form["report"]["missed"]]:
-        canvas.warning(ghenv, link.plainly(wanted.placed(sentence)))
-    canvas.note(ghenv, "%d of %d" % (sum(one == "converged" for one in made.statuses), len(ones)))
+        words.warning(ghenv, link.plainly(wanted.placed(sentence)))
+    words.note(ghenv, "%d of %d" % (sum(one == "converged" for one in made.statuses), len(ones)))
+
+
+def _shown(column):
+    return [geometry.to_vector(value) if isinstance(value, list) else value for value in column]
 
 
 def _rows(rows):
@@ -221,7 +158,7 @@ def _columns(ones, names):
     for i, one in enumerate(ones):
         for k, entry in enumerate(one["result"]["forces"]):
             values = next((entry[name] for name in names if entry.get(name)), [])
-            rows.append(("{%d;%d}" % (i, k), canvas_sweep._shown(values)))
+            rows.append(("{%d;%d}" % (i, k), _shown(values)))
     return geometry.to_tree(rows)
 
 
@@ -233,6 +170,8 @@ def _envelope(made, envelope):
         title = entry["name"] or entry["kind"]
         found += [("%s.%s" % (title, name), entry["columns"][name]) for name in sorted(entry["columns"])]
     found.append(("reaction", envelope["reactions"]["force"]))
+    if "moment" in envelope["reactions"]:
+        found.append(("reaction.moment", envelope["reactions"]["moment"]))
     made.extremes = [title for title, _ in found]
     made.largest, made.smallest = (_rows([one[name] for _, one in found]) for name in ("largest", "smallest"))
     made.largest_cases = _rows([one["largest_case"] for _, one in found])

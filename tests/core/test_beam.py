@@ -153,6 +153,24 @@ def test_a_beam_beside_its_particle_turns_it() -> None:
     assert found.reactions["moment"][:, 1] == pytest.approx([-0.2, 0.2], rel=1e-9)
 
 
+@pytest.mark.parametrize("lean", [0.3, 1.2, 1.37, 1.5, 1.7])
+def test_what_is_bent_in_does_not_depend_on_the_section_s_axes(lean: float) -> None:
+    """A kink of 0.4 rad between two beams that are held as drawn, wherever it is to the vertical, where the default z
+    axis changes its side: each half of it bends a beam whose far end is a hinge, M = 3 EI / l 0.2, but for tension."""
+    turn = np.cumsum([lean, 0.4])
+    x = np.concatenate([[[0, 0, 0]], np.cumsum(np.column_stack([np.cos(turn), 0 * turn, np.sin(turn)]), axis=0)])
+    section = {"E": 1e4, "G": 4e3, "A": 1.0, "Iy": 1e-3, "Iz": 1e-3, "J": 1e-3}
+    held = [{"particles": [0, 1, 2], "rotations": "xz"}]
+    found = {}
+    for axis, normal in (("My1", None), ("Mz1", [0, 1, 0])):
+        more = {"curvature": "straight"} if normal is None else {"curvature": "straight", "normal": normal}
+        beams = relax(scene(x, [row(2, section, **more)], held, tolerance=1e-10)).force("beam")
+        found[axis] = abs(float(beams[axis][0]))
+        assert np.abs(beams["Mt"]).max() < 1e-9
+    assert found["My1"] == pytest.approx(found["Mz1"], rel=1e-9)
+    assert found["My1"] == pytest.approx(7.415, rel=1e-3)
+
+
 def test_a_rod_drawn_bent_is_free_of_stress_or_bent_in() -> None:
     """Drawn on a quarter circle: as drawn it stays. Bent in from straight, it springs back to a straight line of the
     same length, for its frames are those of the circle: turned by half a segment at the ends, where the clamp is."""

@@ -57,3 +57,8 @@ def test_what_has_no_value_is_not_in_equilibrium() -> None:
     found = balance(system, system.start())
     assert not np.isfinite(found.residual)
     assert not found.still(1e-6) and not found.met(1e-6)
+
+
+def test_no_case_is_asked_for() -> None:
+    with pytest.raises(InputError, match="cases: none given; give some of a, or leave it out for all"):
+        hookean.load_cases(pulled(), [])

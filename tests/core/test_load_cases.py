@@ -282,6 +282,24 @@ WARM: Spec = {
 }
 
 
+def test_the_envelope_has_the_moments_of_supports() -> None:
+    """Of a cantilever of length 1 under 2 down and, in another case, 3 up at its end: 3 at the clamp, but for the part
+    that its sag of P / (3 EI) makes."""
+    section = {"E": 1e6, "G": 4e5, "A": 0.1, "Iy": 1e-3, "Iz": 1e-3, "J": 1e-3}
+    forces = [{"kind": "beam", "particles": [[0, 1]], **section}]
+    forces += [
+        {"kind": "unary", "name": n, "particles": [1], "vector": [0, 0, p]} for n, p in (("a", -2.0), ("b", 3.0))
+    ]
+    cases = {name: {"forces": [name]} for name in ("a", "b")}
+    anchors = [{"particles": [0], "rotations": "xyz"}]
+    scene = {"particles": [[0, 0, 0], [1, 0, 0]], "forces": forces, "anchors": anchors, "load_cases": cases}
+    found = hookean.load_cases(Scene.read(scene)).envelope
+    assert found.moment is not None and found.moment.largest == pytest.approx([3.0], rel=1e-5)
+    assert found.to_dict()["reactions"]["moment"]["largest_case"] == ["b"]
+    assert found.moment.smallest == pytest.approx([2.0], rel=1e-5)
+    assert any(line.startswith("reaction moment: largest 3") for line in found.summary())
+
+
 def test_warmth_lengthens_a_cable() -> None:
     """Between its ends a cable of EA = 2000 keeps its length: T' = EA (l / (L0 (1 + a dT)) - 1), L0 = l EA / (EA + T).
     With snow on it, it is the cable of that tension at rest, and its sag has a closed form."""

@@ -9,9 +9,10 @@ import pytest
 
 import hookean
 from hookean import InputError, Scene
+from hookean.discretize import quads
 from hookean.discretize.flatten import flatten, outline
 from hookean.discretize.geodesics import cut_along, geodesic
-from hookean.discretize.mesh_strips import face_rows, strips
+from hookean.discretize.mesh_strips import face_rows, row_edges, strips
 from hookean.discretize.outlines import offset
 from hookean.values.mesh import Mesh
 from hookean.workshop.cables import chains
@@ -299,6 +300,26 @@ def test_the_strains_of_compensation_are_those_of_the_membrane() -> None:
     }  # fmt: skip
     pulled = hookean.relax(hookean.Scene.read(sheet)).particles
     np.testing.assert_allclose([pulled[1, 0] - 1, pulled[3, 1] - 1], strains(tuple(n), (800, 600), 0.3), rtol=1e-4)
+
+
+@pytest.mark.parametrize(("long", "wide", "skew"), [(4.0, 4.0, 0.0), (1.0, 3.0, 0.0), (4.0, 4.0, 0.7), (4.0, 1.5, 0.5)])
+@pytest.mark.parametrize("along", ["warp", "weft"])
+def test_the_warp_lies_along_the_rows(long: float, wide: float, skew: float, along: Any) -> None:
+    """Of a flat piece of all rows, a parallelogram: edges of the rows along x are shorter by the compensation alone,
+    whether the piece is square, wider than long, or skewed."""
+    x, y = np.meshgrid(np.linspace(0, long, 5), np.linspace(0, wide, 5), indexing="ij")
+    mesh = quads(np.stack([x + skew * y, y, np.zeros_like(x)], axis=-1))
+    (strip,) = hookean.cutting_patterns(mesh, along=along, rows=99, compensation=(0.1, 0.0)).strips
+    place = {int(vertex): i for i, vertex in enumerate(strip.vertices)}
+    rows = [strip.points[place[b]] - strip.points[place[a]] for a, b in row_edges(mesh, along).tolist()]
+    np.testing.assert_allclose(np.abs(np.array(rows))[:, 1], 0.0, atol=1e-9)
+    drawn = [np.linalg.norm(mesh.vertices[b] - mesh.vertices[a]) for a, b in row_edges(mesh, along).tolist()]
+    np.testing.assert_allclose(np.linalg.norm(rows, axis=1), np.array(drawn) / 1.1, rtol=1e-9)
+
+
+def test_another_direction_is_refused() -> None:
+    with pytest.raises(InputError, match="along: 'diag' given; warp or weft is expected"):
+        hookean.cutting_patterns(hypar(), along="diag")  # type: ignore[arg-type]
 
 
 def test_seams_have_allowances_and_marks_that_meet(form: hookean.Result) -> None:

@@ -39,7 +39,7 @@ class Envelope:
 
     `displacement` [length]: how far each particle moves; `forces` one dict for each force of the scene with its name,
     kind and `columns` (size of vectors), in the units of results; `reaction` [force]: the size at each of the held
-    `particles`.
+    `particles`, and `moment` [force length] likewise, where some have rotations.
     """
 
     cases: tuple[str, ...]
@@ -48,6 +48,7 @@ class Envelope:
     particles: Ints
     reaction: Extremes
     units: Units
+    moment: Extremes | None = None
 
     def __repr__(self) -> str:
         return "\n".join(["Envelope", *(f"  {line}" for line in self.summary())])
@@ -70,6 +71,10 @@ class Envelope:
         if len(self.particles):
             at = int(self.reaction.largest.argmax())
             lines.append(self._line("reaction", self.reaction, at, unit.force, f"particle {self.particles[at]}"))
+        if self.moment is not None:
+            at = int(self.moment.largest.argmax())
+            where = f"particle {self.particles[at]}"
+            lines.append(self._line("reaction moment", self.moment, at, unit.of("moment"), where))
         return lines
 
     def _line(self, what: str, found: Extremes, at: int, unit: str, where: str) -> str:
@@ -81,11 +86,14 @@ class Envelope:
         for entry in self.forces:
             columns = {name: self._plain(found) for name, found in entry["columns"].items()}
             forces.append({**entry, "columns": columns})
+        reactions = {"particles": self.particles.tolist(), "force": self._plain(self.reaction)}
+        if self.moment is not None:
+            reactions["moment"] = self._plain(self.moment)
         return {
             "cases": list(self.cases),
             "displacement": self._plain(self.displacement),
             "forces": forces,
-            "reactions": {"particles": self.particles.tolist(), "force": self._plain(self.reaction)},
+            "reactions": reactions,
         }
 
     def _plain(self, found: Extremes) -> dict[str, list[Any]]:
@@ -105,7 +113,8 @@ def envelope(cases: Mapping[str, Shown], units: Units) -> Envelope:
     """The envelope of cases by their names; at least one."""
     first, held, _ = next(iter(cases.values()))
     moved = np.array([np.linalg.norm(displacements, axis=1) for _, _, displacements in cases.values()])
-    reactions = np.array([np.linalg.norm(_vectors(found), axis=1) for _, found, _ in cases.values()])
+    reactions = np.array([np.linalg.norm(_vectors(found["force"]), axis=1) for _, found, _ in cases.values()])
+    turned = np.array([np.linalg.norm(_vectors(found.get("moment", ())), axis=1) for _, found, _ in cases.values()])
     forces = []
     for number, entry in enumerate(first):
         columns = {}
@@ -116,11 +125,12 @@ def envelope(cases: Mapping[str, Shown], units: Units) -> Envelope:
                 columns[name] = Extremes.of(np.array(whole))
         forces.append({"name": entry["name"], "kind": entry["kind"], "columns": columns})
     particles = np.asarray(held["particles"], dtype=np.int64)
-    return Envelope(tuple(cases), Extremes.of(moved), tuple(forces), particles, Extremes.of(reactions), units)
+    moment = Extremes.of(turned) if turned.size else None  # no rows where no particle has a rotation
+    return Envelope(tuple(cases), Extremes.of(moved), tuple(forces), particles, Extremes.of(reactions), units, moment)
 
 
-def _vectors(reactions: Mapping[str, Any]) -> Floats:
-    return np.asarray(reactions["force"], dtype=float).reshape(-1, 3)
+def _vectors(rows: Any) -> Floats:
+    return np.asarray(rows, dtype=float).reshape(-1, 3)
 
 
 def _sizes(column: Any) -> Floats | None:

@@ -144,8 +144,9 @@ def freeze(scene: Scene) -> Frozen:
     frozen = scene.replaced(forces=tuple(forces))
     turned = system.slots.quaternions(state.x)
     found = state.x[: system.slots.count].copy()
-    known = (lengths, tensions, cloth, slides, expansions, temperatures)
-    model = Frozen(frozen, found, form, tuple(notes), *known, turned)
+    model = Frozen(
+        frozen, found, form, tuple(notes), lengths, tensions, cloth, slides, expansions, temperatures, turned
+    )
     other = compile(frozen)
     if not np.array_equal(other.x, system.x):
         raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")

@@ -147,6 +147,8 @@ def wanted(scene: Scene, names: Sequence[str] | None) -> list[str]:
         raise InputError("/load_cases", said)
     known = [*scene.load_cases, *scene.combinations]
     given = [names] if isinstance(names, str) else known if names is None else names
+    if not len(given):
+        raise InputError("cases", f"none given; give some of {', '.join(known)}, or leave it out for all")
     for name in given:
         if name not in known:
             raise InputError("cases", f"{name!r} is not a load case or combination; the scene has {', '.join(known)}")

@@ -14,6 +14,14 @@ from hookean.errors import InputError
 Index = NDArray[np.int64]
 
 
+def row_edges(mesh: Any, along: Literal["warp", "weft"] = "warp") -> Index:
+    """The edges (k, 2) that run along the rows of `face_rows`. Raises InputError for another direction, or where warp
+    and weft cannot agree."""
+    if along not in ("warp", "weft"):
+        raise InputError("along", f"{along!r} given; warp or weft is expected")
+    return warp_weft(as_mesh(mesh))[0 if along == "warp" else 1]
+
+
 def face_rows(mesh: Any, along: Literal["warp", "weft"] = "warp") -> Index:
     """The row (m,) of each face: rows run along warp or weft edges, which are their long sides, and are numbered from
     one side of the mesh to the other. Raises InputError where warp and weft cannot agree (see `warp_weft`)."""

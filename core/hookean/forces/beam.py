@@ -137,7 +137,8 @@ class Beam(Force):
     Give E, G, A, Iy, Iz and J, or the names of a material and a section of the scene. With a `temperature` L is the
     drawn length times 1 + expansion x temperature; the section stays.
 
-    The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. In motion a
+    The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. Rows that are
+    straight without stress are bent in, and twisted in where the normals turn along the row. In motion a
     particle has an isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
     Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and shortening); Bergou et al., "Discrete
     elastic rods", 2008 (twist); Przemieniecki, Theory of matrix structural analysis, 1968, 5.6 (shear).

@@ -26,9 +26,17 @@ def drawn_frames(chords: Floats, normal: Floats | None) -> Floats:
     return np.stack([t, np.cross(z, t), z], axis=1)
 
 
+def _across(z: Floats, t: Floats) -> Floats:
+    """The direction of the part of a z axis that is square to another direction."""
+    part = z - (z @ t) / (t @ t) * t
+    return np.asarray(part / np.sqrt(part @ part))
+
+
 def straight_frames(indices: Ints, chords: Floats, frames: Floats) -> tuple[Floats, Floats]:
     """Frames (m, 3, 3) of the first and last ends of beams that are straight without stress: where two beams follow
-    each other, both have the mean direction of the two there, and the mean z axis; at the ends of rows their own.
+    each other, both have the mean direction of the two there, and the mean z axis; at the ends of rows their own. Where
+    z axes point away from each other, as those of default normals do on either side of the vertical, that is no twist:
+    one of the sections is taken as turned by half a turn.
 
     `indices` (m, 2) particles of the beams, `frames` their own, which `drawn_frames` gives.
     """
@@ -44,10 +52,13 @@ def straight_frames(indices: Ints, chords: Floats, frames: Floats) -> tuple[Floa
         mean = t[a] + way * t[b]
         if a == b or lengths(mean[None])[0] < 1e-6:
             continue
-        joint = drawn_frames(mean[None], (frames[a, 2] + frames[b, 2])[None])[0]
+        one_z, other_z = (_across(frames[k, 2], mean) for k in (a, b))
+        half = -1.0 if one_z @ other_z < 0.0 else 1.0
+        joint = drawn_frames(mean[None], (one_z + half * other_z)[None])[0]
         if not np.isfinite(joint).all():
             continue
         found[a, i], found[b, j] = joint, joint
+        found[b, j, 1:] *= half
         if way < 0.0:  # the second one runs the other way: turned about z
             found[b, j, :2] *= -1.0
     return found[:, 0], found[:, 1]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hookean.discretize.flatten import Flat, flatten, oriented, outline, turned_along
 from hookean.discretize.geodesics import cut_along
-from hookean.discretize.mesh_strips import strips
+from hookean.discretize.mesh_strips import row_edges, strips
 from hookean.discretize.meshes import as_mesh
 from hookean.discretize.outlines import offset
 from hookean.errors import InputError
@@ -159,7 +159,8 @@ def cutting_patterns(
 
     - `surface`: A mesh; a result, or a scene, which is relaxed, with `mesh`, the name of one of the scene's meshes
       (default: the only one).
-    - `along`: The direction of the strips by the rows of a quad mesh; the warp of the cloth lies along the strip.
+    - `along`: The direction of the strips by the rows of a quad mesh; the warp of the cloth lies along these rows, and
+      without them (`labels`, `seams`) along the longer way of the strip.
     - `rows`: Rows of faces to a strip.
     - `labels`: The strip of each face instead, numbered from 0; each strip must be a disc.
     - `seams`: Pairs of vertices of the mesh instead: the surface is cut along the geodesics between them, which lie
@@ -179,6 +180,7 @@ def cutting_patterns(
         if labels is not None:
             raise InputError("seams", "labels are given, too; give one of them")
         shape, labels = cut_along(shape, seams)
+    threads = None if labels is not None else row_edges(shape, along)
     number = np.asarray(strips(shape, along, rows) if labels is None else labels, dtype=np.int64)
     if number.shape != (len(shape.faces),):
         raise InputError("labels", f"{len(number)} labels for {len(shape.faces)} faces; give one for each")
@@ -186,7 +188,7 @@ def cutting_patterns(
     owners = _owners(shape.faces, number)
     wide = allowance, allowance if edge_allowance is None else edge_allowance
     found = tuple(
-        _strip(shape, number, i, owners, compensation, wide, mark_every) for i in range(int(number.max()) + 1)
+        _strip(shape, number, i, owners, threads, compensation, wide, mark_every) for i in range(int(number.max()) + 1)
     )
     return Patterns(found, shape, (float(compensation[0]), float(compensation[1])), _seams(found), units)
 
@@ -250,6 +252,7 @@ def _strip(
     number: Ints,
     index: int,
     owners: dict[tuple[int, int], list[int]],
+    threads: Ints | None,
     compensation: tuple[float, float],
     allowances: tuple[float, float],
     mark_every: int,
@@ -262,7 +265,7 @@ def _strip(
     except InputError as error:
         raise InputError(f"strip {index + 1}", error.sentence) from None
     seam = outline(faces)
-    points = turned_along(flat.points, _long_axis(flat.points))
+    points = turned_along(flat.points, _grain(flat.points, vertices, faces, threads))
     points = points / (1.0 + np.asarray(compensation, dtype=float))
     sides = zip(vertices[seam].tolist(), np.roll(vertices[seam], -1).tolist(), strict=True)
     both = [owners[min(a, b), max(a, b)] for a, b in sides]
@@ -273,11 +276,19 @@ def _strip(
     return Strip(index, vertices, faces, points, seam, beside, cut, marks, flat)
 
 
-def _long_axis(points: Floats) -> Floats:
-    """The direction (2,) in which points lie furthest apart, to the right."""
-    middle = points - points.mean(axis=0)
-    values, ways = np.linalg.eigh(middle.T @ middle)
-    way = ways[:, int(np.argmax(values))]
+def _grain(points: Floats, vertices: Ints, faces: Ints, threads: Ints | None) -> Floats:
+    """The direction (2,) of the warp of a flat strip, to the right: the mean one of the edges (k, 2) of its rows, or
+    without rows that in which its points lie furthest apart."""
+    if threads is None:
+        ways = points - points.mean(axis=0)
+    else:
+        place = {int(vertex): i for i, vertex in enumerate(vertices)}
+        sides = {frozenset(pair) for face in faces.tolist() for pair in zip(face, [*face[1:], face[0]], strict=True)}
+        known = [(place.get(a, -1), place.get(b, -1)) for a, b in threads.tolist()]
+        own = np.array([pair for pair in known if frozenset(pair) in sides])
+        ways = points[own[:, 1]] - points[own[:, 0]]
+    values, axes = np.linalg.eigh(ways.T @ ways)
+    way = axes[:, int(np.argmax(values))]
     return np.asarray(-way if way[int(np.argmax(np.abs(way)))] < 0.0 else way)
 
 

@@ -50,7 +50,7 @@ def write(structure: Structure, target: Path) -> None:
             raise InputError(target.name, f"{count} different {what}; at most {SETS} are supported")
     names = plain_names([g.name for g in (*groups, *structure.beams)])
     sets = _sets(groups, names, which, len(sections), beams)
-    blocks = [("line", np.concatenate([g.pairs for g in groups]))] if groups else []
+    blocks: list[tuple[str, Any]] = [("line", np.concatenate([g.pairs for g in groups]))] if groups else []
     blocks += [("line", beams.pairs)] if structure.beams else []
     mesh = meshio.Mesh(beams.points, blocks, cell_sets=sets, point_sets={"HELD": held} if len(held) else {})
     text = io.StringIO()

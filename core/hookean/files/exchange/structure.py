@@ -23,7 +23,7 @@ Ints = NDArray[np.int64]
 class Lines:
     """The elements of one force along lines: `pairs` (m, 2) of particles, `columns` of numbers (m,) by name, with the
     `dimensions` of these, and of springs `axial_stiffness` EA (m,) [force] and `rest_length` (m,) [length], 0 where
-    there is none."""
+    there is none; `one_way`: whether they go slack in tension or compression, or beyond a length."""
 
     name: str
     kind: str
@@ -32,6 +32,7 @@ class Lines:
     dimensions: dict[str, str]
     axial_stiffness: Floats
     rest_length: Floats
+    one_way: bool
 
     @property
     def force(self) -> Floats:
@@ -118,8 +119,14 @@ def _lines(system: System, result: Result) -> list[Lines]:
         columns = {n: np.asarray(entry[n], dtype=float) for n in type(force).outputs if np.ndim(entry.get(n, 0.0)) == 1}
         stiffness, rest = known.get(number, (np.zeros(len(pairs)), np.zeros(len(pairs))))
         name = force.name or force.kind_name
-        found.append(Lines(name, force.kind_name, pairs, columns, dict(type(force).outputs), stiffness, rest))
+        free = isinstance(force, Springs) and _one_way(force)
+        found.append(Lines(name, force.kind_name, pairs, columns, dict(type(force).outputs), stiffness, rest, free))
     return found
+
+
+def _one_way(force: Springs) -> bool:
+    cut = np.any(force.lower_cutoff) or np.any(force.upper_cutoff)
+    return bool(force.tension_only or force.compression_only or cut)
 
 
 def _others(result: Result) -> list[str]:

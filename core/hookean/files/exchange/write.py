@@ -46,4 +46,6 @@ def _left(structure: Structure) -> list[str]:
     without = [g.name for g in structure.lines if g.kind != "beam" and not (g.axial_stiffness > 0.0).any()]
     left = [*without, *structure.others]
     said = [f"{', '.join(left)}: not in the file, which has beams and lines with an axial stiffness."] if left else []
+    slack = [g.name for g in structure.lines if g.one_way and (g.axial_stiffness > 0.0).any()]
+    said += [f"{', '.join(slack)}: trusses that do not go slack; add *NO COMPRESSION or *NO TENSION."] if slack else []
     return said + [f"{part.name}: the file does not hold {what}." for part in structure.beams for what in part.left]
