@@ -267,8 +267,8 @@ class Simulation:
             raise InputError("/remove", "a script refers to forces by number; forces can only be removed without one")
         # a moved anchor stiffens or quickens nothing by itself
         warn = bool(edit.forces or edit.settings or len(edit.release) or edit.rewires)
-        changes = {"warn": warn, "of_anchors": edit.is_of_anchors}
-        before = self._changed(lambda: apply(self.system, self.state, edit), **changes)
+        same = edit.is_of_anchors
+        before = self._changed(lambda: apply(self.system, self.state, edit), warn=warn, of_anchors=same)
         self.history.note(before.setup, gesture)
         return self.state.revision
 
@@ -321,7 +321,7 @@ class Simulation:
         self.system = before.system
 
     def _changed(self, change: Callable[[], None], *, warn: bool = True, of_anchors: bool = False) -> Before:
-        """Make a change that lands whole or not at all; what was before. `of_anchors`: it changes no force."""
+        """Make a change that lands whole or not at all; what was before. `of_anchors`: no force changes."""
         before = self._before(of_anchors=of_anchors)
         solver, settings = self.solver, before.setup.scene.settings
         try:
