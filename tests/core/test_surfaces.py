@@ -11,8 +11,8 @@ from hookean.discretize import clothed_vertices, triangles
 
 
 def test_a_soap_film_has_no_mean_curvature() -> None:
-    """The gradient of the area of triangles is the sum of cotangents that H is found by (Pinkall and Polthier 1993), and
-    a film is at rest where its part along the normal vanishes: |H| = |f| / (2 gamma A), here with |f| below 1e-9 of
+    """The gradient of the area of triangles is the sum of cotangents that H is found by (Pinkall and Polthier 1993).
+    A film is at rest where its part along the normal vanishes: |H| = |f| / (2 gamma A), here with |f| below 1e-9 of
     the forces of single triangles."""
     scene = hookean.family("catenoid", rays=12, rings=4)
     [(name, drawn)] = scene.meshes.items()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import hookean
+from hookean.files import project
 
 from .browser import Studio
 from .tasks import enter, made, opened, rests
@@ -139,3 +141,26 @@ def test_conflicts_bounds_and_constraints_are_reported_in_words(cable: Studio):
     assert truth.status == "infeasible" and "The constraints cannot all be met." in best
     assert np.any(truth.variables[0]["at_bound"]) and "at its bound" in best
     assert number(best, "cable rest factor") == pytest.approx(truth.variables[0]["value"], rel=PRINTED)
+
+
+@pytest.mark.slow
+def test_a_problem_is_saved_with_the_model_and_opened_again(cable: Studio, tmp_path: Path):
+    """The file has it; a browser that kept nothing shows it with the model of the file."""
+    page = cable.page
+    vary(cable, "cable rest factor", At_least="0.5", At_most="1.5")
+    ask(cable, "goal", "Position", Particles="4", Axes="z")
+    opened(cable, "Out")
+    with page.expect_download() as saved:
+        cable.press("Save")
+    file = tmp_path / "cable.hookean"
+    saved.value.save_as(file)
+    [variable] = project.read(file.read_bytes()).view["design"]["variables"]
+    assert (variable["field"], variable["lower"], variable["upper"]) == ("rest_factor", 0.5, 1.5)
+    page.evaluate("() => localStorage.clear()")
+    page.get_by_role("link", name="All sessions").click()
+    page.locator("input[type=file]").set_input_files(file)
+    cable.drawing()
+    opened(cable, "Design")
+    page.get_by_role("group", name="Goal Position").wait_for()
+    lower = page.get_by_role("region", name="What may vary").get_by_label(re.compile("^At least cable rest factor"))
+    assert float(lower.input_value()) == 0.5

@@ -138,7 +138,8 @@ def _level(x: Array, t: Index, level: float) -> Array:
         [peak + part[:, None] * (end - peak) for part, end in zip(parts, ends, strict=True)], axis=1
     )
     found[..., 2] = level
-    return found[np.linalg.norm(found[:, 0] - found[:, 1], axis=1) > 0.0]
+    seen: Array = found[np.linalg.norm(found[:, 0] - found[:, 1], axis=1) > 0.0]
+    return seen
 
 
 class _Slopes:

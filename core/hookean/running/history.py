@@ -8,10 +8,13 @@ Where the particles are, is not part of it: taking a patch back is an edit, and 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from hookean.errors import InputError
+from hookean.forces.base import Force
 from hookean.running.patch import retune
 from hookean.scene.scene import Scene
+from hookean.system.group import Group
 from hookean.system.state import State
 from hookean.system.system import Held, System
 from hookean.system.wiring import Wiring
@@ -42,14 +45,16 @@ class Setup:
 
 
 class Before:
-    """All that an edit may change of a running system, its particles included, as it was before."""
+    """All that an edit may change of a running system, its particles included, as it was before; `of_anchors`: an edit
+    that changes parameters only of forces that know what anchors hold."""
 
-    def __init__(self, system: System, state: State) -> None:
+    def __init__(self, system: System, state: State, *, of_anchors: bool = False) -> None:
         self.setup = Setup.of(system)
         self._state = state.copy()
-        self._parameters = [
-            (group.block.parameters.copy(), [part.force for part in group.parts]) for group in system.all_groups
-        ]
+        self._parameters = []
+        for group in system.all_groups:
+            kept = None if of_anchors and not _braced(group) else group.block.parameters.copy()
+            self._parameters.append((kept, [part.force for part in group.parts]))
 
     @property
     def system(self) -> System:
@@ -61,7 +66,8 @@ class Before:
         system = self.system
         self.setup.wiring.put_into(system, state)
         for group, (parameters, forces) in zip(system.all_groups, self._parameters, strict=True):
-            group.block.parameters[:] = parameters
+            if parameters is not None:
+                group.block.parameters[:] = parameters
             for part, force in zip(group.parts, forces, strict=True):
                 part.force = force
         scene = self.setup.scene
@@ -69,6 +75,12 @@ class Before:
         system.places.take_materials(scene)
         system.brace()
         return self._state
+
+
+def _braced(group: Group) -> bool:
+    """Whether anchors set parameters of a group."""
+    own: Any = group.cls.brace
+    return bool(own.__func__ is not Force.brace.__func__)  # type: ignore[attr-defined]
 
 
 @dataclass

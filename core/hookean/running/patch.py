@@ -64,6 +64,11 @@ class Patch(Model):
         """Whether forces come or go."""
         return bool(self.add or self.remove)
 
+    @property
+    def is_of_anchors(self) -> bool:
+        """Whether it leaves forces, their materials and settings as they are."""
+        return not (self.forces or self.materials or self.sections or self.settings or self.rewires)
+
 
 def apply(system: System, state: State, patch: Patch) -> None:
     """Write a patch into a running system and raise its revision; InputError where it does not fit (see `Before`)."""
@@ -108,12 +113,13 @@ def _with(scene: Scene, forces: Mapping[int, Any]) -> Scene:
 
 def _put_forces(system: System, scene: Scene, *, whole: bool = False) -> None:
     system.places.take_materials(scene)
+    changed = whole
     for group in system.all_groups:
         for part in group.parts:
             if part.number >= 0 and (whole or scene.forces[part.number] is not part.force):
-                part.force = scene.forces[part.number]
+                part.force, changed = scene.forces[part.number], True
                 group.block.parameters[part.rows] = _rows(system, group, part)
-    system.brace()
+    system.brace(changed=changed)
     system.scene = scene
 
 

@@ -269,7 +269,8 @@ class Simulation:
             raise InputError("/remove", "a script refers to forces by number; forces can only be removed without one")
         # a moved anchor stiffens or quickens nothing by itself
         warn = bool(edit.forces or edit.settings or len(edit.release) or edit.rewires)
-        before = self._changed(lambda: apply(self.system, self.state, edit), warn=warn)
+        same = edit.is_of_anchors
+        before = self._changed(lambda: apply(self.system, self.state, edit), warn=warn, of_anchors=same)
         self.history.note(before.setup, gesture)
         return self.state.revision
 
@@ -333,9 +334,9 @@ class Simulation:
         self.state = before.put_back(self.state)
         self.system = before.system
 
-    def _changed(self, change: Callable[[], None], *, warn: bool = True) -> Before:
-        """Make a change that lands whole or not at all; what was before."""
-        before = self._before()
+    def _changed(self, change: Callable[[], None], *, warn: bool = True, of_anchors: bool = False) -> Before:
+        """Make a change that lands whole or not at all; what was before. `of_anchors`: no force changes."""
+        before = self._before(of_anchors=of_anchors)
         solver, settings = self.solver, before.setup.scene.settings
         try:
             change()
@@ -353,9 +354,9 @@ class Simulation:
             raise
         return before
 
-    def _before(self) -> Before:
+    def _before(self, *, of_anchors: bool = False) -> Before:
         """What is now, for `revert` too."""
-        before = Before(self.system, self.state)
+        before = Before(self.system, self.state, of_anchors=of_anchors)
         self._last = before, self.history.copy(), self.status
         return before
 

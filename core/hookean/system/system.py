@@ -64,6 +64,7 @@ class System:
     _components: Components | None = None
     _size: float | None = None
     _films: Films | None = field(default=None, init=False, repr=False)
+    _braced: list[tuple[int, bytes, bytes]] | None = field(default=None, init=False, repr=False)
 
     @property
     def all_groups(self) -> list[Group]:
@@ -211,9 +212,15 @@ class System:
         found = (group.cls.no_tangent(group.block, sparse=sparse) for group in self.groups)
         return next((reason for reason in found if reason), "")
 
-    def brace(self) -> None:
-        """Let forces know which particles the scene's anchors hold on some axis, and the masses of those that move."""
-        self._components = self._size = None  # a patch may have changed which elements belong together
+    def brace(self, *, changed: bool = True) -> None:
+        """Let forces know which particles the scene's anchors hold on some axis, and the masses of those that move;
+        `changed`: whether elements may have other parameters than when this was called last."""
+        self._size = None  # targets count
+        anchors = [(anchor.number, anchor.free.tobytes(), anchor.particles.tobytes()) for anchor in self.held]
+        if not changed and anchors == self._braced:
+            return
+        self._braced = anchors
+        self._components = None  # a patch may have changed which elements belong together
         held, mass = np.zeros(len(self.x), dtype=bool), self.mass.copy()
         for anchor in self.held:
             if (anchor.free == 0).all():

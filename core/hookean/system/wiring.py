@@ -47,7 +47,7 @@ class Wiring:
         _turn_over(system, state, self.slots)
         system.groups, system.contacts, system.impulses = self.groups, self.contacts, self.impulses
         system.load_count, system.places = self.load_count, self.places
-        system._components = system._films = None
+        system._components = system._films = system._braced = None
 
 
 def rewire(system: System, state: State, scene: Scene, *, added: int = 0) -> None:

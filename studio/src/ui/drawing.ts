@@ -1,5 +1,7 @@
 // The present view as a drawing of lines, and as a picture with its legend.
+import { extremes } from "../view/extremes";
 import type { Form } from "../view/form";
+import { round } from "../view/plane";
 import type { Legend, View } from "../view/types";
 import { measured, said } from "./words";
 
@@ -9,6 +11,8 @@ export interface Captions {
   legend: Legend | null;
   /** The longest arrows, as "Load up to 1 kN". */
   arrows: string[];
+  /** A length and how long it is drawn [CSS pixels]; null in perspective, where no length is true. */
+  bar?: { said: string; pixels: number } | null;
 }
 
 /** The lines of the form as they are seen, as SVG; particles that are held are squares. */
@@ -59,11 +63,33 @@ export async function picture(view: View, captions: Captions, isDark: boolean, w
   return canvas.convertToBlob({ type: "image/png" });
 }
 
+const BAR = 120;
+const PARALLEL = 1; // degrees of the angle seen: less is a plan, a front or a side
+
+/** Width, depth and height of what is drawn, in words. */
+export function sizeOf(positions: ArrayLike<number>, unit: string): string {
+  const sides = [0, 1, 2].map((axis) => {
+    const along = Array.from({ length: positions.length / 3 }, (_, i) => positions[3 * i + axis]!);
+    const [low, high] = extremes(along);
+    return said(Number.isNaN(low) ? 0 : high - low, 3);
+  });
+  return `Size ${sides.join(" x ")} ${unit}`;
+}
+
+/** A bar of a round length for a view without perspective on a canvas of a height [CSS pixels]. */
+export function barOf(view: View, height: number, unit: string): Captions["bar"] {
+  const place = view.place();
+  if (place.angle > PARALLEL) return null;
+  const pixel = place.height / Math.max(1, height);
+  const length = round(BAR * pixel) / (round(BAR * pixel) > BAR * pixel * 1.6 ? 2 : 1);
+  return { said: measured(length, unit), pixels: length / pixel };
+}
+
 const [LINE, RAMP, LEFT] = [20, 160, 16];
 
 export function caption(
   pen: OffscreenCanvasRenderingContext2D,
-  { title, legend, arrows }: Captions,
+  { title, legend, arrows, bar = null }: Captions,
   isDark: boolean,
   scale: number,
 ): void {
@@ -92,4 +118,9 @@ export function caption(
     pen.fillText(said(legend.high, 3), LEFT + RAMP - pen.measureText(said(legend.high, 3)).width, y - LINE);
   }
   arrows.forEach((sentence) => write(sentence));
+  if (!bar) return;
+  pen.fillRect(LEFT, y + 6, bar.pixels, 2);
+  for (const x of [LEFT, LEFT + bar.pixels - 1]) pen.fillRect(x, y + 2, 1, 10);
+  y += 14;
+  write(bar.said);
 }

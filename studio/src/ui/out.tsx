@@ -4,7 +4,7 @@ import * as api from "../api";
 import { glb, stl } from "../shapes";
 import { form } from "../view/form";
 import type { View } from "../view/types";
-import { picture, svg } from "./drawing";
+import { barOf, picture, sizeOf, svg } from "./drawing";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
 import { fitting, keptRecipe } from "./kept";
@@ -57,7 +57,7 @@ const SEEN: {
   {
     seen: "PNG",
     ending: ".png",
-    hint: "A picture of the present view with its title and legend",
+    hint: "A picture of the present view with its title, legend and size; Top, Front and Right have a scale",
     made: ({ options, session }, view, title) => {
       const { load, reaction } = view.arrows.value;
       const { loads, reactions } = options.layers.value;
@@ -66,8 +66,12 @@ const SEEN: {
         loads && load > 0 && `Load up to ${said(load, 3)} ${unit}`,
         reactions && reaction > 0 && `Reaction up to ${said(reaction, 3)} ${unit}`,
       ].filter((sentence) => sentence !== false);
-      const width = document.querySelector(".drawing > canvas")?.clientWidth ?? window.innerWidth;
-      return picture(view, { title, legend: view.legend.value, arrows }, dark.value, width);
+      const canvas = document.querySelector(".drawing > canvas") ?? document.documentElement;
+      const length = session.topology.value?.units.length ?? "";
+      const bar = barOf(view, canvas.clientHeight, length);
+      const lines = [...arrows, sizeOf(view.particles(), length)];
+      const legend = view.legend.value ?? view.faces.value;
+      return picture(view, { title, legend, arrows: lines, bar }, dark.value, canvas.clientWidth);
     },
   },
   {

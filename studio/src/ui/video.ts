@@ -44,16 +44,19 @@ export async function filmed(studio: Studio, title: string, rate: number, told: 
   const encoding = (await webm(sheet.width, sheet.height, rate)) ?? pictures(rate);
   const count = Math.max(1, Math.ceil(film.length * rate));
   try {
-    for (let number = 0, shot = 0; number < count; number++) {
+    for (let number = 0, shot = 0, drawn = -1; number < count; number++) {
       if (told.signal.aborted) throw new Error("Cancelled.");
       while (shot + 1 < film.shots.length && film.shots[shot + 1]!.at <= number / rate) shot += 1;
-      film.show(shot);
-      drawing.render();
-      const pen = sheet.getContext("2d")!;
-      pen.resetTransform();
-      pen.drawImage(canvas, 0, 0, sheet.width, sheet.height);
-      const captions = { title, legend: drawing.legend.peek() ?? drawing.faces.peek(), arrows: [] };
-      caption(pen, captions, dark.peek(), sheet.width / canvas.clientWidth);
+      if (shot !== drawn) {
+        film.show(shot);
+        drawing.render();
+        const pen = sheet.getContext("2d")!;
+        pen.resetTransform();
+        pen.drawImage(canvas, 0, 0, sheet.width, sheet.height);
+        const captions = { title, legend: drawing.legend.peek() ?? drawing.faces.peek(), arrows: [] };
+        caption(pen, captions, dark.peek(), sheet.width / canvas.clientWidth);
+        drawn = shot;
+      }
       await encoding.add(sheet, number);
       told.progress((number + 1) / count);
     }

@@ -1,5 +1,6 @@
 // A plane with a grid that fades away from its middle: a floor, or the plane that a drag goes along.
 import { BufferGeometry, Mesh, type RawShaderMaterial, Vector3 } from "three";
+import type { Scene } from "../model";
 import { type Common, material } from "./material";
 
 const VERTEX = `
@@ -78,4 +79,12 @@ export class Plane {
 export function round(value: number): number {
   const power = 10 ** Math.floor(Math.log10(value));
   return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= value * 0.999999) ?? value;
+}
+
+/** The floor of a scene's settings; null for none. */
+export function floorOf(scene: Scene | null): { point: Vector3; normal: Vector3 } | null {
+  const floor = scene?.settings["floor"];
+  if (!floor) return null;
+  const { point, normal } = floor as { point?: number[]; normal?: number[] };
+  return { point: new Vector3(...(point ?? [0, 0, 0])), normal: new Vector3(...(normal ?? [0, 0, 1])) };
 }

@@ -1,21 +1,26 @@
-// Faces, lit flat: normals come from the picture itself, so that a frame is no work here.
+// Faces, lit flat: normals come from the picture itself, so that a frame is no work here; from places about the middle of
+// the form, for those in the eye's space lose their digits where the eye is far away.
 import { BufferAttribute, BufferGeometry, Mesh, type RawShaderMaterial } from "three";
 import { type Common, material } from "./material";
 
 const VERTEX = `
 out vec3 at;
+out vec3 own;
 void main() {
-  at = seen(particle(gl_VertexID));
+  own = particle(gl_VertexID);
+  at = seen(own);
   gl_Position = projectionMatrix * vec4(at, 1.0);
 }`;
 
 // lit from above the eye's left shoulder, both sides alike
 const FRAGMENT = `
 in vec3 at;
+in vec3 own;
+uniform mat4 modelViewMatrix;
 uniform vec3 shade;
 uniform float depth;
 void main() {
-  vec3 normal = cross(dFdx(at), dFdy(at));
+  vec3 normal = mat3(modelViewMatrix) * cross(dFdx(own), dFdy(own));
   normal /= max(length(normal), 1e-30);
   if (dot(normal, at) > 0.0) normal = -normal;
   float shine = max(dot(normal, vec3(-0.45, 0.65, 0.62)), 0.0);

@@ -12,26 +12,30 @@ import type { Legend, Painted, Sketch } from "./types";
 const VERTEX = `
 uniform sampler2D values;
 out vec3 at;
+out vec3 own;
 out float value;
 out float known;
 void main() {
-  at = seen(particle(gl_VertexID));
-  float own = texelFetch(values, place(gl_VertexID), 0).x;
-  known = isnan(own) ? 0.0 : 1.0;
-  value = isnan(own) ? 0.0 : own;
+  own = particle(gl_VertexID);
+  at = seen(own);
+  float given = texelFetch(values, place(gl_VertexID), 0).x;
+  known = isnan(given) ? 0.0 : 1.0;
+  value = isnan(given) ? 0.0 : given;
   gl_Position = projectionMatrix * vec4(at, 1.0);
 }`;
 
 // lit as plain faces are, but less, so that colours can be compared
 const FRAGMENT = `
 in vec3 at;
+in vec3 own;
 in float value;
 in float known;
+uniform mat4 modelViewMatrix;
 uniform vec3 stops[9], none;
 uniform float low, high;
 uniform int count;
 void main() {
-  vec3 normal = cross(dFdx(at), dFdy(at));
+  vec3 normal = mat3(modelViewMatrix) * cross(dFdx(own), dFdy(own));
   normal /= max(length(normal), 1e-30);
   if (dot(normal, at) > 0.0) normal = -normal;
   float shine = max(dot(normal, vec3(-0.45, 0.65, 0.62)), 0.0);

@@ -2,7 +2,6 @@
 import { effect, signal } from "@preact/signals";
 import { type PerspectiveCamera, Vector3 } from "three";
 import type { Frame } from "../frame";
-import type { Scene } from "../model";
 import type { Session } from "../session";
 import { note, stats } from "../stats";
 import { acting } from "./acting";
@@ -19,6 +18,7 @@ import { Overlays } from "./overlays";
 import { Picker } from "./picking";
 import { type Dress, Picture } from "./picture";
 import { Scaling } from "./scaling";
+import { floorOf } from "./plane";
 import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
 import { Surface } from "./surface";
@@ -528,12 +528,4 @@ class Drawing implements View {
     this.counting = this.count ? window.setTimeout(this.tally, 1000) : 0;
     this.count = 0;
   };
-}
-
-/** The floor of a scene's settings; null for none. */
-function floorOf(scene: Scene | null): { point: Vector3; normal: Vector3 } | null {
-  const floor = scene?.settings["floor"];
-  if (!floor) return null;
-  const { point, normal } = floor as { point?: number[]; normal?: number[] };
-  return { point: new Vector3(...(point ?? [0, 0, 0])), normal: new Vector3(...(normal ?? [0, 0, 1])) };
 }
