@@ -12,7 +12,9 @@ import pytest
 import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
+from hookean.files.readers import read
 from hookean.files.recipe.draft import draft
+from hookean.files.recipe.foreign import model_in
 from hookean.files.recipe.recipe import understand
 from hookean.files.rhino import threedm
 from hookean.files.rhino.threedm import NewObject
@@ -234,3 +236,33 @@ def test_files_of_others_have_a_draft(path: Path) -> None:
         assert roles in found.fault or "no curves or surfaces" in found.fault or "without a render" in found.fault
     else:
         same(understood.built.scene, understand(model, found.recipe).built.scene)
+
+
+def test_groups_of_an_obj_file_are_layers_and_anchors_snap() -> None:
+    """The head of a mast is drawn sqrt(0.05^2 + 0.1^2) m beside the end of the tie; within its reach it moves there.
+    The recipe of the draft gives the same scene when the file is read by it."""
+    told = (
+        b"o roof\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4\ng ties\nv 2 2 3\nl 3 5\ng masts\nv 2.05 2 3.1\np 6\n"
+    )
+    rows = [{"layer": "masts", "family": "points", "role": "anchors", "values": {}}]
+    model = model_in(told, "roof.obj")
+    assert model is not None
+    found = draft(model, {"rows": rows})
+    assert [row.layer for row in found.rows] == ["roof", "ties", "masts"]
+    assert found.rows[2].becomes[1] == "1 of them 0.112 m or more from the nearest particle; raise snap"
+    rows[0]["values"] = {"snap": 0.2}
+    found = draft(model, {"rows": rows})
+    assert found.rows[2].becomes[1] == "1 of them moved to the nearest particle, by 0.112 m at most"
+    made = read(told, "roof.obj", (json.dumps(found.recipe), "")).scene
+    assert made.anchors[-1].points.tolist() == [[2.0, 2.0, 3.0]]
+    assert model_in(b'{"forces": []}', "scene.json") is None
+
+
+def test_a_shell_is_a_membrane_without_prestress_and_its_bending(draw: Callable[..., Any]) -> None:
+    model = draw(NewObject(SQUARE, "skin"))
+    rows = [{"layer": "skin", "family": "surfaces", "role": "shell", "values": {"bending": 7}}]
+    found = draft(model, {"rows": rows})
+    kinds = [(table["kind"], table["mesh"]) for table in found.recipe["forces"]]
+    assert kinds == [("membrane", "layer:skin"), ("shell", "layer:skin")]
+    assert "prestress" not in found.recipe["forces"][0] and found.recipe["forces"][1]["strength"] == 7
+    assert found.fault == ""

@@ -160,8 +160,8 @@ def test_commands_name_what_is_wrong_with_a_file(tmp_path: Path) -> None:
             done = CliRunner().invoke(app, [command, str(path)])
             assert (done.exit_code, said in done.stderr) == (2, True), (command, name, done.stderr)
             assert len(done.stderr.splitlines()) == 1
-    done = CliRunner().invoke(app, ["relax", str(tmp_path / "a.obj"), "-r", str(find("9.24").folder / "recipe.toml")])
-    assert done.exit_code == 2 and "recipes are for .3dm files" in done.stderr
+    done = CliRunner().invoke(app, ["relax", str(tmp_path / "b.json"), "-r", str(find("9.24").folder / "recipe.toml")])
+    assert done.exit_code == 2 and "recipes are for files with drawn objects" in done.stderr
 
 
 def test_what_nothing_holds_opens_in_the_studio_and_is_not_relaxed(client: httpx.Client) -> None:

@@ -165,7 +165,7 @@ def test_every_control_is_reached_by_tab_and_seen_to_be(open_studio: Opened, whe
     page = studio.page
     page.evaluate("() => { document.activeElement?.blur(); getSelection().removeAllRanges(); scrollTo(0, 0); }")
     plain = []
-    for _ in range(200):
+    for _ in range(300):  # more than there are controls
         page.keyboard.press("Tab")
         reached = page.evaluate(REACHED)
         if reached and not reached["outlined"]:

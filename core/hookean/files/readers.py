@@ -92,7 +92,7 @@ def read(data: bytes, name: str = "", recipe: Recipe | None = None, *, called: s
     if recipe is not None and not kind.recipes:
         raise InputError(
             called or "/recipe",
-            f"is {kind.name}, which does not support a recipe; recipes are for .3dm, .obj and COMPAS files",
+            f"is {kind.name}, which does not support a recipe; recipes are for files with drawn objects (.3dm, .obj, COMPAS documents)",
         )
     return kind.read(data, called, recipe)
 
@@ -163,7 +163,7 @@ def _stored(model: Model, called: str) -> Source:
 
 def _by_recipe(data: bytes, called: str, suffix: str, recipe: Recipe) -> Source:
     """A file of another program by a recipe; results are not written back into it."""
-    from hookean.files.recipe.foreign import drawn_in, model_of, without_recipe
+    from hookean.files.recipe.foreign import drawn_in, model_of
     from hookean.files.recipe.recipe import understand
     from hookean.scene.text import parse_tables
 
@@ -171,7 +171,8 @@ def _by_recipe(data: bytes, called: str, suffix: str, recipe: Recipe) -> Source:
     with about(called):
         drawn = drawn_in(data, f"file{suffix}")
     if drawn is None:
-        raise without_recipe(suffix)
+        said = "holds a whole model; recipes are for files with drawn objects (.3dm, .obj, COMPAS documents)"
+        raise InputError(called or "/recipe", said)
     model = model_of(drawn, called or "the file")
     with about(recipe[1], called):
         understood = understand(model, tables)

@@ -15,7 +15,6 @@ from uuid import NAMESPACE_URL, UUID, uuid5
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.errors import InputError
 from hookean.files.drawn import WELD, Drawn
 from hookean.files.recipe.drawing import UNIT_NAMES, UNSTATED
 from hookean.files.rhino.geometry import build
@@ -120,8 +119,3 @@ def _lines(drawn: Drawn) -> Iterator[tuple[str, NDArray[np.float64]]]:
 def _points(drawn: Drawn) -> Iterator[tuple[str, NDArray[np.float64]]]:
     for called, points in drawn.points:
         yield from ((called, point) for point in points)
-
-
-def without_recipe(suffix: str) -> InputError:
-    """The fault of a recipe for a file that holds a whole model."""
-    return InputError("/recipe", f"this {suffix} file holds a whole model, which does not support a recipe")
