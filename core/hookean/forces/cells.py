@@ -23,7 +23,8 @@ FEWEST = 3  # cells along an axis, so that the two beside one are different
 PER_CELL = 2  # cells of an element that there is place for, at most
 SORTED = 4  # columns of elements in the order of cells: x, y, z and radius
 LOW, SIDE, CELLS = 0, 3, 6  # of a grid: its lowest cell, cells along each axis; where each cell starts, then rows
-ABREAST, BITS = 4, 64  # elements that are compared at once, bits of a number
+ABREAST, FEW, BITS = 16, 4, 64  # elements that are compared at once, or one by one if runs are short; bits of a number
+LONG = 9  # elements in a run of three cells on average, from which on they are compared at once
 ONE, BRUIJN = np.uint64(1), np.uint64(0x03F79D71B4CB0A89)  # the upper six bits of this times a power of 2 are unique
 LOWEST = np.zeros(BITS, np.uint64)  # which bit is set, by these six
 LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(BITS)]] = np.arange(BITS)
@@ -198,7 +199,7 @@ def runs_about(c: Any, length: Any, columns: Any, first: Any, runs: Any) -> Any:
 @device
 def near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach) -> Any:  # type: ignore[no-untyped-def]
     """Which of the `ABREAST` elements from `begin` on, but none from `end` on, are within their radius and `reach` of a
-    point: a bit for each. All are compared at once, without a branch."""
+    point: a bit for each. All are compared at once, without a branch: as many as LLVM needs to make a vector loop."""
     bits = 0
     for k in range(ABREAST):
         t = np.uint64(begin) + np.uint64(k)
@@ -208,7 +209,18 @@ def near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach) -> Any:  # type: ig
 
 
 @device
-def meet(xs, ys, zs, radii, number, x, y, z, reach, own, runs, several, found, count, begins) -> Any:  # type: ignore[no-untyped-def]
+def near_few(xs, ys, zs, radii, begin, end, x, y, z, reach) -> Any:  # type: ignore[no-untyped-def]
+    """The same of `FEW` elements."""
+    bits = 0
+    for k in range(FEW):
+        t = np.uint64(begin) + np.uint64(k)
+        dx, dy, dz, apart = xs[t] - x, ys[t] - y, zs[t] - z, radii[t] + reach
+        bits |= 1 << k if dx * dx + dy * dy + dz * dz < apart * apart else 0
+    return bits & ((1 << min(end - begin, FEW)) - 1)
+
+
+@device
+def meet(xs, ys, zs, radii, number, x, y, z, reach, own, runs, several, at_once, found, count, begins) -> Any:  # type: ignore[no-untyped-def]
     """List a row with all elements in some runs that are within their radius and `reach` of a point; how many pairs are
     listed then, -1 if there is no place. Bits of several comparisons are read together, since the end of each reading
     is a branch that no processor foresees."""
@@ -216,26 +228,30 @@ def meet(xs, ys, zs, radii, number, x, y, z, reach, own, runs, several, found, c
     for n in range(several):
         begin, end = runs[n, 0], runs[n, 1]
         while begin < end:
-            if full == BITS // ABREAST:
-                count = write_bits(bits, begins, own, number, found, count)
+            if full == BITS:
+                count = write_bits(bits, begins, own, number, at_once, found, count)
                 bits, full = np.uint64(0), 0
-            near = np.uint64(near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach))
-            bits |= near << np.uint64(ABREAST * full)
+            if at_once == ABREAST:
+                near = near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach)
+            else:
+                near = near_few(xs, ys, zs, radii, begin, end, x, y, z, reach)
+            bits |= np.uint64(near) << np.uint64(full)
             begins[np.uint64(full)] = begin
-            full, begin = full + 1, begin + ABREAST
-    return write_bits(bits, begins, own, number, found, count)
+            full, begin = full + at_once, begin + at_once
+    return write_bits(bits, begins, own, number, at_once, found, count)
 
 
 @device
-def write_bits(bits, begins, own, number, found, count) -> Any:  # type: ignore[no-untyped-def]
-    """List an element with those of set bits, `ABREAST` bits from each of `begins`; how many pairs are listed then, -1
-    if there is no place."""
+def write_bits(bits, begins, own, number, at_once, found, count) -> Any:  # type: ignore[no-untyped-def]
+    """List an element with those of set bits, in groups of as many as were compared at once, each from one of `begins`;
+    how many pairs are listed then, -1 if there is no place."""
+    within = np.uint64(at_once - 1)
     while bits:
         lowest = LOWEST[(bits & (~bits + ONE)) * BRUIJN >> np.uint64(58)]
         bits &= bits - ONE
         if count < 0 or count >= found.shape[0]:
             return -1
-        other = begins[lowest // np.uint64(ABREAST)] + np.int64(lowest % np.uint64(ABREAST))
+        other = begins[lowest & ~within] + np.int64(lowest & within)
         found[np.uint64(count)] = both(own, number[np.uint64(other)])
         count += 1
     return count
@@ -326,7 +342,8 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) ->
         chains[n] = 0
     xs, ys, zs, radii = sorted_in(grid, size)
     sort_cells(spheres, 1.0 / width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
-    columns, runs, begins = np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(BITS // ABREAST, np.int64)
+    columns, runs, begins = np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(BITS, np.int64)
+    at_once = ABREAST if 3 * size > LONG * cells else FEW
     first = first[1:]
     count, k = 0, -1
     for a in range(side[0]):
@@ -341,7 +358,22 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) ->
                     i, before, runs[0, 0] = np.uint64(s), count, s + 1  # in its own cell with the later ones
                     x, y, z, reach = xs[i], ys[i], zs[i], radii[i] + beyond
                     count = meet(
-                        xs, ys, zs, radii, number, x, y, z, reach, number[i], runs, several, found, count, begins
+                        xs,
+                        ys,
+                        zs,
+                        radii,
+                        number,
+                        x,
+                        y,
+                        z,
+                        reach,
+                        number[i],
+                        runs,
+                        several,
+                        at_once,
+                        found,
+                        count,
+                        begins,
                     )
                     if picky:
                         count = thin(spheres, parameters, start, order, beyond, found, before, count)

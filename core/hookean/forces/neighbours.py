@@ -179,14 +179,8 @@ def tables(room: Any, count: Any) -> Any:
 
 
 @device
-def unmoved(at: Any, seen: Any, most: Any) -> Any:
-    """Whether no sphere is farther from its place than the root of `most`, but for a motion of all."""
-    return near_seen(at, seen, most, 0.0, 0.0, 0.0) or near_seen(at, seen, most, *drift(at, seen))
-
-
-@device
 def near_seen(at: Any, seen: Any, most: Any, x: Any, y: Any, z: Any) -> Any:
-    """The same of spheres that have all moved by (x, y, z)."""
+    """Whether no sphere is farther from its place than the root of `most`, but for a motion (x, y, z) of all."""
     away = 0
     for n in range(at.shape[0]):
         i = np.uint64(n)

@@ -14,8 +14,8 @@ import numpy as np
 from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
 from hookean.forces.cells import (
-    ABREAST,
     BITS,
+    FEW,
     RADIUS,
     SIDE,
     both,
@@ -40,12 +40,12 @@ from hookean.forces.neighbours import (
     drift,
     gather,
     grid_in,
+    near_seen,
     pairs_in,
     renew,
     seen_in,
     served,
     sort_pairs,
-    unmoved,
 )
 
 ABOUT = 64  # pairs of a stray that there is place for, on average
@@ -57,7 +57,10 @@ def serves(at: Any, room: Any, most: Any) -> Any:
     """Whether the list in a room holds all pairs of spheres that have to be within the root of `most` of their places,
     once the few that are not have joined it anew."""
     seen = seen_in(room)
-    return unmoved(at, seen, most) or join_anew(at, seen, room, most)
+    if near_seen(at, seen, most, 0.0, 0.0, 0.0):
+        return True
+    x, y, z = drift(at, seen)
+    return near_seen(at, seen, most, x, y, z) or join_anew(at, seen, room, most, x, y, z)
 
 
 @device
@@ -70,17 +73,19 @@ def away(at: Any, seen: Any, most: Any, x: Any, y: Any, z: Any, strays: Any) -> 
         d0, d1, d2 = at[i, 0] - seen[i, 0] - x, at[i, 1] - seen[i, 1] - y, at[i, 2] - seen[i, 2] - z
         strays[np.uint64(count)] = n  # overwritten by the next unless it counts: no branch
         count += 0 if d0 * d0 + d1 * d1 + d2 * d2 <= most else 1
-        count = min(count, place)
+        if count >= place:
+            break
     return count
 
 
 @device
-def join_anew(at: Any, seen: Any, room: Any, most: Any) -> Any:
-    """Give strays new places and pairs; False if they are too many, or others than that: the list is to be made."""
+def join_anew(at: Any, seen: Any, room: Any, most: Any, x: Any, y: Any, z: Any) -> Any:
+    """Give spheres that have strayed from a motion of all new places and pairs; False if there are too many of them, or
+    of their pairs: the list is to be made."""
     head, size, (grid, anew, known) = rows(room, 1.0, HEAD), at.shape[0], grid_in(room)
     if head[0, COUNT] != size or anew.shape[0] != size or head[0, WIDTH] == 0.0:
         return False
-    (x, y, z), before = drift(at, seen), int(head[0, STRAYS])
+    before = int(head[0, STRAYS])
     strays = np.empty(known.shape[0] + 2, np.int64)
     several, total = away(at, seen, most, x, y, z, strays), before
     if several > known.shape[0]:
@@ -98,7 +103,7 @@ def join_anew(at: Any, seen: Any, room: Any, most: Any) -> Any:
         seen[i, 0], seen[i, 1], seen[i, 2] = at[i, 0] - x, at[i, 1] - y, at[i, 2] - z
     head[0, STRAYS] = before
     found, count, scale = np.empty((2, ABOUT * several), np.int64), 0, 1.0 / head[0, WIDTH]
-    runs, begins = np.empty((18, 2), np.int64), np.empty(BITS // ABREAST, np.int64)
+    runs, begins = np.empty((18, 2), np.int64), np.empty(BITS, np.int64)
     link(seen, known, before, scale, grid)
     for n in range(several):
         count = about(seen, strays[n], head[0, RANGE], scale, grid, anew, runs, begins, found[0], count)
@@ -156,7 +161,22 @@ def about(seen, i, beyond, scale, grid, anew, runs, begins, found, count) -> Any
     a, b, c = cell_at(seen[i, 0], seen[i, 1], seen[i, 2], scale, grid)
     several, reach = runs_at(a, b, c, side, first, runs), seen[i, 3] + beyond
     count = meet(
-        xs, ys, zs, radii, number, seen[i, 0], seen[i, 1], seen[i, 2], reach, i, runs, several, found, count, begins
+        xs,
+        ys,
+        zs,
+        radii,
+        number,
+        seen[i, 0],
+        seen[i, 1],
+        seen[i, 2],
+        reach,
+        i,
+        runs,
+        several,
+        FEW,
+        found,
+        count,
+        begins,
     )
     for n in range(before, count):
         one, other = ends(found[n])
