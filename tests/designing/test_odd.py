@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hookean.designing.problem import Problem
-from hookean.designing.search import design
+from hookean.designing.search import Search, design
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
 from hookean.scene.scene import Scene
@@ -95,6 +95,27 @@ def test_a_shape_that_a_relaxation_does_not_find_is_reported() -> None:
     variable = {"force": "l", "field": "vector", "axes": "z", "tie": "all"}
     found = design({"scene": scene, "variables": [variable], "goals": [level(target=0.44)]})
     assert found.goals[0]["value"] > 0.0 and any("another equilibrium" in said for said in found.warnings)
+
+
+def test_the_best_shape_is_returned_where_its_values_have_another() -> None:
+    """Two bars stand above or below their supports by the same values. The search saw both, the one below was nearer to
+    the goal: that is the best, whichever was seen last."""
+    height = 0.5
+    bars = {"kind": "springs", "name": "bars", "particles": [[0, 1], [1, 2]], "stiffness": 100.0}
+    scene = {
+        "particles": [[-1, 0, 0], [0, 0, -height], [1, 0, 0]],
+        "forces": [{**bars, "rest_length": float(np.hypot(1.0, height))}],
+        "anchors": [{"particles": [0, 2]}, {"particles": [1], "axes": "y"}],
+    }
+    goal = {"kind": "position", "particles": [1], "axes": "z", "target": -height}
+    search = Search(
+        Problem.read({"scene": scene, "variables": [{"force": "bars", "field": "stiffness"}], "goals": [goal]})
+    )
+    y = np.zeros(search.unknowns.count)
+    search._resting, search.found = search.state.x * [1.0, 1.0, -1.0], None
+    assert search.at(y).x[1, 2] == pytest.approx(height, abs=1e-9)
+    search.note(y)
+    assert search.at_best().x[1, 2] == pytest.approx(-height, abs=1e-9)
 
 
 def test_constraints_that_contradict_one_another_are_named() -> None:

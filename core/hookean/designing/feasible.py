@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 
+def off_zero(start: Floats, lower: Floats, upper: Floats) -> float:
+    """By how much to move unknowns whose start is at a bound: the first steps of SciPy's least squares are as long as
+    the start is from 0, and 1e-10, by which it moves off a bound, is no length."""
+    return 1.0 if ((start <= lower) | (start >= upper)).any() else 0.0
+
+
 def nearer(search: Search) -> int:
     """Search for what meets the constraints by least squares of what they miss, from the best so far and, if that ends
     short of them, from the start; how often derivatives were asked for. The search keeps what is best."""
@@ -42,9 +48,12 @@ def nearer(search: Search) -> int:
     tolerance, taken = search.problem.settings.tolerance, 0
     for start in (search.best[2].copy(), np.zeros(search.unknowns.count)):
         if search.best[0] > 0.0:
+            start = np.clip(start, lower, upper)
+            off = off_zero(start, lower, upper)
             found = least_squares(
-                values, np.clip(start, lower, upper), slopes, bounds=(lower, upper), method="trf", ftol=tolerance,
-                xtol=tolerance, gtol=tolerance * 1e-4, max_nfev=search.problem.settings.max_iterations,
+                lambda z, off=off: values(z - off), start + off, lambda z, off=off: slopes(z - off),
+                bounds=(lower + off, upper + off), method="trf", ftol=tolerance, xtol=tolerance,
+                gtol=tolerance * 1e-4, max_nfev=search.problem.settings.max_iterations,
             )  # fmt: skip
             taken += int(found.njev)
     return taken

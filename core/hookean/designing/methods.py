@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hookean.designing.answer import DesignStatus
 from hookean.designing.augmented import augmented
-from hookean.designing.feasible import nearer
+from hookean.designing.feasible import nearer, off_zero
 from hookean.designing.gains import at_minimum
 from hookean.designing.levenberg import levenberg
 from hookean.designing.limits import AT_BOUND
@@ -47,8 +47,7 @@ def _least_squares(search: Search) -> Ended:
     if not wide.all():  # what cannot vary is left out
         upper = np.where(wide, upper, lower + AT_BOUND)
     start = np.clip(np.zeros(search.unknowns.count), lower, upper)
-    # the first steps are as long as the start is from 0; SciPy moves it off its bounds by 1e-10, which is no length
-    off = 1.0 if ((start <= lower) | (start >= upper)).any() else 0.0
+    off = off_zero(start, lower, upper)
     found = least_squares(
         lambda z: search.residuals(z - off), start + off, lambda z: search.slopes(z - off),
         bounds=(lower + off, upper + off), method="trf",

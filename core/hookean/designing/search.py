@@ -118,8 +118,9 @@ class Search:
         return self.found
 
     def at_best(self) -> Equilibrium:
-        """The equilibrium at the best so far, from its own shape: there may be others."""
-        if self._at is None or not np.array_equal(self._at, self.best[2]):
+        """The equilibrium at the best so far, from its own shape: there may be others, also at the same values."""
+        same = self._at is not None and np.array_equal(self._at, self.best[2])
+        if not (same and np.array_equal(self.state.x, self._best_x)):
             self._resting, self.found = self._best_x, None
         return self.at(self.best[2])
 
