@@ -48,7 +48,7 @@ def write(structure: Structure, target: Path) -> None:
     ):
         if count > SETS:
             raise InputError(target.name, f"{count} different {what}; at most {SETS} are supported")
-    names = plain_names([g.name for g in (*groups, *structure.beams)])
+    names = plain_names([*(group.name for group in groups), *(part.name for part in structure.beams)])
     sets = _sets(groups, names, which, len(sections), beams)
     blocks: list[tuple[str, Any]] = [("line", np.concatenate([g.pairs for g in groups]))] if groups else []
     blocks += [("line", beams.pairs)] if structure.beams else []
