@@ -222,7 +222,8 @@ export function maxima({ envelope }: Solved, topology: Topology): Most[] {
   const far = largest(displacement.largest);
   if (far >= 0) {
     const [value, of] = [displacement.largest[far]!, displacement.largest_case[far]!];
-    rows.push({ name: "Displacement", unit: "length", value, case: of, picked: particle(far), where: `particle ${far}` });
+    const there = { picked: particle(far), where: `particle ${far}` };
+    rows.push({ name: "Displacement", unit: "length", value, case: of, ...there });
   }
   envelope.forces.forEach(({ name, kind, columns }, number) => {
     if (topology.forces[number]?.role === "load") return;
@@ -256,7 +257,8 @@ export function maxima({ envelope }: Solved, topology: Topology): Most[] {
   if (at >= 0) {
     const index = reactions.particles[at]!;
     const [value, of] = [reactions.force.largest[at]!, reactions.force.largest_case[at]!];
-    rows.push({ name: "Reaction", unit: "force", value, case: of, picked: particle(index), where: `particle ${index}` });
+    const there = { picked: particle(index), where: `particle ${index}` };
+    rows.push({ name: "Reaction", unit: "force", value, case: of, ...there });
   }
   return rows;
 }

@@ -17,13 +17,19 @@ export function PickedCharts({ studio }: { studio: Studio }) {
   const save = () => keep(new Blob([csv(times, lines)], { type: "text/csv" }), `${title.replace(" ", "-")}.csv`);
   return (
     <section class="picked-charts" aria-label={`Charts of ${title.toLowerCase()}`}>
-      <h3>
-        {title} <span class="faint">{recorded ? "in the recording" : "in the last minute"}</span>
-      </h3>
+      <p>
+        <strong>{title}</strong> <span class="faint">{recorded ? "in the recording" : "in the last minute"}</span>
+      </p>
       {lines.map((line) => (
         <Chart key={`${picked.kind} ${line.name}`} line={line} times={times} whole={recorded} />
       ))}
-      <button type="button" class="small" disabled={!times.length} title="Save these numbers as a CSV file" onClick={save}>
+      <button
+        type="button"
+        class="small"
+        disabled={!times.length}
+        title="Save these numbers as a CSV file"
+        onClick={save}
+      >
         Save charts
       </button>
     </section>

@@ -90,7 +90,7 @@ function Lines({ chosen, choose, length, step }: OfLines) {
       )}
       <label
         class="check"
-        title="200 drops of water, each from the middle of a face down along the steepest way, to the edge or to where it stays"
+        title="200 drops, each from the middle of a face down along the steepest way, to the edge or to where it stays"
       >
         <input
           type="checkbox"

@@ -39,7 +39,7 @@ export const SCALARS: { name: Scalar; seen: string; unit: (length: string) => st
     name: "gaussian_curvature",
     seen: "Gaussian curvature",
     unit: (length) => `1/${length}²`,
-    hint: "Product of both curvatures. Below 0: a saddle, as of stable tensile roofs; 0: it can be unrolled; above 0: a dome",
+    hint: "Product of both curvatures. Below 0: a saddle, as of tensile roofs; 0: it can be unrolled; above 0: a dome",
   },
 ];
 

@@ -12,6 +12,7 @@ export function Timeline({ studio, title }: { studio: Studio; title: string }) {
   const live = session.connection.value === "live";
   const isRecording = film.recording.value;
   const count = film.shots.length;
+  const thinned = film.stride > 1 ? `, one in ${film.stride} kept` : "";
   return (
     <div class="timeline">
       <div class="row">
@@ -31,7 +32,7 @@ export function Timeline({ studio, title }: { studio: Studio; title: string }) {
       {count > 0 && <Scrub studio={studio} />}
       <p class="faint" role="status">
         {count
-          ? `${counted(count, "frame")} in ${said(film.length, 3)} s${film.stride > 1 ? `, one in ${film.stride} kept` : ""}`
+          ? `${counted(count, "frame")} in ${said(film.length, 3)} s${thinned}`
           : "Nothing recorded yet: press Record, then Play or drag."}
       </p>
       <Bookmarks studio={studio} />
@@ -189,7 +190,7 @@ function Video({ studio, title }: { studio: Studio; title: string }) {
         <button
           type="button"
           disabled={part.value !== null || studio.film.recording.value || !studio.view.value}
-          title="The recording, from where it is looked at now, as a WebM video; where the browser writes none, as a zip of PNG pictures"
+          title="The recording, as it is looked at now, as a WebM video, or as a zip of pictures where no video is written"
           onClick={() => void save()}
         >
           Save video

@@ -95,7 +95,8 @@ export class Traced {
     const p = frame.positions;
     if (kind === "spring") {
       const [a, b] = (this.session.topology.peek()?.springs[index] ?? [0, 0]).map((end) => 3 * end) as [number, number];
-      return [frame.springForces[index] ?? NaN, Math.hypot(p[a]! - p[b]!, p[a + 1]! - p[b + 1]!, p[a + 2]! - p[b + 2]!)];
+      const length = Math.hypot(p[a]! - p[b]!, p[a + 1]! - p[b + 1]!, p[a + 2]! - p[b + 2]!);
+      return [frame.springForces[index] ?? NaN, length];
     }
     const row = this.held(index);
     const r = frame.reactions;

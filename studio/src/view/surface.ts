@@ -1,5 +1,6 @@
 // What is read off the surface: faces in the colours of numbers at their particles, and lines on them.
-import { BufferAttribute, BufferGeometry, DataTexture, type IUniform, Mesh, type RawShaderMaterial, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, DataTexture, type IUniform, Mesh, Vector3 } from "three";
+import type { RawShaderMaterial } from "three";
 import { channels, palette } from "./colours";
 import { Column } from "./columns";
 import type { Form } from "./form";
