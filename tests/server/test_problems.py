@@ -31,6 +31,7 @@ PATHS = {
     "/v1/sensitivity": "POST",
     "/v1/relax/3dm": "POST",
     "/v1/geometry/3dm": "POST",
+    "/v1/recipes": "POST",
     "/v1/recipes/3dm": "POST",
     "/v1/examples": "GET",
     "/v1/examples/9.4-cable/picture": "GET",

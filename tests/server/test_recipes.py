@@ -11,6 +11,7 @@ import numpy as np
 from fuzz import damage
 from hookean.commands.examples import find
 from hookean.files.recipe.draft import draft
+from hookean.files.recipe.foreign import model_in
 from hookean.files.relax_file import relax_file
 from hookean.files.rhino import threedm
 
@@ -48,6 +49,22 @@ def test_a_session_has_the_roles_of_its_recipe(client: httpx.Client) -> None:
     truth = relax_file(PATH, recipe_text=recipe).result
     assert np.array_equal(report["result"]["particles"], truth.particles)
     client.delete(address)
+
+
+def test_other_files_have_rows_by_their_names_and_whole_models_none(client: httpx.Client) -> None:
+    """The draft of an OBJ file is that of the core; a scene opens as it is, and a fault names the line."""
+    told = b"o roof\nv 0 0 0\nv 2 0 0\nv 2 2 0\nf 1 2 3\n"
+
+    def found(name: str, data: bytes) -> httpx.Response:
+        return client.post("/v1/recipes", files={"file": (name, data)})
+
+    rows = found("roof.obj", told).json()
+    model = model_in(told, "roof.obj")
+    assert model is not None and rows == json.loads(json.dumps(draft(model).to_dict()))
+    assert [row["layer"] for row in rows["rows"]] == ["roof"]
+    assert found("scene.json", b'{"particles": [[0, 0, 0]]}').json()["rows"] == []
+    said = problem(found("a.obj", b"v 1\n"), 422, "invalid-input")
+    assert "line 1: a vertex needs three coordinates" in str(said)
 
 
 def test_faulty_requests(client: httpx.Client) -> None:

@@ -92,7 +92,8 @@ def read(data: bytes, name: str = "", recipe: Recipe | None = None, *, called: s
     if recipe is not None and not kind.recipes:
         raise InputError(
             called or "/recipe",
-            f"is {kind.name}, which does not support a recipe; recipes are for files with drawn objects (.3dm, .obj, COMPAS documents)",
+            f"is {kind.name}, which does not support a recipe; recipes are for files with drawn objects (.3dm, .obj, "
+            "COMPAS documents)",
         )
     return kind.read(data, called, recipe)
 
