@@ -13,8 +13,7 @@ import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
 from hookean.files.readers import read
-from hookean.files.recipe.draft import draft
-from hookean.files.recipe.foreign import model_in
+from hookean.files.recipe.draft import draft, model_in
 from hookean.files.recipe.recipe import understand
 from hookean.files.rhino import threedm
 from hookean.files.rhino.threedm import NewObject

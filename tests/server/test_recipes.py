@@ -10,8 +10,7 @@ import numpy as np
 
 from fuzz import damage
 from hookean.commands.examples import find
-from hookean.files.recipe.draft import draft
-from hookean.files.recipe.foreign import model_in
+from hookean.files.recipe.draft import draft, model_in
 from hookean.files.relax_file import relax_file
 from hookean.files.rhino import threedm
 

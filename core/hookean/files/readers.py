@@ -170,7 +170,7 @@ def _by_recipe(data: bytes, called: str, suffix: str, recipe: Recipe) -> Source:
 
     tables = parse_tables(recipe[0], recipe[1] or "recipe")
     with about(called):
-        drawn = drawn_in(data, f"file{suffix}")
+        drawn = drawn_in(data, suffix)
     if drawn is None:
         said = "holds a whole model; recipes are for files with drawn objects (.3dm, .obj, COMPAS documents)"
         raise InputError(called or "/recipe", said)

@@ -287,8 +287,7 @@ class Simulation:
         return self._succeeded(lambda: self._follow(compile(scene)), gesture)
 
     def draw(self, edit: Draw | Mapping[str, Any], *, gesture: str = "") -> int:
-        """Add particles, faces and forces, divide or extrude them, or delete them (see `drawing.edits.Draw`); returns
-        the new revision. InputError names what does not fit, and nothing has changed then."""
+        """Add, divide, extrude or delete (see `Draw`); returns the new revision. InputError for what does not fit."""
         read = Draw.read(edit)
         return self._succeeded(lambda: self._put_on(*drawn(self.system, self.state, read)), gesture)
 

@@ -109,8 +109,8 @@ def recipe_upload(options: dict[str, Any], body: bytes, cancelled: Cancelled) ->
     """The rows of an uploaded .3dm file with a role for each, and the recipe of these roles; options as `relax_upload`.
     The form has a part `file`, and may have a part `choices` (JSON). With `options["any"]` files of other programs are
     read, too; those that hold a whole model have no rows. Raises InputError naming the part."""
-    from hookean.files.recipe.draft import draft, undrafted
-    from hookean.files.recipe.foreign import SUFFIXES, model_in
+    from hookean.files.recipe.draft import draft, model_in, undrafted
+    from hookean.files.recipe.foreign import SUFFIXES
     from hookean.files.rhino.read import parse as parse_model
     from hookean.scene.text import parse
 

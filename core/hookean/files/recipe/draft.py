@@ -17,13 +17,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from hookean.errors import InputError
+from hookean.files.readers import reader
 from hookean.files.recipe import shapes
 from hookean.files.recipe.build import Built, build
 from hookean.files.recipe.compose import recipe_of
 from hookean.files.recipe.drawing import Drawing, drawing
+from hookean.files.recipe.foreign import drawn_in, model_of
 from hookean.files.recipe.notes import notes
 from hookean.files.recipe.roles import ROLES, converted, role_names, usable
 from hookean.files.recipe.rows import Entry, Row, fill, guess, own, rows_of
@@ -129,6 +132,13 @@ def _plain(row: Row) -> dict[str, Any]:
         "becomes": row.becomes,
         "objects": objects,
     }
+
+
+def model_in(data: bytes, name: str) -> Model | None:
+    """The model of an OBJ file or of COMPAS documents; None for a file that holds a whole model. InputError for a fault
+    in it."""
+    drawn = drawn_in(data, reader(data, name).suffix)
+    return None if drawn is None else model_of(drawn, Path(name).name or "the file")
 
 
 def draft(model: Model, choices: Any = None) -> Draft:

@@ -8,7 +8,6 @@ finds the same objects when the file is read again.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, UUID, uuid5
 
@@ -26,14 +25,12 @@ BLACK = (0, 0, 0, 255)
 SUFFIXES = (".obj", ".json")
 
 
-def drawn_in(data: bytes, name: str) -> Drawn | None:
-    """What is drawn in an OBJ file or in COMPAS documents; None for a file that holds a whole model, such as a scene.
-    InputError for a fault in the file."""
+def drawn_in(data: bytes, kind: str) -> Drawn | None:
+    """What is drawn in an OBJ file or in COMPAS documents, by the suffix of their reader; None for a file that holds a
+    whole model, such as a scene. InputError for a fault in the file."""
     from hookean.files import documents, obj_read
-    from hookean.files.readers import reader
     from hookean.scene.text import parse
 
-    kind = reader(data, name).suffix
     if kind == ".obj":
         return obj_read.read(data)
     return documents.drawn(parse(data, "/")) if kind == ".json" else None
@@ -60,12 +57,6 @@ def model_of(drawn: Drawn, name: str) -> Model:
         lost=(),
         warnings=tuple(drawn.warnings),
     )
-
-
-def model_in(data: bytes, name: str) -> Model | None:
-    """The model of a file; None for one that holds a whole model."""
-    drawn = drawn_in(data, name)
-    return None if drawn is None else model_of(drawn, Path(name).name or "the file")
 
 
 def _layer(number: int, called: str) -> Layer:
