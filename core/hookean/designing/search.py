@@ -119,8 +119,8 @@ class Search:
 
     def at_best(self) -> Equilibrium:
         """The equilibrium at the best so far, from its own shape: there may be others, also at the same values."""
-        same = self._at is not None and np.array_equal(self._at, self.best[2])
-        if not (same and np.array_equal(self.state.x, self._best_x)):
+        pairs = ((self._at, self.best[2]), (self.state.x, self._best_x))
+        if not all(a is not None and b is not None and np.array_equal(a, b) for a, b in pairs):
             self._resting, self.found = self._best_x, None
         return self.at(self.best[2])
 
