@@ -190,7 +190,7 @@ function Video({ studio, title }: { studio: Studio; title: string }) {
         <button
           type="button"
           disabled={part.value !== null || studio.film.recording.value || !studio.view.value}
-          title="The recording, as it is looked at now, as a WebM video, or as a zip of pictures where no video is written"
+          title="The recording, as it is looked at now, as a WebM video, or a zip of pictures where there is no encoder"
           onClick={() => void save()}
         >
           Save video

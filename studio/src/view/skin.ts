@@ -1,4 +1,4 @@
-// Faces, lit flat: normals come from the picture itself, so that a frame is no work here. They are taken from places about
+// Faces, lit flat: normals come from the picture itself, so that a frame is no work here. They are of places about
 // the middle of the form, for those in the eye's space lose their digits where the eye is far away.
 import { BufferAttribute, BufferGeometry, Mesh, type RawShaderMaterial } from "three";
 import { type Common, material } from "./material";
