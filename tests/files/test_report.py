@@ -6,6 +6,7 @@ import base64
 import io
 import re
 from html.parser import HTMLParser
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,10 +14,8 @@ from PIL import Image
 
 import hookean
 from hookean import Scene
-from hookean.analysis.applied import applied
 from hookean.files.report import report
 from hookean.files.tables import read_limits
-from hookean.system.system import compile
 
 
 class Tables(HTMLParser):
@@ -32,7 +31,7 @@ class Tables(HTMLParser):
         self.feed(text)
         assert not self.open
 
-    def handle_starttag(self, tag: str, attrs: list) -> None:
+    def handle_starttag(self, tag: str, attrs: list[Any]) -> None:
         if tag == "img":
             self.pictures.append(dict(attrs)["src"])
         if tag not in ("img", "meta"):
@@ -115,15 +114,25 @@ def test_a_scene_without_cases_is_relaxed(scene: Scene) -> None:
     assert "Load cases" not in text and "max force" in text
 
 
-def test_applied_loads_have_their_resultant_moment_and_centre() -> None:
-    """Two parallel forces: statics by hand."""
-    load = hookean.Unary(name="a", particles=[0, 1], vector=[[0, 0, -1.0], [0, 0, -3.0]])
-    scene = Scene(
-        particles=[[0, 0, 0], [4, 0, 0], [9, 9, 9]], forces=[load, hookean.SelfWeight(particles=[2], total=0.0)]
-    )
-    system = compile(scene)
-    first, second = applied(system, system.start())
-    np.testing.assert_allclose(first.resultant, [0, 0, -4.0])
-    np.testing.assert_allclose(first.centre, [3.0, 0, 0])
-    np.testing.assert_allclose(first.moment, [0, 12.0, 0])
-    assert (first.particles, second.resultant.tolist(), second.centre.tolist()) == (2, [0, 0, 0], [9, 9, 9])
+def test_a_report_of_beams_has_the_moments_of_loads_and_supports() -> None:
+    """A cantilever of 1 m under 2 N down and a moment of 3 N m at its end: at the clamp the moment is 2 L - 3."""
+    beam = {"kind": "beam", "name": "b", "particles": [[0, 1]], "E": 1e9, "G": 4e8, "A": 0.1, "Iy": 1e-3, "Iz": 1e-3,
+            "J": 1e-3}  # fmt: skip
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0]],
+        "forces": [
+            beam,
+            {"kind": "unary", "name": "P", "particles": [1], "vector": [0, 0, -2], "moment": [0, 3, 0]},
+            {"kind": "unary", "name": "pair", "particles": [0, 1], "vector": [[0, 0, -1], [0, 0, -3]]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "load_cases": {"P": {"forces": ["P"]}, "pair": {"forces": ["pair"]}},
+    }
+    text = report(Scene.read(scene), limits=read_limits("max_displacement = 1\n"), pictures=False)
+    rows = Tables(text).rows
+    load = next(row for row in rows["Case P"] if row[0] == "P")
+    assert load[2:4] == ["1", "0, 0, -2"] and load[5] == "0, 3, 0"
+    load = next(row for row in rows["Case pair"] if row[0] == "pair")
+    assert load[2:4] == ["2", "0, 0, -4"] and load[4].startswith("0.75, 0, ")  # (0 x 1 + 1 x 3) / 4
+    _, support = rows["Reactions"]
+    assert float(support[2]) == pytest.approx(4.0) and float(support[4]) == pytest.approx(3.0)

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from hookean.analysis.applied import applied
 from hookean.analysis.envelope import Envelope, Extremes
 from hookean.analysis.load_cases import CaseResult, LoadCases, load_cases
 from hookean.files import tables
@@ -19,7 +18,6 @@ from hookean.running.result import Result
 from hookean.running.run import relax
 from hookean.running.utilisation import dimensions
 from hookean.scene.scene import Scene
-from hookean.system.state import State
 from hookean.system.system import System, compile
 
 SIZE = (1000, 750)  # pixels of a picture
@@ -90,10 +88,7 @@ def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     yield f"<p>{escape(form.message)} Stability: {form.stability}.</p>"
     if pictures:
         yield _picture(form, "Form and forces in it")
-    system = compile(scene)
-    state = system.start()
-    state.x = np.array(form.particles)
-    yield from _loads(system, state, "Loads that act on the form")
+    yield from _loads(form, "Loads that act on the form")
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(form))
 
 
@@ -107,16 +102,24 @@ def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
                 yield entry["name"] or entry["kind"], name, float(sizes.min()), float(sizes.max()), unit
 
 
-def _loads(system: System, state: State, title: str) -> Iterator[str]:
-    found = applied(system, state)
-    if not found:
+def _loads(result: Result, title: str) -> Iterator[str]:
+    found = result.loads
+    if not len(found["force"]):
         return
-    length, force = system.scene.units.length, system.scene.units.force
+    units = result.units
     yield f"<h3>{escape(title)}</h3>"
-    heads = ("load", "kind", "particles", f"resultant x, y, z [{force}]", f"centre x, y, z [{length}]")
-    rows = [(a.name, a.kind, a.particles, _vector(a.resultant), _vector(a.centre)) for a in found]
-    total = sum((a.resultant for a in found), np.zeros(3))
-    yield _table(heads, [*rows, ("together", "", "", _vector(total), "")])
+    heads = ["load", "kind", "particles", f"resultant x, y, z [{units.force}]", f"centre x, y, z [{units.length}]"]
+    rows = []
+    for i, number in enumerate(found["force"].tolist()):
+        name, kind = found["name"][i] or found["kind"][i], found["kind"][i]
+        count = len(np.unique(result.forces[number].get("particles", ())))
+        rows.append([name, kind, count, _vector(found["resultant"][i]), _vector(found["centre"][i])])
+    rows.append(["together", "", "", _vector(found["resultant"].sum(axis=0)), ""])
+    if len(result.rotations["particles"]):
+        heads.append(f"moment about the centre x, y, z [{units.of('force length')}]")
+        for row, moment in zip(rows, [*map(_vector, found["moment"]), ""], strict=True):
+            row.append(moment)
+    yield _table(heads, rows)
 
 
 def _cases(scene: Scene, cases: LoadCases) -> Iterator[str]:
@@ -177,17 +180,22 @@ def _middle(entry: Mapping[str, Any], element: int, form: Result) -> str:
 def _reactions(found: Envelope, form: Result) -> Iterator[str]:
     if not len(found.particles):
         return
-    length, force = found.units.length, found.units.force
+    units = found.units
     yield "<h2>Reactions</h2>"
     order = np.argsort(-found.reaction.largest, kind="stable")[:MOST]
+    heads = ["support", f"x, y, z [{units.length}]", f"largest reaction [{units.force}]", "in case"]
+    kinds = [found.reaction]
+    if found.moment is not None:
+        kinds.append(found.moment)
+        heads += [f"largest moment [{units.of('force length')}]", "in case"]
     rows = [
         (
             f"particle {found.particles[i]}", _vector(form.particles[found.particles[i]]),
-            float(found.reaction.largest[i]), found.cases[found.reaction.largest_case[i]],
+            *(part for of in kinds for part in (float(of.largest[i]), found.cases[of.largest_case[i]])),
         )
         for i in order.tolist()
     ]  # fmt: skip
-    yield _table(("support", f"x, y, z [{length}]", f"largest reaction [{force}]", "in case"), rows)
+    yield _table(heads, rows)
     if len(found.particles) > MOST:
         yield f"<p>The {MOST} largest of {len(found.particles)} are shown.</p>"
 
@@ -197,16 +205,15 @@ def _case(case: CaseResult, cases: LoadCases, limits: Mapping[str, Any] | None, 
     given = " + ".join(f"{factor:g} x {name}" for name, factor in case.factors.items())
     yield f"<p>{escape(given)}. {escape(case.result.message)} Stability: {case.result.stability}.</p>"
     assert case.result.scene is not None
-    system, state = cases.frozen.system(case.result.scene)
     if pictures:
         yield _picture(case.result, f"Shape and forces under {case.name}")
-    state.x = np.array(case.result.particles)
-    yield from _loads(system, state, "Loads")
+    yield from _loads(case.result, "Loads")
     total = np.asarray(case.result.reactions["force"]).reshape(-1, 3).sum(axis=0)
     yield f"<p>Reactions together: {_vector(total)} {case.result.units.force}.</p>"
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(case.result))
     if limits is not None:
-        system.x = cases.frozen.particles  # displacements are those from the form
+        system, state = cases.frozen.system(case.result.scene)
+        system.x = state.x  # displacements are those from the form
         yield from _checks(_exceeded(limits, system, case.result))
 
 
