@@ -355,8 +355,8 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) ->
                     continue
                 several = runs_about(c, side[2], columns, first, runs)
                 for s in range(first[k], first[k + 1]):
-                    i, before, runs[0, 0] = np.uint64(s), count, s + 1  # in its own cell with the later ones
-                    x, y, z, reach = xs[i], ys[i], zs[i], radii[i] + beyond
+                    t, before, runs[0, 0] = np.uint64(s), count, s + 1  # in its own cell with the later ones
+                    x, y, z, reach = xs[t], ys[t], zs[t], radii[t] + beyond
                     count = meet(
                         xs,
                         ys,
@@ -367,7 +367,7 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) ->
                         y,
                         z,
                         reach,
-                        number[i],
+                        number[t],
                         runs,
                         several,
                         at_once,

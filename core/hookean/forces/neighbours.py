@@ -26,7 +26,7 @@ from hookean.forces.cells import GROUP, RADIUS, SEEN, SEEN_CAPSULE, ends, find_p
 
 # the head of a room: elements and pairs it has place for; range beyond the reach, elements listed, particles of an
 # element; pairs listed, how often the list was used, whether rows are elements as given; uses that places are ahead;
-# width of the cells in which all elements are, or 0; how many elements have joined the list anew (`strays`)
+# width of the cells in which all elements are, or 0; how many elements have joined the list again (`strays`)
 SIZE, PAIRS, RANGE, COUNT, ENDS, FOUND, USED, AS_GIVEN, AHEAD, WIDTH, STRAYS = range(11)
 HEAD = 11
 HERE = 4  # of each element now: x y z and a zero
@@ -34,7 +34,7 @@ HERE_CAPSULE = 16  # the sphere, half axis, radius, force at the start, at the e
 SUMS = 4  # of each sphere what a kernel sums: its force and a zero; then, apart, how often it counts for the stiffness
 BEGAN = 3  # of each sphere: where it was as the list was made
 PER_ELEMENT = 24  # pairs of an element that there is place for, on average
-ALONE = 32  # as many elements as this to one that may join a list anew
+ALONE = 32  # as many elements as this to one that may join a list again
 LOCAL = 2.0  # how much longer than layer by layer the way through elements as given may be
 LEAST, FIRST, MOST = 1.25, 2.0, 8.0  # the range of a list in skins
 MOST_OF = 4.0  # times the mean square of speeds: more than those of all but a few, in the spread of a gas
@@ -88,7 +88,7 @@ def forget(room: Any, radius: Any, group: Any) -> None:
 
 @device
 def most_strays(count: Any) -> Any:
-    """How many of some elements may join a list anew."""
+    """How many of some elements may join a list again."""
     return count // ALONE + 1
 
 
@@ -141,7 +141,7 @@ def began_in(room: Any) -> Any:
 
 @device
 def grid_in(room: Any) -> Any:
-    """The grid of cells (`cells`) in the room at an address; which elements have joined the list anew, 1; and their
+    """The grid of cells (`cells`) in the room at an address; which elements have joined the list again, 1; and their
     rows."""
     size = capacity(room)
     _, _, _, reach, _ = parts(room)

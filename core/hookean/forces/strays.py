@@ -1,4 +1,4 @@
-"""Strays: the few spheres that leave their place in a list of neighbours join it anew, and the list goes on.
+"""Strays: the few spheres that leave their place in a list of neighbours join it again, and it continues to serve.
 
 Where speeds differ, a few spheres are far from their places long before most. Such a stray gets a new place, where it
 is, its old pairs go, and those about the new place come, from the grid of cells in which the list was found; strays are
@@ -55,12 +55,12 @@ NOW = 2  # mark of a stray whose pairs are being looked for; of earlier ones, 1
 @device
 def serves(at: Any, room: Any, most: Any) -> Any:
     """Whether the list in a room holds all pairs of spheres that have to be within the root of `most` of their places,
-    once the few that are not have joined it anew."""
+    once the few that are not have joined it again."""
     seen = seen_in(room)
     if near_seen(at, seen, most, 0.0, 0.0, 0.0):
         return True
     x, y, z = drift(at, seen)
-    return near_seen(at, seen, most, x, y, z) or join_anew(at, seen, room, most, x, y, z)
+    return near_seen(at, seen, most, x, y, z) or join_again(at, seen, room, most, x, y, z)
 
 
 @device
@@ -79,7 +79,7 @@ def away(at: Any, seen: Any, most: Any, x: Any, y: Any, z: Any, strays: Any) -> 
 
 
 @device
-def join_anew(at: Any, seen: Any, room: Any, most: Any, x: Any, y: Any, z: Any) -> Any:
+def join_again(at: Any, seen: Any, room: Any, most: Any, x: Any, y: Any, z: Any) -> Any:
     """Give spheres that have strayed from a motion of all new places and pairs; False if there are too many of them, or
     of their pairs: the list is to be made."""
     head, size, (grid, anew, known) = rows(room, 1.0, HEAD), at.shape[0], grid_in(room)
@@ -210,7 +210,7 @@ def add(i: Any, j: Any, found: Any, count: Any) -> Any:
 
 @device
 def keep(room: Any, anew: Any, seen: Any) -> Any:
-    """Take the pairs of strays that join anew out of the list; how many are left."""
+    """Take the pairs of strays that join again out of the list; how many are left."""
     (pairs, reach), kept = pairs_in(room), 0
     for n in range(int(rows(room, 1.0, HEAD)[0, FOUND])):
         pair, apart = pairs[np.uint64(n)], reach[np.uint64(n)]
