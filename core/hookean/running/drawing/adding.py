@@ -17,7 +17,7 @@ def add(sheet: Sheet, edit: Add) -> None:
     """Put what is new into the model. InputError for a particle or mesh that does not exist."""
     sheet.new(np.asarray(edit.points))
     for name, faces in edit.faces.items():
-        put_faces(sheet, name, faces, f"/add/faces/{name}")
+        put_faces(sheet, name, np.asarray(faces), f"/add/faces/{name}")
     for i, force in enumerate(edit.forces):
         _put(sheet, force, f"/add/forces/{i}")
 
@@ -70,7 +70,7 @@ def _joined(sheet: Sheet, old: Force, new: Force, pointer: str) -> Force | None:
     values: dict[str, Any] = {"particles": np.concatenate([first, second])}
     vectors = dict(element_columns(type(old)))
     for name in type(old).model_fields:
-        pair = getattr(old, name), getattr(new, name)
+        pair: tuple[Any, ...] = getattr(old, name), getattr(new, name)
         sizes = len(first), len(second)
         vector = vectors.get(name, False)
         each = [name in vectors and many(value, size, vector) for value, size in zip(pair, sizes, strict=True)]

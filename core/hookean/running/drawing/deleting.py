@@ -23,7 +23,7 @@ def delete(sheet: Sheet, edit: Delete) -> None:
     gone = np.zeros(sheet.count, bool)
     gone[edit.particles] = True
     springs = sheet.springs(np.asarray(edit.springs), "/delete/springs")
-    meshes = _meshes(sheet, gone, edit.faces)
+    meshes = _meshes(sheet, gone, {name: np.asarray(faces) for name, faces in edit.faces.items()})
     number = np.cumsum(~gone) - 1
     for i, force in enumerate(sheet.scene.forces):
         mesh = getattr(force, "mesh", None)
@@ -54,7 +54,7 @@ def _meshes(sheet: Sheet, gone: Mask, given: Mapping[str, Ints]) -> dict[str, tu
         if len(numbers) and int(numbers.max()) >= len(mesh.faces):
             said = f"face {int(numbers.max())} does not exist; the mesh has {len(mesh.faces)}, counted from 0"
             raise InputError(f"/delete/faces/{name}", said)
-        stays = ~touched[mesh.faces].any(axis=1)
+        stays: Mask = np.logical_not(touched[mesh.faces].any(axis=1))
         stays[numbers] = False
         used, faces = np.zeros(len(particles), bool), mesh.faces[stays]
         used[faces] = True
@@ -85,7 +85,7 @@ def _on_mesh(force: Force, mesh: str, kept: tuple[Mask, Mask] | None, pointer: s
 
 def _thinned(force: Force, rows: Ints, gone: Mask, springs: Ints | None, number: Ints, pointer: str) -> Force | None:
     """A force by numbers, without its elements on particles that are gone and without some rows."""
-    stays = ~(gone[rows] & (rows >= 0)).any(axis=1)
+    stays: Mask = np.logical_not((gone[rows] & (rows >= 0)).any(axis=1))
     if springs is not None:
         stays[springs] = False
     if not stays.any() and len(rows):
