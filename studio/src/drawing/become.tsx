@@ -25,8 +25,14 @@ export function kindsOf(of: Of): Kind[] {
   );
 }
 
-const METRES: Record<string, number> = { m: 1, mm: 1e-3, cm: 1e-2, dm: 0.1, km: 1e3, in: 0.0254, ft: 0.3048, yd: 0.9144 };
-const NEWTONS: Record<string, number> = { N: 1, kN: 1e3, MN: 1e6, kgf: 9.80665, lbf: 4.4482216152605, kip: 4448.2216152605 };
+const METRES: Record<string, number> = {
+  ...{ m: 1, mm: 1e-3, cm: 1e-2, dm: 0.1, km: 1e3 },
+  ...{ in: 0.0254, ft: 0.3048, yd: 0.9144 },
+};
+const NEWTONS: Record<string, number> = {
+  ...{ N: 1, kN: 1e3, MN: 1e6 },
+  ...{ kgf: 9.80665, lbf: 4.4482216152605, kip: 4448.2216152605 },
+};
 
 /** Values to begin with, where the schema has none that serves: a cloth of 600 kN/m with 2 kN/m of prestress. */
 export function usual(kind: string, units: Units): Record<string, string> {

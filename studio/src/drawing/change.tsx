@@ -77,7 +77,8 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
     <details class="seldom">
       <summary>Change what is selected</summary>
       <p class="note" role="status">
-        {several(particles.length, "particle")}, {several(springs.length, "spring")} and {several(count, "face")} selected.
+        {several(particles.length, "particle")}, {several(springs.length, "spring")} and{" "}
+        {several(count, "face")} selected.
         Click one, or select more under Picked.
       </p>
       <div class="row">

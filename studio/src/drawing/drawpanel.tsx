@@ -117,7 +117,8 @@ function saidOfCorners(pen: Pen): string {
   if (pen.mode.value === "point") return "Click on the canvas, or type coordinates. Drag to turn the view.";
   if (!put) return "Click the first corner on the canvas, or type its coordinates. Drag to turn the view.";
   if (pen.mode.value === "line") return "Click the next corner. Enter or Esc ends the line.";
-  return put === 3 ? "Click the fourth corner, or press Enter for a triangle." : "Click the next corner. Esc drops them.";
+  if (put === 3) return "Click the fourth corner, or press Enter for a triangle.";
+  return "Click the next corner. Esc drops them.";
 }
 
 /** The working plane and what the pen snaps to. */

@@ -89,7 +89,8 @@ export class Pen {
     const number = isNew ? this.count : particle;
     const add: NonNullable<Draw["add"]> = isNew ? { points: [spot.at] } : {};
     if (last && last.particle !== number && made) {
-      add.forces = [{ ...made, ...this.length(made, last, { particle: number, at: spot.at }), particles: [[last.particle, number]] }];
+      const length = this.length(made, last, { particle: number, at: spot.at });
+      add.forces = [{ ...made, ...length, particles: [[last.particle, number]] }];
     }
     if (Object.keys(add).length && !(await this.edit({ add }, one))) return null;
     return { particle: number, at: spot.at };

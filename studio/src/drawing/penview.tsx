@@ -87,7 +87,8 @@ function follow(studio: Studio, pen: Pen): () => void {
   canvas.addEventListener(
     "pointerdown",
     (event) => {
-      press = event.button === 0 && event.isPrimary ? { x: event.clientX, y: event.clientY, id: event.pointerId } : null;
+      const { clientX: x, clientY: y, pointerId: id } = event;
+      press = event.button === 0 && event.isPrimary ? { x, y, id } : null;
     },
     on,
   );
@@ -97,7 +98,8 @@ function follow(studio: Studio, pen: Pen): () => void {
     "pointerup",
     (event) => {
       const { still } = event.pointerType === "touch" ? FINGER : MOUSE;
-      const isClick = press?.id === event.pointerId && Math.hypot(event.clientX - press.x, event.clientY - press.y) <= still;
+      const { clientX: x, clientY: y, pointerId: id } = event;
+      const isClick = press?.id === id && Math.hypot(x - press.x, y - press.y) <= still;
       press = null;
       const spot = isClick ? aim(event) : null;
       if (spot) void pen.put(spot);

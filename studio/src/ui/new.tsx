@@ -12,6 +12,8 @@ import { go, met } from "./place";
 export const LENGTHS = ["m", "cm", "mm", "ft", "in"];
 export const FORCES = ["N", "kN"];
 
+const EMPTY = "An empty page: draw points, lines and faces by clicks, and choose what they become.";
+
 export function New() {
   const chosen = useSignal("saddle");
   const typed = useSignal<Parameters>({});
@@ -22,7 +24,7 @@ export function New() {
   }, []);
   if (!families.value) return null;
   const family = families.value.find(({ name }) => name === chosen.value);
-  const summary = family?.summary ?? "An empty page: draw points, lines and faces by clicks, and choose what they become.";
+  const summary = family?.summary ?? EMPTY;
   const make = async (event: Event) => {
     event.preventDefault();
     busy.value = true;

@@ -19,13 +19,18 @@ export function SectionChoice({ studio: { options, session, view } }: { studio: 
   const choose = (axis: string) => {
     const [from, to] = extent(view.value?.particles() ?? new Float32Array(), axis);
     const middle = Number(((from + to) / 2).toPrecision(4));
-    options.section.value = axis ? { axis: axis as Section["axis"], at: middle, isTurned: section?.isTurned ?? false } : null;
+    const isTurned = section?.isTurned ?? false;
+    options.section.value = axis ? { axis: axis as Section["axis"], at: middle, isTurned } : null;
   };
   return (
     <div class="section">
       <label class="field" title="Cuts the picture by a plane, to look inside; the model stays as it is">
         <span>Section plane</span>
-        <select aria-label="Section plane" value={section?.axis ?? ""} onChange={(event) => choose(event.currentTarget.value)}>
+        <select
+          aria-label="Section plane"
+          value={section?.axis ?? ""}
+          onChange={(event) => choose(event.currentTarget.value)}
+        >
           {AXES.map(([axis, seen]) => (
             <option key={axis} value={axis}>
               {seen}

@@ -72,8 +72,9 @@ export function TagLabels({ studio }: { studio: Studio }) {
     const y = rows.map((row) => seen.y - canvas.top + row).find(isFree);
     if (y !== undefined) placed.push({ x, y, tag });
   }
+  const written = placed.map(({ tag }) => tag.text).join(", ");
   return (
-    <svg class="labels" role="img" aria-label={`Written beside the form: ${placed.map(({ tag }) => tag.text).join(", ")}`}>
+    <svg class="labels" role="img" aria-label={`Written beside the form: ${written}`}>
       {placed.map(({ x, y, tag }, i) => (
         <text key={i} x={x} y={y - 6} text-anchor="middle" style={tag.colour ? { fill: tag.colour } : {}}>
           {tag.text}
@@ -130,6 +131,8 @@ function numbers({ session, options }: Studio): Tag[] {
 
 function middle(positions: Float32Array, of: number[]): Point {
   const sum: Point = [0, 0, 0];
-  for (const particle of of) for (let axis = 0; axis < 3; axis++) sum[axis]! += positions[3 * particle + axis]! / of.length;
+  for (const particle of of) {
+    for (let axis = 0; axis < 3; axis++) sum[axis]! += positions[3 * particle + axis]! / of.length;
+  }
   return sum;
 }

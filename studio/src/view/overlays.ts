@@ -65,7 +65,8 @@ export class Overlays {
     const { style } = this.plane;
     for (const axis of [0, 1, 2]) {
       const value = style.middle.value.getComponent(axis);
-      if ("xyz"[axis] !== sheet.axis) style.middle.value.setComponent(axis, Math.round(value / (5 * sheet.step)) * 5 * sheet.step);
+      if ("xyz"[axis] === sheet.axis) continue;
+      style.middle.value.setComponent(axis, Math.round(value / (5 * sheet.step)) * 5 * sheet.step);
     }
     style.cell.value = sheet.step;
     style.shade.value = channels(floor);

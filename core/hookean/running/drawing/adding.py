@@ -70,7 +70,7 @@ def _joined(sheet: Sheet, old: Force, new: Force, pointer: str) -> Force | None:
     values: dict[str, Any] = {"particles": np.concatenate([first, second])}
     vectors = dict(element_columns(type(old)))
     for name in type(old).model_fields:
-        pair: tuple[Any, ...] = (getattr(old, name), getattr(new, name))
+        pair: tuple[Any, ...] = getattr(old, name), getattr(new, name)
         sizes = len(first), len(second)
         vector = vectors.get(name, False)
         each = [name in vectors and many(value, size, vector) for value, size in zip(pair, sizes, strict=True)]

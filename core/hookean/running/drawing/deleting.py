@@ -50,11 +50,11 @@ def _meshes(sheet: Sheet, gone: Mask, given: Mapping[str, Ints]) -> dict[str, tu
         if name not in given and not touched.any():
             continue
         mesh: Cloth = sheet.mesh(name, f"/meshes/{name}")
-        numbers = given.get(name, np.zeros(0, np.int64))
+        numbers = np.asarray(given.get(name, np.zeros(0, np.int64)))
         if len(numbers) and int(numbers.max()) >= len(mesh.faces):
             said = f"face {int(numbers.max())} does not exist; the mesh has {len(mesh.faces)}, counted from 0"
             raise InputError(f"/delete/faces/{name}", said)
-        stays = np.asarray(~touched[mesh.faces].any(axis=1))
+        stays: Mask = np.logical_not(touched[mesh.faces].any(axis=1))
         stays[numbers] = False
         used, faces = np.zeros(len(particles), bool), mesh.faces[stays]
         used[faces] = True
@@ -85,7 +85,7 @@ def _on_mesh(force: Force, mesh: str, kept: tuple[Mask, Mask] | None, pointer: s
 
 def _thinned(force: Force, rows: Ints, gone: Mask, springs: Ints | None, number: Ints, pointer: str) -> Force | None:
     """A force by numbers, without its elements on particles that are gone and without some rows."""
-    stays = np.asarray(~(gone[rows] & (rows >= 0)).any(axis=1))
+    stays: Mask = np.logical_not((gone[rows] & (rows >= 0)).any(axis=1))
     if springs is not None:
         stays[springs] = False
     if not stays.any() and len(rows):
