@@ -115,7 +115,7 @@ def test_a_scene_without_cases_is_relaxed(scene: Scene) -> None:
 
 
 def test_a_report_of_beams_has_the_moments_of_loads_and_supports() -> None:
-    """A cantilever of 1 m under 2 N down and a moment of 3 N m at its end: at the clamp the moment is 2 L - 3."""
+    """A cantilever of 1 m under 2 N down and a moment of 3 N m at its end: at the clamp the moment is 2 L + 3."""
     beam = {"kind": "beam", "name": "b", "particles": [[0, 1]], "E": 1e9, "G": 4e8, "A": 0.1, "Iy": 1e-3, "Iz": 1e-3,
             "J": 1e-3}  # fmt: skip
     scene = {
@@ -135,4 +135,4 @@ def test_a_report_of_beams_has_the_moments_of_loads_and_supports() -> None:
     load = next(row for row in rows["Case pair"] if row[0] == "pair")
     assert load[2:4] == ["2", "0, 0, -4"] and load[4].startswith("0.75, 0, ")  # (0 x 1 + 1 x 3) / 4
     _, support = rows["Reactions"]
-    assert float(support[2]) == pytest.approx(4.0) and float(support[4]) == pytest.approx(3.0)
+    assert float(support[2]) == pytest.approx(4.0) and float(support[4]) == pytest.approx(5.0)
