@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from hookean.designing.checks import checked
 from hookean.designing.equilibrium import Equilibrium, settle
-from hookean.designing.limits import LIMIT
 from hookean.designing.problem import Problem
 from hookean.designing.search import Search
 from hookean.errors import InputError
@@ -182,7 +181,7 @@ def _one(search: Search, values: Floats) -> tuple[str, Floats, bool]:
     own = search.aims.values(found)
     missed = search.aims.missed(own)
     row = [float(v.sum() if m is None else np.sqrt((m**2).sum())) for v, m in zip(own, missed, strict=True)]
-    return "converged", np.array(row), bool(search.missed(found) <= LIMIT)
+    return "converged", np.array(row), search.missed(found) == 0.0
 
 
 def _rest(search: Search, values: Floats) -> Equilibrium:

@@ -53,6 +53,8 @@ def gains(search: Search, found: Equilibrium, y: Floats) -> Gains | None:
     shares: Floats = np.zeros((len(slopes), 0))
     if len(rows):
         by = _constraint_slopes(search, found)[rows]
+        holds = _holding(by[:, ~held] * -sides[:, None], slopes[:, ~held].sum(axis=0), _both(search)[rows])
+        by = np.where(holds[:, None], by, 0.0)
         shares = np.asarray(np.linalg.lstsq(by[:, ~held].T, slopes[:, ~held].T, rcond=1e-10)[0].T, np.float64)
     left = slopes - shares @ by
     side = np.where(lower == upper, 0.0, np.where(upper, 1.0, -1.0))
@@ -60,6 +62,30 @@ def gains(search: Search, found: Equilibrium, y: Floats) -> Gains | None:
     constraints[:, rows] = -shares * sides
     inner = np.where(held, 0.0, left)
     return Gains(-left * side / search.scale, constraints, _conflicts(search, found, inner), inner)
+
+
+def _holding(by: Floats, slope: Floats, both: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which limits hold the objective: those with a multiplier in slope = sum of multipliers x slopes of limits (k, u).
+
+    A limit pushes one way only, so that its multiplier is not negative, but for a value that is held from both sides.
+    """
+    from scipy.optimize import nnls
+
+    signed = np.concatenate([by, -by[both]])
+    size = np.linalg.norm(signed, axis=1)
+    size[size == 0.0] = 1.0
+    try:
+        found = nnls((signed / size[:, None]).T, slope)[0]
+    except RuntimeError:  # no end of its exchanges
+        return np.ones(len(by), bool)
+    holds = found[: len(by)] > 0.0
+    holds[both] |= found[len(by) :] > 0.0
+    return np.asarray(holds)
+
+
+def _both(search: Search) -> NDArray[np.bool_]:
+    """Which values of constraints have one limit from both sides."""
+    return np.concatenate([low == high for low, high in search.aims.limits])
 
 
 def at_minimum(search: Search) -> bool:
@@ -70,7 +96,8 @@ def at_minimum(search: Search) -> bool:
     if gained is None:
         return False
     whole, bounds = gained.left.sum(axis=0), gained.bounds.sum(axis=0)
-    slight = np.sqrt(search.problem.settings.tolerance) * max(1e-3, float(np.abs(_goal_slopes(search, found)).max()))
+    steepest = float(np.abs(_goal_slopes(search, found)).max(initial=0.0))
+    slight = np.sqrt(search.problem.settings.tolerance) * max(1e-3, steepest)
     return bool(np.abs(whole).max(initial=0.0) <= slight and (bounds * search.scale >= -slight).all())
 
 

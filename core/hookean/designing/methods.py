@@ -48,14 +48,22 @@ def _least_squares(search: Search) -> Ended:
         upper = np.where(wide, upper, lower + AT_BOUND)
     start = np.clip(np.zeros(search.unknowns.count), lower, upper)
     off = off_zero(start, lower, upper)
+    size = _residual_size(search, start)
     found = least_squares(
-        lambda z: search.residuals(z - off), start + off, lambda z: search.slopes(z - off),
+        lambda z: search.residuals(z - off) / size, start + off, lambda z: search.slopes(z - off) / size,
         bounds=(lower + off, upper + off), method="trf",
         ftol=settings.tolerance, xtol=settings.tolerance, gtol=settings.tolerance * 1e-4,
         max_nfev=settings.max_iterations,
     )  # fmt: skip
     ended = DesignStatus.MAX_ITERATIONS if found.status == 0 else DesignStatus.CONVERGED
     return int(found.njev), ended, ""
+
+
+def _residual_size(search: Search, start: Floats) -> float:
+    """What residuals are measured by: those of the start, unless they are rounding of the values."""
+    values = np.concatenate([np.zeros(0), *search.aims.values(search.at(start))])
+    rounding = ROUNDING * float(np.linalg.norm(values))
+    return max(float(np.linalg.norm(search.residuals(start))), rounding) or 1.0
 
 
 def _levenberg_marquardt(search: Search) -> Ended:
@@ -75,9 +83,10 @@ def _lbfgsb(search: Search) -> Ended:
     from scipy.optimize import minimize
 
     settings, taken, start, before = search.problem.settings, 0, np.zeros(search.unknowns.count), np.inf
+    size = abs(search.objective(start)) or 1.0
     while True:
         found = minimize(
-            search.objective, start, jac=search.gradient, method="L-BFGS-B",
+            lambda y: search.objective(y) / size, start, jac=lambda y: search.gradient(y) / size, method="L-BFGS-B",
             bounds=list(zip(*search.edges, strict=True)),
             options={"maxiter": settings.max_iterations - taken, "ftol": settings.tolerance * 1e-3, "gtol": 1e-12,
                      "maxcor": 30, "maxfun": 20 * settings.max_iterations},
@@ -160,6 +169,7 @@ def _slsqp(search: Search) -> Ended:
             if search.best[0] > 0.0:
                 return iterations, DesignStatus.INFEASIBLE, ""
         elif found.status == 0 and (at_minimum(search) or not before - search.best[1] > settings.tolerance * size):
+            search.rest_at(found.x)
             return iterations, DesignStatus.CONVERGED, ""
         before, start = search.best[1], search.best[2].copy()  # what it measures by was the objective at its start
     if at_minimum(search):

@@ -23,7 +23,7 @@ from hookean.designing.linearised import Linearised
 from hookean.designing.methods import METHODS, Stopped, Unbounded
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity
-from hookean.designing.second_look import SYMMETRIC, stationary
+from hookean.designing.second_look import SYMMETRIC, UNMOVED, stationary, unmoved
 from hookean.designing.sensitivity import gradients, jacobian
 from hookean.designing.summary import answer
 from hookean.designing.unknowns import Unknowns
@@ -34,6 +34,7 @@ Floats = NDArray[np.float64]
 EDGE = 1e6  # of its size: no search goes further
 FAR = 1e3  # of its size: an unknown there that is no minimum has no end
 LIMITS = 100  # values of constraints, four times as many where goals have no roots, above which SLSQP takes long
+SLACK = 1e-3  # part of the objective, by which the best may seem better than where a method rests
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
@@ -188,11 +189,20 @@ class Search:
         return float(self.system.size) if quantity.unit == "length" else 0.0
 
     def missed(self, found: Equilibrium) -> float:
-        """The most by which a constraint is missed, by the size of its values [-]."""
-        worst = 0.0
-        for values, limits, by in zip(self.aims.constraint_values(found), self.aims.limits, self.sizes, strict=True):
-            worst = max(worst, float(beyond(values, *limits).max(initial=0.0)) / by)
-        return worst
+        """How far constraints are missed: the root of the sum of squares, by the sizes of their values [-]; 0 where
+        none is missed by more than `LIMIT`."""
+        kept = zip(self.aims.constraint_values(found), self.aims.limits, self.sizes, strict=True)
+        parts = np.concatenate([np.zeros(0), *(beyond(values, *limits) / by for values, limits, by in kept)])
+        return float(np.linalg.norm(parts)) if parts.max(initial=0.0) > LIMIT else 0.0
+
+    def rest_at(self, y: Floats) -> None:
+        """Take a shape at which a method has come to rest for the best: others may only seem better by what they miss
+        their constraints by."""
+        found = self.at(y)
+        value = self._objective(found)
+        slack = SLACK * max(abs(value), abs(self.best[1]))
+        if found.converged and self.missed(found) == 0.0 and value - self.best[1] <= slack:
+            self.best, self._best_x = (0.0, value, y.copy()), self.state.x.copy()
 
     def note(self, y: Floats) -> None:
         """Remember the best shape: the one that misses its constraints least, then the one of the least objective."""
@@ -200,7 +210,6 @@ class Search:
         if not found.converged:
             return
         missed = self.missed(found)
-        missed = 0.0 if missed <= LIMIT else missed
         value = self._objective(found)
         if np.isfinite(value) and (missed, value) < self.best[:2]:
             self.best, self._best_x = (missed, value, y.copy()), self.state.x.copy()
@@ -239,6 +248,8 @@ def design(
                 search.check_end()
             if ended is DesignStatus.CONVERGED and stationary(search):
                 ended, said = DesignStatus.STALLED, SYMMETRIC
+            if ended is DesignStatus.INFEASIBLE and unmoved(search):
+                ended, said = DesignStatus.STALLED, UNMOVED
         except Stopped:
             ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
         except Unbounded as error:

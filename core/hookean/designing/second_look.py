@@ -6,7 +6,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from hookean.designing.limits import LIMIT, beyond
+from hookean.designing.sensitivity import jacobian
 from hookean.errors import InputError
 from hookean.forces.base import lengths
 from hookean.running.run import relax
@@ -17,6 +20,8 @@ if TYPE_CHECKING:
     from hookean.designing.equilibrium import Equilibrium
     from hookean.designing.search import Search
 
+Floats = NDArray[np.float64]
+
 APART = 1e-3  # part of the model's size by which two shapes are not the same
 BESIDE = 1e-2  # of unknowns' sizes, the step of a second look; the objective changes by its square
 FLAT = 1e-9  # part of the objective: slopes below are 0
@@ -26,6 +31,10 @@ SEED = 11
 SYMMETRIC = (
     "The start is stationary by symmetry: no variable changes the objective there at first, but values beside it are"
     " better. Start from values that are a little off it."
+)
+UNMOVED = (
+    "No variable changes at first what misses its limits at the start, but values beside it are nearer. Start from"
+    " values that are a little off it."
 )
 
 
@@ -53,15 +62,37 @@ def not_found_again(search: Search, found: Equilibrium, scene: Scene) -> list[st
 def stationary(search: Search) -> bool:
     """Whether the best is the start, with slopes that are 0 and better values beside it."""
     missed, value, best = search.best
-    if search.problem.constraints or missed > 0.0 or best.any():
+    if missed > 0.0 or best.any():
         return False
     size = max(abs(value), np.finfo(float).tiny)
     if not np.abs(search.gradient(best)).max(initial=0.0) <= FLAT * size:
         return False
-    step = BESIDE * np.random.default_rng(SEED).normal(size=len(best))
-    found = False
-    for way in (1.0, -1.0):
-        y = np.clip(best + way * step, *search.bounds)
-        found = found or search.objective(y) < value - BETTER * size
+    found = any(
+        search.objective(y) < value - BETTER * size and search.missed(search.at(y)) == 0.0 for y in _beside(search)
+    )
     search.best = (missed, value, best)
     return found
+
+
+def unmoved(search: Search) -> bool:
+    """Whether the best is the start, and no variable changes there what misses its limits."""
+    if search.best[2].any() or not search.best[0] > 0.0:
+        return False
+    found, y = search.at(search.best[2]), search.best[2]
+    quantities = [(c.quantity, f"/constraints/{i}") for i, c in enumerate(search.problem.constraints)]
+    slopes = np.abs(jacobian(found, search.unknowns, quantities) * search.scale).max(axis=1, initial=0.0)
+    values = search.aims.constraint_values(found)
+    misses = [beyond(own, *limits) for own, limits in zip(values, search.aims.limits, strict=True)]
+    sizes = np.concatenate([np.full(len(own), size) for own, size in zip(misses, search.sizes, strict=True)])
+    flat = bool((slopes <= FLAT * sizes)[np.concatenate(misses) > LIMIT * sizes].all())
+    best = search.best
+    nearer = flat and any(search.missed(search.at(beside)) < best[0] for beside in _beside(search))
+    search.at(y)
+    return nearer
+
+
+def _beside(search: Search) -> list[Floats]:
+    """Unknowns a little off the start, to both sides: each by 0.5 to 1.5 steps."""
+    rng, count = np.random.default_rng(SEED), search.unknowns.count
+    step = BESIDE * rng.uniform(0.5, 1.5, count) * rng.choice([-1.0, 1.0], count)
+    return [np.clip(way * step, *search.bounds) for way in (1.0, -1.0)]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.gains import Gains, gains
 from hookean.designing.limits import AT_BOUND, LIMIT, beyond
-from hookean.designing.second_look import not_found_again
+from hookean.designing.second_look import UNMOVED, not_found_again
 from hookean.designing.sensitivity import warnings
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def answer(search: Search, method: str, iterations: int, ended: DesignStatus, sa
     broken = [
         name for name, met in zip(_names(search.problem.constraints), _met(search, found), strict=True) if not met
     ]
-    if broken and ended in (DesignStatus.CONVERGED, DesignStatus.STALLED):
+    if broken and ended in (DesignStatus.CONVERGED, DesignStatus.STALLED) and said != UNMOVED:
         ended = DesignStatus.INFEASIBLE
     gained = gains(search, found, y) if found.converged and not broken else None
     variables = _variables(search, search.given(y), gained)

@@ -50,6 +50,23 @@ class Moved:
         return self.home + values if self.shifts else values
 
 
+def _once(varied: list[Any]) -> None:
+    """InputError where a number has two variables, or a variable and what another one drives."""
+    taken: dict[tuple[Any, ...], list[tuple[str, NDArray[np.bool_]]]] = {}
+    for one in varied:
+        if isinstance(one, Moved):
+            key: tuple[Any, ...] = (one.anchor.number,)
+        elif isinstance(one, Column) and not isinstance(one, DrawnColumn):
+            key = (one.number, one.variable.field)
+        else:
+            continue
+        mine = one.entries.tie >= 0
+        for pointer, others in taken.setdefault(key, []):
+            if (mine & others).any():  # a row for all stands for each
+                raise InputError(one.pointer, f"{pointer} gives these values already; leave one of them out")
+        taken[key].append((one.pointer, mine))
+
+
 class Unknowns:
     """All variables of a problem as one vector."""
 
@@ -62,6 +79,7 @@ class Unknowns:
         self.slices = [slice(int(e) - v.entries.count, int(e)) for v, e in zip(self.variables, ends, strict=True)]
         self.parts = [*zip(self.variables, self.slices, strict=True), *self._driven(system)]
         """All columns and anchors that vary, each with its part of the unknowns: variables, and what they drive."""
+        _once([part for part, _ in self.parts])
         self.count = int(ends[-1])
         if not self.count:
             raise InputError("/variables", "nothing varies: the forces have no elements")

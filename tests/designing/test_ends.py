@@ -1,0 +1,113 @@
+"""How searches end at limits, at starts without a slope, and for problems of any size: closed forms of a string and of
+two bars."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import hookean
+from hookean import InputError
+from hookean.designing.answer import Design
+
+
+def string(size: float = 1.0, load: float = -5.0, rest: float = 1.0, stiffness: float = 100.0) -> dict[str, Any]:
+    """Two springs between supports 2 sizes apart, with a load at the middle."""
+    s = size
+    return {
+        "particles": [[-s, 0, 0], [0, 0, -0.2 * s if load else 0.0], [s, 0, 0]],
+        "forces": [
+            {"kind": "springs", "name": "string", "particles": [[0, 1], [1, 2]], "stiffness": stiffness / s,
+             "rest_length": rest * s},
+            {"kind": "unary", "name": "load", "particles": [1], "vector": [0, 0, load]},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+        "weld_tolerance": 1e-3 * s,
+    }  # fmt: skip
+
+
+REST = {"force": "string", "field": "rest_length", "tie": "all", "lower": 0.5, "upper": 2}
+LOAD = {"force": "load", "field": "vector", "axes": "z", "tie": "all", "lower": -50, "upper": 50}
+PLACE = {"kind": "position", "particles": [1], "axes": "z"}
+LENGTH = {"kind": "length", "force": "string", "elements": [0]}
+
+
+def design(scene: dict[str, Any], variables: Any, goals: Any, constraints: Any = (), **settings: Any) -> Design:
+    problem = {"scene": scene, "variables": list(variables), "goals": list(goals), "constraints": list(constraints)}
+    return hookean.design({**problem, "settings": settings})
+
+
+def test_a_problem_of_constraints_alone_ends_at_a_shape_that_meets_them() -> None:
+    found = design(string(), [REST], [], [{**PLACE, "upper": -0.9}])
+    assert found.status == "converged" and found.result.particles[1, 2] <= -0.9 + 1e-6
+
+
+def test_of_two_limits_at_one_value_the_one_that_holds_has_the_gain() -> None:
+    """The objective (z + 0.7)^2 at z = -1 falls by 0.6 as the upper limit gives way by 1, and not by the lower one."""
+    goal = {**PLACE, "target": -0.7}
+    found = design(string(), [REST], [goal], [{**PLACE, "upper": -1}, {**PLACE, "lower": -1}])
+    assert [c["gain"] for c in found.constraints] == pytest.approx([0.6, 0.0], abs=1e-6)
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-6, 1e6])
+def test_a_problem_of_any_size_has_the_same_answer(size: float) -> None:
+    """Sag 0.7 of a string: l = sqrt(1.49), tension 2.5 l / 0.7, rest length l - tension / 100."""
+    length = math.sqrt(1.49)
+    goal = {**PLACE, "target": -0.7 * size}
+    found = design(string(size), [{**REST, "lower": 0.5 * size, "upper": 2 * size}], [goal])
+    assert found.status == "converged"
+    value = float(np.ravel(found.variables[0]["value"])[0])
+    assert value / size == pytest.approx(length - 2.5 * length / 0.7 / 100, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("variables", "place"),
+    [
+        ([{**REST, "upper": 1.1}, REST], "/variables/1"),
+        ([{**REST, "drives": [{"force": "string", "field": "rest_length", "factor": 2}]}], "/variables/0/drives/0"),
+    ],
+)
+def test_a_number_has_one_variable(variables: Any, place: str) -> None:
+    with pytest.raises(InputError, match="gives these values already; leave one of them out") as refused:
+        design(string(), variables, [{**PLACE, "target": -0.7}])
+    assert refused.value.pointer == place
+
+
+def test_a_start_that_is_stationary_by_symmetry_is_reported() -> None:
+    """A straight string under no load: its length grows with the square of a load. With a goal, with a goal and a slack
+    constraint, and with a constraint that asks for the length."""
+    scene = string(load=0.0, rest=0.8, stiffness=10.0)
+    goal, slack = {**LENGTH, "target": 1.2}, {**PLACE, "axes": "x", "lower": -5}
+    for goals, constraints in (([goal], []), ([goal], [slack]), ([], [{**LENGTH, "lower": 1.2}])):
+        found = design(scene, [LOAD], goals, constraints)
+        assert found.status == "stalled" and "a little off it" in found.message, found.message
+
+
+def test_what_cannot_be_met_ends_nearest_in_least_squares() -> None:
+    """z <= -1 three times and z >= -0.5: the least of 3 (z + 1)^2 + (z + 0.5)^2 is at -0.875."""
+    scene = string(rest=0.0, stiffness=10.0)
+    limits = [{**PLACE, "upper": -1.0}] * 3 + [{**PLACE, "lower": -0.5}]
+    found = design(scene, [{**LOAD, "lower": -100, "upper": 100}], [{**PLACE, "target": -0.7}], limits)
+    assert found.status == "infeasible" and found.result.particles[1, 2] == pytest.approx(-0.875, abs=1e-5)
+
+
+def test_with_constraints_the_answer_does_not_use_their_slack() -> None:
+    """Two bars of least load path from a wall to a load: 45 degrees, sum |F| L = 2 P L = 6 (Michell 1904)."""
+    bars = {"kind": "springs", "name": "b", "particles": [[0, 2], [1, 2]], "stiffness": 1000.0, "rest_length": [1, 1.2]}
+    scene = {
+        "particles": [[0, 0, 0.4], [0, 0, -0.7], [1, 0, 0]],
+        "forces": [bars, {"kind": "unary", "particles": [2], "vector": [0, 0, -3.0]}],
+        "anchors": [{"name": "u", "particles": [0]}, {"name": "d", "particles": [1]}, {"particles": [2], "axes": "y"}],
+    }
+    variables = [
+        {"force": "b", "field": "rest_length", "lower": 0.3, "upper": 4},
+        {"anchor": "u", "axes": "z", "lower": 0.1, "upper": 3},
+        {"anchor": "d", "axes": "z", "lower": -3, "upper": -0.1},
+    ]
+    tip = {"kind": "position", "particles": [2], "axes": "xz", "lower": [1, 0], "upper": [1, 0]}
+    found = design(scene, variables, [{"kind": "load_path", "force": "b"}], [tip], tolerance=1e-10)
+    assert found.status == "converged" and found.objective == pytest.approx(6.0, rel=1e-8)
+    np.testing.assert_allclose(found.result.particles[:2, 2], [1, -1], atol=1e-6)
