@@ -84,7 +84,9 @@ SAMPLES: dict[str, dict[str, Any]] = {
     "Checkerboard": {"_mesh": [MESH]},
     "CombineClean": {"_meshes": [MESH, MESH]},
     "Catenary": {"_start": ROW[:1], "_end": ROW[3:], "_length": [4.0], "_count_": [5]},
+    "Combination": {"_cases": ["snow"], "_factors_": [1.5], "name_": ["ULS"]},
     "Counter": {"_reset_": [True]},
+    "LoadCase": {"_loads": ["Unary"], "_factor_": [2.0], "name_": ["snow"]},
     "Grab": {"_range_": [2.0]},
     "Diagonalize": {"_mesh": [MESH]},
     "Diagonals": {"_mesh": [MESH], "_pattern_": ["both"]},
@@ -258,4 +260,6 @@ def test_with_nothing_connected_there_is_at_most_one_sentence(version: str, tmp_
 
 
 def test_every_component_has_a_sample() -> None:
-    assert [name for name in NAMES if name not in {*SAMPLES, "Design", "Engine", "Moments", "Stream", "Sweep"}] == []
+    assert [
+        name for name in NAMES if name not in {*SAMPLES, "Design", "Engine", "LoadCases", "Moments", "Stream", "Sweep"}
+    ] == []

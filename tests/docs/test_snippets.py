@@ -68,4 +68,5 @@ def test_a_screen_is_taken_by_a_task_of_the_studio(page: Path) -> None:
 
 def test_there_are_pages() -> None:
     assert {"start", "cable", "membrane-roof", "live-session"} <= {page.stem for page in snippets.PAGES}
-    assert all(len(snippets.blocks(page)) >= 2 for page in snippets.PAGES if page.stem != "index")
+    by_hand = {"index", "draw-a-net", "read-in-the-studio"}  # of what is done in the page
+    assert all(len(snippets.blocks(page)) >= 2 for page in snippets.PAGES if page.stem not in by_hand)

@@ -29,9 +29,6 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
     "--js-flags=--expose-gc",
-    # one process for all pages of a service: a page in a new one takes half as much again to open
-    "--process-per-site",
-    "--renderer-process-limit=1",
 ]
 LATEST = """([what, ...told]) => new Promise((done) => {
     const look = (tries) => {

@@ -375,7 +375,7 @@ def _order(made: Made) -> tuple[int, int]:
     """Scripts of about one length side by side, those with most inputs first: the compression, which looks back by 32
     kB, then stores once what they share."""
     script = made.container.chunk("Script")
-    return len(str(script.value("Text"))) // 4096 if script is not None else -1, -len(made.inputs)
+    return (len(str(script.value("Text"))) // 4096, -len(made.inputs)) if script is not None else (-1, 0)
 
 
 def _output(source: Any, kind: str, key: str) -> Output:

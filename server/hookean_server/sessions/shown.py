@@ -30,7 +30,7 @@ class Picked(Model):
     """A particle, or a spring of the topology, by its number."""
 
     kind: Literal["particle", "spring"]
-    index: int = pydantic.Field(ge=0, le=MOST)
+    index: int = pydantic.Field(ge=0, le=MOST, strict=True)
 
 
 class Colours(Model):
