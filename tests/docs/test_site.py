@@ -121,7 +121,8 @@ def test_the_reference_has_every_public_name(pages: dict[str, Page]) -> None:
         "Anchors"
     }
     client = pages["api/client/index.html"].anchors
-    assert {f"hookean_client.{name}" for name in ("connect", "Client", "Session", "Frames", "Problem")} <= client
+    names = ("connect", "Problem", "client.Client", "sessions.Session", "sessions.Frames")
+    assert {f"hookean_client.{name}" for name in names} <= client
 
 
 def test_the_reference_of_http_is_of_this_service(site: Path) -> None:
