@@ -34,7 +34,7 @@ Floats = NDArray[np.float64]
 EDGE = 1e6  # of its size: no search goes further
 FAR = 1e3  # of its size: an unknown there that is no minimum has no end
 LIMITS = 100  # values of constraints, four times as many where goals have no roots, above which SLSQP takes long
-SLACK = 1e-3  # part of the objective, by which the best may seem better than where a method rests
+SLACK = 2e-6  # part of the objective, by which the best may seem better than where a method rests
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
