@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,7 @@ Floats = NDArray[np.float64]
 NO_STEP = "The search found no step that leads further; this is the best so far."
 WANDERS = 100  # iterations of SLSQP, after which it makes no headway
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
+FLAT = 1e-30  # slopes of small weights or units are small: only none at all ends a search
 ROUNDING = 1e-13  # part of the objective: less is no change
 
 
@@ -49,12 +51,14 @@ def _least_squares(search: Search) -> Ended:
     start = np.clip(np.zeros(search.unknowns.count), lower, upper)
     off = off_zero(start, lower, upper)
     size = _residual_size(search, start)
-    found = least_squares(
-        lambda z: search.residuals(z - off) / size, start + off, lambda z: search.slopes(z - off) / size,
-        bounds=(lower + off, upper + off), method="trf",
-        ftol=settings.tolerance, xtol=settings.tolerance, gtol=settings.tolerance * 1e-4,
-        max_nfev=settings.max_iterations,
-    )  # fmt: skip
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Setting `gtol`")
+        found = least_squares(
+            lambda z: search.residuals(z - off) / size, start + off, lambda z: search.slopes(z - off) / size,
+            bounds=(lower + off, upper + off), method="trf",
+            ftol=settings.tolerance, xtol=settings.tolerance, gtol=FLAT,
+            max_nfev=settings.max_iterations,
+        )  # fmt: skip
     ended = DesignStatus.MAX_ITERATIONS if found.status == 0 else DesignStatus.CONVERGED
     return int(found.njev), ended, ""
 
