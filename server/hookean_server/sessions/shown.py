@@ -39,7 +39,7 @@ class Colours(Model):
     title: str = pydantic.Field(min_length=1, max_length=80, description="As in the legend")
     unit: str = pydantic.Field(default="-", max_length=20, description="As in the legend; - for none")
     of: Literal["springs", "particles"]
-    values: tuple[float, ...] = pydantic.Field(min_length=1, max_length=MOST)
+    values: tuple[Annotated[float, pydantic.Field(strict=True)], ...] = pydantic.Field(min_length=1, max_length=MOST)
 
 
 class Looked(Model):
