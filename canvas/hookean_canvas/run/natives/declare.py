@@ -93,7 +93,7 @@ PLUGINS: dict[str, Native] = {}
 
 
 def native_of(guid: UUID, name: str, plugin: bool) -> Native | None:
-    """The native that stands in for an object, by its id, else by its name; None where there is none.
+    """The native that stands in for an object, by its id, else by its name; None for an unknown one.
 
     `plugin`: whether the object is of a plug-in, which may give it the name of one of Grasshopper's own.
     """

@@ -23,7 +23,7 @@ Ints = NDArray[np.int64]
 class Lines:
     """The elements of one force along lines: `pairs` (m, 2) of particles, `columns` of numbers (m,) by name, with the
     `dimensions` of these, and of springs `axial_stiffness` EA (m,) [force] and `rest_length` (m,) [length], 0 where
-    there is none; `one_way`: whether they go slack in tension or compression, or beyond a length."""
+    an element has none; `one_way`: whether they go slack in tension or compression, or beyond a length."""
 
     name: str
     kind: str

@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 
 def distances(scene: Scene, points: Floats) -> Floats:
-    """How far each point (n, 3) is from the nearest particle of a scene [length]; infinite where there is none."""
+    """How far each point (n, 3) is from the nearest particle of a scene [length]; infinite without particles."""
     x = Welded(scene).x
     return np.asarray(cKDTree(x).query(points)[0]) if len(x) else np.full(len(points), np.inf)
 
