@@ -310,3 +310,16 @@ def test_every_force_with_lines_or_faces_takes_part() -> None:
             lying.add(kind)
     assert {"shell", "soapfilm", "springs"} <= solid and "power_law" not in solid
     assert lying == solid
+
+
+def test_of_long_lines_across_one_another_a_bounded_number_of_pairs_is_compared() -> None:
+    """Each of 3,000 points is within the length of each of 3,000 lines: 9,000,000 pairs, of which an even part is
+    compared; of few, all are."""
+    rng = np.random.default_rng(3)
+    middle, points = rng.uniform(-0.1, 0.1, (2, 3000, 3))
+    first, second, whole = near_misses._pairs(middle, points, 1.0)
+    assert 0.9 * near_misses.PAIRS <= len(first) <= near_misses.PAIRS + 3000 and not whole
+    assert len(np.unique(first)) == 3000 and np.ptp(np.diff(np.unique(second))) == 0
+    first, second, whole = near_misses._pairs(middle, points, 0.01)
+    apart = np.linalg.norm(middle[:, None] - points[None], axis=2)
+    assert whole and sorted(zip(first, second, strict=True)) == sorted(zip(*np.nonzero(apart <= 0.01), strict=True))

@@ -41,6 +41,7 @@ MOST = 2_000  # particles compared with elements of one size of a force; of more
 LEAST, ALTOGETHER = 20, 100_000  # of many forces fewer for each, so that the time grows with the scene alone
 MOST_LISTED = 10
 ROUNDING = 1e-12  # of the size of the scene: so far away is on it
+PAIRS = 500_000  # of a particle and an element that are compared, of elements of one size: of more, fewer particles
 ALL_PAIRS = 200_000  # up to so many, comparing all is quicker than a tree, whose module takes long to import
 CELLS = 1 << 20  # entries of the table of occupied cells
 WORDS = ("lines", "edges", "faces")
@@ -225,8 +226,8 @@ def compared(x: Floats, force: Force, foreign: Ints, most: int = MOST) -> Near:
             near = near[_beside(x.take(near, axis=0), middle[rows], radius)]
         some = near[:: max(1, -(-len(near) // most))]
         rows = rows[_beside(middle[rows], x.take(some, axis=0), radius)]
-        first, second = _pairs(middle[rows], x.take(some, axis=0), radius)
-        pairs = Near(rows[first], some[second], np.zeros(len(first)), len(some) == len(near))
+        first, second, whole = _pairs(middle[rows], x.take(some, axis=0), radius)
+        pairs = Near(rows[first], some[second], np.zeros(len(first)), whole and len(some) == len(near))
         elements = force.take(pairs.rows)
         apart = distances(x.take(pairs.particles, axis=0), x.take(elements.corners, axis=0))
         found.append(Near(pairs.rows, pairs.particles, apart, pairs.all).take(apart < NEAR * elements.length))
@@ -264,24 +265,43 @@ def _beside(points: Floats, others: Floats, radius: float) -> Ints:
     return near[np.any([table[place(points + shift)] for shift in shifts], axis=0)]
 
 
-def _pairs(middle: Floats, points: Floats, radius: float) -> tuple[Ints, Ints]:
-    """Rows of middles and points within a radius."""
+def _pairs(middle: Floats, points: Floats, radius: float) -> tuple[Ints, Ints, bool]:
+    """Rows of middles and points within a radius, and whether these are of all points: where there are more than
+    `PAIRS`, of points at even steps."""
+    step = 1
     if len(middle) * len(points) <= ALL_PAIRS:
         first, second = np.divmod(np.arange(len(middle) * len(points)), max(len(points), 1))
     else:
         from scipy.spatial import cKDTree
 
-        lists = cKDTree(middle).query_ball_point(points, radius, return_sorted=True)
-        second = np.repeat(np.arange(len(points)), [len(row) for row in lists])
+        tree = cKDTree(middle)
+        if len(middle) * len(points) > PAIRS:
+            step = max(1, -(-int(tree.count_neighbors(cKDTree(points), radius)) // PAIRS))
+        lists = tree.query_ball_point(points[::step], radius, return_sorted=True)
+        second = step * np.repeat(np.arange(len(lists)), [len(row) for row in lists])
         first = np.fromiter(chain.from_iterable(lists), np.int64, len(second))
     near = lengths(points.take(second, axis=0) - middle.take(first, axis=0)) <= radius
-    return first[near], second[near]
+    return first[near], second[near], step == 1
 
 
 def distances(points: Floats, corners: Floats) -> Floats:
     """Distance of each point (k, 3) from its face (k, 4, 3) of two triangles; a line repeats its last corner."""
+    line = (corners[:, 1:2] == corners[:, 2:]).all(axis=(1, 2))
+    if line.all():
+        return _from_lines(points, corners[:, 0], corners[:, 1])
+    apart = np.empty(len(points))
+    apart[line] = _from_lines(points[line], corners[line, 0], corners[line, 1])
+    points, corners = points[~line], corners[~line]
     halves = [_from_triangles(points, corners[:, half]) for half in ([0, 1, 2], [0, 2, 3])]
-    return np.minimum(*halves)
+    apart[~line] = np.minimum(*halves)
+    return apart
+
+
+def _from_lines(points: Floats, starts: Floats, ends: Floats) -> Floats:
+    apart, side = points - starts, ends - starts
+    long = np.einsum("ij,ij->i", side, side)
+    at = np.clip(np.einsum("ij,ij->i", apart, side) / np.where(long > 0.0, long, 1.0), 0.0, 1.0)
+    return np.asarray(lengths(apart - at[:, None] * side))
 
 
 def _from_triangles(points: Floats, corners: Floats) -> Floats:
@@ -289,11 +309,9 @@ def _from_triangles(points: Floats, corners: Floats) -> Floats:
     square = np.einsum("ij,ij->i", normal, normal)
     inside, nearest = square > 0.0, np.full(len(points), np.inf)
     for i in range(3):
-        apart, side = points - corners[:, i], corners[:, (i + 1) % 3] - corners[:, i]
-        long = np.einsum("ij,ij->i", side, side)
-        at = np.clip(np.einsum("ij,ij->i", apart, side) / np.where(long > 0.0, long, 1.0), 0.0, 1.0)
-        nearest = np.minimum(nearest, lengths(apart - at[:, None] * side))
-        inside &= np.einsum("ij,ij->i", np.cross(side, apart), normal) >= 0.0
+        start, end = corners[:, i], corners[:, (i + 1) % 3]
+        nearest = np.minimum(nearest, _from_lines(points, start, end))
+        inside &= np.einsum("ij,ij->i", np.cross(end - start, points - start), normal) >= 0.0
     height = np.abs(np.einsum("ij,ij->i", points - corners[:, 0], normal)) / np.sqrt(np.where(inside, square, 1.0))
     return np.where(inside, height, nearest)
 
