@@ -187,6 +187,7 @@ def test_the_energy_is_that_of_what_has_yielded() -> None:
         assert found.energy["springs"] == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("load", "solver"), [(3.0, "relaxation"), (3.0, "auto"), (2.0, "auto"), (2.0, "multilevel")])
 def test_a_run_that_stalls_returns_its_best_shape(load: float, solver: str) -> None:
     """A spring on its lower cutoff works or does not: the load is left over, or the spring's 10 N and more less it.

@@ -43,6 +43,7 @@ def test_an_end_moment_rolls_a_cantilever_up_to_a_circle() -> None:
     assert rolled(8, 0.25) < 1e-5
 
 
+@pytest.mark.slow
 def test_a_quarter_bend_under_a_load_out_of_its_plane() -> None:
     """Bathe and Bolourchi, 1979: an arc of 45 degrees with radius 100, E = 1e7, a unit square section, 600 at its tip
     across its plane. Their 8 elements: tip at (15.9, 47.2, 53.4), within 1 % of the way of 60 it goes; and the rod's

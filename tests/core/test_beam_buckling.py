@@ -42,6 +42,7 @@ def test_columns_buckle_at_eulers_load(case: str) -> None:
         assert np.abs(found.particles[:, :2]).max() < 1e-6  # still straight
 
 
+@pytest.mark.slow
 def test_a_column_leaves_its_axis_above_that_load() -> None:
     """At 1.015 of the critical load a cantilever's tip has turned by about 20 degrees, P / Pc = 4 K(k)^2 / pi^2 with
     k = sin(alpha / 2) (the elastica; Timoshenko and Gere, 2.7): to 0.3 degrees with 16 beams."""
@@ -68,6 +69,7 @@ def sideways(count: int) -> float:
     return 0.5 * (low + high)
 
 
+@pytest.mark.slow
 def test_a_deep_cantilever_buckles_sideways() -> None:
     """P = 4.0126 (EIz GJ)^0.5 / L^2: 4.0126 is twice the first zero of J_-1/4 (Prandtl 1899; Timoshenko and Gere, 6.3),
     for a section so deep that it hardly sags before, EIz / EIy = 1e-4. Errors are of order 2: 8 and 16 beams lead to

@@ -50,6 +50,7 @@ def solved(faults: Callable[[Floats], Floats], guess: Floats) -> Floats:
 TOGGLE = 12.943, 0.386, 1.885e6, 9.27e3  # half of the span, rise [in], EA [lb], EI [lb in^2]
 
 
+@pytest.mark.slow
 def test_williams_toggle_has_both_limit_points() -> None:
     """Williams, An approach to the non-linear behaviour of the members of a rigid jointed plane framework with
     finite deflections, 1964: a clamped toggle under a load on its apex, which snaps through. Half of it is an

@@ -106,6 +106,7 @@ def test_elastica_column_with_sixty_degrees_at_its_free_end() -> None:
     assert np.abs((ratio * tips[2] - tips[1]) / (ratio - 1) - exact).max() <= 1e-5
 
 
+@pytest.mark.slow
 def test_cantilever_with_a_large_tip_load() -> None:
     """P L^2 / EI = 2: w / L = 0.49346, u / L = 0.16064 (Mattiasson, Int. J. Numer. Meth. Eng. 17, 1981, table 1).
 

@@ -95,6 +95,7 @@ def test_the_schema_has_every_default_and_tells_forces_by_kind() -> None:
     json.dumps(schema, allow_nan=False)
 
 
+@pytest.mark.slow
 def test_the_schema_agrees_with_the_scene() -> None:
     import jsonschema
 

@@ -59,6 +59,7 @@ def of_all_pairs(x: np.ndarray, radius: np.ndarray, group: np.ndarray, k: float)
     return f, energy
 
 
+@pytest.mark.slow
 @settings(derandomize=True, deadline=None, max_examples=examples(25), database=None)
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(2, 25), density=st.floats(0.1, 2.0))
 def test_forces_are_those_of_all_pairs(seed: int, count: int, density: float) -> None:

@@ -101,6 +101,7 @@ def test_the_depth_is_that_of_the_winding_number_and_the_closest_point(inside: b
     assert energy == pytest.approx(0.5 * k * (expected**2).sum(), rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("inside", [False, True])
 def test_with_both_sides_force_and_tangent_obey_the_laws(inside: bool) -> None:
     """Off the edges of spikes and pits, with radii: the gradient, its slope, and a bound of it."""
@@ -148,6 +149,7 @@ def test_a_weight_sinks_in_by_its_part_of_the_stiffness(solver: str, inside: boo
     assert found.force("collide_solid")["depth"] == pytest.approx([weight / k], rel=1e-8)
 
 
+@pytest.mark.slow
 def test_a_cloth_on_a_ball_is_carried_by_it_and_by_its_rim() -> None:
     """Contacts and reactions carry the weight W, to the residual; nothing is deeper in the ball than W / k."""
     count, k, weight = 13, 2000.0, 0.5

@@ -187,6 +187,7 @@ def test_a_light_festoon_that_nothing_holds_is_named_and_never_at_rest(solver: s
     assert "3.5 N" in sentence
 
 
+@pytest.mark.slow
 def test_a_small_load_on_a_large_part_that_nothing_holds_is_no_rest() -> None:
     """One newton on one of 401 particles: a residual of 1 / 401, but shared evenly it would pass 1e-2."""
     x = np.column_stack([np.arange(401.0), *np.zeros((2, 401))])

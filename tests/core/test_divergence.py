@@ -34,6 +34,7 @@ def run(scene: dict[str, Any], *edits: dict[str, Any]) -> Simulation:
     return simulation
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("edit", "what", "where"),
     [

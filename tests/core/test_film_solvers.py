@@ -161,6 +161,7 @@ def test_bubbles_on_a_disc_are_caps_of_spheres(name: str) -> None:
         assert slopes(errors) == pytest.approx([2, 2], abs=0.25)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["auto", "relaxation"])
 def test_a_bubble_that_bursts_is_reported(name: str) -> None:
     """Beyond p = 2 T / a no cap over a rim of radius a bears the pressure; what is returned is no larger than a few."""

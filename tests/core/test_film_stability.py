@@ -106,6 +106,7 @@ def test_a_film_is_no_mechanism_along_itself(solver: str) -> None:
     assert (result.stability, result.position_error) == (Stability.STABLE, 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("height", [0.3, 0.5, 0.64])
 def test_a_film_that_collapses_on_one_side_rests_on_the_other(height: float) -> None:
     """Between two rings hang two catenoids r = c cosh(z / c): the slim one is unstable, and on one side of it lies

@@ -57,6 +57,7 @@ FRAMES: dict[str, tuple[list[list[float]], str, dict[int, tuple[float, float]]]]
 """Corners, rotations that the feet hold (of a column only one foot), and the loads at corners."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FRAMES)
 def test_plane_frames_buckle_as_another_program_says(name: str) -> None:
     """Whether they only shorten before or bend as well: to 1e-5. The normal forces are those of the linear solution;

@@ -117,6 +117,7 @@ def assert_stays(seed: int) -> None:
             np.testing.assert_allclose(after["force"], before["force"], atol=1e-6 * scale)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", sampled(range(len(FAMILIES)), 3))
 def test_a_frozen_form_does_not_move(seed: int) -> None:
     """One of each family."""
@@ -161,6 +162,7 @@ def test_cloth_of_a_curved_film_keeps_its_shape_and_notes_the_change_of_stress()
     np.testing.assert_allclose(stress.mean(axis=0), [tension, tension, 0.0], atol=0.05 * tension)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", sampled([1, 2, 6], 3))
 def test_cases_in_any_order_give_the_same_bits(seed: int) -> None:
     """And side by side on an executor."""

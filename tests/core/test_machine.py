@@ -123,6 +123,7 @@ class _Places:
         return np.array(force.particles)
 
 
+@pytest.mark.slow
 def test_values_go_in_and_out_as_they_do_with_numba(tmp_path: Path) -> None:
     """First made, then found: the same answers, shapes empty ones too."""
     for made, loaded in ((1, 0), (0, 1)):
@@ -134,6 +135,7 @@ def test_values_go_in_and_out_as_they_do_with_numba(tmp_path: Path) -> None:
         assert (run.made, run.loaded) == (made, loaded)
 
 
+@pytest.mark.slow
 def test_values_of_two_kinds_in_turn_go_to_the_code_of_each(folder: Path) -> None:
     """Numbers in single and in double precision: each keeps its own, and its code is made or found once."""
     run = code(folder)
@@ -292,6 +294,7 @@ LOADED = (
 """A process that calls the smallest kernel."""
 
 
+@pytest.mark.slow
 def test_a_kernel_with_the_object_cache_switched_off_gives_the_same_bits() -> None:
     """HOOKEAN_OBJECT_CACHE=0: numba is imported, and runs the kernel."""
     kept, plain = printed(LOADED), printed(LOADED, HOOKEAN_OBJECT_CACHE="0")

@@ -218,6 +218,7 @@ def blown(rings: int) -> tuple[float, float]:
     return found.particles[0, 2] / rise, found.force("membrane")["largest"][:6].mean() / stress
 
 
+@pytest.mark.slow
 def test_a_blown_disc_is_henckys() -> None:
     """w0 = 0.653443 a (q a / E t)^(1/3), N_r(0) = 0.431101 (E t q^2 a^2)^(1/3) (Hencky 1915, with the coefficients of
     Fichter, NASA TP-3658, 1997): errors of the order h^2, so a quarter with half of the mesh width."""
@@ -241,6 +242,7 @@ def airbag(count: int) -> Result:
     return relax(Scene(particles=x, meshes={"m": vars(mesh)}, forces=[cloth, pressure], anchors=held, settings=tight))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [8, pytest.param(16, marks=pytest.mark.soak)])
 def test_the_square_airbag_rises_as_published(count: int) -> None:
     """The centre rises by 21.5 cm (Contri and Schrefler, "A geometrically nonlinear finite element analysis of wrinkled

@@ -169,6 +169,7 @@ def out_of_balance(system, state):
     return system.evaluate(state)[0] * state.free
 
 
+@pytest.mark.slow
 def test_steps_hardly_grow_with_the_net():
     """Steps to 1e-4 for four times the particles: at most half as many again (a method of one level would double)."""
     steps = []
@@ -272,6 +273,7 @@ def test_a_sheet_that_creases_is_certain(monkeypatch):
     assert (np.concatenate([f["force"] for f in found.forces if "strain" in f]) < -1e-3).mean() > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("side", "factor"), [(20, 1.3), (28, 1.1)])
 def test_what_relaxation_ended_is_looked_at_too(side, factor, monkeypatch):
     """These sheets, slack and lightly loaded, come to rest while all their particles relax, not by a Newton step; a
@@ -313,6 +315,7 @@ def test_a_state_forgets_a_tangent_that_is_given_up():
     assert not tangent.ready and not Tangent(system, State.of(state.arrays())).ready
 
 
+@pytest.mark.slow
 def test_same_net_same_bits():
     """Three runs, one of them in pieces of one iteration, one by a new solver at each from the state in a file."""
     system = compile(Scene.read(crossed(24)))

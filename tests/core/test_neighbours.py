@@ -371,6 +371,7 @@ def test_beside_a_large_sphere_a_list_is_made_again() -> None:
     assert block.rooms[0][0, neighbours.USED] == 0.0
 
 
+@pytest.mark.slow
 def test_a_stray_that_meets_too_many_makes_a_new_list() -> None:
     """Pairs that join are as many as there is place for, 64 of a stray: of 200 spheres in one place it has more."""
     x = cloud(20, 2000, ordered=True)

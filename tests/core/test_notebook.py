@@ -22,6 +22,7 @@ def result() -> Result:
     return relax(cable())
 
 
+@pytest.mark.slow
 def test_scenes_and_results_print_in_a_few_lines(result: Result) -> None:
     """Every number has its unit; a notebook shows the same, and of a result a picture that lies in the page."""
     for shown in (cable(), result):

@@ -63,6 +63,7 @@ def pinched_cylinder(around: int, along: int) -> float:
     return float(-moved[top, 2] / 100.0 / 1.8248e-5)
 
 
+@pytest.mark.slow
 def test_the_scordelis_lo_roof_converges() -> None:
     """Within 5 % with 32 x 32 faces on the whole roof, and a third of the error with half of the mesh width."""
     coarse, fine = (abs(scordelis_lo(count) - 1.0) for count in (16, 32))
@@ -75,6 +76,7 @@ def test_the_scordelis_lo_roof_with_64_by_64_faces() -> None:
     assert scordelis_lo(64) == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.mark.slow
 def test_the_pinched_cylinder_with_16_by_16_faces_on_an_eighth() -> None:
     """Within 15 % of 1.8248e-5; finer meshes take long."""
     assert pinched_cylinder(64, 32) == pytest.approx(1.0, abs=0.15)

@@ -246,6 +246,7 @@ def test_the_report_of_distortions_holds_what_the_strips_have(form: hookean.Resu
     assert total == pytest.approx(sum(s.flat.areas.sum() for s in narrow.strips), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_flattening_is_a_minimum(form: hookean.Result) -> None:
     """Of the energy sum of A ((s1 - 1)^2 + (s2 - 1)^2): any small change of a flat strip makes it larger (the energy of
     Liu et al. 2008, worked out here from singular values)."""

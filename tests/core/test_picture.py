@@ -69,6 +69,7 @@ def ink(pixels: np.ndarray, colour: str, near: float = 0.12) -> int:
     return int((np.abs(pixels - wanted).max(axis=2) < near).sum())
 
 
+@pytest.mark.slow
 def test_size_and_content(tmp_path: Path) -> None:
     scene = cable()
     pixels = drawn(relax(scene), tmp_path, scene=scene, title="Cable", size=(1600, 1200))
@@ -81,6 +82,7 @@ def test_size_and_content(tmp_path: Path) -> None:
         assert ink(pixels, colour) > 100
 
 
+@pytest.mark.slow
 def test_nothing_runs_off_the_edge(tmp_path: Path) -> None:
     scene = net(6, mesh=True, settings={"floor": {"point": [0, 0, -4]}})
     pixels = drawn(relax(scene), tmp_path, scene=scene, title="long " * 60, size=(1600, 1200))
@@ -233,6 +235,7 @@ def test_proportions_are_true(tmp_path: Path) -> None:
     assert abs(np.ptp(rows) - np.ptp(columns)) <= 3
 
 
+@pytest.mark.slow
 def test_a_large_net_is_drawn_as_a_whole(tmp_path: Path) -> None:
     """Four times as many particles take a few calls each, about 70 of matplotlib's for labels and faces: nothing is
     drawn spring by spring, which takes hundreds, nor looked up in all the others."""

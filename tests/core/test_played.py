@@ -58,6 +58,7 @@ def kept(simulation: Simulation) -> Simulation:
     return Simulation.load(io.BytesIO(file.getvalue()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_the_end_does_not_depend_on_calls_and_looks(solver: str) -> None:
     """In one call; in calls of 1 to 97 iterations with everything read after each; saved and loaded on the way."""
@@ -105,6 +106,7 @@ def test_looking_changes_nothing_that_is_saved() -> None:
     assert all(np.array_equal(before[name], after[name]) for name in before)
 
 
+@pytest.mark.slow
 def test_a_run_that_explodes_goes_back_to_one_shape() -> None:
     """A step of time far too long: whoever looks meanwhile, the last good shape is the same, and the sentence, too."""
     scene = net("verlet", time_step=1.0)

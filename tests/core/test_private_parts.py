@@ -134,6 +134,7 @@ def check(part: str, folder: Path, caplog: pytest.LogCaptureFixture) -> None:
     assert len(caplog.messages) == 1 - stored, (part, caplog.messages)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", READ)
 def test_a_part_that_the_engine_reads_has_another_name(
     part: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture

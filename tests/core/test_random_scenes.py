@@ -87,6 +87,7 @@ def test_reactions_contacts_and_loads_sum_to_zero(outcomes: list[Outcome]) -> No
         assert np.linalg.norm(np.cross(x, total).sum(axis=0)) <= allowed * reach, case.seed
 
 
+@pytest.mark.slow
 def test_what_results_tell_balances_exactly_but_for_what_is_left(outcomes: list[Outcome]) -> None:
     """Reactions + contacts + soft anchors + loads = what free particles are out of balance by, to rounding.
 

@@ -100,6 +100,7 @@ def pushed(n: int, force: float, **bend: Any) -> Any:
     return result
 
 
+@pytest.mark.slow
 def test_a_shallow_arch_that_is_pushed_through_bends_against_its_curvature() -> None:
     """Rise 0.05, F = 20: snapped through it hangs 0.071 below its pins, and the moment at its crown is 1.87 (1.85 with
     25 bars). Order 2: slopes 2 +- 0.15, 25 / 80^2 = 4e-3 at 80 bars. Sections that spin turn their curvature over
@@ -328,6 +329,7 @@ def test_unstable_modes_of_a_pressed_ring_are_the_negative_eigenvalues(n: int) -
     assert np.abs(values).min() > 1e-7 * values[-1], values[:8] / values[-1]
 
 
+@pytest.mark.slow
 def test_newton_comes_to_the_last_digits_of_a_long_coil_quadratically() -> None:
     """400 corners of three turns, on a clamp: from 1e-3 of the load to rounding in three steps.
 

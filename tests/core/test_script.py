@@ -80,6 +80,7 @@ def test_a_spring_towed_at_constant_speed_does_not_know_that_it_moves(solver: st
         assert frame.particles[:, 0] == pytest.approx([3 * frame.time, 1 + 3 * frame.time], abs=2e-12)
 
 
+@pytest.mark.slow
 def test_a_mass_picked_up_by_a_moving_anchor_swings_as_the_closed_form_says():
     """In the anchor's frame: a damped oscillator with start velocity -s, u = -(s/w_d) exp(-z w t) sin(w_d t).
     Verlet has order 2: halving the step leaves a quarter of the error; the next order is a part w dt = 0.02 of it."""

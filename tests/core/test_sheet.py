@@ -136,6 +136,7 @@ def test_springs_of_another_unit_of_force_have_their_own_legend(tmp_path: Path, 
     assert [b[2] for b in bars] == ["", ""]
 
 
+@pytest.mark.slow
 def test_a_film_has_no_legend_of_forces_but_shaded_faces_with_thin_edges(tmp_path: Path, bars: list[Any]) -> None:
     scene = film(8)
     result = relax(scene)
@@ -164,6 +165,7 @@ def test_edges_with_springs_are_not_drawn_twice() -> None:
         assert collect(relax(scene), scene).shape.edged.tolist() == [edged]
 
 
+@pytest.mark.slow
 def test_frames_are_drawn_behind_the_first_one_faintest(tmp_path: Path, words: list[str]) -> None:
     scene = cable()
     result = relax(scene)
@@ -192,6 +194,7 @@ def test_what_is_carried_moves_with_the_particles_of_a_frame() -> None:
     assert np.array_equal(frame.faces, moved[scene.meshes["film"].faces])
 
 
+@pytest.mark.slow
 def test_curves_are_drawn_and_named(tmp_path: Path, words: list[str]) -> None:
     scene = cable()
     result = relax(scene)
@@ -216,6 +219,7 @@ def test_curves_alone_are_drawn_solid_with_their_unit(tmp_path: Path, words: lis
     assert near(pixels, LINES[1]).sum() > 50
 
 
+@pytest.mark.slow
 def test_a_panels_length_in_pixels_is_the_same_in_all(tmp_path: Path) -> None:
     """Squares of 2 m and of 100 cm: twice as wide. Tolerance: the line's thickness, under 5 pixels on both sides."""
     given = panels([square(2.0), square(100.0, "cm")])
@@ -249,6 +253,7 @@ def test_no_panel_is_blank_and_nothing_runs_off_the_edge(count: int, tmp_path: P
         assert part.mean() > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(777, 555), (2000, 700), (1001, 1999)])
 def test_a_given_size_is_the_size(size: tuple[int, int], tmp_path: Path) -> None:
     pixels = drawn(panels(THREE), tmp_path, size=size, columns=2)
@@ -292,6 +297,7 @@ def test_a_palette_keeps_white_what_is_kept_and_areas(seed: int) -> None:
     assert not off[(pixels == 255).all(axis=2)].any() and not off[2:4].any()
 
 
+@pytest.mark.slow
 def test_a_graph_has_its_lines_dots_grid_and_words(tmp_path: Path, words: list[str]) -> None:
     x = np.linspace(0.0, 3.0, 40)
     graph = Graph(
@@ -309,6 +315,7 @@ def test_a_graph_has_its_lines_dots_grid_and_words(tmp_path: Path, words: list[s
     assert 0.45 < columns.mean() / pixels.shape[1] < 0.65
 
 
+@pytest.mark.slow
 def test_logarithmic_axes_make_a_power_law_straight(tmp_path: Path) -> None:
     x = np.logspace(0, 3, 60)
     pixels = drawn([Graph("", "n [-]", "error [m]", {"law": (x, x**-2.0)}, x_log=True, y_log=True)], tmp_path)

@@ -516,6 +516,7 @@ def plate(rings: int, nu: float, clamped: bool) -> float:
     return float(-found.particles[0, 2] * 64.0 / 0.01 / (1.0 if clamped else (5.0 + nu) / (1.0 + nu)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("clamped", "most"), [(True, 0.004), (False, 0.0013)])
 def test_a_circular_plate_deflects_as_timoshenkos(clamped: bool, most: float) -> None:
     """At nu = 0.3, clamped and simply supported with a free slope: within 0.4 % and 0.13 % with 16 rings, and of second

@@ -102,6 +102,7 @@ def test_any_start_and_any_grading(power: float, start: str) -> None:
     assert errors[1] <= (1e-4 if power == 1.0 else 6e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [16, 32, 64, 128])
 def test_a_flat_disc_on_a_polar_mesh_is_flat(n: int) -> None:
     """Needles at the centre, 20 to 1 for n = 128: flat as drawn, and flat again from heights up to half the radius."""
@@ -156,6 +157,7 @@ def test_minimal_surfaces_on_a_square(name: str, kind: str) -> None:
     assert abs(areas[-1]) <= 2e-3 and abs(heights[-1]) <= 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["quads", "triangles"])
 def test_the_catenoid(kind: str) -> None:
     """R 1, h 1: waist 0.84833794, area 5.99179698, order 2 (+- 0.15). Source: Euler 1744."""

@@ -148,6 +148,7 @@ def test_particles_beside_a_damped_spring_change_no_step(loose: int):
     assert not Simulation(scene.replaced(settings=scene.settings.replaced(time_step=0.12))).system.report.warnings
 
 
+@pytest.mark.slow
 def test_a_step_that_holds_at_the_start_only_ends_the_run_where_it_is_too_long():
     """A spring with a lower cutoff has no stiffness until it is that long: then 2/omega = 2 sqrt(m/k) falls below dt.
     The step that is named was tried: at most half of it, as nothing damps the motion (see `margin`)."""

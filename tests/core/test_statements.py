@@ -34,6 +34,7 @@ def test_h1_force_is_stiffness_times_extension_and_the_length_comes_back(damping
     assert released.force("cable")["length"][0] == pytest.approx(80.0, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_h2_damping_changes_how_long_it_takes_and_never_the_final_length():
     """m u'' + c u' + k u = F, u(t) by the matrix exponential: settled within 0.5 cm after 6.9 (c = 1), 23 and 230 s.
 

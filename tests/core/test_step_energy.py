@@ -236,6 +236,7 @@ def test_a_particle_that_nothing_holds_is_named_and_no_step_is_blamed(settings: 
     assert "Nothing supports particle 3" in simulation.message and "time_step" not in simulation.message
 
 
+@pytest.mark.slow
 def test_a_shell_that_collapses_does_not_diverge_by_default():
     """A plate on its corners under springs of 0.3 of their length, so strong that its triangles become needles: their
     forces have no bound. What springs and motion have stays within three times the energy of the start (it grew ten

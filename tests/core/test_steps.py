@@ -213,6 +213,7 @@ def test_a_prestressed_net_at_0_85_of_its_limit_ends_before_it_explodes(scheme: 
     assert ended.status is Status.DIVERGED and " s were stable for " in ended.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", PARTS)
 def test_steps_that_hold_are_not_ended(scheme: str):
     """Nets held all around stay taut: 0.85 of the limit holds for 2,000 steps. So does 0.7 of it where anchors are led
@@ -285,6 +286,7 @@ def folding() -> Scene:
     return in_motion(Scene.read(spec))[0]
 
 
+@pytest.mark.slow
 def test_steps_that_were_too_long_are_taken_again_in_more_parts():
     """A frame is as long as ever, whatever was taken again; again and resumed from a file, the bits are the same."""
     runs, file = [Simulation(folding()), Simulation(folding())], BytesIO()

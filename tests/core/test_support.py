@@ -10,6 +10,7 @@ from hookean import InputError, relax
 from .beam_scenes import load, rotation, row, scene, straight
 
 
+@pytest.mark.slow
 def test_a_support_resists_as_stiff_as_it_is() -> None:
     """A rigid bar on springs: d = F / k at its middle and phi = M / kr; beyond half a turn it pulls the shorter way."""
     rigid = {"E": 1e9, "G": 1e9, "A": 1.0, "Iy": 1.0, "Iz": 1.0, "J": 1.0}

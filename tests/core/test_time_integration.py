@@ -55,6 +55,7 @@ def test_verlet_vibrates_at_its_own_frequency(dt: float, expected: float) -> Non
     assert np.abs(found - 1.0 - 0.1 * np.cos(omega * dt * np.arange(1001))).max() > 0.01
 
 
+@pytest.mark.slow
 def test_stability_knows_the_frequency() -> None:
     """Highest mode 31.6227766, largest step 2 / omega: just below it the motion stays bounded, just above it grows."""
     system = mass_on_spring(0.01)
@@ -99,6 +100,7 @@ def test_order_of_accuracy(method: str, order: int) -> None:
     assert slope == pytest.approx(order, abs=0.15)
 
 
+@pytest.mark.slow
 def test_drag_keeps_the_order_two() -> None:
     """Damping along springs and drag keep order 2: a damped oscillator at t = 1, slope 2 +- 0.15."""
     spring = {"damping": 3.0}
@@ -150,6 +152,7 @@ def test_undamped_energy_is_bounded_without_drift(method: str) -> None:
     assert abs(drift) <= 1e-3 * most
 
 
+@pytest.mark.slow
 def test_damped_energy_never_rises() -> None:
     """With damping and drag the energy after each step is not above the one before by more than 1e-9 of the first."""
     system = mass_on_spring(0.001, spring={"damping": 10.0}, settings={"drag": 1.0})

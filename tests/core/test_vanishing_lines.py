@@ -133,6 +133,7 @@ def foam(cells: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.column_stack([x, np.zeros(len(x))]), edges.reshape(-1, 2), rim
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_a_foam_collapses_to_the_same_energy_by_all_solvers(seed: int) -> None:
     """Sixty cells whose edges pull alike: most of them vanish. The energy is convex, so that all equilibria have the

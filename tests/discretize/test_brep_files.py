@@ -116,6 +116,7 @@ def test_the_six_faces_of_the_twisted_box(rhino_objects: Any) -> None:
     assert len(mesh_faces(brep, 4, 4).faces) == 96
 
 
+@pytest.mark.slow
 def test_the_22_cached_meshes_of_the_logo(rhino_objects: Any) -> None:
     seen = 0
     for (_, brep), chi in zip(breps(rhino_objects("v7_rhino_logo_nurbs.3dm")), (0, 2, 2, 0, 0, 2), strict=True):
@@ -130,6 +131,7 @@ def test_the_22_cached_meshes_of_the_logo(rhino_objects: Any) -> None:
     assert seen == 22
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("u", "v"), [(4, 4), (5, 3), (16, 2)])
 def test_the_seven_extrusions(u: int, v: int, rhino_objects: Any) -> None:
     extrusions = [g for g, _ in rhino_objects("v5_extrusions.3dm") if isinstance(g, r.Extrusion)]

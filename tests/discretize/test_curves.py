@@ -100,6 +100,7 @@ def test_polyline_is_cut_where_interpolation_says(corners: list[tuple[int, int, 
     assert np.array_equal(lines, np.stack([points[:-1], points[1:]], 1)[np.diff(upto) > 0])
 
 
+@pytest.mark.slow
 @settings(few, max_examples=examples(25))
 @given(st.integers(0, 10**6), st.integers(1, 5), st.integers(0, 6), st.booleans())
 def test_nurbs_pieces_are_equal_by_quadrature(seed: int, degree: int, more: int, kink: bool) -> None:
@@ -160,6 +161,7 @@ def test_polycurve_with_a_kink() -> None:
     assert divide(poly, 2)[1] == pytest.approx([1 + math.cos(angle), 1 + math.sin(angle), 0], abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degree", [1, 2, 3])
 def test_nurbs_of_rhino_against_its_own_evaluation(degree: int) -> None:
     corners = [r.Point3d(*p) for p in ((0, 0, 0), (1, 2, 0), (3, -1, 1), (4, 0, 2), (6, 1, 0))]

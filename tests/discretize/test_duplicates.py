@@ -79,6 +79,7 @@ def test_blocks_of_any_size_give_the_same(monkeypatch: pytest.MonkeyPatch) -> No
     assert whole[0].tolist() == kept and whole[1].tolist() == place
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_lines_given_twice_and_turned() -> None:
     rng = np.random.default_rng(1)
     lines = rng.uniform(0, 10, (50_000, 2, 3))
@@ -88,6 +89,7 @@ def test_a_hundred_thousand_lines_given_twice_and_turned() -> None:
     assert np.array_equal(inverse, np.tile(np.arange(50_000), 2))
 
 
+@pytest.mark.slow
 def test_many_points_in_few_places() -> None:
     rng = np.random.default_rng(2)
     places = rng.uniform(0, 1, (5, 3))

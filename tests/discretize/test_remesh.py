@@ -61,6 +61,7 @@ def test_edges_have_the_length_and_the_shape_is_kept(given: Mesh, length: float)
     assert areas.min() > 0.2 * 0.25 * np.sqrt(3.0) * length**2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("given", "length"), [(L_SHAPE, 0.2), (RING, 0.3), (grid(9, 4), 1.5), (grid(2, 2), 0.3)])
 def test_flat_polygons_keep_area_and_outline(given: Mesh, length: float) -> None:
     """Exactly: vertices move in the plane, and along the straight sides between corners that stay."""
@@ -73,6 +74,7 @@ def test_flat_polygons_keep_area_and_outline(given: Mesh, length: float) -> None
     assert apart.max() == 0.0
 
 
+@pytest.mark.slow
 def test_folds_are_kept() -> None:
     """A cube keeps its volume and its area exactly, so no vertex has left its edges; a flat fold is no line."""
     made = hd.remesh(CUBE, 0.3)
@@ -86,6 +88,7 @@ def test_folds_are_kept() -> None:
     assert hd.volume(soft) < 8.0 - 1e-3
 
 
+@pytest.mark.slow
 def test_a_sphere_stays_a_sphere() -> None:
     """Vertices are on the given facets. Equal triangles of side a with corners on the sphere: the mean depth is
     a^2 / 8 R, so the volume is less by 3 a^2 / 8 R^2 of it, and the area 3 V / h, with the height h = R - a^2 / 6 R of
@@ -99,6 +102,7 @@ def test_a_sphere_stays_a_sphere() -> None:
     assert 1 - hd.area(made) / (4 * np.pi) == pytest.approx(5 / 24 * square, rel=0.25)
 
 
+@pytest.mark.slow
 def test_the_rims_of_a_cylinder_stay_circles() -> None:
     """In their planes, at the vertices of a polygon with 64 sides, or on them: between cos(pi/64) and 1."""
     made = hd.remesh(cylinder(), 0.25)

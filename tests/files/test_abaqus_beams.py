@@ -124,6 +124,7 @@ def test_a_frame_is_the_same_model_for_the_other_program(hinged: Spec, tmp_path:
     np.testing.assert_allclose(found.particles - read.points, moved[:, :3], atol=1e-5 * size)
 
 
+@pytest.mark.slow
 def test_eccentric_ends_are_linked_and_shear_and_hinges_written(tmp_path: Path) -> None:
     """A point for each eccentric end, where it is, with a rigid link to its particle; G times the shear area."""
     more = {"offset_end": [0, 0, -0.5], "shear_y": 0.5, "shear_z": 0.25, "release_end": "xyz"}

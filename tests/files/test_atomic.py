@@ -59,6 +59,7 @@ def test_outputs_of_the_command_line_keep_links(tmp_path: Path, monkeypatch: pyt
         assert (tmp_path / name).is_symlink() and (tmp_path / "real" / name).read_text() != "before"
 
 
+@pytest.mark.slow
 def test_what_a_killed_process_left_is_deleted_with_the_next_write(tmp_path: Path) -> None:
     """And nothing else: neither files of processes that live, nor of other machines."""
     code = "import os, sys; from hookean import atomic_write as a; from pathlib import Path;"

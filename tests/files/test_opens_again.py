@@ -99,6 +99,7 @@ def test_a_figure_opens_again_as_the_same_model(name: str, tmp_path: Path) -> No
     assert (opened.state.free == 0).all(axis=1).sum() == held.sum() or not held.any()
 
 
+@pytest.mark.slow
 def test_relaxing_what_was_exported_gives_the_same_shape(tmp_path: Path) -> None:
     """Of each format the equilibrium of the edited scene, by the command's own function; of .npz from the saved
     shape on."""

@@ -222,6 +222,7 @@ def test_user_text_that_cannot_be_read_is_refused_by_object(
     assert '"one"' in str(caught.value) and said in str(caught.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", sampled(sorted(SHARED.glob("*.3dm")), 2), ids=lambda path: path.stem)
 def test_files_of_others_have_a_draft(path: Path) -> None:
     """The recipe of the draft gives the same model as the file without a recipe. Where that has no model, the draft has

@@ -89,6 +89,7 @@ def test_the_numbers_are_those_of_the_results(scene: Scene) -> None:
     assert loads["together"][3] == "0, 0, -15.33"
 
 
+@pytest.mark.slow
 def test_it_is_one_file_that_is_always_the_same(scene: Scene) -> None:
     """With a PNG for the form and for each case, and no address of another file."""
     text = report(scene)

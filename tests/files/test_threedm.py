@@ -140,6 +140,7 @@ def towers(model: Model, levels: int, wide: int, last: tuple[Any, ...]) -> Model
     return replace(model, blocks=tuple(blocks), objects=(below,))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("levels", "wide"), [(1500, 1), (1500, 2), (2, 1500), (60, 1500)])
 def test_nested_blocks_without_an_object_come_to_nothing(make: Make, levels: int, wide: int) -> None:
     """However deep and wide they are: up to 1500^59 instances, each block looked at once."""
