@@ -54,6 +54,7 @@ def slopes(errors: list[float]) -> np.ndarray:
     return np.log2(sizes[:-1] / sizes[1:])
 
 
+@pytest.mark.slow
 def test_bent_rod_between_pins_at_half_its_length() -> None:
     """Rise / L = k / K(k) with 2 E(k) / K(k) - 1 = 1/2: 0.373306 (Love, Mathematical Theory of Elasticity, 1927, 263).
 
@@ -82,6 +83,7 @@ def clamped(n: int, headings: np.ndarray, load: list[float]) -> np.ndarray:
     return np.asarray(solved(x, [{"particles": [0, 1]}], Unary(particles=[n], vector=load))[n])
 
 
+@pytest.mark.slow
 def test_elastica_column_with_sixty_degrees_at_its_free_end() -> None:
     """P / Pcr = (2 K / pi)^2 = 1.1517: x / l = 2 E / K - 1 = 0.7410, y / l = 2 k / K = 0.5932, k = sin 30 degrees.
 

@@ -77,6 +77,7 @@ def test_without_that_step_they_differ_by_what_is_left() -> None:
     assert np.abs(whole).max() > 1e-9 and unbalanced(result)[0] < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["beam", "springs"])
 def test_so_do_those_of_load_cases(kind: str) -> None:
     """Each case by itself, as any other shape."""

@@ -244,6 +244,7 @@ def test_forces_added_to_a_running_film_count() -> None:
     assert running.system.films is not None and running.system.films.kind[middle] == WITHIN
 
 
+@pytest.mark.slow
 def test_a_film_in_a_net_is_stiff_as_a_whole() -> None:
     """Where springs hold every vertex nothing is left out, and a film adds its tension to theirs: one shape for all."""
     x, faces, rim = square(8, lambda u, v: 0.3 * u * v, "quads")

@@ -109,6 +109,7 @@ def test_answers_are_those_of_dense_algebra(way: str, seed: int, contrast: float
         assert np.abs(state.x - expected).max() <= 4.0 * len(expected) * EPS * condition * size
 
 
+@pytest.mark.slow
 @SEEDED
 @given(seed=some.integers(0, 2**32 - 1))
 @pytest.mark.parametrize("way", WAYS)
@@ -210,6 +211,7 @@ def test_coarser_nets_are_projections(seed: int, contrast: float) -> None:
     assert (held >= (found[1].held > 0)).all() and found[1].held.any() == net.held.any()
 
 
+@pytest.mark.slow
 def test_hubs_do_not_cost_their_square() -> None:
     """A particle joined to 30,000 others that are joined at random: a front would hold them all."""
     rng = np.random.default_rng(5)

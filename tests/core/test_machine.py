@@ -147,6 +147,7 @@ def test_values_of_two_kinds_in_turn_go_to_the_code_of_each(folder: Path) -> Non
     assert (run.made, run.loaded) == (1, 1)
 
 
+@pytest.mark.slow
 def test_a_thread_that_finds_the_code_just_loaded_calls_it(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While it looked what its values are another thread has called the same code: numba is not asked."""
     run, look = code(folder), machine.kind_of
@@ -175,6 +176,7 @@ def test_code_stays_where_it_is_when_who_loaded_it_is_gone(folder: Path) -> None
     assert engine() is not None
 
 
+@pytest.mark.slow
 def test_what_the_disk_has_no_code_for_is_left_to_numba(tmp_path: Path) -> None:
     """Columns apart, which no entry reads, are summed right."""
     apart = np.arange(12.0).reshape(3, 4)[:, ::2]

@@ -130,6 +130,7 @@ def _respond(cloth, strains, found):  # type: ignore[no-untyped-def]
         found[e, 0], found[e, 1], found[e, 2], found[e, 3], found[e, 4] = s[0], s[1], s[2], energy, state
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 def test_the_relaxed_energy_is_the_least(seed: int) -> None:
     """min over a >= 0 of W(e + a) is a convex problem: S is its stress if and only if S >= 0, a = C^-1 S - e >= 0 and

@@ -146,6 +146,7 @@ def test_a_part_that_the_engine_reads_has_another_name(
     check(part, tmp_path, caplog)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", REPLACED)
 def test_a_method_that_the_engine_replaces_has_another_name(
     part: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture

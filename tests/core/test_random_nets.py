@@ -142,6 +142,7 @@ def stands(rest: Rest) -> bool:
     return definite(matrix, allowed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_one_energy_is_one_shape(seed: int, method: str) -> None:

@@ -105,6 +105,7 @@ def test_what_results_tell_balances_exactly_but_for_what_is_left(outcomes: list[
         assert np.linalg.norm(np.cross(x, gap).sum(axis=0)) <= 1e-11 * sizes * reach, case.seed
 
 
+@pytest.mark.slow
 def test_converged_means_balanced(outcomes: list[Outcome]) -> None:
     """Converged: the residual recomputed by an evaluator of our own is <= max(tolerance, floor), to a part in 1e4."""
     for case in outcomes:

@@ -111,6 +111,7 @@ def panels(scenes: list[Scene], **more: Any) -> list[Panel | Graph]:
     return [Panel(relax(scene), scene, title=f"Panel {i}", **more) for i, scene in enumerate(scenes)]
 
 
+@pytest.mark.slow
 def test_one_legend_for_all_ends_at_the_extremes_over_all(tmp_path: Path, bars: list[Any], words: list[str]) -> None:
     given = panels(THREE)
     drawn(given, tmp_path)

@@ -146,6 +146,7 @@ def test_cantilever_strip_deflects_as_beam_theory_says_on_every_mesh(name: str) 
     assert deflection(strip(16, 4, **STRIPS[name])) == pytest.approx(1.0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_strip_converges_with_the_mesh() -> None:
     """Irregular meshes, 8 x 2 to 32 x 8: the error falls with every halving and is 0.1 % at the finest."""
     errors = [abs(deflection(strip(8 * m, 2 * m, jitter=0.25, seed=4)) - 1.0) for m in (1, 2, 4)]
@@ -153,6 +154,7 @@ def test_strip_converges_with_the_mesh() -> None:
     assert errors[2] < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["regular", "crossed diagonals", "irregular 0.3"])
 def test_strip_with_springs_in_its_plane_deflects_as_the_plate_alone(name: str) -> None:
     """All particles free but the clamp, springs on all edges: 2 %; bending a strip into a cylinder stretches nothing.

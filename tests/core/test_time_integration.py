@@ -234,6 +234,7 @@ def test_free_fall_with_drag() -> None:
     assert (4.0 * fine - coarse) / 3.0 == pytest.approx([0.0, 0.0], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_one_spring_under_a_step_load_overshoots() -> None:
     """k 1000, m 1, damping 10, drag 1: zeta 0.173925; overshoot exp(-pi zeta/sqrt(1-zeta^2)) = 0.574153, at 0.100883 s.
 

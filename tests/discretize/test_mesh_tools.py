@@ -186,6 +186,7 @@ def test_barycentric_coordinates_stay_and_heights_are_scaled() -> None:
         assert hd.mesh_map(points, flat, wide, scale) == pytest.approx(wanted, abs=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_the_closest_triangle_is_that_of_a_search_through_all(seed: int) -> None:
     """Triangles of sizes from 1e-3 to 1, slivers and segments among them."""

@@ -329,6 +329,7 @@ def test_what_was_added_reads_back(make: Make, tmp_path: Path, additions: Additi
     assert found["polyline"].layer == "hookean::other" and found["polyline"].marked
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [3, 4, 5, 6, 7, 8])
 def test_results_do_not_pile_up(version: int, make: Make, tmp_path: Path, additions: Additions) -> None:
     path = make(version)
