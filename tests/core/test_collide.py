@@ -156,6 +156,28 @@ def test_two_spheres_that_meet_exchange_their_velocities() -> None:
     assert simulation.state.v.sum() == pytest.approx(speed, rel=1e-12)
 
 
+@pytest.mark.parametrize("overlap", [0.01, 0.3, 0.9])
+def test_relaxed_spheres_part_where_they_touched(overlap: float) -> None:
+    """Nothing pulls them back: they stop in the iteration in which they part, which moves them by less than the
+    overlap that is left, and so by less than the first one."""
+    x = np.array([[0.0, 0.0, 0.0], [1.0 - overlap, 0.0, 0.0]])
+    result = relax(Scene.read({"particles": x, "forces": [crowd(x, radius=0.5)], "settings": {"solver": "relaxation"}}))
+    moved = result.particles - x
+    assert result.converged and moved[:, 1:].any() == 0
+    assert 1.0 - 1e-4 <= np.ptp(result.particles[:, 0]) <= 1.0 + overlap
+    assert np.abs(moved.sum(axis=0)).max() <= 1e-15
+
+
+def test_a_relaxed_crowd_stays_together() -> None:
+    """300 spheres of radius 0.5 at random in a cube of side 6, more than half of its volume: they take some more place,
+    each moves by some radii at most, and none overlaps."""
+    x = np.random.default_rng(4).uniform(0.0, 6.0, (300, 3))
+    result = relax(Scene.read({"particles": x, "forces": [crowd(x, radius=0.5)], "settings": {"solver": "relaxation"}}))
+    apart = np.linalg.norm(result.particles[:, None] - result.particles, axis=2)[np.triu_indices(300, 1)]
+    assert result.converged and apart.min() >= 1.0 - 1e-4
+    assert np.linalg.norm(result.particles - x, axis=1).max() <= 3.0
+
+
 def test_spheres_that_rest_on_each_other_are_one_component() -> None:
     """The upper one is supported by the lower."""
     x = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])

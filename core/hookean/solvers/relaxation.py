@@ -1,8 +1,9 @@
 """Relaxation: dynamic relaxation with kinetic damping and a fictitious mass for every particle.
 
 Masses follow the stiffness each particle feels, so that a unit step is stable for any scene; at every peak of kinetic
-energy all motion stops and starts again with half a step. Source: Barnes, "Form finding and analysis of tension
-structures by dynamic relaxation", 1999.
+energy all motion stops and starts again with half a step. With contacts a particle that no force acts on stops as
+well: spheres that have parted would fly on without end, at no peak. Source: Barnes, "Form finding and analysis of
+tension structures by dynamic relaxation", 1999.
 """
 
 from __future__ import annotations
@@ -71,6 +72,15 @@ def move(x: Any, v: Any) -> Any:
 
 
 @device
+def stop_what_is_free_of_force(f: Any, v: Any, free: Any, count: Any) -> None:
+    """No speed where no force acts along any free axis."""
+    for i in range(count):
+        if f[i, 0] * free[i, 0] == 0.0 and f[i, 1] * free[i, 1] == 0.0 and f[i, 2] * free[i, 2] == 0.0:
+            for c in range(4):
+                v[i, c] = 0.0
+
+
+@device
 def step_back(x: Any, v: Any, f: Any, inverse: Any) -> Any:
     """To about where the peak of kinetic energy was, and at rest."""
     for i in range(x.shape[0]):
@@ -88,7 +98,8 @@ def weigh(mass: Any, inverse: Any, w: Any, caution: Any) -> Any:
 
 
 def relaxation_loop(  # type: ignore[no-untyped-def]
-    full, packed, hits, rests, x, v, free, load, still, f, w, mass, inverse, carried, clock, count, goal, slots, arms
+    full, packed, hits, rests, x, v, free, load, still, f, w, mass, inverse, carried, clock, count, goal, slots, arms,
+    parting
 ):  # fmt: skip
     energy_before = clock[0]
     fresh = clock[1] != 0.0
@@ -105,6 +116,8 @@ def relaxation_loop(  # type: ignore[no-untyped-def]
         if contacts > 0:
             f *= free
             supports(rests, x[:slots], v[:slots], f[:slots], carried[:slots], free[:slots], mass[:slots], 0.0)
+        if parting:
+            stop_what_is_free_of_force(f, v, free, slots)
         worst, kinetic = push(f, v, free, mass, inverse, 0.5 if fresh else 1.0)
         if worst <= goal * goal:
             v[:] = 0.0
@@ -148,10 +161,11 @@ class Method(Solver):
         x, v, free, load, still, f, carried = self._desk.lay(
             n, state.x, state.v, state.free, own.load, None, None, None
         )
-        mass = state.scratch["mass"]
+        mass, parting = state.scratch["mass"], any(group.cls.rewired for group in system.groups)
         done = dispatch.compiled(relaxation_loop)(
             own.full, own.packed, *contacts(system), x, v, free, load, still, f, np.zeros(n), mass, 1.0 / mass, carried,
             state.scratch["clock"], count, goal, system.slots.count, system.slots.lengths,
+            parting,
         )  # fmt: skip
         state.x[:], state.v[:] = x[:, :3], v[:, :3]
         state.iteration += int(done)
