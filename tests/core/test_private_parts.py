@@ -18,6 +18,7 @@ from numba.core import codegen, compiler, cpu, dispatcher
 from hookean.compiled import announcing, dispatch, linking
 from hookean.compiled import object_cache as machine
 from hookean.compiled.object_cache import Compiled, readable
+from soak import sampled
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32" or not readable(), reason="numba compiles here")
 
@@ -135,7 +136,7 @@ def check(part: str, folder: Path, caplog: pytest.LogCaptureFixture) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", READ)
+@pytest.mark.parametrize("part", sampled(READ, 4))
 def test_a_part_that_the_engine_reads_has_another_name(
     part: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -147,7 +148,7 @@ def test_a_part_that_the_engine_reads_has_another_name(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", REPLACED)
+@pytest.mark.parametrize("part", sampled(REPLACED, 4))
 def test_a_method_that_the_engine_replaces_has_another_name(
     part: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -13,6 +13,7 @@ import rhino3dm as _rhino3dm
 
 from hookean.errors import InputError
 from hookean.files.rhino.archive import MAGIC, OBJECT_TABLE, Archive, scan
+from soak import SOAK
 
 rhino: Any = _rhino3dm
 
@@ -54,7 +55,7 @@ def test_records_fill_their_table_in_order(real: Path) -> None:
 @pytest.mark.slow
 def test_every_cut_of_a_small_file_is_refused(make: Callable[..., Path]) -> None:
     data = make(8).read_bytes()
-    for end in range(len(data)):
+    for end in range(0, len(data), 1 if SOAK else 7):
         with pytest.raises(InputError, match="file: "):
             scan(data[:end])
 
