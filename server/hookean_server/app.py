@@ -42,7 +42,7 @@ from hookean_server.routes import (
     recipes,
     relax,
 )
-from hookean_server.sessions import frames, shown, surfaces
+from hookean_server.sessions import frames, guests, shown, surfaces
 from hookean_server.sessions import routes as session_routes
 from hookean_server.sessions.manager import Manager
 from hookean_server.settings import Settings
@@ -108,6 +108,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         session_routes,
         shown,
         surfaces,
+        guests,
         frames,
         job_routes,
     )

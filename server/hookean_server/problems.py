@@ -33,6 +33,12 @@ CATALOGUE: dict[str, tuple[int, str, str]] = {
         "Origin not allowed",
         "Pages of another origin may not send requests that change or compute something.",
     ),
+    "read-only": (
+        403,
+        "Read-only link",
+        "A read-only link reads its session: status, scene, topology, anchors, state, surface, view and frames. Ask "
+        "the person who shared it to change something.",
+    ),
     "not-found": (404, "Not found", "The API's description at /v1/openapi.json lists every address."),
     "method-not-allowed": (405, "Method not allowed", "The header Allow lists the supported methods."),
     "slow-body": (408, "Timeout while reading the body", "Send the body without long pauses."),

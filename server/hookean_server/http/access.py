@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from enum import Enum
 from typing import Any, TypeVar
 
-from starlette.routing import BaseRoute, Route
+from starlette.routing import BaseRoute, Route, WebSocketRoute
 
 Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
 
@@ -27,6 +27,7 @@ class Access(Enum):
 
 
 _MARKED: dict[Callable[..., Any], Access] = {}
+_READING: set[Callable[..., Any]] = set()
 
 
 def marked(access: Access) -> Callable[[Endpoint], Endpoint]:
@@ -39,6 +40,13 @@ def marked(access: Access) -> Callable[[Endpoint], Endpoint]:
     return mark
 
 
+def reading(endpoint: Endpoint) -> Endpoint:
+    """Mark an endpoint that clients with a read-only link may call, below the decorator of its route: it changes
+    nothing, and returns nothing of other sessions."""
+    _READING.add(endpoint)
+    return endpoint
+
+
 def of(endpoint: Callable[..., Any] | None) -> Access:
     """The clients that may call an endpoint; an address without an endpoint needs the token."""
     return Access.TOKEN if endpoint is None else _MARKED.get(endpoint, Access.TOKEN)
@@ -48,7 +56,9 @@ class Table:
     """The routes of the application in their order."""
 
     def __init__(self, routes: Iterable[BaseRoute]) -> None:
-        self.routes = [route for route in routes if isinstance(route, Route)]
+        every = list(routes)
+        self.routes = [route for route in every if isinstance(route, Route)]
+        self.sockets = [route for route in every if isinstance(route, WebSocketRoute)]
 
     def access(self, method: str, path: str) -> Access:
         """The clients that may make a request: the mark of its endpoint."""
@@ -59,6 +69,15 @@ class Table:
         method = "GET" if method == "HEAD" else method
         found = (r.endpoint for r in self.routes if method in (r.methods or ()) and r.path_regex.match(path))
         return next(found, None)
+
+    def reads(self, method: str | None, path: str, key: str) -> bool:
+        """Whether a request only reads, and of sessions only that of the key; a socket has no method."""
+        method = "GET" if method == "HEAD" else method
+        by_method = (route for route in self.routes if method in (route.methods or ()))
+        for route in self.sockets if method is None else by_method:
+            if match := route.path_regex.match(path):
+                return route.endpoint in _READING and match.groupdict().get("key", key) == key
+        return False
 
     def declared(self, method: str, template: str) -> Access:
         """The clients that may call the operation of a template, such as /v1/sessions/{key}."""

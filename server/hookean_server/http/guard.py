@@ -12,7 +12,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from hookean_server.http import access
 from hookean_server.http.access import Access, Table
 from hookean_server.http.claimed import NAMES
-from hookean_server.http.tokens import Entry, Tokens, cookie_name, cookies, set_cookie
+from hookean_server.http.guests import BEARER, Entry, Guest
+from hookean_server.http.tokens import Tokens, bearer, cookie_name, cookies, set_cookie
 from hookean_server.problems import Problem
 from hookean_server.settings import Settings
 
@@ -24,6 +25,9 @@ CORS = {
     ),
     "access-control-max-age": "600",
 }
+READ_ONLY = (
+    "This link only reads its session; ask the person who shared it to change something, or to open another session."
+)
 EXPOSED = ", ".join(("etag", "location", "retry-after", "server-timing", "x-request-id", *NAMES))
 
 
@@ -52,6 +56,8 @@ class Guard:
         needed = self.table.access(scope["method"], scope["path"]) if scope["type"] == "http" else Access.TOKEN
         self._check_origin(scope, headers, needed)
         entry, renewal = self._entry(scope, headers, needed)
+        if isinstance(entry, Guest):
+            self._only_read(scope, entry)
         if any(encoding not in ("identity", "") for encoding in headers.all(b"content-encoding")):
             said = "The body is compressed; send it uncompressed, without Content-Encoding."
             raise Problem("unsupported-media", said)
@@ -96,8 +102,12 @@ class Guard:
             return None, ""
         given = headers.all(b"authorization", lower=False)
         entry, renewal = None, ""
-        if len(given) == 1:
+        if links := headers.links if scope["type"] == "websocket" else []:
+            entry = self.tokens.guests.named(links[0])  # whatever cookie a browser adds
+        elif len(given) == 1:
             entry = self.tokens.named(given[0])
+            if entry is None and needed is Access.TOKEN:
+                entry = self.tokens.guests.named(bearer(given[0]))
             if entry is None and needed is Access.CODE:
                 entry = self.tokens.spend(given[0])
         elif not given and needed is Access.TOKEN:
@@ -109,6 +119,13 @@ class Guard:
                 headers={"www-authenticate": 'Bearer realm="hookean"'},
             )
         return entry, renewal
+
+    def _only_read(self, scope: Scope, guest: Guest) -> None:
+        """Refuses all but reading its session to a client with a read-only link. Raises the problem `read-only`."""
+        scope["guest"] = True
+        method = scope["method"] if scope["type"] == "http" else None
+        if not self.table.reads(method, scope["path"], guest.session.key):
+            raise Problem("read-only", READ_ONLY)
 
     def _by_cookie(self, scope: Scope, headers: _Headers) -> tuple[Entry | None, str]:
         """A page's cookie counts for requests of that page alone: browsers send it to every port of this machine, and
@@ -211,6 +228,12 @@ class _Headers:
         target = len(scope.get("raw_path") or b"") + len(scope["query_string"])
         self.size = sum(len(k) + len(v) + 4 for k, v in self.raw) + target
         self.own = "http://" + ",".join(self.all(b"host"))  # the origin of our own pages
+
+    @property
+    def links(self) -> list[str]:
+        """Tokens of read-only links among the subprotocols that a socket offers."""
+        offered = [one.strip() for line in self.all(b"sec-websocket-protocol", lower=False) for one in line.split(",")]
+        return [one.removeprefix(BEARER) for one in offered if one.startswith(BEARER)]
 
     def all(self, name: bytes, *, lower: bool = True) -> list[str]:
         found = [v.decode("latin-1").strip() for k, v in self.raw if k == name]

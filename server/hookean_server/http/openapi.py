@@ -220,6 +220,12 @@ def looked() -> dict[int | str, dict[str, Any]]:
     return problems({"application/json": {"schema": {"$ref": "#/components/schemas/View"}}}, live=True)
 
 
+def guest(*codes: int) -> dict[int | str, dict[str, Any]]:
+    """Responses of the read-only link of a session; with `codes` it is not returned."""
+    success = {"application/json": {"schema": {"$ref": "#/components/schemas/Guest"}}}
+    return problems(None if codes else success, asked=True)
+
+
 def look() -> dict[str, Any]:
     """Description of the route that changes how a session is looked at."""
     colours = {"title": "Utilisation", "unit": "-", "of": "springs", "values": [0.2, 0.9, 0.4, 0.3, 0.5]}

@@ -15,7 +15,7 @@ from hookean_server.problems import MEDIA_TYPE, Problem, is_function
 
 log = logging.getLogger("hookean.server")
 
-CLOSED = {"unauthorized": 4401, "forbidden-host": 4403, "forbidden-origin": 4403, "not-found": 4404}
+CLOSED = {"unauthorized": 4401, "forbidden-host": 4403, "forbidden-origin": 4403, "read-only": 4403, "not-found": 4404}
 """Codes a WebSocket is closed with, where its handshake cannot be refused."""
 NOT_LET_IN = ("unauthorized", "forbidden-host", "forbidden-origin")
 """Problems of those who may not use the service; what they ask for does not keep it running."""

@@ -113,6 +113,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         store={"$ref": "#/components/schemas/Store"},
     ),
     "Proof": _object(instance={"type": "string"}, proof={"type": "string", "pattern": "^[0-9a-f]{64}$"}),
+    "Guest": _object(token={"type": ["string", "null"], "description": "Of the read-only link; null: none"}),
     "Code": _object(
         code={"type": "string"},
         seconds={"type": "number"},

@@ -7,7 +7,6 @@ server; a cookie is good for its port alone and for hours, and is renewed while 
 
 from __future__ import annotations
 
-import asyncio
 import hashlib
 import hmac
 import os
@@ -15,7 +14,8 @@ import re
 import secrets
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+
+from hookean_server.http.guests import Entry, Guests
 
 VARIABLE = "HOOKEAN_TOKEN"
 SHORTEST = 16
@@ -42,14 +42,6 @@ def chosen(given: str = "") -> str:
     return token
 
 
-@dataclass(eq=False)
-class Entry:
-    """An authenticated client. `ended`: it is logged out, and its streams end."""
-
-    used: float = 0.0
-    ended: asyncio.Event = field(default_factory=asyncio.Event)
-
-
 class Tokens:
     """The token of one server, the cookies given for it, and codes. Methods run on the event loop.
 
@@ -67,21 +59,23 @@ class Tokens:
         self._bearer = Entry()
         self._logins: dict[str, Entry] = {}
         self._codes: dict[str, float] = {}  # when each ends, by its hash
+        self.guests = Guests()
 
     def renew(self) -> None:
         """Log all clients out: a new token, no cookies, no codes. Raises OSError, and changes nothing, where
         clients cannot be given the new one."""
         token, proof = secrets.token_urlsafe(32), secrets.token_hex(32)
         self.publish(token, proof)
-        before = [self._bearer, *self._logins.values()]
+        before, guests = [self._bearer, *self._logins.values()], self.guests
         self.token, self.proof = token, proof
         self._begin()
         for entry in before:
             entry.ended.set()
+        guests.close()
 
     def named(self, authorization: str) -> Entry | None:
         """The client that sends this header Authorization; None if it does not have the token."""
-        return self._bearer if hmac.compare_digest(_given(authorization).encode(), self.token.encode()) else None
+        return self._bearer if hmac.compare_digest(bearer(authorization).encode(), self.token.encode()) else None
 
     def proven(self, instance: str, address: str, port: int, nonce: str) -> str:
         """What only a process that knows the key can answer to a nonce that reached it at this address: HMAC-SHA256,
@@ -114,7 +108,7 @@ class Tokens:
     def spend(self, authorization: str) -> Entry | None:
         """The client that sends this header Authorization; None if it has no unused code. The code is then used."""
         self._forget_codes()
-        return self._bearer if self._codes.pop(_hash(_given(authorization)), None) is not None else None
+        return self._bearer if self._codes.pop(_hash(bearer(authorization)), None) is not None else None
 
     def _forget_codes(self) -> None:
         now = time.monotonic()
@@ -168,7 +162,8 @@ class Tokens:
         return hmac.new(self._key, f"{name}={said}".encode(), hashlib.sha256).hexdigest()
 
 
-def _given(authorization: str) -> str:
+def bearer(authorization: str) -> str:
+    """The token in a header Authorization; "" if it has none."""
     scheme, _, given = authorization.strip().partition(" ")
     return given.strip() if scheme.lower() == "bearer" else ""
 

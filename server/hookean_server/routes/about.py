@@ -12,7 +12,7 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 
 import hookean
 from hookean_server.http import openapi
-from hookean_server.http.access import Access, marked
+from hookean_server.http.access import Access, marked, reading
 from hookean_server.http.metrics import TYPE, Metrics
 from hookean_server.http.tokens import CODE_LIFE, cookie_name, cookies, set_cookie
 from hookean_server.problems import CATALOGUE, Problem, not_stored, page
@@ -48,6 +48,7 @@ async def health(request: Request) -> dict[str, Any]:
 
 
 @router.get("/v1/forces", summary="The catalogue of forces", responses=openapi.problems(openapi.FORCES, 304))
+@reading
 async def forces(request: Request) -> Response:
     """Every kind of force: formula, role, fields with unit, default and bounds, outputs with units, an example."""
     body, tag = await asyncio.to_thread(_catalogue)

@@ -18,6 +18,9 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from hookean.errors import InputError
 from hookean.scene.text import parse
+from hookean_server.http.access import reading
+from hookean_server.http.guard import READ_ONLY
+from hookean_server.http.guests import SUBPROTOCOL
 from hookean_server.problems import Problem
 from hookean_server.sessions.live import Live, summary
 from hookean_server.sessions.manager import Manager
@@ -31,19 +34,21 @@ CLOSED = {"not-found": 4404, "busy": 4429, "shutting-down": 1012}
 
 
 @router.websocket("/v1/sessions/{key}/frames")
+@reading
 async def frames(socket: WebSocket, key: str, changes: bool = False) -> None:
     """One client that watches one session; `changes`: it takes frames of changes."""
     sessions: Manager = socket.app.state.sessions
+    spoken = SUBPROTOCOL if SUBPROTOCOL in socket.scope.get("subprotocols", []) else None
     try:
         live = await sessions.watch(key)
     except Problem as problem:
         with suppress(OSError, WebSocketDisconnect):
-            await socket.accept()
+            await socket.accept(spoken)
             await socket.close(CLOSED.get(problem.slug, 1011), problem.detail[:120])
         return
     try:
         with suppress(OSError, WebSocketDisconnect):  # the client may have left already
-            await socket.accept()
+            await socket.accept(spoken)
             await _served(_Client(socket, sessions, live, changes=changes))
     finally:
         sessions.unwatch(live)
@@ -152,6 +157,8 @@ class _Client:
 
     async def _done(self, order: dict[str, Any]) -> None:
         live, do = self.live, order.get("do")
+        if self.socket.scope.get("guest"):
+            raise Problem("read-only", READ_ONLY)
         if "edit" in order:
             await self.sessions.edit(live, json.dumps(order["edit"]).encode(), order.get("revision"))
         elif do in ("reset", "undo", "redo"):

@@ -14,6 +14,7 @@ from starlette.responses import JSONResponse, Response
 from hookean.errors import InputError
 from hookean.scene.text import parse
 from hookean_server.http import claimed, openapi
+from hookean_server.http.access import reading
 from hookean_server.http.handling import read_json, uploaded_scene
 from hookean_server.http.limits import media_type
 from hookean_server.problems import faulty
@@ -92,6 +93,7 @@ async def listing(request: Request) -> dict[str, Any]:
 @router.get(
     "/v1/sessions/{key}", summary="Status of a session", responses=openapi.problems(openapi.SESSION, 304, live=True)
 )
+@reading
 async def read(request: Request, key: Key, when: When) -> Response:
     """Revision, iteration, time, residual, status and the sentence on it."""
     live = manager(request).find(key)
@@ -158,6 +160,7 @@ async def act(
 
 
 @router.get("/v1/sessions/{key}/scene", summary="The scene with all edits", responses=openapi.exported(304))
+@reading
 async def scene(request: Request, key: Key, when: When) -> Response:
     """The whole scene as canonical JSON, with forces, anchors and settings after all edits, and particles where
     they started: the same model where it is PUT or opened as a file."""
@@ -167,6 +170,7 @@ async def scene(request: Request, key: Key, when: When) -> Response:
 @router.get(
     "/v1/sessions/{key}/topology", summary="The parts that do not change while it runs", responses=openapi.exported(304)
 )
+@reading
 async def topology(request: Request, key: Key, when: When, arrays: Arrays = "list") -> Response:
     """Springs, meshes and geometry by particles, and the units. Its ETag changes with the scene and with forces that
     edits add or remove, not with other edits."""
@@ -177,12 +181,14 @@ async def topology(request: Request, key: Key, when: When, arrays: Arrays = "lis
 
 
 @router.get("/v1/sessions/{key}/anchors", summary="The anchors with all edits", responses=openapi.exported(304))
+@reading
 async def anchors(request: Request, key: Key, when: When, arrays: Arrays = "list") -> Response:
     """Particles, targets and axes of every anchor, pinned ones included."""
     return await _exported(request, manager(request).find(key), when, "anchors", arrays)
 
 
 @router.get("/v1/sessions/{key}/state", summary="The present shape and its forces", responses=openapi.exported(304))
+@reading
 async def state(
     request: Request,
     key: Key,

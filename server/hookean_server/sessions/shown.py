@@ -16,6 +16,7 @@ from hookean.errors import InputError
 from hookean.scene.text import parse
 from hookean.values.columns import Model
 from hookean_server.http import openapi
+from hookean_server.http.access import reading
 from hookean_server.http.handling import read_json
 from hookean_server.problems import faulty
 from hookean_server.sessions import rows
@@ -52,6 +53,7 @@ class Looked(Model):
 
 
 @router.get("/v1/sessions/{key}/view", summary="How a session is looked at", responses=openapi.looked())
+@reading
 async def view(request: Request, key: Key) -> JSONResponse:
     """`picked`: the particle or spring that is picked in the page, or null; `colours`: numbers that a program gave to
     colour the springs with, or null."""

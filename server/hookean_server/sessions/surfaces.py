@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query, Request
 from starlette.responses import Response
 
 from hookean_server.http import openapi
+from hookean_server.http.access import reading
 from hookean_server.sessions.conditions import When
 from hookean_server.sessions.routes import Key, manager, unless_same
 
@@ -15,6 +16,7 @@ router = APIRouter(tags=["sessions"])
 
 
 @router.get("/v1/sessions/{key}/surface", summary="The surface of the present shape", responses=openapi.exported(304))
+@reading
 async def surface(
     request: Request,
     key: Key,
