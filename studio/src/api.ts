@@ -1,4 +1,5 @@
 // The service over HTTP. Every refusal is a Refused with the service's own sentence.
+import { signed } from "./guest";
 import type { Action, Anchor, Choices, Draft, Example, Family, Kind, Parameters, Patch, Result } from "./model";
 import type { Scene, Shared, Store, Summary, SurfaceRead, Topology } from "./model";
 
@@ -24,7 +25,7 @@ export function refusal(status: number, problem: Record<string, unknown>): Refus
 export async function ask(path: string, options: RequestInit = {}): Promise<Response> {
   let answer: Response;
   try {
-    answer = await fetch(path, { credentials: "same-origin", ...options });
+    answer = await fetch(path, { credentials: "same-origin", ...options, headers: signed(options.headers) });
   } catch {
     const sentence = "The service does not answer. If it has ended, start it with hookean studio, then repeat this.";
     throw new Refused(0, sentence, "unreachable");
@@ -58,6 +59,13 @@ export const result = (key: string) => read<Result>(`${at(key)}/state`);
 /** The surface of the present shape; `step` null: a round one. */
 export const surface = (key: string, step: number | null, drops: number) =>
   read<SurfaceRead>(`${at(key)}/surface?drops=${drops}${step === null ? "" : `&step=${step}`}`);
+
+/** The token of the read-only link of a session, which is made if there is none. */
+export const link = async (key: string) =>
+  ((await (await ask(`${at(key)}/guest`, { method: "PUT" })).json()) as { token: string }).token;
+/** Whether a session has such a link. */
+export const linked = async (key: string) => (await read<{ token: string | null }>(`${at(key)}/guest`)).token !== null;
+export const unlink = (key: string) => ask(`${at(key)}/guest`, { method: "DELETE" });
 
 export const act = (key: string, action: Action) => ask(`${at(key)}/${action}`, { method: "POST" });
 export const forget = (key: string) => ask(at(key), { method: "DELETE" });

@@ -2,6 +2,7 @@
 import { batch, signal } from "@preact/signals";
 import * as api from "./api";
 import { decode, type Frame } from "./frame";
+import { guest, READ_ONLY, spoken } from "./guest";
 import type { Action, Anchor, Patch, Scene, Summary, Topology } from "./model";
 import { note, stats } from "./stats";
 
@@ -131,6 +132,9 @@ export class Session {
     };
   }
 
+  /** Whether this page was opened by a read-only link. */
+  readonly readOnly = guest !== "";
+
   /** Whether a hand leads a particle. */
   get isLed(): boolean {
     return this.hands > 0;
@@ -163,7 +167,7 @@ export class Session {
 
   private connect(): void {
     const address = `ws://${location.host}/v1/sessions/${encodeURIComponent(this.key)}/frames`;
-    const socket = new WebSocket(`${address}?changes=true`);
+    const socket = new WebSocket(`${address}?changes=true`, spoken());
     socket.binaryType = "arraybuffer";
     this.before = null;
     socket.onmessage = (event) => this.take(event.data as string | ArrayBuffer);
@@ -296,6 +300,7 @@ export class Session {
   };
 
   private order(order: Order): Promise<Summary> {
+    if (this.readOnly) return Promise.reject(new api.Refused(403, READ_ONLY, "read-only"));
     return new Promise((resolve, reject) => {
       if (this.socket?.readyState !== WebSocket.OPEN) {
         const broken = this.connection.value === "broken" && this.said.value;

@@ -20,11 +20,26 @@ import httpx
 import pytest
 
 import forking
+from hookean import Simulation
+from hookean.files import project
+from hookean_server.lifecycle.studio import LONGEST_VIEW, view_in
 from serving import CABLE, HANG, Home, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
 SHEET = "".join(f"v {i} {j} 0\n" for i in range(3) for j in range(3)) + "f 1 4 5 2\nf 2 5 6 3\nf 4 7 8 5\nf 5 8 9 6\n"
+
+
+def test_a_saved_model_leads_to_the_view_it_was_saved_with() -> None:
+    """The address has the view of the file, whatever is in it; of other files, and of a view too long for an address,
+    it has none."""
+    view = {"eye": [0.5, 1.0], "groups": {"rim & seam": [1, 2]}, "colouring": "strain"}
+    simulation = Simulation(CABLE)
+    found = view_in(project.write(project.Project(simulation, view)))
+    assert json.loads(parse_qs(f"s=a{found}")["v"][0]) == view
+    assert view_in(project.write(project.Project(simulation, {}))) == ""
+    assert view_in(project.write(project.Project(simulation, {"marked": [1] * LONGEST_VIEW}))) == ""
+    assert view_in(b"v 0 0 0") == view_in(b"PK\x03\x04 damaged") == ""
 
 
 @pytest.fixture

@@ -73,7 +73,7 @@ def known(people: dict[bool, Any], browser: Any, service: Service, fingers: bool
         first.page.close()
     people[fingers].clear_permissions()
     page = people[fingers].new_page()
-    stored = {"origin": service.url, "storageTypes": "local_storage"}
+    stored = {"origin": service.url, "storageTypes": "local_storage,indexeddb"}
     people[fingers].new_cdp_session(page).send("Storage.clearDataForOrigin", stored)
     return page
 

@@ -185,6 +185,14 @@ def test_a_recording_is_scrubbed_charted_and_saved(studio: Studio, tmp_path: Pat
     service.edit(key, {"settings": {"drag": 1.0}})  # an edit is of the present shape
     page.get_by_role("group", name="Shown shape").wait_for(state="detached")
 
+    count = page.get_by_text(" frames in ").inner_text()
+    page.reload()  # this browser keeps both as long as the session
+    studio.drawing()
+    unfold(studio, "Time")
+    page.get_by_text(count).wait_for()
+    page.get_by_role("list", name="Bookmarks").get_by_role("button", name="flat", exact=True).click()
+    studio.until(lambda: np.abs(studio.particles() - start).max() < 1e-4)
+
 
 def test_nothing_here_is_hard_to_reach(studio: Studio):
     """Every control has a name, and nothing of these panels is wider than a phone."""

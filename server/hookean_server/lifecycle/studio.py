@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import html
 import http.client
+import io
 import json
 import os
 import re
@@ -14,6 +15,8 @@ import tempfile
 import threading
 import time
 import webbrowser
+import zipfile
+import zlib
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -28,6 +31,8 @@ from hookean_server.lifecycle.discovery import Distrusted, Found, ask, check, fi
 STARTED = 60.0  # seconds a server may take to start; kernels may have to be compiled first
 READ = 240.0  # seconds it may take to read a file
 PAUSE = 0.2  # seconds between looks whether a page has logged in
+VIEW = "view.json"  # the part of a saved model that has how it was looked at
+LONGEST_VIEW = 64_000  # bytes
 DOOR = "open-"  # what names of files begin with that lead a browser to the page
 REDIRECT = """<!doctype html>
 <html lang="en">
@@ -107,12 +112,12 @@ def _show(found: Found, file: Path | None, data: bytes | None, browser: bool) ->
     session = ""
     if file is not None and data is not None:
         try:
-            key, notes = opened(found, file, data)
+            key, notes, new = opened(found, file, data)
         except Refused as error:
             return command.refuse(str(error))
         for note in notes:
             print(f"{file.name}: {note}", file=sys.stderr)
-        session = f"&s={quote(key)}"
+        session = f"&s={quote(key)}{view_in(data) if new else ''}"
     address = f"{found.url}/#t={quote(found.token)}{session}"
     if not browser:
         print(address, flush=True)
@@ -172,20 +177,37 @@ def _sweep() -> None:
                 path.unlink()
 
 
-def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str]]:
-    """The key of a file's session and the notes on the file. While the file stays the same it has the same session,
-    with the edits made there. Raises Refused."""
+def view_in(data: bytes) -> str:
+    """How a saved model was looked at, as the part of the page's address from which the page takes it; "" for a file
+    without a view."""
+    if not zipfile.is_zipfile(io.BytesIO(data)):
+        return ""
+    with (
+        suppress(zipfile.BadZipFile, KeyError, ValueError, NotImplementedError, zlib.error),
+        zipfile.ZipFile(io.BytesIO(data)) as parts,
+    ):
+        if parts.getinfo(VIEW).file_size > LONGEST_VIEW:
+            return ""
+        view = json.loads(parts.read(VIEW))
+        if isinstance(view, dict) and view:
+            return f"&v={quote(json.dumps(view, separators=(',', ':')), safe='')}"
+    return ""
+
+
+def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str], bool]:
+    """The key of a file's session, the notes on the file, and whether the session is new. While the file stays the same
+    it has the same session, with the edits made there. Raises Refused."""
     content = hashlib.sha256(str(file.resolve()).encode() + b"\0" + data).hexdigest()[:12]
     key = f"{re.sub(r'[^A-Za-z0-9._-]+', '-', file.stem)[:80]}-{content}"
     if ask(found, "GET", f"/v1/sessions/{key}") is not None:
-        return key, []
+        return key, [], False
     body, kind = form(file.name, data)
     address = f"/v1/sessions/{key}?label={quote(file.name[:200])}"
     status, value = request(found, "PUT", address, body, kind)
     if status not in (200, 201):
         said = re.sub(r"^/file:? ?", "", str(value.get("detail")))
         raise Refused(f"{file.name}{' ' if said.startswith('has ') else ': '}{said}")
-    return key, [str(note) for note in value.get("warnings", [])]
+    return key, [str(note) for note in value.get("warnings", [])], True
 
 
 def form(file: str, data: bytes) -> tuple[bytes, str]:

@@ -76,7 +76,8 @@ export class Pen {
   }
 
   /** The particle of a corner, made where there is none; in line mode with the line that leads to it. */
-  private async corner(spot: Spot, made: Made): Promise<Corner | null> {
+  private async corner(given: Spot, made: Made): Promise<Corner | null> {
+    const spot = this.welded(given);
     const one = gesture("draw");
     let particle = spot.what === "particle" ? spot.index : -1;
     if (spot.what === "midpoint") {
@@ -94,6 +95,16 @@ export class Pen {
     }
     if (Object.keys(add).length && !(await this.edit({ add }, one))) return null;
     return { particle: number, at: spot.at };
+  }
+
+  /** A place within the scene's weld tolerance of a particle is that particle, as in a scene. */
+  private welded(spot: Spot): Spot {
+    const { frame, scene } = this.session;
+    if (!frame || spot.what === "particle" || spot.what === "midpoint") return spot;
+    const index = met(frame.positions, spot.at, Number(scene.value?.["weld_tolerance"]) || 0);
+    if (index < 0) return spot;
+    const [x, y, z] = frame.positions.subarray(3 * index, 3 * index + 3);
+    return { at: [x!, y!, z!], what: "particle", index };
   }
 
   private async face(corners: Corner[]): Promise<void> {
@@ -128,6 +139,20 @@ export class Pen {
       return null;
     }
   }
+}
+
+/** Rounding of the positions in a frame, next to a coordinate. */
+const ROUNDING = 2 ** -23;
+
+/** The particle nearest to a place that is within a tolerance of it, rounding aside [length]; -1 for none. */
+export function met(positions: ArrayLike<number>, [x, y, z]: Point, tolerance: number): number {
+  let nearest = tolerance + ROUNDING * Math.max(Math.abs(x), Math.abs(y), Math.abs(z));
+  let found = -1;
+  for (let i = 0; 3 * i < positions.length; i++) {
+    const away = Math.hypot(positions[3 * i]! - x, positions[3 * i + 1]! - y, positions[3 * i + 2]! - z);
+    if (away <= nearest) [nearest, found] = [away, i];
+  }
+  return found;
 }
 
 const apart = (a: Point, b: Point) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

@@ -1,4 +1,5 @@
 // The whole page: a start page, and one for each session, with notices beside it; files can be dropped on both.
+import { guest } from "../guest";
 import { Entry } from "./entry";
 import { Notices } from "./notices";
 import { Dropping, Opening } from "./opening";
@@ -17,18 +18,18 @@ export function App() {
         <Shown />
       </div>
       <div class="notices">
-        <Opening />
+        {!guest && <Opening />}
         <Notices />
       </div>
-      <Dropping />
-      <Sheet />
+      {!guest && <Dropping />}
+      {!guest && <Sheet />}
     </>
   );
 }
 
 function Shown() {
   const key = place.value;
-  if (entry.value === "out") return <Entry />;
+  if (entry.value === "out") return guest ? <Ended /> : <Entry />;
   if (entry.value === "asking")
     return (
       <main id="main" class="entry" tabIndex={-1}>
@@ -37,6 +38,16 @@ function Shown() {
     );
   return key ? <SessionPage key={`${key} ${entries.value}`} name={key} /> : <Start />;
 }
+
+const Ended = () => (
+  <main id="main" class="entry" tabIndex={-1}>
+    <h1>hookean studio</h1>
+    <p>
+      This read-only link is no longer valid: it was revoked, or its session was deleted, or the service has ended. Ask
+      the person who shared it for another one.
+    </p>
+  </main>
+);
 
 // the part after # names the session that is shown, so the link moves the focus itself
 function skip(event: Event): void {

@@ -21,21 +21,23 @@ export function Bar({ studio, title }: { studio: Studio; title: string }) {
   const connection = studio.session.connection.value;
   return (
     <header class="bar">
-      <a
-        class="back"
-        href={location.pathname}
-        onClick={(event) => {
-          event.preventDefault();
-          go("");
-        }}
-      >
-        All sessions
-      </a>
+      {!studio.session.readOnly && (
+        <a
+          class="back"
+          href={location.pathname}
+          onClick={(event) => {
+            event.preventDefault();
+            go("");
+          }}
+        >
+          All sessions
+        </a>
+      )}
       <h1 title={title}>{title}</h1>
       <span class={`chip ${connection}`} role="status">
         {CHIPS[connection]}
       </span>
-      <Transport studio={studio} />
+      {studio.session.readOnly ? <span class="chip">Read only</span> : <Transport studio={studio} />}
       <Keys studio={studio} />
       <ThemeChoice />
     </header>

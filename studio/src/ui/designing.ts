@@ -192,6 +192,9 @@ export class Designing {
 export const isAny = ({ variables, goals, constraints }: Kept) =>
   variables.length + goals.length + constraints.length > 0;
 
+/** Whether this browser keeps a problem of a session. */
+export const isKept = (key: string) => remembered<unknown>(kept(key), null) !== null;
+
 /** Give the page of a session the problem that a file kept, if it is one. */
 export function keepDesign(key: string, design: unknown): void {
   const told = design as Partial<Kept> | null | undefined;

@@ -1,9 +1,12 @@
-// A recording of the session in this page: frames as they came, thinned where they are many; bookmarks; and replay.
+// A recording of the session: frames as they came, thinned where they are many; bookmarks; and replay. This browser
+// keeps it until it or its session is deleted.
 import { computed, effect, signal } from "@preact/signals";
 import type { Frame } from "../frame";
 import type { Session } from "../session";
 import type { Place } from "../view/camera";
 import type { Options } from "../view/types";
+import { numbers, placed } from "../view/memory";
+import { formOf, keepReel, keptReel } from "./reel";
 import { measured } from "./words";
 
 export interface Shot {
@@ -34,6 +37,8 @@ export class Film {
   readonly replaying = signal(false);
   readonly speed = signal(1);
   readonly bookmarks = signal<Bookmark[]>([]);
+  /** Whether this browser keeps what was recorded. */
+  readonly kept = signal(true);
   /** Of so many frames one is kept. */
   stride = 1;
   shots: Shot[] = [];
@@ -41,6 +46,7 @@ export class Film {
   private seen = 0;
   private last = 0;
   private ended = 0;
+  private form = "";
   private asked = 0;
   private began = { at: 0, now: 0 };
   private readonly stops: (() => void)[];
@@ -53,10 +59,12 @@ export class Film {
     this.stops = [
       session.onFrame((frame) => this.recording.peek() && this.take(frame)),
       effect(() => {
-        void session.topology.value; // frames of another form cannot be shown
-        this.clear();
+        const topology = session.topology.value; // frames of another form cannot be shown
+        this.empty();
         this.bookmarks.value = [];
         options.still.value = null;
+        this.form = topology ? formOf(topology) : "";
+        if (this.form) void this.restore(this.form);
       }),
       effect(() => {
         void revision.value; // an edit is of the present shape
@@ -87,10 +95,17 @@ export class Film {
     this.recording.value = false;
     this.ended = this.length;
     this.changed();
+    this.save();
   }
 
+  /** Delete the recording. */
   clear(): void {
-    this.stop();
+    this.empty();
+    this.save();
+  }
+
+  private empty(): void {
+    this.recording.value = false;
     this.leave();
     [this.shots, this.bytes, this.stride, this.ended] = [[], 0, 1, 0];
     this.changed();
@@ -138,7 +153,9 @@ export class Film {
   /** Keep what is shown, and from where it is looked at. */
   mark(name: string, place: Place | null): void {
     const frame = this.options.still.peek()?.frame ?? this.session.frame;
-    if (frame) this.bookmarks.value = [...this.bookmarks.value, { name, frame, place }];
+    if (!frame) return;
+    this.bookmarks.value = [...this.bookmarks.value, { name, frame, place }];
+    this.save();
   }
 
   recall({ name, frame }: Bookmark): void {
@@ -150,6 +167,30 @@ export class Film {
 
   forget(bookmark: Bookmark): void {
     this.bookmarks.value = this.bookmarks.value.filter((one) => one !== bookmark);
+    this.save();
+  }
+
+  /** Have this browser keep it. */
+  private save(): void {
+    if (!this.form || this.session.readOnly) return;
+    const { form, stride, shots } = this;
+    const bookmarks = this.bookmarks.peek().map(({ name, frame, place }) => {
+      return { name, frame, place: place && numbers(place) };
+    });
+    void keepReel(this.session.key, { form, stride, shots, bookmarks }).then((isKept) => (this.kept.value = isKept));
+  }
+
+  /** What this browser has kept of this form, unless something was recorded meanwhile. */
+  private async restore(form: string): Promise<void> {
+    const reel = this.session.readOnly ? null : await keptReel(this.session.key, form);
+    if (!reel || form !== this.form || this.shots.length || this.bookmarks.peek().length) return;
+    [this.shots, this.stride] = [reel.shots, reel.stride];
+    this.bytes = reel.shots.reduce((sum, { frame }) => sum + bytesOf(frame), 0);
+    this.ended = this.length;
+    this.bookmarks.value = reel.bookmarks.map(({ name, frame, place }) => {
+      return { name, frame, place: place && placed(place) };
+    });
+    this.changed();
   }
 
   private changed(): void {

@@ -27,6 +27,9 @@ const ON_CANVAS: [string, string][] = [
   ["x y z", "Drag along this axis; with Shift in the plane normal to it"],
 ];
 
+/** Keys that a read-only page does not have. */
+const EDITS = new Set([" ", ".", "p", "z"]);
+
 export function Keys({ studio }: { studio: Studio }) {
   const dialog = useRef<HTMLDialogElement>(null);
   useEffect(() => {
@@ -87,7 +90,7 @@ function isTaken(event: KeyboardEvent): boolean {
 /** Do the action of a key; whether it has one. */
 function obeyed(studio: Studio, event: KeyboardEvent): boolean {
   const { session, view } = studio;
-  if (event.altKey) return false;
+  if (event.altKey || (session.readOnly && EDITS.has(event.key.toLowerCase()))) return false;
   if (event.ctrlKey || event.metaKey) {
     if (event.key.toLowerCase() !== "z") return false;
     void session.tell(event.shiftKey ? "redo" : "undo");

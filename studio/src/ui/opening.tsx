@@ -2,9 +2,8 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
-import { keepDesign } from "./designing";
-import { keepView, viewOf } from "../view/kept";
-import { keepRecipe } from "./kept";
+import { viewOf } from "../view/kept";
+import { keepSeen } from "./looked";
 import { quiet, refuse, tell } from "./notices";
 import { go, met } from "./place";
 import { drafted } from "./sheetstate";
@@ -22,10 +21,7 @@ async function openFile(file: File): Promise<void> {
   try {
     if (/\.(3dm|obj|json)$/i.test(file.name) && (await drafted(file))) return;
     const made = await api.open(file);
-    const view = await viewOf(file);
-    keepView(made.key, view);
-    keepDesign(made.key, view?.design);
-    if (view?.recipe) keepRecipe(made.key, view.recipe);
+    keepSeen(made.key, await viewOf(file));
     go(made.key);
     const warnings = made.warnings ?? [];
     if (warnings.length) tell(`${file.name} is open. Notes on the file:`, warnings);

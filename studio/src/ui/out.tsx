@@ -8,6 +8,7 @@ import { barOf, picture, sizeOf, svg } from "./drawing";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
 import { fitting, keptRecipe } from "./kept";
+import { seenNow, Share } from "./share";
 import type { Studio } from "./studio";
 import { dark } from "./theme";
 import { said } from "./words";
@@ -112,7 +113,8 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
       .replace(/^-+|-+$/g, "") || "session";
   const exported = async (format: api.Format) => {
     const recipe = keptRecipe(session.key);
-    const seen = view.value && format === "hookean" ? { ...view.value.kept(), ...(recipe && { recipe }) } : null;
+    const now = format === "hookean" ? seenNow(studio) : null;
+    const seen = now && { ...now, ...(recipe && { recipe }) };
     const kept = seen && fitting(seen, studio.design.problem.value);
     const made = await api.exported(session.key, format, kept?.view);
     return { ...made, notes: [...made.notes, ...(kept?.notes ?? [])] };
@@ -145,7 +147,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
   const live = session.connection.value === "live";
   return (
     <>
-      <Rename studio={studio} title={title} />
+      {!session.readOnly && <Rename studio={studio} title={title} />}
       <div class="row">
         {FILES.map(({ format, seen, ending, hint }) => (
           <button
@@ -173,9 +175,11 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
             {seen}
           </button>
         ))}
-        <button type="button" onClick={() => void copy()}>
-          Copy link
-        </button>
+        {!session.readOnly && (
+          <button type="button" title="For browsers that are logged in to this service" onClick={() => void copy()}>
+            Copy link
+          </button>
+        )}
       </div>
       <p role="status" class="done">
         {done.value}
@@ -189,6 +193,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
           ref={(field) => field?.select()}
         />
       )}
+      {!session.readOnly && <Share studio={studio} />}
     </>
   );
 }

@@ -26,6 +26,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
   // who begins with an empty page draws, also after the first corner
   const isBlank = useRef(false);
   isBlank.current ||= studio.session.topology.value?.particles === 0;
+  const isOwn = !studio.session.readOnly;
   return (
     <aside class="panels" aria-label="Panels">
       <Panel name="Picked">
@@ -33,23 +34,27 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
         <Selected studio={studio} />
         <Measure studio={studio} />
       </Panel>
-      <Panel name="Draw" isClosed={!isBlank.current} isOpen={isBlank.current}>
-        <DrawPanel studio={studio} />
-      </Panel>
-      {studio.session.scene.value?.family && (
+      {isOwn && (
+        <Panel name="Draw" isClosed={!isBlank.current} isOpen={isBlank.current}>
+          <DrawPanel studio={studio} />
+        </Panel>
+      )}
+      {isOwn && studio.session.scene.value?.family && (
         <Panel name="Shape">
           <Shape session={studio.session} />
         </Panel>
       )}
-      <Panel name="Forces">
-        <Forces studio={studio} />
-      </Panel>
+      {isOwn && (
+        <Panel name="Forces">
+          <Forces studio={studio} />
+        </Panel>
+      )}
       <Panel name="See">
         <SeePanel studio={studio} />
         <TagsChoice studio={studio} />
         <SectionChoice studio={studio} />
       </Panel>
-      {namesOf(studio.session.scene.value).length > 0 && (
+      {isOwn && namesOf(studio.session.scene.value).length > 0 && (
         <Panel name="Load cases">
           <Cases studio={studio} />
         </Panel>
@@ -66,15 +71,19 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
       <Panel name="Tables" isClosed>
         <Tables studio={studio} />
       </Panel>
-      <Panel name="Design" isClosed>
-        <Design studio={studio} />
-      </Panel>
-      <Panel name="Compare" isClosed>
-        <Compare studio={studio} />
-      </Panel>
+      {isOwn && (
+        <Panel name="Design" isClosed>
+          <Design studio={studio} />
+        </Panel>
+      )}
+      {isOwn && (
+        <Panel name="Compare" isClosed>
+          <Compare studio={studio} />
+        </Panel>
+      )}
       <Panel name="Out">
         <OutPanel studio={studio} title={title} />
-        <RecipeKept studio={studio} />
+        {isOwn && <RecipeKept studio={studio} />}
       </Panel>
     </aside>
   );

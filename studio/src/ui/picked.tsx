@@ -79,14 +79,16 @@ function Particle({ studio, index }: Shown) {
         {anchor && <Told name="Reaction" value={reaction ? vector(reaction, force) : "-"} />}
         <Loads studio={studio} index={index} unit={force} />
       </dl>
-      <button
-        type="button"
-        disabled={stale}
-        aria-keyshortcuts="p"
-        onClick={() => void (anchor ? release : pin)(session, index)}
-      >
-        {anchor ? "Release" : "Pin"}
-      </button>
+      {!session.readOnly && (
+        <button
+          type="button"
+          disabled={stale}
+          aria-keyshortcuts="p"
+          onClick={() => void (anchor ? release : pin)(session, index)}
+        >
+          {anchor ? "Release" : "Pin"}
+        </button>
+      )}
     </div>
   );
 }
@@ -120,7 +122,7 @@ function Position({
             value={at?.[axis] ?? null}
             unit=""
             hint="Type a coordinate to move the anchor"
-            disabled={stale}
+            disabled={stale || session.readOnly}
             stale={stale}
             done={move(axis)}
           />

@@ -1,11 +1,13 @@
 // Where the page is, which the address says: #s=KEY is a session, nothing the start page; #t=TOKEN logs in.
 import { signal } from "@preact/signals";
 import * as api from "../api";
+import { guest } from "../guest";
+import { keepLooked } from "./looked";
 
 /** Key of the session that is shown; "" on the start page. */
 export const place = signal("");
 /** Whether this browser is logged in, as far as it is known. */
-export const entry = signal<"asking" | "in" | "out">("asking");
+export const entry = signal<"asking" | "in" | "out">(guest ? "in" : "asking");
 /** Counts log-ins: what was refused before one is tried again after it. */
 export const entries = signal(0);
 /** Why a token was refused; "" for nothing. */
@@ -37,6 +39,11 @@ export function arrive(): void {
 export function begin(): void {
   window.addEventListener("popstate", () => read());
   window.addEventListener("hashchange", () => read());
+  if (guest) {
+    window.addEventListener("hashchange", () => location.reload()); // of another link, or none
+    read();
+    return;
+  }
   // another page of this browser may have logged in or out meanwhile; the cookie is renewed by being used
   document.addEventListener("visibilitychange", () => document.hidden || void look());
   window.addEventListener("focus", () => void look());
@@ -70,9 +77,12 @@ function read(): boolean {
   const told = new URLSearchParams(location.hash.slice(1));
   const token = told.get("t");
   const key = told.get("s") ?? "";
+  const view = told.get("v");
+  if (key && view) keepLooked(key, view);
   if (token) {
     // neither the history nor a copied address keeps the token
     history.replaceState(null, "", key ? linkTo(key) : location.pathname);
+    if (guest) location.reload();
     void enter(token);
   }
   place.value = key;

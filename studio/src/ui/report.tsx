@@ -15,7 +15,7 @@ export function Report({ studio }: { studio: Studio }) {
       <Standing studio={studio} />
       <Stable studio={studio} />
       <Warnings studio={studio} />
-      <Repairs session={studio.session} />
+      {!studio.session.readOnly && <Repairs session={studio.session} />}
     </section>
   );
 }
@@ -25,7 +25,7 @@ const LOST = {
   lost:
     "Connection to the service lost; retrying. If it has ended, start it with hookean studio: this page then " +
     "continues. Showing the last received values.",
-  gone: "This session was deleted; showing the last received values. Choose another one under All sessions.",
+  gone: "This session was deleted; showing the last received values.",
   broken: "Reload the page.",
 };
 

@@ -4,6 +4,7 @@ import * as api from "../api";
 import type { Store, Summary } from "../model";
 import { refuse, tell } from "./notices";
 import { linkTo, met } from "./place";
+import { pruneReels } from "./reel";
 import { calledOf, counted } from "./words";
 
 const AGAIN = 2000;
@@ -15,6 +16,7 @@ export function Running() {
   useEffect(() => {
     let here = true;
     let timer = 0;
+    let isFirst = true;
     const read = async () => {
       const found = await api.sessions().catch((error: Error) => {
         met(error);
@@ -25,6 +27,8 @@ export function Running() {
       if (!(found instanceof Error)) {
         setSessions(found.sessions);
         setStore(found.store ?? null);
+        if (isFirst) void pruneReels(new Set(found.sessions.map(({ key }) => key)));
+        isFirst = false;
       }
       timer = window.setTimeout(read, document.hidden ? 5 * AGAIN : AGAIN);
     };

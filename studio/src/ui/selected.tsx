@@ -66,10 +66,11 @@ export function Selected({ studio }: { studio: Studio }) {
       <ByPart studio={studio} choose={choose} />
       <ByForce studio={studio} choose={choose} />
       <p role="status" class="note">
-        {counted(chosen.length, "particle")} selected. Forces are added to them by "What is picked" below.
+        {counted(chosen.length, "particle")} selected.
+        {!session.readOnly && ' Forces are added to them by "What is picked" below.'}
       </p>
-      <Acts studio={studio} chosen={chosen} />
-      <Groups studio={studio} chosen={chosen} choose={choose} />
+      {!session.readOnly && <Acts studio={studio} chosen={chosen} />}
+      {!session.readOnly && <Groups studio={studio} chosen={chosen} choose={choose} />}
     </details>
   );
 }

@@ -36,7 +36,7 @@ export function sharing(session: Session, options: Options): () => void {
     }),
     effect(() => {
       const picked = options.picked.value;
-      const tells = !isFirst && session.connection.peek() === "live";
+      const tells = !isFirst && !session.readOnly && session.connection.peek() === "live";
       if (tells) void api.share(session.key, { picked }).catch(() => undefined);
       isFirst = false;
     }),

@@ -47,9 +47,10 @@ export function SessionPage({ name }: { name: string }) {
     const chosen = options();
     chosen.layers.value = { ...chosen.layers.value, ...remembered(LAYERS, {}) };
     [chosen.groups.value, chosen.groupColours.value] = [keptGroups(name), keptColours(name)];
-    takeUp(name, chosen);
+    const seen = takeUp(name, chosen);
     chosen.dark.value = dark.peek();
-    const forgets = [
+    // a read-only page leaves what this browser remembers of its owner as it is
+    const forgets = session.readOnly ? [] : [
       effect(() => remember(LAYERS, chosen.layers.value)),
       effect(() => keepGroups(name, chosen.groups.value)),
       effect(() => keepColours(name, chosen.groupColours.value)),
@@ -57,7 +58,7 @@ export function SessionPage({ name }: { name: string }) {
     const readings = new Readings(session, chosen);
     const rested = new Rested(session);
     const design = new Designing(session);
-    const surfacing = new Surfacing(session, chosen);
+    const surfacing = new Surfacing(session, chosen, seen?.surface);
     const film = new Film(session, chosen);
     const traced = new Traced(session, chosen, film);
     const casing = new Casing(session, chosen);

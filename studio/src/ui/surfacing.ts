@@ -51,6 +51,13 @@ const MANY = 30_000;
 /** Next to the largest number these are rounding. */
 const NOTHING = 1e-9;
 
+/** What was chosen, from an address or a file; null where that is none. */
+function chosenOf(told: unknown): Chosen | null {
+  const { scalar = null, heights = false, step = null, water = false } = (told ?? {}) as Partial<Chosen>;
+  if (scalar !== null && !SCALARS.some(({ name }) => name === scalar)) return null;
+  return { scalar, heights: heights === true, step: typeof step === "number" && step > 0 ? step : null, water: water === true };
+}
+
 export class Surfacing {
   readonly chosen = signal<Chosen>({ scalar: null, heights: false, step: null, water: false });
   /** As it was read last; null before. */
@@ -65,7 +72,10 @@ export class Surfacing {
   constructor(
     private readonly session: Session,
     private readonly options: Options,
+    told: unknown = null,
   ) {
+    const given = chosenOf(told);
+    if (given) this.chosen.value = given;
     const isWanted = computed(() => {
       const { scalar, heights, water } = this.chosen.value;
       return scalar !== null || heights || water;

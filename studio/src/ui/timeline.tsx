@@ -20,7 +20,7 @@ export function Timeline({ studio, title }: { studio: Studio; title: string }) {
           type="button"
           aria-pressed={isRecording}
           disabled={!live && !isRecording}
-          title="Keep each frame that arrives, in this page: play, drag, solve. Long recordings are thinned to 96 MB"
+          title="Keep each frame that arrives: play, drag, solve. This browser keeps the recording as long as the session; long ones are thinned to 96 MB"
           onClick={() => (isRecording ? film.stop() : film.record())}
         >
           {isRecording ? "Stop recording" : "Record"}
@@ -35,6 +35,9 @@ export function Timeline({ studio, title }: { studio: Studio; title: string }) {
           ? `${counted(count, "frame")} in ${said(film.length, 3)} s${thinned}`
           : "Nothing recorded yet: press Record, then Play or drag."}
       </p>
+      {!film.kept.value && (
+        <p class="fault">This browser does not keep recordings: save a video before you close the page.</p>
+      )}
       <Bookmarks studio={studio} />
       {count > 1 && <Video studio={studio} title={title} />}
     </div>
@@ -123,7 +126,7 @@ function Bookmarks({ studio: { film, view } }: { studio: Studio }) {
           value={name.value}
           onInput={(event) => (name.value = event.currentTarget.value)}
         />
-        <button type="submit" title="Keep the shape that is shown and the view, until this page is closed">
+        <button type="submit" title="Keep the shape that is shown and the view, in this browser">
           Bookmark
         </button>
       </form>

@@ -32,14 +32,19 @@ export function keepView(key: string, view: Kept | null): void {
   if (Array.isArray(view.eye)) remember(key, view.eye);
 }
 
-/** Give the options of a session's page what was kept. */
-export function takeUp(key: string, options: Options): void {
+/** Give the options of a session's page what was kept; returns it. */
+export function takeUp(key: string, options: Options): Kept | null {
   const view = taken.get(key);
-  if (!view) return;
+  if (!view) return null;
   taken.delete(key);
   if (["force", "strain", "plain"].includes(view.colouring)) options.colouring.value = view.colouring;
   if (view.scale && ["auto", "even", "log"].includes(view.scale.kind)) options.scale.value = view.scale;
+  const { picked } = view;
+  const isPicked = picked && ["particle", "spring"].includes(picked.kind) && Number.isInteger(picked.index);
+  if (isPicked) options.picked.value = { kind: picked.kind, index: picked.index };
+  if (Array.isArray(view.marked)) options.marked.value = view.marked.filter((one) => Number.isInteger(one) && one >= 0);
   if (view.groups) options.groups.value = view.groups;
   if (view.groupColours) options.groupColours.value = view.groupColours;
   options.layers.value = { ...options.layers.value, ...view.layers };
+  return view;
 }

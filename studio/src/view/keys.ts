@@ -1,5 +1,6 @@
 // The keyboard on the canvas: all that a pointer can do.
 import { Vector3 } from "three";
+import { READ_ONLY } from "../guest";
 import { gesture, holder, Newest } from "../hand";
 import type { Session } from "../session";
 import type { Eye } from "./camera";
@@ -92,6 +93,7 @@ export class Keys {
   /** Move a picked anchor along the axes that lie most to the right, upwards and towards the eye. */
   private nudge([right, up, near]: [number, number, number]): void {
     const { session, options, size, at, say } = this.view;
+    if (session.readOnly) return say(READ_ONLY);
     const picked = options.picked.value;
     const anchor = picked?.kind === "particle" ? holder(session.anchors.value, picked.index) : undefined;
     if (!picked || !anchor) return say("Pick an anchor first (A), then move it with Alt and arrows.");

@@ -12,6 +12,17 @@ export const numbers = ({ target, towards, height, angle }: Place) => [
   angle,
 ];
 
+/** The place of these numbers; null where they are of none. */
+export function placed(kept: number[]): Place | null {
+  if (kept.length !== 8 || !kept.every(Number.isFinite) || !(kept[6]! > 0 && kept[7]! > 0)) return null;
+  return {
+    target: new Vector3().fromArray(kept),
+    towards: new Vector3().fromArray(kept, 3),
+    height: kept[6]!,
+    angle: kept[7]!,
+  };
+}
+
 /** Keep the place of the eye. */
 export function remember(key: string, place: Place | number[]): void {
   try {
@@ -24,14 +35,7 @@ export function remember(key: string, place: Place | number[]): void {
 /** The place that was kept; null for none. */
 export function remembered(key: string): Place | null {
   try {
-    const kept = JSON.parse(sessionStorage.getItem(name(key)) ?? "[]") as number[];
-    if (kept.length !== 8 || !kept.every(Number.isFinite) || !(kept[6]! > 0 && kept[7]! > 0)) return null;
-    return {
-      target: new Vector3().fromArray(kept),
-      towards: new Vector3().fromArray(kept, 3),
-      height: kept[6]!,
-      angle: kept[7]!,
-    };
+    return placed(JSON.parse(sessionStorage.getItem(name(key)) ?? "[]") as number[]);
   } catch {
     return null;
   }

@@ -179,6 +179,10 @@ export interface Kept {
   layers: Partial<Record<Layer, boolean>>;
   /** A design problem of it. */
   design?: unknown;
+  /** What was picked and selected, and what was read off the surface. */
+  picked?: Picked;
+  marked?: number[];
+  surface?: unknown;
 }
 
 /** A particle in the hand, and where it was taken from [length]. */

@@ -263,6 +263,7 @@ class Drawing implements View {
   }
 
   private takes(particle: number): boolean {
+    if (this.session.readOnly) return false;
     if (this.options.still.peek()) return false; // what is not of now cannot be moved
     const picked = this.options.picked.value;
     const alone = this.picture.dotted(this.eye.pixel(this.stage.height));
