@@ -258,6 +258,35 @@ def test_groups_of_an_obj_file_are_layers_and_anchors_snap() -> None:
     assert model_in(b'{"forces": []}', "scene.json") is None
 
 
+def test_groups_of_an_obj_file_share_the_particles_of_their_seam() -> None:
+    """3 x 3 squares: the left column and the rest are groups of their own, with a role each. 16 vertices are 16
+    particles, and held is the rim of the whole, 12 of them: the seam between the groups is free. A second skin on the
+    same faces, and a group without any rim, change nothing."""
+    corners = [(i, j) for i in range(4) for j in range(4)]
+    squares = {(i, j): [4 * i + j + 1, 4 * i + 5 + j, 4 * i + 6 + j, 4 * i + 2 + j] for i in range(3) for j in range(3)}
+    groups = {"left": [(0, 0), (0, 1), (0, 2)], "right": [p for p in squares if p[0] and p != (1, 1)], "eye": [(1, 1)]}
+    groups["lining"] = groups["right"]
+    text = "".join(f"v {i} {j} 0\n" for i, j in corners)
+    for name, own in groups.items():
+        text += f"g {name}\n" + "".join("f " + " ".join(map(str, squares[p])) + "\n" for p in own)
+    model = model_in(text.encode(), "roof.obj")
+    assert model is not None
+    rows = [{"layer": "right", "family": "surfaces", "role": "membrane", "values": {}}]
+    found = draft(model, {"rows": rows})
+    assert (found.particles, found.held, found.fault) == (16, 12, "")
+    scene = understand(model, found.recipe).built.scene
+    assert [(force.kind, force.name) for force in scene.forces] == [
+        ("springs", "left"),
+        ("membrane", "right"),
+        ("springs", "eye"),
+        ("springs", "lining"),
+    ]
+    system = compile(scene)
+    assert len(system.points) == 16
+    free = system.points[system.start().free[:16].all(axis=1), :2]
+    assert sorted(map(tuple, free.tolist())) == [(1, 1), (1, 2), (2, 1), (2, 2)]
+
+
 def test_a_shell_is_a_membrane_without_prestress_and_its_bending(draw: Callable[..., Any]) -> None:
     model = draw(NewObject(SQUARE, "skin"))
     rows = [{"layer": "skin", "family": "surfaces", "role": "shell", "values": {"bending": 7}}]

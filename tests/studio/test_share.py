@@ -86,6 +86,7 @@ def test_the_address_of_a_saved_model_has_its_view(tab: Studio):
     assert tab.page.get_by_role("radio", name="Strain").is_checked()
     assert not tab.page.get_by_role("checkbox", name="Particles").is_checked()
     assert tab.page.get_by_text("2 particles selected.").count() == 1
-    # the target of the eye is the middle of the net, which is 8 m high on the canvas: 1.5 m are 3/16 of it
-    assert seen(tab, 0) == pytest.approx([-1.5 / 8, 0.0], abs=0.02)
+    # the middle of the net is the target, around which 8 m are seen; this corner is 1.5 m nearer to the eye
+    eye_to_target = 4.0 / np.tan(np.radians(16.0))
+    assert seen(tab, 0) == pytest.approx([-1.5 / 8 * eye_to_target / (eye_to_target - 1.5), 0.0], abs=1 / 800)
     assert tab.page.url == f"{service.url}/#s=saved"

@@ -214,8 +214,8 @@ class _Builder:
         made = {"points": self._points, "lines": self._lines, "mesh": self._mesh}[name]
         self.misfits = []
         found = [s for term in terms(value, pointer) for s in made(term, own, pointer)]
-        if not sum(len(shape.array) for shape in found):
-            asked = {t.feature for t in terms(value, pointer)}
+        asked = {t.feature for t in terms(value, pointer)}
+        if not sum(len(shape.array) for shape in found) and not (found and asked == {"rim"}):
             closed = "; closed meshes have none" if asked & {"naked", "corners"} else ""
             closed = "; closed curves, and curves whose ends all meet, have none" if "loose" in asked else closed
             why = next((f": {w}" for w in (*self.left.values(), *self.misfits)), closed)
@@ -245,22 +245,27 @@ class _Builder:
         surfaces = [i for i in items if meshes(i)]
         if surfaces:
             shape = self._joined(surfaces, own, pointer, term)
-            if len(shape.array):
+            if len(shape.array) and term.feature == "rim":
+                others = [item for item in self._selected("mesh", shapes.is_mesh) if item not in surfaces]
+                found.append(shapes.rim(shape, self._joined(others, None, pointer), self.tolerance))
+            elif len(shape.array):
                 found.append(shapes.mesh_points(shape, term.feature, self.tolerance))
         return found
 
     def _loose(self, items: Sequence[Item], term: Term, own: Split | None, pointer: str) -> Shape:
         """Ends of curves that meet neither another of them nor another line of a force."""
-        others = [item for item in self._springs() if item not in items]
+        others = [item for item in self._selected("lines", shapes.is_curve) if item not in items]
         mine, rest = self._pieces(items, term, own, pointer), self._pieces(others, None, None, pointer)
         return shapes.loose(shapes.concatenated(mine, 3), shapes.concatenated(rest, 3), self.tolerance)
 
-    def _springs(self) -> list[Item]:
-        """The curves that become lines of forces."""
-        given = [(i, t.get("lines")) for i, t in enumerate(self._tables("forces")) if is_selector(t.get("lines"))]
-        where = [(term, f"/forces/{i}/lines") for i, value in given for term in terms(value, f"/forces/{i}/lines")]
-        found = [item for term, pointer in where for item in select(self.drawing, term, pointer)]
-        return [item for item in dict.fromkeys(found) if shapes.is_curve(item)]
+    def _selected(self, place: str, fits: Callable[[Item], bool]) -> list[Item]:
+        """The curves that become lines of forces, or what becomes their meshes."""
+        found: list[Item] = []
+        for number, table in enumerate(self._tables("forces")):
+            pointer = f"/forces/{number}/{place}"
+            if is_selector(table.get(place)) and not self._literal_mesh(place, table):
+                found += [item for term in terms(table[place], pointer) for item in select(self.drawing, term, pointer)]
+        return [item for item in dict.fromkeys(found) if fits(item)]
 
     def _lines(self, term: Term, own: Split | None, pointer: str) -> list[Shape]:
         _plain(term, pointer)

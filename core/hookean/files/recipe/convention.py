@@ -260,7 +260,7 @@ def _along(item: Item, reading: _Reading) -> None:
 
 
 def _hold_loose(drawing: Drawing, reading: _Reading, tolerance: float) -> None:
-    """Hold the ends of lines that no other line meets, and the naked vertices of meshes."""
+    """Hold the ends of lines that no other line meets, and the naked vertices of meshes, but for seams between them."""
     pieces = [shapes.lines_of(i, _division(i), "") for i in reading.elastic if shapes.is_curve(i)]
     if pieces:
         ends = np.concatenate(pieces).reshape(-1, 3) * drawing.factor
@@ -276,7 +276,7 @@ def _hold_loose(drawing: Drawing, reading: _Reading, tolerance: float) -> None:
             _leave(item, reading, "closed, so it has no naked vertices to hold; anchor it or give a recipe")
             continue
         table = {"name": "naked vertices", "points": [], **({} if split is None else {"divide": list(split)})}
-        reading.anchors.setdefault(("naked", split), table)["points"].append(f"naked:id:{item.ids[-1]}")
+        reading.anchors.setdefault(("naked", split), table)["points"].append(f"rim:id:{item.ids[-1]}")
 
 
 def _leave(item: Item, reading: _Reading, why: str) -> None:

@@ -33,8 +33,8 @@ stands for anything inside a name. Several are joined by commas or in a list.
   surface below it without the cuts.
 * `points`, of forces and anchors: points and point clouds; `start:`, `ends:` of curves, `loose:` for those ends that no
   other curve of the selector and no line of a force meets; `vertices:`, `inner:` of curves and meshes; `naked:`,
-  `corners:` of meshes and surfaces. How one table divides an object holds for all tables without another one, and so
-  does the user text `divide` of the object.
+  `corners:` of meshes and surfaces, `rim:` for those naked ones at which no other mesh of a force goes on. How one
+  table divides an object holds for all tables without another one, and so does the user text `divide` of the object.
 * `snap = 0.2` of an anchor moves its points to the nearest particle, where that is no farther [length].
 * `on = "layer:beams"` keeps the points that lie on these curves. `pull_to_curve` selects its `curve`; bent ones with
   `curve_divide = N`; of several each pulls the points nearest to it.

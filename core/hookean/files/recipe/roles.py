@@ -123,7 +123,7 @@ def _elastic(role: Role, item: Item, table: dict[str, Any], units: Units) -> lis
     vector = [load[0], load[1], given["load"]]
     if any(vector):
         parts.append(Part("forces", {"kind": "unary", "name": f"load {name}", "vector": vector}, "points", "vertices"))
-    feature = {"loose ends": "loose", "edges": "naked", "all": "vertices", "nothing": ""}.get(
+    feature = {"loose ends": "loose", "edges": "rim", "all": "vertices", "nothing": ""}.get(
         given["held"], given["held"]
     )
     if feature:

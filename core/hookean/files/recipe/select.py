@@ -14,7 +14,7 @@ from hookean.files.recipe.drawing import NO_LAYER, Drawing, Item, above, layers_
 from hookean.files.rhino.model import SEPARATOR
 
 KEYS = ("layer", "name", "id", "text")
-FEATURES = ("start", "ends", "loose", "vertices", "inner", "corners", "naked")
+FEATURES = ("start", "ends", "loose", "vertices", "inner", "corners", "naked", "rim")
 """Points of a selected object that a selector may ask for in front of it."""
 
 _START = re.compile(rf"\s*(?:(?:{'|'.join(FEATURES)})\s*:\s*)?(?:(?:{'|'.join(KEYS)})\s*:|\*\s*(?:,|$))", re.IGNORECASE)

@@ -235,6 +235,17 @@ def mesh_points(shape: Shape, feature: str, tolerance: float) -> Shape:
     return Shape(shape.items, mesh.vertices[chosen], shape.owner[kept][chosen])
 
 
+def rim(own: Shape, others: Shape, tolerance: float) -> Shape:
+    """Vertices of meshes on edges that are naked beside all the others, too: a seam between two of them is none."""
+    assert own.faces is not None and others.faces is not None
+    kept, place = unique_points(np.concatenate([own.array, others.array]), tolerance)
+    faces = tidy_faces(place[np.concatenate([own.faces, others.faces + len(own.array)])])
+    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)  # two skins on the same faces have an edge
+    naked = naked_vertices(Mesh(np.concatenate([own.array, others.array])[kept], faces[first]))
+    mine = np.flatnonzero(np.isin(place[: len(own.array)], naked))
+    return unique(Shape(own.items, own.array[mine], own.owner[mine]), tolerance)
+
+
 def loose(lines: Shape, others: Shape, tolerance: float) -> Shape:
     """The ends of lines that no other of these lines and none of the others meets."""
     ends = np.concatenate([lines.array, others.array]).reshape(-1, 3)
