@@ -20,7 +20,7 @@ import httpx
 import pytest
 
 import forking
-from hookean import Simulation
+from hookean import Scene, Simulation
 from hookean.files import project
 from hookean_server.lifecycle.studio import LONGEST_VIEW, view_in
 from serving import CABLE, HANG, Home, wait_for
@@ -34,7 +34,7 @@ def test_a_saved_model_leads_to_the_view_it_was_saved_with() -> None:
     """The address has the view of the file, whatever is in it; of other files, and of a view too long for an address,
     it has none."""
     view = {"eye": [0.5, 1.0], "groups": {"rim & seam": [1, 2]}, "colouring": "strain"}
-    simulation = Simulation(CABLE)
+    simulation = Simulation(Scene.read(CABLE))
     found = view_in(project.write(project.Project(simulation, view)))
     assert json.loads(parse_qs(f"s=a{found}")["v"][0]) == view
     assert view_in(project.write(project.Project(simulation, {}))) == ""

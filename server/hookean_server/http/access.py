@@ -79,6 +79,12 @@ class Table:
                 return route.endpoint in _READING and match.groupdict().get("key", key) == key
         return False
 
+    def declared_reading(self, method: str, template: str) -> bool:
+        """Whether clients with a read-only link may call the operation of a template, of their session."""
+        return any(
+            r.endpoint in _READING for r in self.routes if r.path_format == template and method in (r.methods or ())
+        )
+
     def declared(self, method: str, template: str) -> Access:
         """The clients that may call the operation of a template, such as /v1/sessions/{key}."""
         found = (r.endpoint for r in self.routes if r.path_format == template and method in (r.methods or ()))

@@ -361,6 +361,11 @@ def _secure(app: FastAPI, document: dict[str, Any]) -> None:
             "scheme": "bearer",
             "description": "A code of POST /v1/login/codes, valid for one log-in within a minute",
         },
+        "link": {
+            "type": "http",
+            "scheme": "bearer",
+            "description": "The token of PUT /v1/sessions/{key}/guest, for this session alone",
+        },
         "cookie": {
             "type": "apiKey",
             "in": "cookie",
@@ -377,7 +382,8 @@ def _secure(app: FastAPI, document: dict[str, Any]) -> None:
     }
     for path, item in document["paths"].items():
         for method, operation in item.items():
-            operation["security"] = by[table.declared(method.upper(), path)]
+            link: list[dict[str, list[str]]] = [{"link": []}] * table.declared_reading(method.upper(), path)
+            operation["security"] = by[table.declared(method.upper(), path)] + link
 
 
 def _link(paths: dict[str, Any]) -> None:
