@@ -287,6 +287,27 @@ def test_groups_of_an_obj_file_share_the_particles_of_their_seam() -> None:
     assert sorted(map(tuple, free.tolist())) == [(1, 1), (1, 2), (2, 1), (2, 2)]
 
 
+def test_curves_guide_the_rim(draw: Callable[..., Any]) -> None:
+    """A square of 1 m between two rails 0.1 m beside it: each corner is pulled to the nearer rail, by strength times
+    distance. Guides alone give nothing to relax."""
+    rails = [np.array([[-1.0, -0.1, 0], [2, -0.1, 0]]), np.array([[-1.0, 1.1, 0], [2, 1.1, 0]])]
+    model = draw(NewObject(SQUARE, "skin"), *(NewObject(rail, "rails") for rail in rails))
+    values = {"strength": 50.0, "pulls": "edges"}
+    rows = [
+        {"layer": "skin", "family": "surfaces", "role": "net", "values": {"held": "nothing"}},
+        {"layer": "rails", "family": "curves", "role": "guide", "values": values},
+    ]
+    found = draft(model, {"rows": rows})
+    assert (found.fault, found.rows[1].becomes) == ("", ["2 guides"])
+    assert found.recipe["forces"][1]["points"] == ["rim:layer:skin"]
+    scene = understand(model, json.loads(json.dumps(found.recipe))).built.scene
+    assert [force.kind for force in scene.forces] == ["springs", "pull_to_curve", "pull_to_curve"]
+    pull, first = (start(scene.replaced(forces=forces)) for forces in (scene.forces, scene.forces[:1]))
+    assert np.allclose((pull - first)[:, 3:6], [[0, y, 0] for y in (-5, -5, 5, 5)], rtol=1e-12)
+    rows[0]["role"], rows[0]["values"] = "ignore", {}
+    assert "nothing becomes springs or a membrane" in draft(model, {"rows": rows}).fault
+
+
 def test_a_shell_is_a_membrane_without_prestress_and_its_bending(draw: Callable[..., Any]) -> None:
     model = draw(NewObject(SQUARE, "skin"))
     rows = [{"layer": "skin", "family": "surfaces", "role": "shell", "values": {"bending": 7}}]

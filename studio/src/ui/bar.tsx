@@ -37,7 +37,7 @@ export function Bar({ studio, title }: { studio: Studio; title: string }) {
       <span class={`chip ${connection}`} role="status">
         {CHIPS[connection]}
       </span>
-      {studio.session.readOnly ? <span class="chip">Read only</span> : <Transport studio={studio} />}
+      {studio.session.readOnly ? <span class="chip reading">Read only</span> : <Transport studio={studio} />}
       <Keys studio={studio} />
       <ThemeChoice />
     </header>

@@ -64,19 +64,21 @@ export function SeePanel({ studio: { options, session } }: { studio: Studio }) {
           </label>
         ))}
       </fieldset>
-      <label class="field">
-        <span>Drag along</span>
-        <select
-          value={options.lock.value}
-          onChange={(event) => (options.lock.value = event.currentTarget.value as Lock)}
-        >
-          {LOCKS.map(([name, seen]) => (
-            <option key={name} value={name}>
-              {seen}
-            </option>
-          ))}
-        </select>
-      </label>
+      {!session.readOnly && (
+        <label class="field">
+          <span>Drag along</span>
+          <select
+            value={options.lock.value}
+            onChange={(event) => (options.lock.value = event.currentTarget.value as Lock)}
+          >
+            {LOCKS.map(([name, seen]) => (
+              <option key={name} value={name}>
+                {seen}
+              </option>
+            ))}
+          </select>
+        </label>
+      )}
     </>
   );
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from hookean.errors import InputError
@@ -44,22 +44,41 @@ def recipe_of(rows: Sequence[Row], seen: Drawing, weld: float) -> tuple[dict[str
     for table in tables.values():
         groups[table.part.group].append(table)
     recipe: dict[str, Any] = {"units": seen.units.model_dump(), "weld_tolerance": weld, "strict": False}
-    recipe |= {group: list(_written(found, seen)) for group, found in groups.items()}
+    led = [table for table in groups["forces"] if table.part.place in FEATURES]
+    recipe |= {group: list(_written(found, seen, led)) for group, found in groups.items()}
     if tops:
         recipe["settings"] = {"floor": {"point": [0.0, 0.0, max(tops)]}}
     return recipe, {group: [table.row for table in found] for group, found in groups.items()}
 
 
-def _written(tables: Sequence[_Table], seen: Drawing) -> Iterator[dict[str, Any]]:
-    """Tables with their selectors, and names that differ."""
+FEATURES = {"lines": {"edges": "ends", "all": "vertices"}, "mesh": {"edges": "rim", "all": "vertices"}}
+"""By the place of an elastic force, the points of it that a guide pulls."""
+
+
+def _written(tables: Sequence[_Table], seen: Drawing, led: Sequence[_Table]) -> Iterator[dict[str, Any]]:
+    """Tables with their selectors, and names that differ; guides pull points of the elastic tables `led`."""
     used: dict[str, int] = {}
     for table in tables:
         part = table.part
         name = str(part.table["name"])
         used[name] = used.get(name, 0) + 1
         named = name if used[name] == 1 else f"{name}/{used[name]}"
+        if part.place == "curve":
+            selector = _selector(table.items, replace(part, feature=""), seen)
+            yield {**part.table, "name": named, "curve": selector, "points": _pulled(part.feature, seen, led)}
+            continue
         selector = _selector(table.items, part, seen)
         yield {**part.table, "name": named, part.place: selector}
+
+
+def _pulled(what: str, seen: Drawing, led: Sequence[_Table]) -> list[str]:
+    """Selectors of the points that a guide pulls."""
+    found: list[str] = []
+    for table in led:
+        part = Part("forces", {}, "points", FEATURES[table.part.place][what])
+        selector = _selector(table.items, part, seen)
+        found += [selector] if isinstance(selector, str) else selector
+    return list(dict.fromkeys(found))
 
 
 def _selector(items: Sequence[Item], part: Part, seen: Drawing) -> Any:
@@ -69,7 +88,7 @@ def _selector(items: Sequence[Item], part: Part, seen: Drawing) -> Any:
         divided = "divide" in part.table or part.table.get("kind") in ("polyline", "curve")
         fits, _ = shapes.points_from(part.feature, divided=divided)
     else:
-        fits = shapes.is_curve if part.place == "lines" else shapes.is_mesh
+        fits = shapes.is_curve if part.place in ("lines", "curve") else shapes.is_mesh
     text = f"{front}layer:{items[0].layer}"
     with contextlib.suppress(InputError):
         meant = terms(text, "")

@@ -237,7 +237,7 @@ def _solvable(found: Draft, sources: Mapping[str, list[int]]) -> None:
     from hookean.running.result import held_particles
     from hookean.system.system import compile
 
-    if all(table.get("kind", "unary") == "unary" for table in found.recipe["forces"]):
+    if all(table.get("kind", "unary") in ("unary", "pull_to_curve") for table in found.recipe["forces"]):
         found.fault = _nothing(found.rows)
         return
     try:
@@ -286,7 +286,11 @@ def _count(found: Draft, built: Built, sources: Mapping[str, list[int]], element
     sums: list[Counter[str]] = [Counter() for _ in found.rows]
     for number, row in enumerate(sources["forces"]):
         force, shape = built.scene.forces[number], built.forces[number]
-        if force.kind_name == "membrane":
+        if force.kind_name == "pull_to_curve":
+            sums[row]["guide"] += sum(
+                (entry.role or found.rows[row].role) == "guide" for entry in found.rows[row].entries
+            )
+        elif force.kind_name == "membrane":
             sums[row]["face of membrane"] += 0 if shape is None or shape.faces is None else len(shape.faces)
         elif force.kind_name != "shell":  # its faces are those of its membrane
             sums[row]["load" if force.kind_name == "unary" else "spring"] += elements[number]

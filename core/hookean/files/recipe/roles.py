@@ -58,7 +58,7 @@ Snap = Annotated[
 @dataclass(frozen=True)
 class Part:
     """A table of a recipe for one object: its group (`forces`, `anchors`, `geometry`), the field that selects the
-    object, and the feature of it."""
+    object, and the feature of it. Of a `curve` that pulls, the feature is what it pulls: edges or all."""
 
     group: str
     table: Mapping[str, Any]
@@ -353,11 +353,33 @@ class CarriedSurfaces(Surface):
         return [Part("geometry", {"kind": "mesh", "name": item.layer or item.kind, **self.divided(item)}, "mesh")]
 
 
+class GuideCurves(Role):
+    """Curves that guide particles."""
+
+    role, family = "guide", "curves"
+    summary = "Stays where it is, and pulls particles onto itself along which they slide"
+    strength: float = Field(
+        default=1000.0, ge=0, le=LARGEST, description="Pull on a particle one unit away from it [force/length]"
+    )
+    pulls: Literal["edges", "all"] = Field(
+        default="edges", description="Particles it pulls: on edges of surfaces and at ends of curves, or all [-]"
+    )
+    divide: int = Field(
+        default=100, ge=1, le=2000, description="Pieces of the polyline that stands for it, if it is bent [-]"
+    )
+
+    def parts(self, item: Item, units: Units) -> list[Part]:
+        """A pull to the curve; of several with the same values each particle is pulled to the nearest."""
+        name = item.layer.replace("::", " ") or self.role
+        table = {"kind": "pull_to_curve", "name": name, "strength": self.strength, "curve_divide": self.divide}
+        return [Part("forces", table, "curve", self.pulls)]
+
+
 ROLES: dict[tuple[str, str], type[Role]] = {
     (role.family, role.role): role
     for role in (
         *(SpringRole, CableRole, NetRole, MembraneRole, ShellRole, HeldPoints, HeldCurves, HeldSurfaces),
-        *(LoadedPoints, LoadedCurves, CarriedPoints, CarriedCurves, CarriedSurfaces),
+        *(LoadedPoints, LoadedCurves, CarriedPoints, CarriedCurves, CarriedSurfaces, GuideCurves),
     )
 }
 """All roles with values, by family and name."""
