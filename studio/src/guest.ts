@@ -3,7 +3,7 @@
 
 const told = new URLSearchParams(location.hash.slice(1));
 
-/** The token of the link; "" where this page is of somebody who is logged in. */
+/** The token of the link; "" in a browser that logs in. */
 export const guest = told.get("g") ?? "";
 
 /** The headers of a request of this page, which has no cookie of its own then. */

@@ -1,4 +1,4 @@
-// A link that shows the session as it is looked at now, read-only, to somebody on this machine.
+// A link that shows the session as it is looked at now, read-only, to another person on this machine.
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import * as api from "../api";
@@ -44,7 +44,8 @@ export function Share({ studio }: { studio: Studio }) {
       address.value = "";
       await navigator.clipboard.writeText(made).catch(() => (address.value = made));
       const how = address.value ? "Copy the link below." : "The read-only link was copied.";
-      done.value = `${how} It shows this view in any browser of this machine, until you revoke it or delete the session.`;
+      const where = "It shows this view in any browser of this machine, until you revoke it or delete the session.";
+      done.value = `${how} ${where}`;
     } catch (error) {
       met(error);
       refuse(error, "There is no read-only link. ");
@@ -67,7 +68,7 @@ export function Share({ studio }: { studio: Studio }) {
         <button
           type="button"
           disabled={!live}
-          title="For somebody on this machine: the same session and view, live, to look at and measure, not to change"
+          title="For another person on this machine: the same session and view, live, to read and measure only"
           onClick={() => void copy()}
         >
           Copy a read-only link

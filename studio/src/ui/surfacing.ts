@@ -51,11 +51,12 @@ const MANY = 30_000;
 /** Next to the largest number these are rounding. */
 const NOTHING = 1e-9;
 
-/** What was chosen, from an address or a file; null where that is none. */
+/** What was chosen, from an address or a file; null if that is invalid. */
 function chosenOf(told: unknown): Chosen | null {
   const { scalar = null, heights = false, step = null, water = false } = (told ?? {}) as Partial<Chosen>;
   if (scalar !== null && !SCALARS.some(({ name }) => name === scalar)) return null;
-  return { scalar, heights: heights === true, step: typeof step === "number" && step > 0 ? step : null, water: water === true };
+  const distance = typeof step === "number" && step > 0 ? step : null;
+  return { scalar, heights: heights === true, step: distance, water: water === true };
 }
 
 export class Surfacing {

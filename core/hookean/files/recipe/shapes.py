@@ -236,7 +236,7 @@ def mesh_points(shape: Shape, feature: str, tolerance: float) -> Shape:
 
 
 def rim(own: Shape, others: Shape, tolerance: float) -> Shape:
-    """Vertices of meshes on edges that are naked beside all the others, too: a seam between two of them is none."""
+    """Vertices of meshes on edges that stay naked beside all the others: those of seams between meshes do not count."""
     assert own.faces is not None and others.faces is not None
     kept, place = unique_points(np.concatenate([own.array, others.array]), tolerance)
     faces = tidy_faces(place[np.concatenate([own.faces, others.faces + len(own.array)])])
