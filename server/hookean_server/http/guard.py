@@ -101,7 +101,8 @@ class Guard:
         if needed in (Access.OPEN, Access.HOPS):
             return None, ""
         given = headers.all(b"authorization", lower=False)
-        entry, renewal = None, ""
+        entry: Entry | None = None
+        renewal = ""
         if links := headers.links if scope["type"] == "websocket" else []:
             entry = self.tokens.guests.named(links[0])  # whatever cookie a browser adds
         elif len(given) == 1:
