@@ -34,6 +34,8 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     planes,
     points_more,
     primitives,
+    regions,
+    sections,
     sets,
     sets_more,
     solids,
