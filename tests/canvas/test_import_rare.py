@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from uuid import UUID
 
 import numpy as np
 import pytest
@@ -12,9 +13,14 @@ import pytest
 from canvas.canvasing import let_go
 from canvas.kangaroo_samples import Kangaroo
 from canvas.test_import_run import SOFT, places, ran
+from canvas.test_stored import internalised
+from hookean_canvas.archive import Type
 from hookean_canvas.kangaroo import rare
 from hookean_canvas.kangaroo import translate as kangaroo
-from serving import Home
+from hookean_canvas.run import graph
+from hookean_canvas.run.evaluate import Canvas
+from hookean_canvas.run.rhino import rhino3dm
+from serving import HANG, Home
 
 BOUNCY = (
     ("GoalObjects", None), ("Reset", False), ("Threshold", 1e-15), ("Tolerance", 0.01), ("Damping", 0.99),
@@ -108,3 +114,41 @@ def test_circles_as_large_as_a_mesh_is_bright_push_each_other_apart_by_their_rad
     d.panel("particles", solver["V"])
     found = places(ran(d, tmp_path))
     assert float(np.linalg.norm(found[1] - found[0])) == pytest.approx(0.92 / 1.5, abs=1e-3)
+
+
+def test_a_rim_comes_to_a_circle_that_a_parameter_holds_with_the_solver_of_nine_inputs(tmp_path: Path) -> None:
+    """A mesh whose rim is pulled to an internalised circle as a NURBS curve, rational and closed, of radius 2."""
+    d = Kangaroo("museum", "Museum", "A mesh on a circle.")
+    curve = d.parameter("Curve", "Circle")
+    side = d.slider("Side", 2, 1, 5)
+    size = d.native("Rectangle", plane=d.native("XY Plane", origin=d.point(-1, -1, 0)), x_size=side, y_size=side)
+    mesh = d.native("Mesh Plane", boundary=size["Rectangle"], width_count=4, height_count=4)["Mesh"]
+    rim = d.kangaroo("NakedVertices", (("Mesh", None),), ["ClothedIndex", "NakedIndex", "ClothedPts", "NakedPts"],
+                     mesh=mesh)["NakedPts"]  # fmt: skip
+    on = d.kangaroo(
+        "OnCurve", (("Points", None), ("Curve", None), ("Strength", 1000.0)), ["P"], points=rim, curve=curve
+    )
+    springs = (("Mesh", None), ("LengthFactor", 1.0), ("Strength", 1.0))
+    edges = d.kangaroo("EdgeLengths", springs, ["EL"], mesh=mesh)
+    typed = (
+        ("GoalObjects", None), ("Points", None), ("Reset", False), ("Restart", False), ("Parallel", True),
+        ("Threshold", 1e-15), ("Tolerance", 0.01), ("AddCurrent", False), ("On", True),
+    )  # fmt: skip
+    solver = d.kangaroo("Solver", typed, ["V", "O"], guid=UUID("a54d250e-e285-4f38-9fb3-8dd9c886c659"),
+                        goalobjects=[on, edges], reset=d.toggle("Reset", True))  # fmt: skip
+    d.panel("particles", solver["V"])
+    circle = rhino3dm.Circle(2.0).ToNurbsCurve()
+    root = d.archive()
+    held = next(one for one in root.walk() if one.value("InstanceGuid") == curve.id)
+    held.chunks[:] = [one for one in held.chunks if one.name != "PersistentData"]
+    branch = held.add("PersistentData").put("Count", Type.INT32, 1).add("Branch", 0)
+    branch.put("Count", Type.INT32, 1).put("Path", Type.STRING, "{0}")
+    item = branch.add("Item", 0).put("EdgeIndex", Type.INT32, -1).put("RefID", Type.GUID, UUID(int=0))
+    item.put("ON_Data", Type.BYTEARRAY, internalised(circle))
+    after, report = kangaroo.translate(root)
+    assert (report.whole, report.stays) == (1, [])
+    found = graph.of(after)
+    outcome = Canvas(found).run(HANG)
+    assert outcome.at_rest and [m for m in outcome.messages if m.level == "error"] == []
+    far = np.linalg.norm(places(outcome), axis=1)
+    assert np.sum(np.abs(far - 2.0) < 0.02) == 16 and far.min() < 0.02  # as near as the curve's polyline is
