@@ -24,7 +24,7 @@ SUBJECTS = {
     "meshes_edited": "Changing meshes",
     "points_more": "Neighbours and coordinates", "planes": "Planes that are turned", "meetings": "Intersections",
     "curves_more": "Measures of curves", "curves_changed": "Changing curves",
-    "grids": "Grids of cells", "regions": "Regions and cells", "sections": "Sections and projections",
+    "grids": "Grids of cells", "regions": "Regions and cells", "sections": "Sections and spans",
     "freeform": "Beside and along curves",
 }  # fmt: skip
 """Headings by the modules that declare natives."""

@@ -1,4 +1,4 @@
-"""Natives that cut by many planes, project curves, and draw lines and polygons beside circles and edges."""
+"""Natives that cut by many planes, and draw spans and polygons on edges."""
 
 from __future__ import annotations
 
@@ -14,8 +14,6 @@ from hookean_canvas.run.natives.curves_changed import bezier
 from hookean_canvas.run.natives.declare import Unfit, bounded, native
 from hookean_canvas.run.natives.measures import surface_mesh
 from hookean_canvas.run.natives.meetings import _welded, crossings, section
-from hookean_canvas.run.natives.points_more import ray_hits
-from hookean_canvas.run.natives.shapes import Array
 from hookean_canvas.run.rhino import rhino3dm
 
 PIECES = 64
@@ -67,27 +65,6 @@ def curve_contour(curve: Any, start: Any, normal: Any, distance: float) -> tuple
     bounded(last - first)
     origins = (shapes.xyz(start) + k * distance * way for k in range(int(first), int(last) + 1))
     return _met(curve, (rhino3dm.Plane(shapes.point(one), shapes.vector(way)) for one in origins))
-
-
-@native("d7ee52ff-89b8-4d1a-8662-3e0dd391d0af", "Project", "Project",
-        "Curve (C): curve; Brep (B): faces; Direction (D): vector", "Curve (C): list",
-        remark="a curve becomes a polyline of at least 64 pieces; surfaces count as their meshes of 64 by 64 quads",
-        )  # fmt: skip
-def project_curve(curve: Any, target: Any, direction: Any) -> list[Any]:
-    """A curve moved along a direction to the first place where each of its points meets faces; parts that miss are
-    left out."""
-    way = shapes.unit(shapes.xyz(direction))
-    if not way.any():
-        raise Unfit("the direction has no length")
-    corners = surface_mesh(target)
-    rows: list[list[Array]] = [[]]
-    for start in arc_lengths.divide(curve, PIECES):
-        hits = ray_hits(start, way, *corners)
-        if len(hits):
-            rows[-1].append(start + float(hits[np.argmin(np.abs(hits))]) * way)
-        elif rows[-1]:
-            rows.append([])
-    return [shapes.polyline(np.array(part)) for part in rows if len(part) > 1]
 
 
 @native("30ce59ce-22a1-49ee-9e21-e6d16b3684a8", "Bezier Span", "BzSpan",
