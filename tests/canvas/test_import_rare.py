@@ -152,3 +152,29 @@ def test_a_rim_comes_to_a_circle_that_a_parameter_holds_with_the_solver_of_nine_
     assert outcome.at_rest and [m for m in outcome.messages if m.level == "error"] == []
     far = np.linalg.norm(places(outcome), axis=1)
     assert np.sum(np.abs(far - 2.0) < 0.02) == 16 and far.min() < 0.02  # as near as the curve's polyline is
+
+
+@pytest.mark.parametrize("kept_in", [False, True])
+def test_circles_of_an_image_stay_in_curves_only_where_there_are_some(kept_in: bool) -> None:
+    d = Kangaroo(f"curves {kept_in}", "Curves", "Circles on an image, in a curve.")
+    wires = {"curves": d.parameter("Curve", "Curves")} if kept_in else {}
+    typed = (("Points", None), ("Mesh", None), ("Min", 0.2), ("Max", 1.0), ("Curves", None), ("Strength", 1.0))
+    circles = d.kangaroo("ImageCircles", typed, ["ImageCircles"], points=d.parameter("Point", "Points"),
+                         mesh=d.parameter("Mesh", "Mesh"), **wires)  # fmt: skip
+    d.solved(circles)
+    after, report = kangaroo.translate(d.archive())
+    names = [chunk.value("Name") for chunk in after.walk() if chunk.name == "Container"]
+    assert (report.whole, report.stays, report.lost) == (1, [], [])
+    assert "Circle Image" in names and ("Collide Curve" in names) == kept_in
+
+
+def test_a_wire_into_the_reset_of_a_bomb_is_named() -> None:
+    d = Kangaroo("reset", "Reset", "A bomb with a reset of its own.")
+    typed = (("Location", None), ("Points", None), ("DetonationTime", 150.0), ("Strength", 1.0), ("Reset", None))
+    toggle = d.toggle("Again", False)
+    bomb = d.kangaroo(
+        "Bomb", typed, ["Bomb"], location=d.point(0, 0, 0), points=d.parameter("Point", "P"), reset=toggle
+    )
+    d.solved(bomb)
+    _, report = kangaroo.translate(d.archive())
+    assert [why for _, why in report.lost] == ["the reset of the Engine starts the count again"]
