@@ -90,13 +90,15 @@ def wireframe(mesh: Any) -> list[Any]:
 def naked_boundary(mesh: Any) -> list[Any]:
     """The naked edges of a mesh, joined to polylines."""
     naked, _, _ = mesh_edges(mesh)
-    return join_curves([rhino3dm.LineCurve(line.From, line.To) for line in naked], False)
+    found: list[Any] = join_curves([rhino3dm.LineCurve(line.From, line.To) for line in naked], False)
+    return found
 
 
 @native("", "Weaverbird's Face Polylines", "wbFaces", "Mesh (M): mesh", "Polylines (P): list", plugin=True)
 def face_polylines(mesh: Any) -> list[Any]:
     """A closed polyline round each face."""
-    return face_boundaries(mesh)
+    found: list[Any] = face_boundaries(mesh)
+    return found
 
 
 @native("", "Weaverbird's Unify Face Windings", "wbUnify", "Mesh (M): mesh", "Mesh (M)", plugin=True)
@@ -216,13 +218,15 @@ def mesh_flip(mesh: Any) -> Any:
 @native("", "Mesh Area", "Area", _MESH, "Area (A); Centroid (C)", plugin=True)
 def mesh_area(mesh: Any) -> tuple[float, Any]:
     """The area of a mesh and its centroid."""
-    return measures.area(mesh)
+    found: tuple[float, Any] = measures.area(mesh)
+    return found
 
 
 @native("", "Mesh Volume", "Volume", _MESH, "Volume (V); Centroid (C)", plugin=True)
 def mesh_volume(mesh: Any) -> tuple[float, Any]:
     """The volume that a closed mesh encloses and its centroid."""
-    return measures.volume(mesh)
+    found: tuple[float, Any] = measures.volume(mesh)
+    return found
 
 
 @native("", "Mesh Triangulate", "Triangulate", f"{_MESH}; ShortDiagonal (S): boolean = True", "Mesh (M)", plugin=True)
