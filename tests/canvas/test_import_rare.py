@@ -90,6 +90,7 @@ def test_a_bomb_becomes_an_impulse_at_a_time_and_its_system_is_translated() -> N
     assert {"Impulse", "Detonations"} <= set(names)
 
 
+@pytest.mark.slow
 def test_points_thrown_apart_by_a_bomb_come_to_rest_on_their_anchors(tmp_path: Path) -> None:
     found = places(ran(blown(5.0), tmp_path))
     np.testing.assert_allclose(found[np.argsort(found[:, 0])], [[-1, 0, 0], [1, 0, 0]], atol=1e-2)
@@ -116,6 +117,7 @@ def test_circles_as_large_as_a_mesh_is_bright_push_each_other_apart_by_their_rad
     assert float(np.linalg.norm(found[1] - found[0])) == pytest.approx(0.92 / 1.5, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_rim_comes_to_a_circle_that_a_parameter_holds_with_the_solver_of_nine_inputs(tmp_path: Path) -> None:
     """A mesh whose rim is pulled to an internalised circle as a NURBS curve, rational and closed, of radius 2."""
     d = Kangaroo("museum", "Museum", "A mesh on a circle.")
@@ -201,6 +203,7 @@ def flag() -> Kangaroo:
     return d
 
 
+@pytest.mark.slow
 def test_a_net_that_would_flutter_in_the_wind_comes_to_rest_in_physical_time(tmp_path: Path) -> None:
     """Wind on a cloth that turns has no energy: the iteration of Kangaroo's solver goes round for ever here."""
     _, report = kangaroo.translate(flag().archive())
