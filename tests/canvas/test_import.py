@@ -380,18 +380,18 @@ def test_goals_in_one_stream_are_sorted_and_show_becomes_a_parameter() -> None:
 
 def test_a_goal_without_counterpart_keeps_its_whole_system_as_it_was() -> None:
     """Half a system runs in neither engine: solver and goals stay on with their wires, and a mesh tool beside them."""
-    d = Kangaroo("stays", "Stays", "Bomb and Refine.")
+    d = Kangaroo("stays", "Stays", "G2 and Refine.")
     mesh = d.parameter("Mesh", "Mesh")
     refined = d.kangaroo("Refine", (("M", None), ("L", 1)), ["M"], m=mesh)
     edges = d.kangaroo("EdgeLengths", (("Mesh", None), ("LengthFactor", 1.0), ("Strength", 1.0)), ["EL"], mesh=refined)
-    d.solved(d.kangaroo("Bomb", (("Location", None), ("Strength", 1.0)), ["B"], location=mesh), edges)
+    d.solved(d.kangaroo("G2", (("Points", None), ("Strength", 1.0)), ["G2"], points=mesh), edges)
     after, report = translated(d)
     assert (report.solvers, report.whole, report.swapped, report.lost) == (1, 0, [], [])
     assert dict(report.stays) == {
         "Refine": "a tool for geometry; it stays with the system that it feeds",
-        "Bomb": "Impulse takes a time, not counts of iterations; its momentum is another number than the strength",
+        "G2": "curves have no elements here whose curvature could be made equal; Smooth and Bend act on polylines",
         "EdgeLengths": "it stays with Solver",
-        "Solver": "it stays with all its goals, because of Bomb",
+        "Solver": "it stays with all its goals, because of G2",
     }
     assert same_objects(d.archive(), after) == []
     names = [c.value("Name") for c in after.chunk("Definition").chunk("GHALibraries").chunks]  # type: ignore[union-attr]

@@ -88,6 +88,15 @@ def test_a_stored_value_of_each_kind_is_read(given: Chunk, expected: Any) -> Non
     assert near(plain(stored(given)), expected)
 
 
+def test_a_material_of_a_preview_is_its_colour() -> None:
+    held = item("ambient", Type.DRAWING_COLOR, (255, 128, 128, 128)).put(
+        "diffuse", Type.DRAWING_COLOR, (255, 11, 125, 9)
+    )
+    held.put("rdk_id", Type.GUID, UUID(int=0)).put("shine", Type.DOUBLE, 0.5).put("transparency", Type.DOUBLE, 0.0)
+    found = stored(held)
+    assert (found.R, found.G, found.B) == (11, 125, 9)
+
+
 def test_data_of_any_kind_is_read_from_the_chunk_below_its_type() -> None:
     outer = item("TypeName", Type.STRING, "Grasshopper.Kernel.Types.GH_Mesh")
     outer.add("Data").put("ON_Data", Type.BYTEARRAY, internalised(MESH))

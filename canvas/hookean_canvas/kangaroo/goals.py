@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hookean_canvas.kangaroo import held, six
+from hookean_canvas.kangaroo import held, rare, six
 from hookean_canvas.kangaroo.pieces import HALF, Piece, Swap, corners, fed, force, halved, pairs
 
 _TOUCH = "k by the distance between the points where the circles touch the edge"
@@ -93,6 +93,7 @@ _POLYGONS = Swap(
 
 GOALS: dict[str, Swap] = {
     **six.GOALS,
+    **rare.GOALS,
     "length(line)": force("Springs", "s", line="connection", length="rest_length", strength="stiffness"),
     "edgelengths": force("Springs", "el", mesh="connection", lengthfactor="rest_factor", strength="stiffness"),
     "anchor": replace(

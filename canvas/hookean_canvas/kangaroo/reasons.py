@@ -14,9 +14,7 @@ _REASONS = {
 }
 REASONS: dict[str, str] = {
     "soapfilm": "warp and weft are families of a mesh's edges here; connect a mesh to SoapFilm",
-    "bomb": "Impulse takes a time, not counts of iterations; its momentum is another number than the strength",
     "gstring": "Geodesic Strip takes a mesh and the vertices of its lines",
-    "imagecircles": "its image is the colours of a mesh; Circle Image takes an image as rows of numbers",
     "g2": "curves have no elements here whose curvature could be made equal; Smooth and Bend act on polylines",
     "boxcollide": "Box Collide takes the diagonals of all boxes",
     "soft&hardsolver": "goals are not of two ranks here; anchors, locks and floors are exact",

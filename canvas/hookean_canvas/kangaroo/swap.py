@@ -48,6 +48,7 @@ class Swapping:
         """Make the pieces, then say what found no place."""
         whole = self.whole
         self._in_metres()
+        self._in_wind()
         if self.swap.pieces[0].bundle in FLOATING:
             self._parameter()
         else:
@@ -68,6 +69,19 @@ class Swapping:
             for piece in self.swap.pieces
         ]
         self.swap = replace(self.swap, pieces=tuple(pieces))
+
+    def _in_wind(self) -> None:
+        """A cloth that turns in the wind takes energy from it and may flutter for ever unless something damps it: the
+        iteration of Kangaroo's solver does not, motion in physical time with drag does."""
+        settings = [piece for piece in self.swap.pieces if piece.values.get("solver") == "momentum"]
+        if not settings or not any(self.whole.swapped("Wind", self.whole.systems.goals_of(self.part))):
+            return
+        pieces = [
+            replace(piece, values={**piece.values, "solver": "verlet"}) if piece in settings else piece
+            for piece in self.swap.pieces
+        ]
+        told = f"{self.swap.differs}; in wind it is played in physical time, with drag"
+        self.swap = replace(self.swap, pieces=tuple(pieces), differs=told)
 
     def _has_data(self) -> bool:
         """Whether it is a solver of goals that give data out, not geometry."""

@@ -110,6 +110,7 @@ _KINDS: dict[str, tuple[tuple[Type, ...], Callable[[Item], Any]]] = {
     "Line": ((Type.LINE,), _line),
     "color": ((Type.DRAWING_COLOR,), lambda item: stand_in.Color(*item.value)),
     "colour": ((Type.DRAWING_COLOR,), lambda item: stand_in.Color(*item.value)),
+    "diffuse": ((Type.DRAWING_COLOR,), lambda item: stand_in.Color(*item.value)),  # of a material, which only shows
     "path": ((Type.STRING,), _same),
 }
 """Under which names values are stored, as which types, and how they are read."""

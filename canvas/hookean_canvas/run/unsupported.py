@@ -42,8 +42,8 @@ _CODE = "its code is not Python"
 _WHY = {
     _STORED: ("MD Slider", "Calendar", "Path Mapper"),
     _KERNEL: (
-        "Solid Union", "Solid Difference", "Solid Intersection", "Region Union", "Region Difference",
-        "Region Intersection", "Mesh Union", "Mesh Difference", "Mesh Intersection", "Mesh Split", "Split Brep",
+        "Solid Union", "Solid Difference", "Solid Intersection", "Mesh Union", "Mesh Difference",
+        "Mesh Intersection", "Mesh Split", "Split Brep",
         "Split Brep Multiple", "Surface Split", "Split with Brep", "Split with Breps", "Trim with Brep",
         "Trim with Breps", "Trim Solid", "Boundary Volume", "Brep | Brep", "Cap Holes Ex", "Fillet", "Fillet Edge",
         "Pipe Variable", "SubD from Mesh", "Quad Remesh", "Copy Trim", "Retrim", "Geodesic", "Text On Surface",

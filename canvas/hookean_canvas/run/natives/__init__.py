@@ -34,6 +34,8 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     planes,
     points_more,
     primitives,
+    regions,
+    sections,
     sets,
     sets_more,
     solids,
@@ -47,6 +49,7 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     transforms_more,
     trees_more,
     vectors,
+    weaverbird,
 )
 from hookean_canvas.run.natives.declare import BY_NAME, NATIVES, PLUGINS, Input, Native, Output, Unfit, native_of
 from hookean_canvas.run.natives.display import INERT, INERT_NAMES, is_inert

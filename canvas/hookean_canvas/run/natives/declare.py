@@ -95,12 +95,17 @@ PLUGINS: dict[str, Native] = {}
 def native_of(guid: UUID, name: str, plugin: bool) -> Native | None:
     """The native that stands in for an object, by its id, else by its name; None for an unknown one.
 
-    `plugin`: whether the object is of a plug-in, which may give it the name of one of Grasshopper's own.
+    `plugin`: whether the object is of a plug-in, which may give it the name of one of Grasshopper's own. Spaces and
+    capitals in names do not count: versions differ in them.
     """
-    found = NATIVES.get(guid)
-    if found is None and name in PLUGINS and (PLUGINS[name].foreign or not plugin):
-        found = PLUGINS[name]
-    return found
+    found = NATIVES.get(guid) or PLUGINS.get(name)
+    if found is None:
+        found = next((one for known, one in PLUGINS.items() if _plain(known) == _plain(name)), None)
+    return found if found is None or found.guid.int or found.foreign or not plugin else None
+
+
+def _plain(name: str) -> str:
+    return name.replace(" ", "").casefold()
 
 
 _INPUT = re.compile(r"(.+?) \((\S+)\): (\S+)(?: (list|tree))?( optional)?(?: = (.+))?")

@@ -20,11 +20,12 @@ SUBJECTS = {
     "texts": "Texts", "trees_more": "Trees by patterns of paths", "sets_more": "Sets and sequences",
     "maths_more": "Triangles, lists of numbers", "transforms_more": "Mappings, arrays, groups", "bending": "Bending",
     "surfaces_more": "Making surfaces and boxes", "solids": "Solids",
-    "fitted": "Fitting",
+    "fitted": "Fitting", "weaverbird": "Weaverbird and MeshEdit, by name",
     "meshes_edited": "Changing meshes",
     "points_more": "Neighbours and coordinates", "planes": "Planes that are turned", "meetings": "Intersections",
     "curves_more": "Measures of curves", "curves_changed": "Changing curves",
-    "grids": "Grids of cells", "freeform": "Beside and along curves",
+    "grids": "Grids of cells", "regions": "Regions and cells", "sections": "Sections and spans",
+    "freeform": "Beside and along curves",
 }  # fmt: skip
 """Headings by the modules that declare natives."""
 

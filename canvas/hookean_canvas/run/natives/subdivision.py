@@ -22,14 +22,14 @@ _REMARK = "naked edges: 0 fixed, 1 smooth, 2 smooth with fixed corners"
         remark=_REMARK, plugin=True)  # fmt: skip
 def catmull_clark_mesh(mesh: Any, level: int, naked: int) -> Any:
     """Quads that tend to a smooth surface."""
-    return _subdivided(mesh, level, naked, catmull_clark)
+    return subdivided(mesh, level, naked, catmull_clark)
 
 
 @native("", "Weaverbird's Loop Subdivision", "wbLoop", _INPUTS, "Output Mesh (O)",
         remark=_REMARK, plugin=True)  # fmt: skip
 def loop_mesh(mesh: Any, level: int, naked: int) -> Any:
     """Triangles that tend to a smooth surface."""
-    return _subdivided(mesh, level, naked, loop)
+    return subdivided(mesh, level, naked, loop)
 
 
 @native("", "Weaverbird's Join Meshes and Weld", "wbJoin", "Meshes (M+): mesh list; Weld (W): boolean = True",
@@ -39,10 +39,11 @@ def join_meshes(meshes: list[Any], weld: bool) -> Any:
     return combined(meshes) if weld else mesh_join(meshes)
 
 
-def _subdivided(mesh: Any, level: int, naked: int, rule: Callable[[Array, Faces], tuple[Array, Faces]]) -> Any:
+def subdivided(mesh: Any, level: int, naked: int, rule: Callable[[Array, Faces], tuple[Array, Faces]]) -> Any:
+    """A mesh after steps of a rule; `naked`: 0 keeps those on naked edges, 2 those of one face."""
     if not 0 <= level <= MOST:
         raise Unfit(f"Level must be from 0 to {MOST}")
-    vertices, faces = _welded(mesh)
+    vertices, faces = welded(mesh)
     for _ in range(level):
         new, made = rule(vertices, faces)
         fixed = {0: lambda pairs, near: True, 2: lambda pairs, near: near == 1}.get(naked)
@@ -64,7 +65,7 @@ def _fix(new: Array, vertices: Array, faces: Faces, fixed: Callable[[int, int], 
                 new[i] = vertices[i]
 
 
-def _welded(mesh: Any) -> tuple[Array, Faces]:
+def welded(mesh: Any) -> tuple[Array, Faces]:
     """Vertices and faces, vertices in one place made one."""
     vertices, faces = shapes.mesh_parts(mesh)
     of = in_place(vertices)

@@ -12,7 +12,9 @@ from hookean_canvas.run.natives import shapes
 from hookean_canvas.run.natives.curves import _at_length
 from hookean_canvas.run.natives.curves_at import _across, _carried
 from hookean_canvas.run.natives.declare import Unfit, bounded, native
+from hookean_canvas.run.natives.measures import surface_mesh
 from hookean_canvas.run.natives.places import _closest, _extremes
+from hookean_canvas.run.natives.points_more import ray_hits
 from hookean_canvas.run.rhino import rhino3dm
 
 Array = shapes.Array
@@ -262,3 +264,24 @@ def split_group(held: Any, indices: list[int], wrap: bool) -> tuple[shapes.Group
     chosen = {i % len(members) if wrap and members else i for i in indices}
     parts = [tuple(one for i, one in enumerate(members) if (i in chosen) == inside) for inside in (True, False)]
     return shapes.Group(parts[0]), shapes.Group(parts[1])
+
+
+@native("d7ee52ff-89b8-4d1a-8662-3e0dd391d0af", "Project", "Project",
+        "Curve (C): curve; Brep (B): faces; Direction (D): vector", "Curve (C): list",
+        remark="a curve becomes a polyline of at least 64 pieces; surfaces count as their meshes of 64 by 64 quads",
+        )  # fmt: skip
+def project_curve(curve: Any, target: Any, direction: Any) -> list[Any]:
+    """A curve moved along a direction to the first place where each of its points meets faces; parts that miss are
+    left out."""
+    way = shapes.unit(shapes.xyz(direction))
+    if not way.any():
+        raise Unfit("the direction has no length")
+    corners = surface_mesh(target)
+    rows: list[list[Array]] = [[]]
+    for start in arc_lengths.divide(curve, 64):
+        hits = ray_hits(start, way, *corners)
+        if len(hits):
+            rows[-1].append(start + float(hits[np.argmin(np.abs(hits))]) * way)
+        elif rows[-1]:
+            rows.append([])
+    return [shapes.polyline(np.array(part)) for part in rows if len(part) > 1]
