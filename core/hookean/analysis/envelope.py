@@ -14,6 +14,13 @@ from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+ALIKE = 1e-6  # of the largest value: what symmetry makes equal differs by what a solution leaves out of balance
+
+
+def first_largest(values: Floats) -> int:
+    """The place of the largest value (m,), of several that are alike the first; 0 of none."""
+    largest = values.max(initial=-np.inf)
+    return int(np.argmax(values >= largest - ALIKE * abs(largest))) if len(values) else 0
 
 
 @dataclass(frozen=True)
@@ -56,23 +63,23 @@ class Envelope:
     def summary(self) -> list[str]:
         """The largest displacement, forces and reaction, where they are and in which case."""
         unit = self.units
-        spot = int(self.displacement.largest.argmax()) if len(self.displacement.largest) else 0
+        spot = first_largest(self.displacement.largest)
         lines = [self._line("displacement", self.displacement, spot, unit.length, f"particle {spot}")]
         for entry in self.forces:
             for name, found in entry["columns"].items():
                 if name not in ("force", "moment", NAME) or not len(found.largest):
                     continue
                 kind = unit.of(dimensions(entry["kind"])[name]) or "-"
-                at, low = int(found.largest.argmax()), int(found.smallest.argmin())
+                at, low = first_largest(found.largest), first_largest(-found.smallest)
                 lines.append(self._line(f"{entry['name'] or entry['kind']} {name}", found, at, kind, f"element {at}"))
                 if found.smallest[low] < 0.0:
                     case = self.cases[found.smallest_case[low]]
                     lines.append(f"  smallest {found.smallest[low]:.5g} {kind} at element {low} in {case}")
         if len(self.particles):
-            at = int(self.reaction.largest.argmax())
+            at = first_largest(self.reaction.largest)
             lines.append(self._line("reaction", self.reaction, at, unit.force, f"particle {self.particles[at]}"))
         if self.moment is not None:
-            at = int(self.moment.largest.argmax())
+            at = first_largest(self.moment.largest)
             where = f"particle {self.particles[at]}"
             lines.append(self._line("reaction moment", self.moment, at, unit.of("moment"), where))
         return lines

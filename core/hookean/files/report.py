@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hookean.analysis.envelope import Envelope, Extremes
+from hookean.analysis.envelope import Envelope, Extremes, first_largest
 from hookean.analysis.load_cases import CaseResult, LoadCases, load_cases
 from hookean.files import tables
 from hookean.forces import KINDS
@@ -138,7 +138,7 @@ def _cases(scene: Scene, cases: LoadCases) -> Iterator[str]:
     found = []
     for name, solved in cases.cases.items():
         far = np.linalg.norm(solved.displacements, axis=1)
-        at = int(far.argmax()) if len(far) else 0
+        at = first_largest(far)
         result = solved.result
         found.append((name, result.status, result.stability, float(far.max(initial=0.0)), at, solved.slack_count))
     yield _table(heads, found)
@@ -147,8 +147,8 @@ def _cases(scene: Scene, cases: LoadCases) -> Iterator[str]:
 def _envelope(found: Envelope, form: Result) -> Iterator[str]:
     yield "<h2>Maxima of all cases, and where they are</h2>"
     unit, rows = found.units, list[tuple[Any, ...]]()
-    x, y, z = form.particles[int(found.displacement.largest.argmax())].tolist()
-    at = int(found.displacement.largest.argmax())
+    at = first_largest(found.displacement.largest)
+    x, y, z = form.particles[at].tolist()
     rows.append(("displacement", "largest", *_extreme(found, found.displacement, at, "largest"), unit.length,
                  f"particle {at}", _vector((x, y, z))))  # fmt: skip
     for entry, columns in zip(form.forces, found.forces, strict=True):
@@ -157,7 +157,7 @@ def _envelope(found: Envelope, form: Result) -> Iterator[str]:
                 continue
             called = f"{columns['name'] or columns['kind']} {name}"
             dimension = unit.of(dimensions(columns["kind"])[name]) or "-"
-            spots = {"largest": int(extremes.largest.argmax()), "smallest": int(extremes.smallest.argmin())}
+            spots = {"largest": first_largest(extremes.largest), "smallest": first_largest(-extremes.smallest)}
             for which, spot in spots.items():
                 value = _extreme(found, extremes, spot, which)
                 rows.append((called, which, *value, dimension, f"element {spot}", _middle(entry, spot, form)))
