@@ -122,6 +122,12 @@ export interface SurfaceRead {
   mean_curvature: (number | null)[];
   /** [1/length^2] */
   gaussian_curvature: (number | null)[];
+  /** Of cloth, per width [force/length] */
+  stress: (number | null)[];
+  /** Of cloth: 2 taut, 1 wrinkled, 0 slack */
+  state: (number | null)[];
+  /** Of cloth [-] */
+  utilisation: (number | null)[];
   heights: { step: number; pieces: [Point, Point][]; heights: number[] };
   /** Ways of drops, and whether each stays on the surface. */
   water: { lines: Point[][]; stays: boolean[] };

@@ -7,7 +7,7 @@ import pytest
 
 import hookean
 from hookean import InputError
-from hookean.discretize import clothed_vertices, triangles
+from hookean.discretize import clothed_vertices, grid, naked_vertices, triangles
 
 
 def test_a_soap_film_has_no_mean_curvature() -> None:
@@ -57,3 +57,26 @@ def test_faults_are_named() -> None:
         hookean.surface(cable, drops=-1)
     with pytest.raises(InputError, match="give one of these"):
         hookean.surface("roof")  # type: ignore[arg-type]
+
+
+def test_cloth_shows_its_stress_state_and_utilisation_at_particles() -> None:
+    """A flat sheet of prestress s1, s2 between held edges has these stresses everywhere, and no shear: the largest is
+    s1, and it uses max(s1 / 60, s2 / 40) of its strength. A particle without cloth has none."""
+    mesh = grid(np.arange(5.0), np.arange(5.0))
+    scene = {
+        "particles": [*mesh.vertices.tolist(), [9.0, 0.0, 0.0]],
+        "meshes": {"sheet": {"vertices": mesh.vertices, "faces": mesh.faces}},
+        "materials": {"cloth": {"warp_stiffness": 800.0, "weft_stiffness": 600.0, "shear_stiffness": 20.0,
+                                "warp_strength": 60.0, "weft_strength": 40.0}},
+        "forces": [{"kind": "membrane", "mesh": "sheet", "material": "cloth", "warp": [1, 0, 0],
+                    "prestress": [3.0, 2.5, 0.0], "wrinkling": True},
+                   {"kind": "springs", "particles": [[0, 25]], "stiffness": 1.0}],
+        "anchors": [{"particles": [*naked_vertices(mesh), 25]}],
+    }  # fmt: skip
+    found = hookean.surface(hookean.relax(hookean.Scene.read(scene)), drops=0)
+    assert found.cloth.stress[:25] == pytest.approx(3.0, rel=1e-9)
+    assert (found.cloth.state[:25] == 2.0).all()
+    assert found.cloth.utilisation[:25] == pytest.approx(2.5 / 40.0, rel=1e-9)
+    assert np.isnan([found.cloth.stress[25], found.cloth.state[25], found.cloth.utilisation[25]]).all()
+    assert found.to_dict()["utilisation"][25] is None
+    assert any("cloth stressed by up to 3 N/m" in line for line in found.summary())

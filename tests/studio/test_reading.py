@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 import hookean
+from hookean.discretize import grid, naked_vertices
 from serving import wait_for
 
 from .browser import LAPTOP, Studio
@@ -205,3 +206,29 @@ def test_nothing_here_is_hard_to_reach(studio: Studio):
     page.set_viewport_size({"width": 390, "height": 844})
     assert page.evaluate("() => document.documentElement.scrollWidth") <= 390
     page.set_viewport_size(LAPTOP)
+
+
+def test_cloth_is_coloured_by_its_utilisation(studio: Studio):
+    """Numbers of the page in percent; those of cloth are offered for models that have cloth."""
+    page, service = studio.page, studio.service
+    assert not page.get_by_role("radio", name="Utilisation of cloth").count()
+    mesh = grid(np.arange(5.0), np.arange(5.0), np.add.outer(np.arange(5.0), -np.arange(5.0)) * 0.2)
+    cloth = {"warp_stiffness": 800.0, "weft_stiffness": 600.0, "shear_stiffness": 20.0, "warp_strength": 60.0}
+    service.put("cloth", {
+        "particles": mesh.vertices.tolist(),
+        "meshes": {"skin": {"vertices": mesh.vertices.tolist(), "faces": mesh.faces.tolist()}},
+        "materials": {"cloth": cloth},
+        "forces": [{"kind": "membrane", "mesh": "skin", "material": "cloth", "warp": [1, 0, 0],
+                    "prestress": [3.0, 2.5, 0.0]}],
+        "anchors": [{"particles": naked_vertices(mesh).tolist()}],
+    })  # fmt: skip
+    service.act("cloth", "relax")
+    service.at_rest("cloth")
+    studio.open("cloth")
+    unfold(studio, "Surface")
+    page.get_by_role("radio", name="Utilisation of cloth", exact=True).check()
+    ends = page.locator("dl", has=page.get_by_role("term").filter(has_text="Smallest")).get_by_role("definition")
+    ends.first.wait_for()
+    truth = 100.0 * hookean.surface(present(studio)).cloth.utilisation
+    assert [number(one) for one in ends.all_inner_texts()] == pytest.approx([truth.min(), truth.max()], rel=SHOWN)
+    page.get_by_role("group", name="Legend").get_by_text("Utilisation of cloth [%]").wait_for()

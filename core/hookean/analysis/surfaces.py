@@ -1,4 +1,4 @@
-"""What the surface of a shape is like: displacement, slope, curvature, height lines, and where water runs."""
+"""What the surface of a shape is like: displacement, slope, curvature, cloth, height lines, and where water runs."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.analysis.cloth_scalars import ClothScalars, cloth_scalars
 from hookean.discretize.surface_lines import HeightLines, WaterLines, height_lines, water_lines
 from hookean.discretize.surface_scalars import curvature, slope
 from hookean.errors import InputError
@@ -29,7 +30,8 @@ class Surface:
 
     `displacement` (n,) [length] of each particle from where it started; `slope` (n,) [degrees] to the horizontal,
     `mean_curvature` (n,) [1/length] and `gaussian_curvature` (n,) [1/length^2], nan at particles without faces, and the
-    curvatures also on the boundary; `heights` the lines of equal height; `water` the ways of drops.
+    curvatures also on the boundary; `cloth` what membranes show; `heights` the lines of equal height; `water` the ways
+    of drops.
     """
 
     mesh: Mesh
@@ -37,6 +39,7 @@ class Surface:
     slope: Floats
     mean_curvature: Floats
     gaussian_curvature: Floats
+    cloth: ClothScalars
     heights: HeightLines
     water: WaterLines
     units: Units
@@ -53,6 +56,9 @@ class Surface:
             angles = self.slope.round(6)  # without rounding of float64
             at = int(np.nanargmin(angles))
             lines.append(f"slope from {angles[at]:.4g} degrees, at particle {at}, to {np.nanmax(angles):.4g}")
+        if np.isfinite(self.cloth.stress).any():
+            at, unit_of = int(np.nanargmax(self.cloth.stress)), self.units.of("force/length")
+            lines.append(f"cloth stressed by up to {self.cloth.stress[at]:.4g} {unit_of}, at particle {at}")
         lines.append(f"{len(np.unique(self.heights.heights))} height lines, {self.heights.step:g} {unit} apart")
         return [*lines, f"{len(self.water.lines)} drops of water, of which {int(self.water.stays.sum())} stay"]
 
@@ -61,6 +67,7 @@ class Surface:
         numbers = ("displacement", "slope", "mean_curvature", "gaussian_curvature")
         return {
             **{name: _plain(getattr(self, name)) for name in numbers},
+            **{name: _plain(getattr(self.cloth, name)) for name in ("stress", "state", "utilisation")},
             "heights": {
                 "step": self.heights.step,
                 "pieces": self.heights.pieces.tolist(),
@@ -72,7 +79,8 @@ class Surface:
 
 
 def surface(model: Scene | Result | Simulation, step: float | None = None, drops: int = 200) -> Surface:
-    """The surface of a shape: displacement, slope and curvature at its particles, height lines, and the ways of water.
+    """The surface of a shape: displacement, slope and curvature at its particles, stress, state and utilisation of
+    cloth, height lines, and the ways of water.
 
     - `model`: A scene (which is relaxed), a result, or a simulation as it is now. Its surface has the faces of all its
       meshes.
@@ -94,6 +102,7 @@ def surface(model: Scene | Result | Simulation, step: float | None = None, drops
         slope(mesh),
         mean,
         gaussian,
+        cloth_scalars(system, particles),
         height_lines(mesh, step),
         water_lines(mesh, count=drops),
         units,

@@ -151,7 +151,7 @@ function Ramp({ legend: { title, unit, low, high, beyond, equal, colours }, mark
   return (
     <div>
       <p>
-        {title} {unit !== "-" && `[${unit}]`}
+        {title} {unit && unit !== "-" ? `[${unit}]` : ""}
       </p>
       <div class="ramp" style={{ background: `linear-gradient(to right, ${colours.join(", ")})` }} />
       <p class="ends numbers">

@@ -1,5 +1,5 @@
 // The surface of the shape: colours of its faces, height lines, the ways of water, and the extremes of its numbers.
-import type { SurfaceRead } from "../model";
+import type { SurfaceRead, Units } from "../model";
 import { NumberField } from "./number";
 import type { Studio } from "./studio";
 import { type Chosen, type Scalar, SCALARS, type Surfacing } from "./surfacing";
@@ -18,7 +18,8 @@ export function SurfacePanel({ studio }: { studio: Studio }) {
     choose({ scalar });
   };
   if (!topology) return null;
-  const { length } = topology.units;
+  const { units, forces } = topology;
+  const isCloth = forces.some(({ kind }) => kind === "membrane");
   const hasFaces = Object.keys(topology.meshes).length > 0 || topology.geometry.some(({ faces }) => faces);
   if (!hasFaces)
     return <p class="faint">This model has no faces. A mesh in it, such as a membrane, has a surface to read.</p>;
@@ -35,8 +36,8 @@ export function SurfacePanel({ studio }: { studio: Studio }) {
           />
           Nothing
         </label>
-        {SCALARS.map(({ name, seen, unit, hint }) => (
-          <label key={name} title={`${hint} [${unit(length)}]`}>
+        {SCALARS.filter(({ isOfCloth }) => isCloth || !isOfCloth).map(({ name, seen, unit, hint }) => (
+          <label key={name} title={unit(units) ? `${hint} [${unit(units)}]` : hint}>
             <input
               type="radio"
               name="scalar"
@@ -47,8 +48,8 @@ export function SurfacePanel({ studio }: { studio: Studio }) {
           </label>
         ))}
       </fieldset>
-      <Lines chosen={chosen} choose={choose} length={length} step={surfacing.read.value?.heights.step ?? null} />
-      <Found studio={studio} surfacing={surfacing} length={length} />
+      <Lines chosen={chosen} choose={choose} length={units.length} step={surfacing.read.value?.heights.step ?? null} />
+      <Found studio={studio} surfacing={surfacing} units={units} />
       {surfacing.fault.value && (
         <p class="fault" role="alert">
           {surfacing.fault.value}
@@ -106,17 +107,17 @@ function Lines({ chosen, choose, length, step }: OfLines) {
 interface OfFound {
   studio: Studio;
   surfacing: Surfacing;
-  length: string;
+  units: Units;
 }
 
 /** The extremes of what is coloured, and what became of the drops. */
-function Found({ studio, surfacing, length }: OfFound) {
+function Found({ studio, surfacing, units }: OfFound) {
   const [read, chosen] = [surfacing.read.value, surfacing.chosen.value];
   if (!read) return null;
   const one = SCALARS.find(({ name }) => name === chosen.scalar);
   return (
     <>
-      {one && <Ends studio={studio} name={one.seen} values={read[one.name]} unit={one.unit(length)} />}
+      {one && <Ends studio={studio} name={one.seen} values={read[one.name]} unit={one.unit(units)} isOfCloth={one.isOfCloth} />}
       {chosen.water && read.water.stays.length > 0 && <p role="status">{drops(read)}</p>}
     </>
   );
@@ -133,16 +134,26 @@ interface OfEnds {
   name: string;
   values: (number | null)[];
   unit: string;
+  isOfCloth?: boolean;
 }
 
-function Ends({ studio: { options }, name, values, unit }: OfEnds) {
+function Ends({ studio: { options }, name, values, unit, isOfCloth }: OfEnds) {
   let [low, high] = [-1, -1];
   values.forEach((value, i) => {
     if (value === null) return;
     if (low < 0 || value < values[low]!) low = i;
     if (high < 0 || value > values[high]!) high = i;
   });
-  if (low < 0) return <p class="faint">{name} is undefined on this surface: all its particles are on the boundary.</p>;
+  if (low < 0) {
+    const why = isOfCloth
+      ? "its membrane has no strength; give it a material that has one."
+      : "all its particles are on the boundary.";
+    return (
+      <p class="faint">
+        {name} is undefined on this surface: {why}
+      </p>
+    );
+  }
   const row = (seen: string, at: number) => (
     <div>
       <dt>{seen}</dt>

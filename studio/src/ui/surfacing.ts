@@ -1,11 +1,12 @@
 // Reads the surface of the shape while it is shown: once for each state at rest, twice a second while it moves.
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "../api";
-import type { Point, SurfaceRead, Topology } from "../model";
+import type { Point, SurfaceRead, Topology, Units } from "../model";
 import type { Session } from "../session";
 import type { Options, Painted, Sketch } from "../view/types";
 
-export type Scalar = "displacement" | "slope" | "mean_curvature" | "gaussian_curvature";
+type OfCloth = "stress" | "state" | "utilisation";
+export type Scalar = "displacement" | "slope" | "mean_curvature" | "gaussian_curvature" | OfCloth;
 
 /** What is chosen to be seen. */
 export interface Chosen {
@@ -16,11 +17,20 @@ export interface Chosen {
   water: boolean;
 }
 
-export const SCALARS: { name: Scalar; seen: string; unit: (length: string) => string; hint: string }[] = [
+export interface OfScalar {
+  name: Scalar;
+  seen: string;
+  unit: (units: Units) => string;
+  hint: string;
+  /** Only cloth has it. */
+  isOfCloth?: boolean;
+}
+
+export const SCALARS: OfScalar[] = [
   {
     name: "displacement",
     seen: "Displacement",
-    unit: (length) => length,
+    unit: ({ length }) => length,
     hint: "How far each particle is from where it started",
   },
   {
@@ -32,14 +42,35 @@ export const SCALARS: { name: Scalar; seen: string; unit: (length: string) => st
   {
     name: "mean_curvature",
     seen: "Mean curvature",
-    unit: (length) => `1/${length}`,
+    unit: ({ length }) => `1/${length}`,
     hint: "Mean of both curvatures, 0 on a soap film without pressure; of a sphere it is 1 / radius",
   },
   {
     name: "gaussian_curvature",
     seen: "Gaussian curvature",
-    unit: (length) => `1/${length}²`,
+    unit: ({ length }) => `1/${length}²`,
     hint: "Product of both curvatures. Below 0: a saddle, as of tensile roofs; 0: it can be unrolled; above 0: a dome",
+  },
+  {
+    name: "stress",
+    seen: "Stress of cloth",
+    unit: ({ force, length }) => `${force}/${length}`,
+    hint: "Largest principal stress per width of the membrane about a particle. Usual prestress: 1 to 5 kN/m",
+    isOfCloth: true,
+  },
+  {
+    name: "state",
+    seen: "State of cloth",
+    unit: () => "",
+    hint: "2 taut, 1 wrinkled, 0 slack: the loosest triangle about a particle",
+    isOfCloth: true,
+  },
+  {
+    name: "utilisation",
+    seen: "Utilisation of cloth",
+    unit: () => "%",
+    hint: "Part of its strength that the membrane uses, the largest about a particle. 100 %: the strength itself",
+    isOfCloth: true,
   },
 ];
 
@@ -142,14 +173,16 @@ function rounded(read: SurfaceRead): SurfaceRead {
     const most = values.reduce((size: number, value) => Math.max(size, Math.abs(value ?? 0)), 0);
     return values.map((value) => (value !== null && Math.abs(value) < NOTHING * most ? 0 : value));
   };
-  return { ...read, ...Object.fromEntries(SCALARS.map(({ name }) => [name, near(read[name])])) };
+  const utilisation = read.utilisation.map((value) => (value === null ? null : 100 * value));
+  const shown = { ...read, utilisation };
+  return { ...shown, ...Object.fromEntries(SCALARS.map(({ name }) => [name, near(shown[name])])) };
 }
 
 function painted(read: SurfaceRead, { units }: Topology, { scalar, heights, water }: Chosen): Painted {
   const one = SCALARS.find(({ name }) => name === scalar);
   const colours = one && {
     title: one.seen,
-    unit: one.unit(units.length),
+    unit: one.unit(units),
     values: Float32Array.from(read[one.name], (value) => value ?? NaN),
   };
   const lines: Sketch[] = [];
