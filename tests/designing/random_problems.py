@@ -1,5 +1,5 @@
-"""Random design problems of nets, cables and fans, with their variables as functions of a net: well posed ones, and such
-that contradict themselves, have no end, cannot be met, or are badly scaled."""
+"""Random design problems of nets, cables and fans, with their variables as functions of a net: well posed ones, and
+such that contradict themselves, have no end, cannot be met, or are badly scaled."""
 
 from __future__ import annotations
 
@@ -171,8 +171,9 @@ def _anchor(net: Net, axes: str, tie: str) -> Varied:
 def unit_of(net: Net, q: Quantity) -> float:
     """The size of a quantity's values, by its dimension."""
     length, force = net.units
-    sizes = {"force": force, "reaction": force, "force_density": force / length, "direction": 1.0,
-             "load_path": force * length, "strain_energy": force * length, "area": length**2, "volume": length**3}  # fmt: skip
+    work = force * length
+    sizes = {"force": force, "reaction": force, "force_density": force / length, "direction": 1.0}
+    sizes |= {"load_path": work, "strain_energy": work, "area": length**2, "volume": length**3}
     return sizes.get(q["kind"], length)
 
 

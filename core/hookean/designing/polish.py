@@ -25,8 +25,9 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 MOST = 60  # unknowns that are not at bounds, above which second derivatives take too many equilibria
-STEPS = 12
-SLOPE = 1e-6  # part of the objective: slopes below are those of a minimum to all digits that count
+STEPS, EQUILIBRIA = 12, 240  # the most of both; 3 steps in any case
+SLOPE = 1e-7  # part of the objective: slopes below are those of a minimum to all digits that count
+OFF = 1e-9  # part of the size of values: nearer to their limit they are at it
 NOTHING = 1e-14  # part of the first objective: what is left is rounding
 STEP = 1e-4  # of an unknown's size, of differences of second order: 1e-8, and rounding of slopes by 1e-5
 STRAIGHT = 1e-12  # part of the largest curvature: that of directions that have less
@@ -49,9 +50,11 @@ class Here:
 
 def polish(search: Search) -> None:
     """Bring the best so far nearer to the minimum that it is at, if its slope is not that of one yet."""
-    for _ in range(STEPS):
+    taken = 0
+    for number in range(STEPS):
         here = _here(search)
-        if here is None or not _step(search, here):
+        taken += 0 if here is None else 2 * int(here.free.sum())
+        if here is None or (number >= 3 and taken > EQUILIBRIA) or not _step(search, here):
             return
 
 
@@ -64,12 +67,19 @@ def _here(search: Search) -> Here | None:
     if gained is None:
         return None
     free, slope = ~gained.held, gained.left.sum(axis=0)
-    if free.sum() > MOST or not np.abs(slope).max(initial=0.0) > SLOPE * abs(value):
-        return None
     rows = np.flatnonzero(gained.shares)
     values, low, high = _limits(search, found)
     nearer = np.where(np.abs(values - low) < np.abs(values - high), low, high)
-    return Here(y, found, gained, slope, free, rows, (values - nearer)[rows])
+    off = (values - nearer)[rows]
+    flat = not np.abs(slope).max(initial=0.0) > SLOPE * abs(value)
+    if free.sum() > MOST or (flat and not (np.abs(off) > OFF * _sizes(search)[rows]).any()):
+        return None
+    return Here(y, found, gained, slope, free, rows, off)
+
+
+def _sizes(search: Search) -> Floats:
+    parts = zip(search.aims.limits, search.sizes, strict=True)
+    return np.concatenate([np.zeros(0), *(np.full(len(limit[0]), size) for limit, size in parts)])
 
 
 def _limits(search: Search, found: Equilibrium) -> tuple[Floats, Floats, Floats]:
