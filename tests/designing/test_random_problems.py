@@ -42,6 +42,7 @@ def test_what_two_hundred_answers_say_is_true(seed: int, twist: str) -> None:
     checked(seed, twist)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("twist", "status"), [("contradictory", "infeasible"), ("infeasible", "infeasible"), ("unbounded", "unbounded")]
 )
